@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from prefilter._options.mipmaps import (
     BOUNDS,
     CONTENTS,
+    EFFORTS,
     FILTERS,
     FITTED_FILTERS,
     LOOKUPS,
@@ -28,6 +29,7 @@ from ..core.options import number, one_of, switch, text
 __all__ = (
     "BOUNDS",
     "CONTENTS",
+    "EFFORTS",
     "FILE_FORMATS",
     "FILTERS",
     "FITTED_FILTERS",

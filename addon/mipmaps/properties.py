@@ -22,7 +22,7 @@ from .choices import (
 from .importance import suggested_names
 
 _FRAMES = ("use_frames", "frame_start", "frame_end", "frame_step")
-_OF_FILES = ("texture_format", "supercompression", "use_multiples_of_4")
+_OF_FILES = ("texture_format", "effort", "supercompression", "use_multiples_of_4")
 _OF_ANY_SIDES = ("rgba", "etc2", "eac", "astc")
 """How the names of formats begin whose readers take any number of texels."""
 BAKE = presets.Kind("bake", "prefilter_bake", [(ResultSettings, ()), (Settings, _FRAMES)])
@@ -191,6 +191,7 @@ def _draw_compression(settings: Any, layout: bpy.types.UILayout) -> None:
     ending = f".{settings.file_format}"
     if engines.has_formats(ending):
         layout.prop(settings, "texture_format")
+        layout.prop(settings, "effort")
         row = layout.row()
         row.active = not settings.texture_format.startswith(_OF_ANY_SIDES)
         row.prop(settings, "use_multiples_of_4")

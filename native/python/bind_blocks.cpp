@@ -84,7 +84,8 @@ py::bytes bytes_from(const std::vector<std::uint8_t>& bytes) {
 
 // The codebooks and, of each level, color and alpha, as decode_etc1s takes them.
 py::tuple compressed_etc1s(const std::vector<Array<std::uint8_t>>& levels, int quality,
-                           bool has_alpha, bool is_color, const py::object& callback, int threads) {
+                           bool has_alpha, bool is_color, const std::string& effort,
+                           const py::object& callback, int threads) {
   std::vector<Etc1sImage> images;
   for (const auto& level : levels) {
     images.push_back(
@@ -94,7 +95,8 @@ py::tuple compressed_etc1s(const std::vector<Array<std::uint8_t>>& levels, int q
   Etc1sTexture texture;
   {
     const py::gil_scoped_release unlocked;
-    texture = compress_etc1s(images, {quality, has_alpha, is_color, threads}, progress);
+    texture = compress_etc1s(
+        images, {quality, has_alpha, is_color, block_effort_named(effort), threads}, progress);
   }
   py::list parts;
   for (const Etc1sTexture::Level& level : texture.levels) {
@@ -118,15 +120,16 @@ void bind_blocks(py::module_& m) {
   m.def(
       "compress_blocks",
       [](const py::array& rgba, const std::string& format, bool srgb, bool weigh_by_alpha,
-         const py::object& callback, int threads) {
+         const std::string& effort, const py::object& callback, int threads) {
         const BlockLayout& layout = layout_named(format);
-        const BlockOptions options{layout.format, weigh_by_alpha, srgb, threads};
+        const BlockOptions options{layout.format, weigh_by_alpha, srgb, block_effort_named(effort),
+                                   threads};
         const Progress progress = to_progress(callback);
         return layout.is_float ? compressed<HalfBits>(rgba, options, progress)
                                : compressed<std::uint8_t>(rgba, options, progress);
       },
       py::arg("rgba"), py::arg("format"), py::arg("srgb"), py::arg("weigh_by_alpha"),
-      py::arg("progress"), py::arg("threads"));
+      py::arg("effort"), py::arg("progress"), py::arg("threads"));
   m.def(
       "supercompress",
       [](const py::bytes& data, const py::object& callback) {
@@ -167,7 +170,8 @@ void bind_blocks(py::module_& m) {
       py::arg("blocks"), py::arg("format"), py::arg("srgb"), py::arg("width"), py::arg("height"),
       py::arg("progress"), py::arg("threads"));
   m.def("compress_etc1s", &compressed_etc1s, py::arg("levels"), py::arg("quality"),
-        py::arg("has_alpha"), py::arg("is_color"), py::arg("progress"), py::arg("threads"));
+        py::arg("has_alpha"), py::arg("is_color"), py::arg("effort"), py::arg("progress"),
+        py::arg("threads"));
   m.def("decode_etc1s", &decoded_etc1s, py::arg("codebooks"), py::arg("levels"),
         py::arg("progress"));
 }

@@ -55,6 +55,7 @@ def test_a_table_says_all_that_is_needed(name: str, source: dict[str, object]) -
     [
         ("basisu", "encoder/basisu_comp.h", r'BASISU_LIB_VERSION_STRING "(.*)"'),
         ("bc7enc", "bc7enc.cpp", r"Geldreich, Jr\. (\d+)/(\d+)/(\d+) "),
+        ("bc7f", "basisu_transcoder_internal.h", r'BASISD_VERSION_STRING "(.*)"'),
         ("bcdec", "bcdec.h", r"bcdec\.h - v(.*)"),
         ("clipper2", "include/clipper2/clipper.version.h", r'CLIPPER2_VERSION = "(.*)"'),
         ("libdeflate", "libdeflate.h", r'LIBDEFLATE_VERSION_STRING\s+"(.*)"'),

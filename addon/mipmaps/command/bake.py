@@ -125,6 +125,10 @@ def _bake_some(options: argparse.Namespace, settings: Settings) -> None:
             f"--texture-format: found '{settings.texture_format}', which is for .dds and .ktx2 "
             f"files"
         )
+    if settings.effort != "normal" and not any(map(engines.has_formats, paths)):
+        options.usage_error(
+            f"--effort: found '{settings.effort}', which is for .dds and .ktx2 files"
+        )
     if settings.supercompression != "none" and not any(map(engines.has_supercompression, paths)):
         options.usage_error(
             f"--supercompression: found '{settings.supercompression}', which is for .ktx2 files"

@@ -90,6 +90,10 @@ def _check(options: argparse.Namespace, settings: Settings, pattern: file_names.
             f"--texture-format: found '{settings.texture_format}', which is for .dds and .ktx2 "
             f"files"
         )
+    if settings.effort != "normal" and not engines.has_formats(pattern.text):
+        options.usage_error(
+            f"--effort: found '{settings.effort}', which is for .dds and .ktx2 files"
+        )
     if settings.supercompression != "none" and not engines.has_supercompression(pattern.text):
         options.usage_error(
             f"--supercompression: found '{settings.supercompression}', which is for .ktx2 files"

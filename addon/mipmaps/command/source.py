@@ -65,6 +65,8 @@ def fitted(options: argparse.Namespace, settings: Settings, paths: Iterable[str]
     found = given(options, Settings)
     if "texture_format" not in found and not any(map(engines.has_formats, paths)):
         settings = replace(settings, texture_format="auto")
+    if "effort" not in found and not any(map(engines.has_formats, paths)):
+        settings = replace(settings, effort="normal")
     if "supercompression" not in found and not any(map(engines.has_supercompression, paths)):
         settings = replace(settings, supercompression="none")
     return settings

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from ...core.choices import Choice
 from ...core.options import one_of, switch
-from ..choices import SUPERCOMPRESSIONS
+from ..choices import EFFORTS, SUPERCOMPRESSIONS
 
 FALLBACKS = {
     "none": Choice("None", "Readers need the extension KHR_texture_basisu"),
@@ -39,6 +39,13 @@ class GltfSettings:
         "Format",
         "Texel format of the KTX 2 files; loaders transcode it to one that the device supports",
         TEXTURE_FORMATS,
+        flag="",
+    )
+    effort: str = one_of(
+        "normal",
+        "Effort",
+        "How long the texel format may take to come closer to the image",
+        EFFORTS,
         flag="",
     )
     supercompression: str = one_of(

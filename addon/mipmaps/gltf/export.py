@@ -68,6 +68,7 @@ class Export:
                 bounds=settings.bounds,
                 seam_budget=settings.seam_budget,
                 texture_format=options.texture_format,
+                effort=options.effort,
                 supercompression=options.supercompression,
                 use_images=False,
                 filepath=_FILE,
@@ -85,7 +86,13 @@ class Export:
             bounds=bake.bounds,
             seam_budget=bake.seam_budget,
         )
-        options = GltfSettings(True, gltf.texture_format, gltf.supercompression, gltf.fallback)
+        options = GltfSettings(
+            use_mipmaps=True,
+            texture_format=gltf.texture_format,
+            effort=gltf.effort,
+            supercompression=gltf.supercompression,
+            fallback=gltf.fallback,
+        )
         return cls(settings, options)
 
     def add_scene(self, scene: Any) -> None:

@@ -20,6 +20,7 @@ def draw_export(context: bpy.types.Context, layout: bpy.types.UILayout) -> None:
         body.prop(context.scene.prefilter_bake, "filter")
         body.prop(context.scene.prefilter_bake, "lookups")
         body.prop(settings, "texture_format")
+        body.prop(settings, "effort")
         body.prop(settings, "supercompression")
         body.prop(settings, "fallback")
 

@@ -11,12 +11,17 @@
 namespace prefilter {
 namespace {
 
+float preset_for(BlockEffort effort) {
+  if (effort == BlockEffort::kFast) return ASTCENC_PRE_FAST;
+  return effort == BlockEffort::kBest ? ASTCENC_PRE_THOROUGH : ASTCENC_PRE_MEDIUM;
+}
+
 template <class Channel>
 class AstcEncoder final : public BlockEncoder<Channel> {
  public:
   explicit AstcEncoder(const BlockOptions& options)
       : layout_(layout_of(options.format)),
-        context_(make_astc_context(layout_, options.is_srgb, ASTCENC_PRE_MEDIUM,
+        context_(make_astc_context(layout_, options.is_srgb, preset_for(options.effort),
                                    options.weigh_by_alpha ? ASTCENC_FLG_USE_ALPHA_WEIGHT : 0)) {}
 
   void encode(const BlockRow<Channel>& row, std::uint8_t* blocks) override {

@@ -30,9 +30,10 @@ std::unique_ptr<ByteEncoder> make_encoder<std::uint8_t>(const BlockOptions& opti
     case BlockFormat::kBc5:
       return make_channel_encoder(options);
     case BlockFormat::kBc7:
-      return make_bc7enc_encoder();
+      return make_bc7_encoder(options.effort);
     case BlockFormat::kEtc2Rgb:
     case BlockFormat::kEtc2Rgba:
+      return make_etc2_encoder(options);
     case BlockFormat::kEacR11:
     case BlockFormat::kEacRg11:
       return make_etcpak_encoder(options);
@@ -41,7 +42,7 @@ std::unique_ptr<ByteEncoder> make_encoder<std::uint8_t>(const BlockOptions& opti
     case BlockFormat::kAstc8x8:
       return make_astc_encoder(options);
     case BlockFormat::kUastc:
-      return make_uastc_encoder();
+      return make_uastc_encoder(options.effort);
     default:
       return make_squish_encoder(options);
   }
@@ -49,8 +50,17 @@ std::unique_ptr<ByteEncoder> make_encoder<std::uint8_t>(const BlockOptions& opti
 
 template <>
 std::unique_ptr<HalfEncoder> make_encoder<HalfBits>(const BlockOptions& options) {
-  if (options.format == BlockFormat::kBc6h) return make_cvtt_encoder();
+  if (options.format == BlockFormat::kBc6h) return make_cvtt_encoder(options.effort);
   return make_astc_hdr_encoder(options);
+}
+
+/// Coarse levels lose most, and take little time whatever is done.
+BlockOptions options_for(const BlockOptions& options, int width, int height) {
+  BlockOptions chosen = options;
+  if (options.effort == BlockEffort::kNormal && std::int64_t{width} * height <= kMostCoarseTexels) {
+    chosen.effort = BlockEffort::kBest;
+  }
+  return chosen;
 }
 
 template <class Channel>
@@ -70,7 +80,8 @@ std::vector<std::uint8_t> compress(const Channel* rgba, int width, int height,
   const std::int64_t parts = range_count(columns, kBlocksAtOnce);
   const std::int64_t block_texels = std::int64_t{layout.columns} * layout.rows;
   std::vector<std::uint8_t> blocks(static_cast<std::size_t>(rows * columns * layout.bytes));
-  WorkerPool<BlockEncoder<Channel>> encoders([&] { return make_encoder<Channel>(options); });
+  const BlockOptions chosen = options_for(options, width, height);
+  WorkerPool<BlockEncoder<Channel>> encoders([&] { return make_encoder<Channel>(chosen); });
   parallel_for(rows * parts, options.threads, progress, [&](std::int64_t index) {
     const std::int64_t row = index / parts;
     const std::int64_t first = index % parts * kBlocksAtOnce;

@@ -23,8 +23,9 @@ namespace {
 constexpr int kSide = 4;
 constexpr std::ptrdiff_t kChannels = 4;
 constexpr std::int64_t kMostTexels = std::int64_t{1} << 30;
-// Of Basis Universal's seven: refinement, and codebooks in two steps.
-constexpr std::uint32_t kEffort = basisu::BASISU_DEFAULT_COMPRESSION_LEVEL;
+// Of Basis Universal's seven: from codebooks in two steps on, more refinement each.
+constexpr std::uint32_t kFastLevel = 1, kNormalLevel = basisu::BASISU_DEFAULT_COMPRESSION_LEVEL,
+                        kBestLevel = 4;
 // What a block may lose to be the same as one before it, in Basis Universal's measure; its
 // defaults.
 constexpr float kEndpointLoss = 1.5F;
@@ -116,6 +117,11 @@ class Slices {
   basisu::basisu_backend_slice_desc_vec described_;
 };
 
+std::uint32_t level_for(BlockEffort effort) {
+  if (effort == BlockEffort::kFast) return kFastLevel;
+  return effort == BlockEffort::kBest ? kBestLevel : kNormalLevel;
+}
+
 std::uint32_t codebook_size(double fewest, double most, double power, const Etc1sOptions& options,
                             std::size_t blocks) {
   const double share = elementary::pow(options.quality / double{kBestEtc1s}, power);
@@ -132,7 +138,7 @@ basisu::basisu_frontend::params codebook_params(basisu::pixel_block_vec& blocks,
       codebook_size(kFewestEndpoints, kMostEndpoints, kEndpointPower, options, blocks.size());
   params.m_max_selector_clusters =
       codebook_size(kFewestSelectors, kMostSelectors, kSelectorPower, options, blocks.size());
-  params.m_compression_level = kEffort;
+  params.m_compression_level = level_for(options.effort);
   params.m_perceptual = options.is_color;
   params.m_dump_endpoint_clusterization = false;
   params.m_pGlobal_codebooks = nullptr;
@@ -179,7 +185,7 @@ Etc1sTexture compress_etc1s(std::span<const Etc1sImage> levels, const Etc1sOptio
   basisu::basisu_backend references;
   basisu::basisu_backend_params how;
   how.m_etc1s = true;
-  how.m_compression_level = kEffort;
+  how.m_compression_level = level_for(options.effort);
   how.m_validate = false;
   // Good quality is not to be lost again; from the middle of the range on, losses become smaller.
   const float share = static_cast<float>(options.quality) / static_cast<float>(kBestEtc1s);

@@ -14,6 +14,12 @@ namespace {
 
 constexpr int kSide = 4;
 
+int fit_of(BlockEffort effort) {
+  if (effort == BlockEffort::kFast) return squish::kColourRangeFit;
+  return effort == BlockEffort::kBest ? squish::kColourIterativeClusterFit
+                                      : squish::kColourClusterFit;
+}
+
 int squish_flags(const BlockOptions& options) {
   switch (options.format) {
     case BlockFormat::kBc1Rgb:
@@ -33,7 +39,7 @@ class SquishEncoder final : public ByteEncoder {
  public:
   explicit SquishEncoder(const BlockOptions& options)
       : is_opaque_(options.format == BlockFormat::kBc1Rgb),
-        flags_(squish_flags(options)),
+        flags_(squish_flags(options) | fit_of(options.effort)),
         bytes_(layout_of(options.format).bytes) {}
 
   void encode(const BlockRow<std::uint8_t>& row, std::uint8_t* blocks) override {

@@ -16,8 +16,12 @@ namespace {
 
 constexpr std::ptrdiff_t kBlockTexelBytes = 4 * 16;
 // The hints are for loaders that turn UASTC into ETC1; the best ones double the time.
-constexpr std::uint32_t kEffort =
-    basisu::cPackUASTCLevelDefault | basisu::cPackUASTCETC1FasterHints;
+std::uint32_t flags_for(BlockEffort effort) {
+  std::uint32_t level = basisu::cPackUASTCLevelDefault;
+  if (effort == BlockEffort::kFast) level = basisu::cPackUASTCLevelFastest;
+  if (effort == BlockEffort::kBest) level = basisu::cPackUASTCLevelSlower;
+  return level | basisu::cPackUASTCETC1FasterHints;
+}
 
 /// Makes the tables that the library keeps; what else its own function for that does needs OpenCL.
 void make_tables() {
@@ -31,19 +35,24 @@ void make_tables() {
 
 class UastcEncoder final : public ByteEncoder {
  public:
-  UastcEncoder() { make_tables(); }
+  explicit UastcEncoder(BlockEffort effort) : flags_(flags_for(effort)) { make_tables(); }
 
   void encode(const BlockRow<std::uint8_t>& row, std::uint8_t* blocks) override {
     for (int i = 0; i < row.count; ++i) {
       basist::uastc_block block;
-      basisu::encode_uastc(row.texels + kBlockTexelBytes * i, block, kEffort);
+      basisu::encode_uastc(row.texels + kBlockTexelBytes * i, block, flags_);
       std::memcpy(blocks + std::ptrdiff_t{sizeof block} * i, &block, sizeof block);
     }
   }
+
+ private:
+  std::uint32_t flags_;
 };
 
 }  // namespace
 
-std::unique_ptr<ByteEncoder> make_uastc_encoder() { return std::make_unique<UastcEncoder>(); }
+std::unique_ptr<ByteEncoder> make_uastc_encoder(BlockEffort effort) {
+  return std::make_unique<UastcEncoder>(effort);
+}
 
 }  // namespace prefilter

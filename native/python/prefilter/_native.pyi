@@ -368,6 +368,7 @@ def compress_blocks(
     format: str,
     srgb: bool,
     weigh_by_alpha: bool,
+    effort: str,
     progress: ProgressCallback | None,
     threads: int,
 ) -> bytes: ...
@@ -387,6 +388,7 @@ def compress_etc1s(
     quality: int,
     has_alpha: bool,
     is_color: bool,
+    effort: str,
     progress: ProgressCallback | None,
     threads: int,
 ) -> tuple[tuple[int, int, bytes, bytes, bytes], list[tuple[bytes, bytes]]]: ...

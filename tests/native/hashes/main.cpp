@@ -330,6 +330,13 @@ void blocks(const Run& run) {
   for (int format = 0; format <= static_cast<int>(BlockFormat::kUastc); ++format) {
     print({static_cast<BlockFormat>(format)}, "");
   }
+  for (const BlockFormat format :
+       {BlockFormat::kBc5, BlockFormat::kBc7, BlockFormat::kEtc2Rgb, BlockFormat::kUastc}) {
+    print({format, false, false, BlockEffort::kFast}, " fast");
+  }
+  for (const BlockFormat format : {BlockFormat::kBc5, BlockFormat::kBc7, BlockFormat::kEtc2Rgb}) {
+    print({format, false, false, BlockEffort::kBest}, " best");
+  }
   print({BlockFormat::kBc3, true}, " weighed");
   print({BlockFormat::kAstc4x4, true, true}, " weighed srgb");
 }

@@ -7,9 +7,13 @@
 #include <vector>
 
 #include "prefilter/base/progress.h"
+#include "prefilter/blocks/block_effort.h"
 #include "prefilter/blocks/block_layout.h"
 
 namespace prefilter {
+
+/// Of an image with no more texels, kNormal is kBest.
+constexpr int kMostCoarseTexels = 64 * 64;
 
 struct BlockOptions {
   BlockFormat format = BlockFormat::kBc1;
@@ -17,6 +21,7 @@ struct BlockOptions {
   bool weigh_by_alpha = false;
   /// Whether red, green and blue are sRGB-encoded, for ASTC, whose decoders then round otherwise.
   bool is_srgb = false;
+  BlockEffort effort = BlockEffort::kNormal;
   int threads = 0;  // 0 = one per processor
 };
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "prefilter/base/progress.h"
+#include "prefilter/blocks/block_effort.h"
 
 namespace prefilter {
 
@@ -21,6 +22,7 @@ struct Etc1sOptions {
   bool has_alpha = false;
   /// Whether errors are weighed as eyes see colors; otherwise all channels count the same.
   bool is_color = true;
+  BlockEffort effort = BlockEffort::kNormal;
   int threads = 0;  // 0 = one per processor
 };
 

@@ -27,7 +27,7 @@ from . import telling
 FLAGS = (
     *("filter", "reader", "lookups", "wrap", "wrap_v", "content", "threshold", "roughness"),
     *("roughness_channel", "bounds", "seam_budget", "filepath", "roughness_filepath"),
-    *("texture_format", "supercompression", "use_multiples_of_4", "threads"),
+    *("texture_format", "effort", "supercompression", "use_multiples_of_4", "threads"),
 )
 """The options of a bake that need no Blender."""
 _WITHOUT_MESH = "ls-bilinear"
@@ -142,11 +142,12 @@ def _settings(options: argparse.Namespace) -> Settings:
     paths = (settings.filepath, settings.roughness_filepath)
     for name, may in (
         ("texture_format", engines.has_formats),
+        ("effort", engines.has_formats),
         ("supercompression", engines.has_supercompression),
     ):
         if name in found and not any(map(may, paths)):
             flag = f"--{name.replace('_', '-')}"
-            endings = ".dds and .ktx2" if name == "texture_format" else ".ktx2"
+            endings = ".ktx2" if name == "supercompression" else ".dds and .ktx2"
             options.usage_error(f"{flag}: found '{found[name]}', which is for {endings} files")
     return settings
 

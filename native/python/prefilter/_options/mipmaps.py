@@ -187,6 +187,11 @@ TEXTURE_FORMATS = {
         "ETC1S", "Web: the smallest files, for color; loaders transcode it as UASTC, and coarser"
     ),
 }
+EFFORTS = {
+    "fast": Choice("Fast", "For tries: files of the same size, coarser"),
+    "normal": Choice("Normal", "Near the closest blocks"),
+    "best": Choice("Best", "For releases: the closest blocks, in many times the time"),
+}
 SUPERCOMPRESSIONS = {
     "none": Choice("None", "Readers upload the levels as they are"),
     "zstd": Choice("Zstandard", "Smaller files without loss; readers decompress the levels first"),
@@ -349,6 +354,13 @@ class Settings:
         "Texel format of DDS and KTX 2 files",
         TEXTURE_FORMATS,
         metavar="FORMAT",
+    )
+    effort: str = one_of(
+        "normal",
+        "Effort",
+        "How long compressed texture formats may take to come closer to the image",
+        EFFORTS,
+        metavar="EFFORT",
     )
     supercompression: str = one_of(
         "none",

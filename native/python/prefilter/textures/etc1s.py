@@ -29,6 +29,7 @@ def compressed(
     *,
     has_alpha: bool,
     quality: int,
+    effort: str,
     report: ProgressCallback | None,
     threads: int,
 ) -> tuple[list[bytes], bytes]:
@@ -39,12 +40,13 @@ def compressed(
         is_encoded: Whether bytes are sRGB-encoded, so that errors count as eyes see them.
         has_alpha: Whether the fourth channel is kept.
         quality: As of `as_quality`.
+        effort: As of `write_ktx2`.
         report: As of `write_ktx2`.
         threads: As of `write_ktx2`.
     """
     texels = [rgba_bytes(image, is_encoded, threads) for image in images]
     codebooks, parts = _native.compress_etc1s(
-        texels, quality, has_alpha, is_encoded, report, threads
+        texels, quality, has_alpha, is_encoded, effort, report, threads
     )
     endpoint_count, selector_count, *books = codebooks
     shared = struct.pack("<2H", endpoint_count, selector_count)

@@ -120,6 +120,7 @@ class Container(NamedTuple):
 
 ALPHAS = ("straight", "premultiplied", "independent")
 SUPERCOMPRESSIONS = ("none", "zstd")
+EFFORTS = ("fast", "normal", "best")
 
 RED, GREEN, BLUE, ALPHA = 0, 1, 2, 15
 """Khronos' channels, of texels and of blocks of one or two channels."""

@@ -84,6 +84,7 @@ def encoded(
     srgb: bool,
     *,
     weigh_by_alpha: bool,
+    effort: str,
     progress: ProgressCallback | None,
     threads: int,
 ) -> bytes:
@@ -98,7 +99,7 @@ def encoded(
         if texel_format.is_float:
             rgba = rgba.view(np.uint16)
         return _native.compress_blocks(
-            rgba, texel_format.name, srgb, weigh_by_alpha, progress, threads
+            rgba, texel_format.name, srgb, weigh_by_alpha, effort, progress, threads
         )
     return _with_channels(texels, texel_format.channels).tobytes()
 

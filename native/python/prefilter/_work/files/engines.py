@@ -154,6 +154,7 @@ def stage(
     texture_format: str,
     check: Check,
     *,
+    effort: str = "normal",
     supercompression: str = "none",
     threads: int = 0,
 ) -> list[StagedFile]:
@@ -167,6 +168,7 @@ def stage(
         texture_format: A format of `prefilter.write_dds`; for "auto" floats or bytes, as the
             picture has them. Not for PNG.
         check: Called now and then.
+        effort: As of `prefilter.write_dds`.
         supercompression: As of `prefilter.write_ktx2`; other files have none.
         threads: How many threads to use; 0 for all.
 
@@ -195,6 +197,7 @@ def stage(
         format=chosen.name,
         encoding=encoding,
         alpha=alpha,
+        effort=effort,
         progress=go_on,
         threads=threads,
     )

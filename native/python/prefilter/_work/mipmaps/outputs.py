@@ -74,6 +74,7 @@ def staged(
             [picture.stored, *stored],
             texture_format,
             check,
+            effort=settings.effort,
             supercompression=settings.supercompression,
             threads=threads,
         )

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// BC7 by effort: BC7F alone, which estimates which modes to try; or the closest block of its
+// slowest settings and of bc7enc; or also of Convection Texture Tools, which search everything.
+// None of them is the closest in all blocks.
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "prefilter/blocks/block_errors.h"
+#include "prefilter/blocks/decoders.h"
+#include "prefilter/blocks/encoders.h"
+
+namespace prefilter {
+namespace {
+
+constexpr std::ptrdiff_t kTexelBytes = 4 * 4 * 4;
+constexpr std::ptrdiff_t kBlockBytes = 16;
+/// An opaque texel that becomes less is worse than any error of colors.
+constexpr std::int64_t kOpaqueWeight = std::int64_t{1} << 32;
+
+class ClosestBc7Encoder final : public ByteEncoder {
+ public:
+  explicit ClosestBc7Encoder(std::vector<std::unique_ptr<ByteEncoder>> encoders)
+      : encoders_(std::move(encoders)), decoder_(make_bcdec_decoder({BlockFormat::kBc7})) {}
+
+  void encode(const BlockRow<std::uint8_t>& row, std::uint8_t* blocks) override {
+    encoders_.front()->encode(row, blocks);
+    std::vector<std::int64_t> least = errors(row, blocks);
+    for (std::size_t i = 1; i < encoders_.size(); ++i) improve(row, i, &least, blocks);
+  }
+
+ private:
+  /// Tries another encoder on the blocks that are not exact yet.
+  void improve(const BlockRow<std::uint8_t>& row, std::size_t number,
+               std::vector<std::int64_t>* least, std::uint8_t* blocks) {
+    std::vector<int> inexact;
+    std::vector<std::uint8_t> texels;
+    for (int i = 0; i < row.count; ++i) {
+      if ((*least)[static_cast<std::size_t>(i)] == 0) continue;
+      inexact.push_back(i);
+      const std::uint8_t* from = row.texels + kTexelBytes * i;
+      texels.insert(texels.end(), from, from + kTexelBytes);
+    }
+    if (inexact.empty()) return;
+    const BlockRow<std::uint8_t> part{texels.data(), static_cast<int>(inexact.size()),
+                                      row.rows_inside,
+                                      inexact.back() == row.count - 1 ? row.last_columns : 4};
+    std::vector<std::uint8_t> others(static_cast<std::size_t>(kBlockBytes * part.count));
+    encoders_[number]->encode(part, others.data());
+    const std::vector<std::int64_t> found = errors(part, others.data());
+    for (std::size_t i = 0; i < inexact.size(); ++i) {
+      std::int64_t& before = (*least)[static_cast<std::size_t>(inexact[i])];
+      if (found[i] >= before) continue;
+      before = found[i];
+      std::copy_n(others.begin() + kBlockBytes * static_cast<std::ptrdiff_t>(i), kBlockBytes,
+                  blocks + kBlockBytes * inexact[i]);
+    }
+  }
+
+  std::vector<std::int64_t> errors(const BlockRow<std::uint8_t>& row, const std::uint8_t* blocks) {
+    const auto decoded = decoded_row(decoder_.get(), blocks, row.count);
+    std::vector<std::int64_t> sums = squared_errors(row, decoded, {0, 0, 3});
+    const std::vector<std::int64_t> of_alpha = squared_errors(row, decoded, {3, 3, 1});
+    for (int i = 0; i < row.count; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      sums[at] += (is_opaque(row.texels + kTexelBytes * i) ? kOpaqueWeight : 1) * of_alpha[at];
+    }
+    return sums;
+  }
+
+  static bool is_opaque(const std::uint8_t* texels) {
+    for (std::ptrdiff_t byte = 3; byte < kTexelBytes; byte += 4) {
+      if (texels[byte] != 255) return false;
+    }
+    return true;
+  }
+
+  std::vector<std::unique_ptr<ByteEncoder>> encoders_;
+  std::unique_ptr<ByteDecoder> decoder_;
+};
+
+}  // namespace
+
+std::unique_ptr<ByteEncoder> make_bc7_encoder(BlockEffort effort) {
+  if (effort == BlockEffort::kFast) return make_bc7f_encoder(effort);
+  std::vector<std::unique_ptr<ByteEncoder>> encoders;
+  encoders.push_back(make_bc7f_encoder(effort));
+  encoders.push_back(make_bc7enc_encoder(effort));
+  if (effort == BlockEffort::kBest) encoders.push_back(make_cvtt_bc7_encoder());
+  return std::make_unique<ClosestBc7Encoder>(std::move(encoders));
+}
+
+}  // namespace prefilter
