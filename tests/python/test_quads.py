@@ -109,6 +109,23 @@ def test_turned_cubes_have_their_faces_edges_and_corners(seed):
     assert most_turn(found.positions, found.quads) < 91.0
 
 
+@pytest.mark.parametrize("height", [8.0, 5.0, 16 / 3])
+@pytest.mark.parametrize("depth", [4, 5, 6])
+def test_upright_boxes_have_their_corners(height, depth):
+    """At height 8 upright sides run through centers of cells: many places are two at once."""
+    made = box((-1, -1, 0), (1, 1, height))
+    mesh = made.positions, made.triangles
+    tree = tree_of(mesh, depth=depth)
+    found = tree.quad_contour(sources=[mesh])
+    assert_closed(found.positions, found.quads)
+    assert volume(found.positions, found.quads) == pytest.approx(4 * height, rel=2e-5)
+    off = np.abs(found.positions - (0, 0, height / 2)) - (1, 1, height / 2)
+    assert np.abs(off.max(axis=1)).max() < 0.01 * cell_of(tree)
+    for corner in made.positions:
+        off = np.linalg.norm(found.positions - corner, axis=1).min()
+        assert off < 0.001 * cell_of(tree)
+
+
 def test_quads_come_from_the_faces_that_they_lie_on():
     mesh = cube(3)
     found = tree_of(mesh).quad_contour(sources=[mesh])

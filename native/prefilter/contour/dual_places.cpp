@@ -194,7 +194,10 @@ void place_features(const Placer& placer, double cell, const Progress& progress,
   for (std::size_t k = 0; k < loops.size(); ++k) {
     places->positions[loops[k]] = features[k].position;
     places->is_sharp[loops[k]] = 1;
-    if (features[k].is_corner) continue;
+    if (features[k].is_corner) {
+      places->is_corner[loops[k]] = 1;
+      continue;
+    }
     const auto beside = placer.beside(loops[k]);
     if (!beside) continue;
     places->on_edge[loops[k]] = static_cast<std::int32_t>(places->edge_vertices.size());
@@ -234,6 +237,7 @@ DualPlaces dual_places(const DualLoops& loops, const std::vector<Vector3>& posit
   places.cells.resize(loops.size());
   places.positions.resize(loops.size());
   places.is_sharp.assign(loops.size(), 0);
+  places.is_corner.assign(loops.size(), 0);
   places.on_edge.assign(loops.size(), -1);
   const auto for_each = [&](std::size_t count, const Progress& part, const auto& visit) {
     parallel_ranges(static_cast<std::int64_t>(count), kLoopsPerTask, threads, part,

@@ -22,9 +22,10 @@ struct EdgeVertex {
 
 /// What a quad mesh's vertices may go back to, as far as they have to.
 struct DualPlaces {
-  std::vector<Vector3> positions;      // where they should be
-  std::vector<std::uint8_t> is_sharp;  // of each: on an edge or a corner of the shape
-  std::vector<std::int32_t> on_edge;   // of each: its EdgeVertex; -1: none
+  std::vector<Vector3> positions;       // where they should be
+  std::vector<std::uint8_t> is_sharp;   // of each: on an edge or a corner of the shape
+  std::vector<std::uint8_t> is_corner;  // of each: on a corner of the shape
+  std::vector<std::int32_t> on_edge;    // of each: its EdgeVertex; -1: none
   std::vector<EdgeVertex> edge_vertices;
   // In the middle of their loops: as these are, and of vertices halfway between cells.
   std::vector<Vector3> middles;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <unordered_set>
 #include <utility>
 
@@ -205,17 +206,19 @@ class Settling {
     return slid;
   }
 
-  // Of the vertices of two triangles, the one that is farthest from where it may go back to.
+  // Of the vertices of two triangles, the one that is farthest from where it may go back to;
+  // corners of the shape are the last.
   std::int32_t to_blame(const std::array<std::uint32_t, 2>& pair) const {
     std::int32_t found = -1;
-    std::uint8_t least = kMostSteps;
+    int least = std::numeric_limits<int>::max();
     double farthest = 0.0;
     for (const std::uint32_t t : pair) {
       for (const std::int32_t vertex : triangles_[t]) {
         const auto v = static_cast<std::size_t>(vertex);
-        const std::uint8_t stage = steps_[v] < kStepsToMiddle ? 0 : steps_[v];
+        const int step = steps_[v] < kStepsToMiddle ? 0 : steps_[v];
+        const int stage = places_.is_corner[v] != 0 ? kMostSteps + step : step;
         if (steps_[v] >= kMostSteps || stage > least) continue;
-        const Vector3& target = stage == 0 ? places_.middles[v] : places_.safe[v];
+        const Vector3& target = step == 0 ? places_.middles[v] : places_.safe[v];
         const double distance = length(surface_.positions[v] - target);
         if (stage == least && found >= 0 &&
             (distance < farthest || (distance == farthest && vertex >= found))) {

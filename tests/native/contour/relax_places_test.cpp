@@ -78,6 +78,7 @@ struct Torus {
       for (int j = 0; j < kAcross; ++j) places.positions.push_back(middle(i, j).position());
     }
     places.is_sharp.assign(places.positions.size(), 0);
+    places.is_corner.assign(places.positions.size(), 0);
   }
 
   // Of the corners of a loop.
