@@ -159,6 +159,7 @@ def test_meshes_of_other_files(texture, quad, tmp_path):
     ("more", "words"),
     [
         (("--texture-format", "bc7"), "--texture-format: found 'bc7', which is for .dds and .ktx2"),
+        (("--effort", "fast"), "--effort: found 'fast', which is for .dds and .ktx2 files"),
         (("--supercompression", "zstd"), "'zstd', which is for .ktx2 files"),
         (("--filter", "pam-box"), "--filter pam-box: needs a MESH; without: ls-bilinear"),
         (("--object", "A"), "--object: needs a MESH"),

@@ -44,7 +44,7 @@ class GltfSettings:
     effort: str = one_of(
         "normal",
         "Effort",
-        "How long the texel format may take to come closer to the image",
+        "How long to search for compressed blocks that are close to the image",
         EFFORTS,
         flag="",
     )

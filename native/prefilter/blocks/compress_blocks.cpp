@@ -57,8 +57,9 @@ std::unique_ptr<HalfEncoder> make_encoder<HalfBits>(const BlockOptions& options)
 /// Coarse levels lose most, and take little time whatever is done.
 BlockOptions options_for(const BlockOptions& options, int width, int height) {
   BlockOptions chosen = options;
-  if (options.effort == BlockEffort::kNormal && std::int64_t{width} * height <= kMostCoarseTexels) {
-    chosen.effort = BlockEffort::kBest;
+  if (std::int64_t{width} * height <= kMostCoarseTexels) {
+    const bool is_fast = options.effort == BlockEffort::kFast;
+    chosen.effort = is_fast ? BlockEffort::kNormal : BlockEffort::kBest;
   }
   return chosen;
 }

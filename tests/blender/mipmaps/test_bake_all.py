@@ -347,6 +347,7 @@ def test_a_manifest_that_cannot_be_written_stops_all(model, tmp_path):
         (["--all", "--output", "o.exr", "--format", "dds"], ["--format", "'o.exr'"]),
         (["--all", "--output", "o", "--format", "jpg"], ["--format", "ktx2"]),
         (["--all", "--output", "o", "--format", "exr", "--texture-format", "bc1"], ["'bc1'"]),
+        (["--all", "--output", "o", "--format", "exr", "--effort", "best"], ["--effort", "'best'"]),
         (["--all", "--output", "o", "--format", "dds", "--supercompression", "zstd"], ["'zstd'"]),
         (["--all", "--output", "o", "--save"], ["--save", ".blend"]),
         (["--material", "Wood", "--output", "o.exr"], ["--material", "--all"]),

@@ -300,6 +300,19 @@ def test_the_command_has_options(tmp_path):
     assert schemes == [(0,)] * 3
 
 
+def test_the_command_has_effort(tmp_path):
+    painted("Paint", scenes.noise(128, 128))
+    source = tmp_path / "model.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(source))
+    files = []
+    for more in ((), ("--effort", "fast")):
+        target = tmp_path / f"{len(files)}.glb"
+        result = run("bake", source, "--all", "--output", target, *more)
+        assert result.returncode == 0, result.stderr
+        files.append(target.read_bytes())
+    assert files[0] != files[1]
+
+
 def test_the_command_has_etc1s(tmp_path):
     painted("Even", scenes.noise(32, 32))
     source, target = tmp_path / "model.blend", tmp_path / "out.glb"

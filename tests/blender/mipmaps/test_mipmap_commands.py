@@ -223,6 +223,8 @@ def test_file_for_engines(obj_and_picture, tmp_path):
     result = run(*arguments, tmp_path / "out.tif", "--texture-format", "bc1")
     assert_fails(result, "--texture-format", "'bc1'", ".dds", status=2)
     assert_fails(run(*arguments, tmp_path / "out.dds", "--texture-format", "bc2"), "bc2", status=2)
+    result = run(*arguments, tmp_path / "out.tif", "--effort", "fast")
+    assert_fails(result, "--effort", "'fast'", ".dds", status=2)
     result = run(*arguments, tmp_path / "out.dds", "--supercompression", "zstd")
     assert_fails(result, "--supercompression", "'zstd'", ".ktx2", status=2)
     result = run(*arguments, tmp_path / "out.dds", "--texture-format", "astc-4x4")

@@ -59,7 +59,8 @@ def test_what_files_have_shows_where_it_matters(
     settings.result, settings.file_format = result, file_format
     names = shown(settings)
     assert ("filepath" in names) == ("file_format" in names) == (result == "file")
-    assert ("texture_format" in names) == ("use_multiples_of_4" in names) == texture_format
+    of_formats = {"texture_format", "effort", "use_multiples_of_4"}
+    assert of_formats & set(names) == (of_formats if texture_format else set())
     assert ("supercompression" in names) == supercompression
 
 
@@ -112,7 +113,7 @@ def test_the_preview_shows_what_a_bake_of_all_images_makes(addon):
     all_images.reader, all_images.seam_budget, all_images.use_frames = "srgb-after", 0.5, True
     _, made = all_images.to_settings()
     shown = one.to_settings()
-    of_files = {"filepath", "texture_format", "supercompression", "use_multiples_of_4"}
+    of_files = {"filepath", "texture_format", "effort", "supercompression", "use_multiples_of_4"}
     own = {*choices.NOT_OF_MODELS, "use_images", *of_files}
     fields = {field.name for field in dataclasses.fields(choices.Settings)} - own
     assert {name: getattr(made, name) for name in fields} == {

@@ -12,7 +12,7 @@
 
 namespace prefilter {
 
-/// Of an image with no more texels, kNormal is kBest.
+/// Images with no more texels get the effort above the one that is asked for.
 constexpr int kMostCoarseTexels = 64 * 64;
 
 struct BlockOptions {

@@ -188,9 +188,9 @@ TEXTURE_FORMATS = {
     ),
 }
 EFFORTS = {
-    "fast": Choice("Fast", "For tries: files of the same size, coarser"),
-    "normal": Choice("Normal", "Near the closest blocks"),
-    "best": Choice("Best", "For releases: the closest blocks, in many times the time"),
+    "fast": Choice("Fast", "For trying things out: coarser, in a fraction of the time"),
+    "normal": Choice("Normal", "Close to the best; levels of up to 64 x 64 texels get the best"),
+    "best": Choice("Best", "For releases: closest to the image, takes many times as long"),
 }
 SUPERCOMPRESSIONS = {
     "none": Choice("None", "Readers upload the levels as they are"),
@@ -358,7 +358,7 @@ class Settings:
     effort: str = one_of(
         "normal",
         "Effort",
-        "How long compressed texture formats may take to come closer to the image",
+        "How long to search for compressed blocks that are close to the image",
         EFFORTS,
         metavar="EFFORT",
     )

@@ -60,7 +60,7 @@ def write_dds(
             straight alpha hides count little in the blocks of "bc3".
         effort: How long a search for closer blocks may take: "fast" (BC7 in a thirtieth of the time
             of "normal"), "normal" or "best" (BC7 in ten times the time). Levels of up to 64 x 64
-            texels get "best" for "normal". Sizes are the same.
+            texels get the effort above. Sizes are the same.
         progress: Called with the fraction done, in [0, 1]; may return False to stop.
         threads: How many to use; 0 = all processors. The file does not depend on it.
 

@@ -94,6 +94,17 @@ def test_dds_files_are_refused(bake, tmp_path, texture_format, label):
     assert os.listdir(tmp_path) == []
 
 
+@pytest.mark.parametrize("name", ["out.ktx2", "out.dds"])
+def test_effort(bake, tmp_path, name):
+    image = scenes.image("Paint", scenes.noise(128, 128))
+    files = []
+    for effort in ("fast", "normal", "best"):
+        bake(image, name, texture_format="bc7", effort=effort)
+        files.append((tmp_path / name).read_bytes())
+    assert len(set(files)) == 3
+    assert len(set(map(len, files))) == 1
+
+
 def test_supercompression(bake, tmp_path):
     image = scenes.image("Paint", np.full((64, 64, 4), 0.5, np.float32))
     sizes = []
