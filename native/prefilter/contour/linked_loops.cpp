@@ -3,6 +3,8 @@
 #include "prefilter/contour/linked_loops.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <unordered_map>
 #include <utility>
 
@@ -60,6 +62,32 @@ void find_joints(LinkedLoops* linked) {
     }
   }
 }
+
+// A diagonal between two vertices that loops of two dual cells have is the first one's to use.
+void find_shared(LinkedLoops* linked) {
+  std::vector<std::array<std::int32_t, 2>> corners;  // vertices, and their loops
+  for (std::size_t i = 0; i < linked->size(); ++i) {
+    for (std::size_t k = 0; k < linked->side_count(i); ++k) {
+      corners.push_back({linked->loops[i].from(k), static_cast<std::int32_t>(i)});
+    }
+  }
+  std::sort(corners.begin(), corners.end());
+  for (std::size_t c = 0; c < corners.size(); ++c) {
+    const auto [vertex, number] = corners[c];
+    const auto i = static_cast<std::size_t>(number);
+    const SharpLoop& loop = linked->loops[i];
+    const auto begin = loop.corners.begin();
+    const auto own = static_cast<std::size_t>(std::find(begin, begin + loop.count, vertex) - begin);
+    for (std::size_t before = c; before > 0 && corners[before - 1][0] == vertex; --before) {
+      const SharpLoop& earlier = linked->loops[static_cast<std::size_t>(corners[before - 1][1])];
+      const auto end = earlier.corners.begin() + earlier.count;
+      for (std::size_t k = 0; k < linked->side_count(i); ++k) {
+        if (k == own || std::find(earlier.corners.begin(), end, loop.from(k)) == end) continue;
+        linked->sides[i][own].shared |= static_cast<std::uint16_t>(1U << k);
+      }
+    }
+  }
+}
 }  // namespace
 
 std::vector<std::size_t> LinkedLoops::joined(std::size_t loop,
@@ -99,6 +127,7 @@ LinkedLoops link_loops(std::vector<SharpLoop> loops, const FeatureSurface& surfa
   parallel_ranges(static_cast<std::int64_t>(linked.size()), kLoopsPerTask, threads, progress,
                   find_some);
   find_joints(&linked);
+  find_shared(&linked);
   return linked;
 }
 

@@ -20,6 +20,8 @@ namespace prefilter {
 struct LoopSide {
   bool is_divided = false;  // an edge of the shape crosses it
   std::int32_t other = -1;  // the loop beyond, where the two can be joined across it
+  // Bit k: an earlier loop has the vertex where the side begins, and corner k of this loop.
+  std::uint16_t shared = 0;
 };
 
 /// Sharp loops, and what is beyond their sides.

@@ -232,6 +232,97 @@ TEST(LoopTriangles, KnowTheirLoopsAndLabels) {
   }
 }
 
+// The edge is the x axis, between planes that turn by 90 degrees there. What of the middle loop is
+// in z = 0 bends away from the edge, so that not all of it is seen from the vertex on the edge.
+struct BentLoop {
+  std::vector<Vector3> positions = {{-0.18, 0.45, 0.0},  {0.04, 1.43, 0.0}, {0.18, 1.38, 0.0},
+                                    {-0.135, 0.48, 0.0}, {0.2, 0.0, -0.5},  {-0.4, 0.0, -0.5},
+                                    {-1.0, 0.5, 0.0},    {1.0, 0.5, 0.0}};
+  VertexSamples samples = samples_of(positions);
+  std::vector<Feature> features;
+
+  BentLoop() {
+    for (std::size_t v = 0; v < positions.size(); ++v) {
+      SourcePoint& sample = samples.samples[v];
+      const bool is_below = positions[v][2] < 0.0;
+      sample.label = is_below ? 1 : 0;
+      // The region's own normal is turned around, as that of what is taken away is.
+      sample.normal = is_below ? Vector3{0.0, 1.0, 0.0} : Vector3{0.0, 0.0, 1.0};
+      samples.facing[v] = -1.0F;
+    }
+    features = {LoopedCube::feature({0.0, 0.0, 0.0}), LoopedCube::feature({-0.5, 0.0, 0.0}),
+                LoopedCube::feature({0.5, 0.0, 0.0})};
+  }
+
+  // Of the middle loop, in z = 0.
+  std::vector<Triangle> triangles(const std::vector<SharpLoop>& sharp) const {
+    const LinkedLoops loops = link_loops(sharp, Wedge(), samples, Progress(), 1);
+    FacetedMesh mesh = {positions, {}, {}, LoopedCube::Kinds(8, VertexKind::kSurface)};
+    const LoopTriangles made =
+        add_loops(loops, {}, features, Flags(sharp.size(), 1), own(sharp.size()), samples, &mesh);
+    const auto middle = std::find_if(sharp.begin(), sharp.end(),
+                                     [](const SharpLoop& loop) { return loop.count == 6; }) -
+                        sharp.begin();
+    std::vector<Triangle> found;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      const bool is_own =
+          made.owners[t] == std::array<std::int32_t, 2>{static_cast<std::int32_t>(middle), -1};
+      if (is_own && mesh.labels[t] == 0) found.push_back(mesh.triangles[t]);
+    }
+    return found;
+  }
+
+  // Seen from where the shape is not; with the middle loop's vertex at the origin.
+  double area(const Triangle& triangle) const {
+    const auto at = [&](std::int32_t v) {
+      return v < 8 ? positions[static_cast<std::size_t>(v)] : Vector3{};
+    };
+    const Vector3 a = at(triangle[0]);
+    return -0.5 * cross(at(triangle[1]) - a, at(triangle[2]) - a)[2];
+  }
+};
+
+TEST(LoopTriangles, BendWithTheirLoop) {
+  const BentLoop bent;
+  const std::vector<Triangle> found =
+      bent.triangles({loop_of({0, 1, 2, 3, 4, 5}), loop_of({5, 6, 0}), loop_of({4, 3, 7})});
+  ASSERT_EQ(found.size(), 3U);
+  double sum = 0.0;
+  for (const Triangle& triangle : found) {
+    EXPECT_GT(bent.area(triangle), 0.0);
+    sum += bent.area(triangle);
+  }
+  // By the shoelace formula.
+  double expected = 0.0;
+  const std::vector<Vector3> ring = {
+      {}, bent.positions[0], bent.positions[1], bent.positions[2], bent.positions[3]};
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    const Vector3& next = ring[(k + 1) % ring.size()];
+    expected -= 0.5 * (ring[k][0] * next[1] - ring[k][1] * next[0]);
+  }
+  EXPECT_NEAR(sum, expected, 1e-12);
+}
+
+TEST(LoopTriangles, LeaveDiagonalsToTheFirstLoopThatHasBothEnds) {
+  const BentLoop bent;
+  const auto has_diagonal = [&](const std::vector<SharpLoop>& sharp) {
+    for (const Triangle& t : bent.triangles(sharp)) {
+      if (std::count(t.begin(), t.end(), 0) != 0 && std::count(t.begin(), t.end(), 3) != 0) {
+        return true;
+      }
+    }
+    return false;
+  };
+  const SharpLoop middle = loop_of({0, 1, 2, 3, 4, 5});
+  EXPECT_TRUE(has_diagonal({middle, loop_of({5, 6, 0}), loop_of({4, 3, 7})}));
+  const LinkedLoops loops =
+      link_loops({loop_of({0, 3, 7}), middle}, Wedge(), bent.samples, Progress(), 1);
+  EXPECT_EQ(loops.sides[1][0].shared, 1U << 3U);
+  EXPECT_EQ(loops.sides[1][3].shared, 1U << 0U);
+  EXPECT_EQ(loops.sides[0][0].shared, 0U);
+  EXPECT_FALSE(has_diagonal({loop_of({5, 6, 0}), loop_of({4, 3, 7}), loop_of({0, 3, 7}), middle}));
+}
+
 TEST(LoopTriangles, OfMergedLoopsHaveOneVertex) {
   const LoopedCube cube(1.0);
   const std::vector<std::size_t> merged = {0, 1, 0, 3, 4, 5};
