@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Where the normals around a vertex are all within 60 degrees of one direction no edge at it folds:
+// Where the normals around a vertex are all within 60 degrees of one of them no edge at it folds:
 // that leaves few vertices, and the edges between these.
 #include "prefilter/remesh/folds.h"
 
@@ -24,46 +24,47 @@ Vector3 normal_of(const MeshView<std::int32_t>& mesh, std::size_t t) {
   return cross(b - a, c - a);
 }
 
-// Calls visit(triangle, vertex) for triangles from `first` on and their flagged vertices.
-template <typename Visit>
-void for_corners(const MeshView<std::int32_t>& mesh, std::size_t first, const Flags& is_flagged,
-                 const Visit& visit) {
-  for (std::size_t t = first; t < mesh.triangles.size(); ++t) {
-    const auto& [a, b, c] = mesh.triangles[t];
-    const unsigned flags = is_flagged[static_cast<std::size_t>(a)] |
-                           is_flagged[static_cast<std::size_t>(b)] |
-                           is_flagged[static_cast<std::size_t>(c)];
-    if (flags == 0) continue;
-    const Vector3 normal = normal_of(mesh, t);
-    for (const std::int32_t corner : {a, b, c}) {
-      const auto v = static_cast<std::size_t>(corner);
-      if (is_flagged[v] != 0) visit(normal, v);
-    }
-  }
+using Normal = std::array<float, 3>;
+
+// Of length 1; 0 where there is none.
+Normal unit_normal(const MeshView<std::int32_t>& mesh, std::size_t t) {
+  const Vector3 normal = normal_of(mesh, t);
+  const double size = std::sqrt(dot(normal, normal));
+  if (!(size > 0.0)) return {};
+  const double scale = 1.0 / size;
+  return {static_cast<float>(scale * normal[0]), static_cast<float>(scale * normal[1]),
+          static_cast<float>(scale * normal[2])};
 }
 
-// Those of the vertices at which some normal is more than 60 degrees from their sum.
+// Those of the vertices at which some normal is more than 60 degrees from the first one.
 Flags rough_vertices(const MeshView<std::int32_t>& mesh, std::size_t first,
                      const Flags& is_touched) {
-  constexpr double kLeast = 0.2501;  // squared cosine
+  constexpr float kLeast = 0.51F;  // cosine
   std::vector<std::uint32_t> places(mesh.positions.size());
   std::uint32_t count = 0;
   for (std::size_t v = 0; v < places.size(); ++v) {
     places[v] = count;
     count += is_touched[v];
   }
-  std::vector<Vector3> sums(count);
-  for_corners(mesh, first, is_touched, [&](const Vector3& normal, std::size_t v) {
-    sums[places[v]] = sums[places[v]] + normal;
-  });
+  std::vector<Normal> firsts(count);
   Flags is_rough(mesh.positions.size(), 0);
-  for_corners(mesh, first, is_touched, [&](const Vector3& normal, std::size_t v) {
-    const Vector3& sum = sums[places[v]];
-    const double product = dot(normal, sum);
-    const bool is_close =
-        product >= 0.0 && product * product >= kLeast * dot(normal, normal) * dot(sum, sum);
-    if (!is_close) is_rough[v] = 1;
-  });
+  for (std::size_t t = first; t < mesh.triangles.size(); ++t) {
+    const auto& corners = mesh.triangles[t];
+    const auto is_any = [&](std::int32_t v) {
+      return is_touched[static_cast<std::size_t>(v)] != 0;
+    };
+    if (std::none_of(corners.begin(), corners.end(), is_any)) continue;
+    const Normal normal = unit_normal(mesh, t);
+    for (const std::int32_t corner : corners) {
+      const auto v = static_cast<std::size_t>(corner);
+      if (is_touched[v] == 0) continue;
+      Normal& one = firsts[places[v]];
+      if (one == Normal{}) one = normal;
+      const float cosine = normal[0] * one[0] + normal[1] * one[1] + normal[2] * one[2];
+      // Also where there is none.
+      if (!(cosine > kLeast)) is_rough[v] = 1;
+    }
+  }
   return is_rough;
 }
 

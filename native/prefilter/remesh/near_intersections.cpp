@@ -2,7 +2,7 @@
 
 // Cubes with suspects are bits by a hash: where two share one, only more triangles are looked at.
 //
-// Where all normals in a cube are within 60 degrees of one direction a mesh does not meet itself.
+// Where all normals in a cube are within 60 degrees of one of them a mesh does not meet itself.
 // It came, piece by piece with the same borders, of one that does not: seen along that direction
 // each piece has all of its triangles one way around, so that none covers another. Two sheets that
 // face the same way have one between them that does not, which is in the cube, too.
@@ -106,48 +106,40 @@ class CubeSet {
   bool is_full_ = false;
 };
 
-// Cubes, and whether the normals of what is in them are all close to one direction.
+// Cubes, and whether the normals of what is in them are all close to the first one.
 class NormalCubes {
  public:
   NormalCubes(double side, std::size_t count)
       : cubes_(side, bits_for(count, kMoreBits)),
-        sums_(std::size_t{1} << bits_for(count, kMoreBits)) {}
+        firsts_(std::size_t{1} << bits_for(count, kMoreBits)) {}
 
   void add(const Corners& corners) {
-    const std::array<float, 3> normal = normal_of(corners);
+    constexpr float kLeast = 0.51F;  // cosine
+    const Normal n = normal_of(corners);
     has_large_ |= cubes_.any_of(corners, [&](std::size_t hash) {
-      for (std::size_t a = 0; a < 3; ++a) sums_[hash][a] += normal[a];
+      Normal& one = firsts_[hash];
+      if (one == Normal{}) one = n;
+      const float cosine = n[0] * one[0] + n[1] * one[1] + n[2] * one[2];
+      if (!(cosine > kLeast)) one[0] = kRough;
       return false;
     });
   }
 
   // Once all are added.
-  void compare(const Corners& corners) {
-    constexpr float kLeast = 0.26F;  // squared cosine
-    const std::array<float, 3> n = normal_of(corners);
-    cubes_.any_of(corners, [&](std::size_t hash) {
-      std::array<float, 3>& s = sums_[hash];
-      const float product = n[0] * s[0] + n[1] * s[1] + n[2] * s[2];
-      const float square = s[0] * s[0] + s[1] * s[1] + s[2] * s[2];
-      if (!(product > 0.0F && product * product > kLeast * square)) s[0] = kRough;
-      return false;
-    });
-  }
-
-  // Once all are compared.
   bool is_rough_at(const Corners& corners) const {
     // As far as what was between two sheets may have moved since.
     constexpr double kMargin = 0.25;
-    const auto is_rough = [&](std::size_t hash) { return sums_[hash][0] == kRough; };
+    const auto is_rough = [&](std::size_t hash) { return firsts_[hash][0] == kRough; };
     return has_large_ || cubes_.any_of(corners, is_rough, kMargin);
   }
 
  private:
   static constexpr int kMoreBits = 0;
   static constexpr float kRough = std::numeric_limits<float>::infinity();
+  using Normal = std::array<float, 3>;
 
   // Of length 1; 0 for what is none.
-  static std::array<float, 3> normal_of(const Corners& corners) {
+  static Normal normal_of(const Corners& corners) {
     const Vector3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
     const double size = length(normal);
     if (!(size > 0.0)) return {};
@@ -156,7 +148,7 @@ class NormalCubes {
   }
 
   Cubes cubes_;
-  std::vector<std::array<float, 3>> sums_;
+  std::vector<Normal> firsts_;
   bool has_large_ = false;
 };
 }  // namespace
@@ -176,7 +168,6 @@ std::vector<std::uint8_t> where_rough(const MeshView<std::int32_t>& mesh, std::s
     }
   };
   visit([&](std::size_t, const Corners& corners) { cubes.add(corners); });
-  visit([&](std::size_t, const Corners& corners) { cubes.compare(corners); });
   visit([&](std::size_t t, const Corners& corners) {
     if (is_suspect[t] != 0 && !cubes.is_rough_at(corners)) is_suspect[t] = 0;
   });
