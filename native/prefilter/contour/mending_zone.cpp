@@ -13,7 +13,10 @@ constexpr double kLeastCells = 2.0;
 constexpr double kSides = 2.0;  // of a cube, in the largest size
 constexpr std::int32_t kZoneReach = 2;
 constexpr std::int32_t kInsideReach = 1;
-constexpr std::size_t kFew = 16;
+// Parts of all, above which looking at everything is as fast: triangles of a zone, and cubes with
+// changes, around each of which it has several.
+constexpr std::size_t kTrianglePart = 2;
+constexpr std::size_t kCubePart = 6;
 
 using Flags = std::vector<std::uint8_t>;
 
@@ -87,11 +90,12 @@ ZoneFinder::ZoneFinder(const LinkedLoops& loops, const LayeredMesh& layered, dou
   for (std::size_t t = 0; t < layered.loops; ++t) {
     triangles_.push_back(number_at(layered.mesh.triangles[t][0]));
   }
+  counts_.assign(cubes_.size(), 0);
+  for (const std::uint32_t cube : triangles_) ++counts_[cube];
 }
 
-bool ZoneFinder::is_wide(const LoopChanges& changes) {
-  return kFew * count_of(changes.loops) > changes.loops.size() ||
-         kFew * count_of(changes.vertices) > changes.vertices.size();
+bool ZoneFinder::are_most(const LoopChanges& changes) {
+  return 2 * count_of(changes.loops) > changes.loops.size();
 }
 
 ZoneFinder::Cube ZoneFinder::cube_of(const Vector3& point) const {
@@ -152,10 +156,14 @@ Flags ZoneFinder::around(std::span<const Cube> cubes, std::int32_t reach) const 
   return is_around;
 }
 
-MendingZone ZoneFinder::enter(const LinkedLoops& loops, const LoopStates& states,
-                              LoopChanges* changes, LayeredMesh* layered) const {
+std::optional<MendingZone> ZoneFinder::enter(const LinkedLoops& loops, const LoopStates& states,
+                                             LoopChanges* changes, LayeredMesh* layered) const {
   const std::vector<Cube> cubes = changed_cubes(*changes, layered->mesh.positions);
+  if (kCubePart * cubes.size() > cubes_.size()) return std::nullopt;
   const Flags is_here = around(cubes, kZoneReach);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < is_here.size(); ++i) count += is_here[i] * counts_[i];
+  if (kTrianglePart * count > triangles_.size()) return std::nullopt;
   const Flags is_inside = around(cubes, kInsideReach);
   MendingZone zone;
   for (std::size_t i = 0; i < loops.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -34,12 +35,13 @@ class ZoneFinder {
   /// Of a mesh without the triangles of loops.
   ZoneFinder(const LinkedLoops& loops, const LayeredMesh& layered, double cell);
 
-  /// Whether so much has changed that looking at everything is as fast.
-  static bool is_wide(const LoopChanges& changes);
+  /// Whether most loops have changed: then no zone is worth while.
+  static bool are_most(const LoopChanges& changes);
 
-  /// Moves the positions and kinds of `layered` into the zone, and all changes of vertices.
-  MendingZone enter(const LinkedLoops& loops, const LoopStates& states, LoopChanges* changes,
-                    LayeredMesh* layered) const;
+  /// Moves the positions and kinds of `layered` into the zone, and all changes of vertices. Does
+  /// nothing, and returns nothing, where looking at everything is as fast.
+  std::optional<MendingZone> enter(const LinkedLoops& loops, const LoopStates& states,
+                                   LoopChanges* changes, LayeredMesh* layered) const;
 
   /// Takes what changed in a zone out of it, and its positions and kinds.
   static void leave(MendingZone zone, LoopStates* states, LoopChanges* changes,
@@ -62,6 +64,7 @@ class ZoneFinder {
   std::vector<Cube> cubes_;
   std::vector<std::uint32_t> loops_;      // the cube of each
   std::vector<std::uint32_t> triangles_;  // the cube of each
+  std::vector<std::uint32_t> counts_;     // of the triangles in each cube
 };
 
 }  // namespace prefilter

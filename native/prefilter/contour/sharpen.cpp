@@ -311,14 +311,18 @@ class Mending {
 
   template <typename Work>
   void visit_changed(const Work& work) {
-    if (ZoneFinder::is_wide(changes_)) {
+    std::optional<MendingZone> zone;
+    if (!ZoneFinder::are_most(changes_)) {
+      if (!zones_) zones_.emplace(loops_, layered_, surface_.cell());
+      zone = zones_->enter(loops_, states_, &changes_, &layered_);
+    }
+    if (!zone) {
       work(Place{loops_, states_, layered_, changes_, {}, {}});
       return;
     }
-    if (!zones_) zones_.emplace(loops_, layered_, surface_.cell());
-    MendingZone zone = zones_->enter(loops_, states_, &changes_, &layered_);
-    work(Place{zone.loops, zone.states, zone.layered, zone.changes, zone.numbers, zone.is_inside});
-    ZoneFinder::leave(std::move(zone), &states_, &changes_, &layered_);
+    work(Place{zone->loops, zone->states, zone->layered, zone->changes, zone->numbers,
+               zone->is_inside});
+    ZoneFinder::leave(std::move(*zone), &states_, &changes_, &layered_);
   }
 
   // Forgets the changes.

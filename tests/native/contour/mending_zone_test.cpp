@@ -92,8 +92,9 @@ TEST(MendingZone, HasAllThatIsNearWhatHasChanged) {
   std::vector<Vector3> places;
   for (std::size_t i = 0; i < sheet.loops.size(); ++i) places.push_back(sheet.place(i));
   const ZoneFinder finder(sheet.loops, sheet.layered, kCell);
-  EXPECT_FALSE(ZoneFinder::is_wide(sheet.changes));
-  const MendingZone zone = finder.enter(sheet.loops, sheet.states, &sheet.changes, &sheet.layered);
+  EXPECT_FALSE(ZoneFinder::are_most(sheet.changes));
+  const MendingZone zone =
+      finder.enter(sheet.loops, sheet.states, &sheet.changes, &sheet.layered).value();
   EXPECT_EQ(zone.layered.mesh.positions, positions);
   // Cubes of four cells: two of them around, one of them inside.
   std::size_t at = 0;
@@ -127,7 +128,8 @@ TEST(MendingZone, HasTheTrianglesAroundInOrder) {
   sheet.changes.loops[0] = 1;
   const LayeredMesh before = sheet.layered;
   const ZoneFinder finder(sheet.loops, sheet.layered, kCell);
-  const MendingZone zone = finder.enter(sheet.loops, sheet.states, &sheet.changes, &sheet.layered);
+  const MendingZone zone =
+      finder.enter(sheet.loops, sheet.states, &sheet.changes, &sheet.layered).value();
   const auto expected = [&](std::size_t begin, std::size_t end) {
     std::vector<std::int32_t> labels;
     for (std::size_t t = begin; t < end; ++t) {
@@ -151,7 +153,8 @@ TEST(MendingZone, GivesBackWhatItTookAndWhatChangedInside) {
   sheet.changes.loops[loop] = 1;
   const std::vector<Vector3> positions = sheet.layered.mesh.positions;
   const ZoneFinder finder(sheet.loops, sheet.layered, kCell);
-  MendingZone zone = finder.enter(sheet.loops, sheet.states, &sheet.changes, &sheet.layered);
+  MendingZone zone =
+      finder.enter(sheet.loops, sheet.states, &sheet.changes, &sheet.layered).value();
   const std::vector<std::size_t> numbers = zone.numbers;
   const Flags is_inside = zone.is_inside;
   for (std::size_t k = 0; k < numbers.size(); ++k) {
@@ -180,9 +183,29 @@ TEST(MendingZone, GivesBackWhatItTookAndWhatChangedInside) {
 
 TEST(MendingZone, IsForFewChanges) {
   Sheet sheet;
-  EXPECT_FALSE(ZoneFinder::is_wide(sheet.changes));
-  for (std::size_t i = 0; i < sheet.changes.loops.size(); i += 10) sheet.changes.loops[i] = 1;
-  EXPECT_TRUE(ZoneFinder::is_wide(sheet.changes));
+  EXPECT_FALSE(ZoneFinder::are_most(sheet.changes));
+  for (std::size_t i = 0; i < sheet.changes.loops.size(); ++i) {
+    sheet.changes.loops[i] = i % 3 != 0 ? 1 : 0;
+  }
+  EXPECT_TRUE(ZoneFinder::are_most(sheet.changes));
+}
+
+TEST(MendingZone, IsNoneWhereItWouldHaveMostTriangles) {
+  const Sheet unchanged;
+  // Of many loops all over, and of four whose surroundings are more than half of the sheet.
+  for (const std::vector<std::size_t>& places :
+       {std::vector<std::size_t>{2, 6, 10, 14, 18, 22, 26, 30, 34, 38}, {10, 30}}) {
+    Sheet sheet;
+    for (const std::size_t y : places) {
+      for (const std::size_t x : places) sheet.changes.loops[y * kSide + x] = 1;
+    }
+    const Flags changed = sheet.changes.loops;
+    const ZoneFinder finder(sheet.loops, sheet.layered, kCell);
+    EXPECT_FALSE(finder.enter(sheet.loops, sheet.states, &sheet.changes, &sheet.layered));
+    EXPECT_EQ(sheet.layered.mesh.positions, unchanged.layered.mesh.positions);
+    EXPECT_EQ(sheet.changes.loops, changed);
+    EXPECT_EQ(sheet.changes.vertices.size(), unchanged.changes.vertices.size());
+  }
 }
 
 }  // namespace
