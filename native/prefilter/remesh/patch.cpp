@@ -20,7 +20,9 @@ namespace prefilter {
 namespace {
 
 constexpr int kMostTries = 4;
-constexpr double kLargestCost = 16.0;  // squared distance from planes
+// Squared distance from planes, in tolerances: of a thousand collapses that cost more, two may be
+// made.
+constexpr double kLargestCost = 2.0;
 constexpr double kLengthWeight = 1e-6;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 

@@ -30,7 +30,7 @@ constexpr int kMostPasses = 16;
 // Of the tolerance, for the points that are measured; the rest is for what lies between them.
 constexpr double kMeasuredShare = 0.78;
 // A pass that removes less than this share of the triangles is the last one.
-constexpr double kLeastRemoved = 0.002;
+constexpr double kLeastRemoved = 0.02;
 // Then patches that still meet others go back to what they were.
 constexpr int kMostRepairs = 4;
 constexpr double kCubeEdges = 4.0;  // of cubes that tell what is near, in edges
