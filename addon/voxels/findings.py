@@ -42,7 +42,7 @@ class Walls:
 
     @classmethod
     def of(cls, thin: "prefilter.ThinPlaces") -> "Walls | None":
-        """Returns what there is; sheets alone if there is nothing else."""
+        """Returns what there is of thin walls; sheets alone if there is nothing else."""
         if len(thin.triangles) == 0:
             return None
         is_wall = thin.thickness > _SHEET
@@ -71,7 +71,8 @@ class Findings:
 
     Attributes:
         name: The object's.
-        parts: What hangs together.
+        parts: What hangs together as a solid.
+        cavities: Of all parts.
         genus: Of all parts; None if that is not known.
         thin: How many faces were thickened.
         closed: How many holes were closed.
@@ -82,6 +83,7 @@ class Findings:
 
     name: str
     parts: int
+    cavities: int
     genus: int | None
     thin: int
     closed: int
@@ -123,7 +125,10 @@ def find(
         closed: How many holes were closed.
         threads: 0 means all processors.
     """
-    topology = prefilter.mesh_topology(mesh.positions, mesh.triangles, threads=threads)
+    # Which parts are cavities is only known once they are turned.
+    triangles = mesh.triangles.copy()
+    triangles[solid.turned] = triangles[solid.turned, ::-1]
+    topology = prefilter.mesh_topology(mesh.positions, triangles, threads=threads)
     thin = tree.thin_places
     below = thin.triangles if origins is None else origins[thin.triangles]
     below = np.unique(below[below >= 0])
@@ -141,12 +146,13 @@ def find(
             OPEN: edges[(edges < own.vertices).all(axis=1)],
             TURNED: faces_of(solid.turned),
         }
-    walls = Walls.of(thin)
+    walls = Walls.of(tree.thin_walls)
     if len(lost) and walls is None:
         walls = walls_in(tree, mesh.positions, mesh.triangles[of_lost], threads)
     return Findings(
         name,
-        topology.parts,
+        topology.solids,
+        topology.cavities,
         topology.genus,
         count,
         closed,
@@ -174,10 +180,11 @@ def walls_in(
         )
     except ValueError:
         return None  # All have zero area.
-    return Walls.of(thick.thin_places)
+    return Walls.of(thick.thin_walls)
 
 
 _PARTS = marked("parts: {} before, {} after")
+_CAVITIES = marked("cavities: {} before, {} after")
 _GENUS = marked("genus: {} before, {} after")
 _GENUS_AFTER = marked("genus: {} after")
 _THICKENED = marked("faces thickened: {}")
@@ -189,24 +196,26 @@ _TOO_THIN = marked("walls of {} cells: no depth keeps them")
 _SHEETS = marked("sheets: no depth keeps them")
 
 
-def line(name: str, report: Report, after: tuple[int, int | None] | None) -> Sentence:
+def line(name: str, report: Report, after: "prefilter.MeshTopology | None") -> Sentence:
     """Returns what was found in the meshes that an object was made of, in one line.
 
     Args:
         name: The object's.
         report: What was found.
-        after: The parts and the genus of the result; None of a volume.
+        after: That of the result; None of a volume.
     """
     findings = report.findings
     rows: list[str] = []
     if after is not None:
-        parts, genus = after
-        rows.append(Sentence(_PARTS, sum(one.parts for one in findings), parts))
+        rows.append(Sentence(_PARTS, sum(one.parts for one in findings), after.solids))
+        cavities = sum(one.cavities for one in findings)
+        if cavities != after.cavities:
+            rows.append(Sentence(_CAVITIES, cavities, after.cavities))
         before = total_genus(findings)
-        if before is not None and genus is not None:
-            rows.append(Sentence(_GENUS, before, genus))
-        elif genus is not None:
-            rows.append(Sentence(_GENUS_AFTER, genus))
+        if before is not None and after.genus is not None:
+            rows.append(Sentence(_GENUS, before, after.genus))
+        elif after.genus is not None:
+            rows.append(Sentence(_GENUS_AFTER, after.genus))
     for text, count in (
         (_THICKENED, sum(one.thin for one in findings)),
         (_CLOSED, sum(one.closed for one in findings)),

@@ -7,6 +7,7 @@ import zlib
 
 import bpy
 import numpy as np
+import prefilter
 from mathutils.bvhtree import BVHTree
 from mathutils.kdtree import KDTree
 from numpy.typing import NDArray
@@ -19,13 +20,13 @@ from .findings import OPEN, Report, total_genus
 Indices = NDArray[np.int32]
 
 
-def keep(made: bpy.types.Object, report: Report, after: tuple[int, int | None]) -> None:
+def keep(made: bpy.types.Object, report: Report, after: prefilter.MeshTopology) -> None:
     """Keeps with an object what was found in the meshes that it was made of, if these are kept.
 
     Args:
         made: The object.
         report: What was found.
-        after: Its parts and its genus.
+        after: How its surface hangs together.
     """
     found = made.prefilter_found
     found.is_there = kept_sources.original_of(made) is not None
@@ -36,8 +37,9 @@ def keep(made: bpy.types.Object, report: Report, after: tuple[int, int | None]) 
     before = total_genus(findings)
     advice = "" if report.advice is None else tr(report.advice)
     found.advice = advice[:1].upper() + advice[1:]
-    found.parts = (sum(one.parts for one in findings), after[0])
-    found.genus = (-1 if before is None else before, -1 if after[1] is None else after[1])
+    found.parts = (sum(one.parts for one in findings), after.solids)
+    found.cavities = (sum(one.cavities for one in findings), after.cavities)
+    found.genus = (-1 if before is None else before, -1 if after.genus is None else after.genus)
     for i, one in enumerate(findings):
         for kind, rows in one.places.items():
             place = found.places.add()

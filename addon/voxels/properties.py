@@ -228,6 +228,7 @@ class PREFILTER_PG_found(bpy.types.PropertyGroup):
     Attributes:
         is_there: Whether the rest is.
         parts: Before and after.
+        cavities: Likewise.
         genus: Likewise; -1 if it is not known.
         advice: Which depth keeps what is thin, in the language of the user.
         places: Where.
@@ -235,6 +236,7 @@ class PREFILTER_PG_found(bpy.types.PropertyGroup):
 
     is_there: BoolProperty()
     parts: IntVectorProperty(size=2)
+    cavities: IntVectorProperty(size=2)
     genus: IntVectorProperty(size=2)
     advice: StringProperty()
     places: CollectionProperty(type=PREFILTER_PG_found_places)

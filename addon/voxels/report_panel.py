@@ -15,12 +15,12 @@ _LABELS = {
     "OPEN": marked("Open Edges"),
     "TURNED": marked("Flipped Faces"),
 }
-_PARTS, _GENUS = marked("Parts"), marked("Genus")
+_PARTS, _CAVITIES, _GENUS = marked("Parts"), marked("Cavities"), marked("Genus")
 _ICONS = {"OPEN": "EDGESEL"}
 
 
 class PREFILTER_PT_voxel_report(Tab, bpy.types.Panel):
-    """Parts and genus before and after, and the places that were changed."""
+    """Parts, cavities and genus before and after, and the places that were changed."""
 
     bl_label = "Voxel Report"
 
@@ -42,7 +42,10 @@ class PREFILTER_PT_voxel_report(Tab, bpy.types.Panel):
             return
         found = result.prefilter_found
         column = self.layout.column(align=True)
-        for label, numbers in ((_PARTS, found.parts), (_GENUS, found.genus)):
+        rows = [(_PARTS, found.parts), (_CAVITIES, found.cavities), (_GENUS, found.genus)]
+        if len(set(found.cavities)) == 1:
+            del rows[1]
+        for label, numbers in rows:
             before, after = ("?" if number < 0 else str(number) for number in numbers)
             column.label(text=f"{tr(label)}: {before} \N{RIGHTWARDS ARROW} {after}")
         if found.advice:

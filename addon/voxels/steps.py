@@ -51,8 +51,8 @@ class Result:
     faces: int
     contour: Contour | None = None
     staged: StagedFile | None = None
-    topology: tuple[int, int | None] | None = None
-    """The parts of the surface, and its genus."""
+    topology: "prefilter.MeshTopology | None" = None
+    """Of the surface."""
     walls: tuple[Walls | None, ...] = ()
     """Those that fell apart."""
 
@@ -212,8 +212,8 @@ def contoured(
         tree.volume,
         len(faces),
         contour,
-        topology=(topology.parts, topology.genus),
-        walls=_apart(tree, topology.parts, sources, settings),
+        topology=topology,
+        walls=_apart(tree, topology.solids, sources, settings),
     )
 
 
@@ -224,7 +224,7 @@ def _apart(
     if settings.thickness or parts == 1:
         return ()
     meshes = [(source.positions, source.triangles) for source in sources]
-    before = (prefilter.mesh_topology(*mesh, threads=settings.threads).parts for mesh in meshes)
+    before = (prefilter.mesh_topology(*mesh, threads=settings.threads).solids for mesh in meshes)
     if parts <= sum(before):
         return ()
     return tuple(walls_in(tree, *mesh, settings.threads) for mesh in meshes)

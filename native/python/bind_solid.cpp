@@ -96,9 +96,9 @@ std::pair<Array<std::int32_t>, Array<std::int32_t>> bound_mesh_edges(const py::a
           to_array<std::int32_t>(std::move(edges.of_corners), {corners / 3, py::ssize_t{3}})};
 }
 
-// The numbers of parts and of borders, the genus, the edges of borders, and the part of each
-// triangle.
-std::tuple<std::size_t, std::size_t, std::optional<std::size_t>, Array<std::int32_t>,
+// The numbers of parts, of cavities and of borders, the genus, the edges of borders, and the part
+// of each triangle.
+std::tuple<std::size_t, std::size_t, std::size_t, std::optional<std::size_t>, Array<std::int32_t>,
            Array<std::int32_t>>
 bound_mesh_topology(const py::array& positions, const py::array& triangles, bool welds,
                     const py::object& callback, int threads) {
@@ -111,7 +111,10 @@ bound_mesh_topology(const py::array& positions, const py::array& triangles, bool
   }
   const auto count = static_cast<py::ssize_t>(found.part_of.size());
   const auto edges = static_cast<py::ssize_t>(found.border_edges.size());
-  return {found.parts, found.borders, found.genus,
+  return {found.parts,
+          found.cavities,
+          found.borders,
+          found.genus,
           to_array<std::int32_t>(std::move(found.border_edges), {edges, py::ssize_t{2}}),
           to_array<std::int32_t>(std::move(found.part_of), {count})};
 }

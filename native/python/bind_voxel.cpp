@@ -113,14 +113,15 @@ Octree bound_make_octree(const std::vector<std::pair<Array<float>, Array<std::ui
 
 // The numbers of triangles, what they are thick and what they became, and their areas.
 std::tuple<Array<std::int64_t>, Array<double>, Array<double>, Array<double>> bound_thin(
-    const Octree& octree) {
-  const auto count = static_cast<py::ssize_t>(octree.thin.size());
+    const Octree& octree, bool only_walls) {
+  const std::vector<ThinTriangle>& thin = only_walls ? octree.thin_walls : octree.thin;
+  const auto count = static_cast<py::ssize_t>(thin.size());
   Array<std::int64_t> triangles(count);
   Array<double> thickness(count);
   Array<double> made(count);
   Array<double> areas(count);
   for (py::ssize_t i = 0; i < count; ++i) {
-    const ThinTriangle& one = octree.thin[static_cast<std::size_t>(i)];
+    const ThinTriangle& one = thin[static_cast<std::size_t>(i)];
     triangles.mutable_at(i) = one.triangle;
     thickness.mutable_at(i) = one.thickness;
     made.mutable_at(i) = one.made;
@@ -175,7 +176,7 @@ void bind_voxel(py::module_& m) {
         return Corners{cube.low, cube.high};
       },
       py::arg("box"), py::arg("depth"));
-  m.def("thin_triangles", &bound_thin, py::arg("octree"));
+  m.def("thin_triangles", &bound_thin, py::arg("octree"), py::arg("only_walls"));
   m.def("make_octree", &bound_make_octree, py::arg("levels"), py::arg("root"), py::arg("bounds"),
         py::arg("depth"));
 }

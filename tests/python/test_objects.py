@@ -39,6 +39,7 @@ USES = {
         "traced_contour": lambda octree: octree.traced_contour([(np.eye(3), [[0, 1, 2]])]),
         "quad_contour": lambda octree: octree.quad_contour(),
         "thin_places": lambda octree: octree.thin_places,
+        "thin_walls": lambda octree: octree.thin_walls,
         "lost_parts": lambda octree: octree.lost_parts(np.eye(3), [[0, 1, 2]], [0]),
         "coarsened": lambda octree: octree.coarsened(1),
         "save": lambda octree: octree.save("never.npz"),

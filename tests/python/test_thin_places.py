@@ -7,6 +7,7 @@ import prefilter
 import pytest
 from solids import Solid, box, join, sheet, sphere
 
+from bench.solids import random_rotation
 from bench.voxels.thin_shapes import plate, posed, ring, rod
 
 DEPTH = 6
@@ -15,14 +16,18 @@ LEAST = 1.5
 BOUNDS = (np.zeros(3), np.full(3, float(CELLS)))
 
 
-def thin_places(solid: Solid, depth: int = DEPTH, **options) -> prefilter.ThinPlaces:
+def voxelized(solid: Solid, depth: int = DEPTH, **options) -> prefilter.Octree:
     return prefilter.voxelize(
         solid.positions,
         solid.triangles,
         depth=depth,
         bounds=BOUNDS,
         **{"thickness": LEAST, **options},
-    ).thin_places
+    )
+
+
+def thin_places(solid: Solid, depth: int = DEPTH, **options) -> prefilter.ThinPlaces:
+    return voxelized(solid, depth, **options).thin_places
 
 
 def depths_below(solid: Solid, triangles) -> np.ndarray:
@@ -119,6 +124,48 @@ def test_numbers_are_those_of_the_mesh():
         expected = thin_places(thin)
         shift = len(other.triangles)
         assert (found.triangles - shift).tolist() == expected.triangles.tolist()
+
+
+def wedge(degrees: float) -> Solid:
+    """Opens from an edge of 30 to 20 away, by an angle."""
+    far = 20 * np.tan(np.radians(degrees / 2))
+    sections = ((0, 0), (20, far))
+    positions = np.array([(x, y, z) for x, h in sections for y in (0, 30) for z in (-h, h)])
+    faces = [(0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (4, 5, 7, 6)]
+    triangles = np.array([t for a, b, c, d in faces for t in ((a, b, c), (a, c, d))])
+    solid = Solid(positions - (10.0, 15, 0), triangles[:, ::-1])
+    return solid.transformed(random_rotation(1), np.full(3, CELLS / 2))
+
+
+@pytest.mark.parametrize("degrees", [6.0, 9.0, 11.0, 16.0, 25.0])
+def test_wedges_are_no_walls(degrees):
+    solid = wedge(degrees)
+    tree = voxelized(solid)
+    assert (len(tree.thin_walls.triangles) > 0) == (degrees < 10)
+
+
+@pytest.mark.parametrize("degrees", [2.0, 5.0, 9.0])
+def test_of_a_narrow_wedge_nine_tenths_are_thicker(degrees):
+    """Thickness grows in proportion to the way from the edge; two triangles a face cover it."""
+    found = voxelized(wedge(degrees)).thin_walls
+    way = min(LEAST / 2 / np.tan(np.radians(degrees / 2)), 20.0)
+    # Of the way from the edge: a tenth of the area is nearer, of the triangle with two corners
+    # there, whose width falls from 1 to 0 over 20, and of the one with a single corner there.
+    two = 20 - np.sqrt(400 - 40 * 0.1 * (way - way**2 / 40))
+    one = way * np.sqrt(0.1)
+    expected = 2 * np.tan(np.radians(degrees / 2)) * np.array([two, two, one, one])
+    np.testing.assert_allclose(np.sort(found.thickness), expected, atol=0.03)
+    slope = 30 / np.cos(np.radians(degrees / 2))
+    areas = slope * np.array([way - way**2 / 40, way**2 / 40])
+    np.testing.assert_allclose(np.sort(found.areas), np.sort(np.repeat(areas, 2)), rtol=0.1)
+
+
+def test_walls_are_thin_places_of_plates():
+    for thickness in (0.02, 0.7, 1.2):
+        tree = voxelized(posed(plate(thickness), 1, CELLS))
+        walls, places = tree.thin_walls, tree.thin_places
+        for name in ("triangles", "thickness", "areas"):
+            np.testing.assert_allclose(getattr(walls, name), getattr(places, name), rtol=1e-6)
 
 
 def test_nothing_is_thin():

@@ -138,6 +138,69 @@ def test_vertices_where_surfaces_meet_are_several():
     assert (found.parts, found.genus, found.borders) == (4, 0, 0)
 
 
+def turned(mesh):
+    """Returns a mesh inside out."""
+    positions, triangles = mesh
+    return positions, np.asarray(triangles)[:, ::-1]
+
+
+def scaled(mesh, factor):
+    return mesh[0] * factor, mesh[1]
+
+
+def hollow(scale=1.0, count=1):
+    """A box of 20 with boxes of 1 cut out of it."""
+    cavities = (turned(shape(BOX, (3 * k + 2, 4, 5))) for k in range(count))
+    return scaled(joined(scaled(shape(BOX), 20.0), *cavities), scale)
+
+
+@pytest.mark.parametrize("scale", [1e-300, 1e-100, 1.0, 1e100, 1e298])
+def test_cavities_are_no_solids(scale):
+    for count in range(4):
+        found = prefilter.mesh_topology(*hollow(scale, count))
+        assert (found.parts, found.cavities, found.solids) == (count + 1, count, 1)
+
+
+def signed_volume(positions, triangles):
+    """Returns six times the volume, as a whole number; positions are whole numbers."""
+    corners = [[[int(x) for x in positions[v]] for v in t] for t in triangles.tolist()]
+    return sum(
+        a[0] * (b[1] * c[2] - b[2] * c[1])
+        - a[1] * (b[0] * c[2] - b[2] * c[0])
+        + a[2] * (b[0] * c[1] - b[1] * c[0])
+        for a, b, c in corners
+    )
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_cavities_are_closed_parts_of_negative_volume(seed):
+    """Parts of whole coordinates, far away, some inside out, some open, some of mixed faces."""
+    rng = np.random.default_rng(seed)
+    meshes, cavities = [], 0
+    for _ in range(30):
+        positions = np.round(rng.normal(size=BOX.positions.shape) * 9 + BOX.positions * 50)
+        positions = positions + rng.integers(-(10**6), 10**6, 3)
+        triangles = BOX.triangles[:, ::-1] if rng.integers(2) else BOX.triangles
+        kind = rng.integers(4)
+        if kind == 0:
+            triangles = triangles[1:]
+        if kind == 1:
+            triangles = np.concatenate([triangles[:1, ::-1], triangles[1:]])
+        cavities += kind > 1 and signed_volume(positions, triangles) < 0
+        meshes.append((positions, triangles))
+    positions, triangles = joined(*meshes)
+    for threads in (1, 3):
+        found = prefilter.mesh_topology(positions, triangles, threads=threads)
+        assert (found.parts, found.cavities) == (30, cavities)
+
+
+def test_sheets_of_two_faces_are_no_cavities():
+    for seed in range(20):
+        points = np.random.default_rng(seed).normal(size=(3, 3)) + 1000.0
+        found = prefilter.mesh_topology(points, [[0, 1, 2], [2, 1, 0]])
+        assert (found.parts, found.cavities) == (1, 0)
+
+
 def test_closed_parts_are_not_welded():
     found = prefilter.mesh_topology(*joined(shape(BOX), shape(BOX, (1, 0, 0))))
     assert (found.parts, found.genus, found.borders) == (2, 0, 0)

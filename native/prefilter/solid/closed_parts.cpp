@@ -12,40 +12,13 @@
 #include "prefilter/base/disjoint_sets.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/pulse.h"
+#include "prefilter/solid/edge_hash.h"
 #include "prefilter/solid/nesting.h"
 
 namespace prefilter {
 namespace {
 
 constexpr std::int64_t kRowsPerTask = 1 << 14;
-
-// Two numbers of an edge that are as good as drawn at random.
-struct EdgeHash {
-  std::uint64_t first = 0;
-  std::uint64_t second = 0;
-
-  EdgeHash& operator+=(const EdgeHash& other) {
-    first += other.first;
-    second += other.second;
-    return *this;
-  }
-};
-
-std::uint64_t mixed(std::uint64_t x) {
-  x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9U;
-  x = (x ^ (x >> 27U)) * 0x94D049BB133111EBU;
-  return x ^ (x >> 31U);
-}
-
-// Negative for the way down.
-EdgeHash hash_of(std::int64_t from, std::int64_t to) {
-  if (from == to) return {};
-  const auto low = static_cast<std::uint64_t>(std::min(from, to));
-  const auto high = static_cast<std::uint64_t>(std::max(from, to));
-  const std::uint64_t edge = (low << 32U) | high;
-  const EdgeHash hash = {mixed(edge + 0x9E3779B97F4A7C15U), mixed(~edge)};
-  return from < to ? hash : EdgeHash{0 - hash.first, 0 - hash.second};
-}
 
 // What hangs together by vertices: of each, the first one.
 std::vector<std::uint32_t> first_vertices(const InputMesh& mesh, const Progress& progress) {
@@ -98,15 +71,13 @@ bool is_balanced(const InputMesh& mesh, const Progress& progress, int threads) {
     EdgeHash sum;
     for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
       const auto [a, b, c] = mesh.triangles[t];
-      sum += hash_of(a, b);
-      sum += hash_of(b, c);
-      sum += hash_of(c, a);
+      sum += EdgeHash::of(a, b, c);
     }
     sums[static_cast<std::size_t>(begin / kRowsPerTask)] = sum;
   });
   EdgeHash all;
   for (const EdgeHash& sum : sums) all += sum;
-  return all.first == 0 && all.second == 0;
+  return all.is_zero();
 }
 
 bool is_solid(const InputMesh& mesh, double thickness, const Progress& progress, int threads,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <limits>
 #include <mutex>
 #include <numeric>
@@ -13,6 +14,7 @@
 #include "prefilter/base/disjoint_sets.h"
 #include "prefilter/base/error.h"
 #include "prefilter/base/parallel.h"
+#include "prefilter/solid/edge_hash.h"
 #include "prefilter/solid/weld.h"
 
 namespace prefilter {
@@ -234,6 +236,40 @@ std::vector<std::int32_t> welded_borders(const PositionView& positions, const Co
   return names;
 }
 
+// How many parts are closed, with faces that agree on a side, and inside out.
+std::size_t count_cavities(const InputMesh& mesh, const NamedTriangles& named,
+                           const MeshTopology& found) {
+  constexpr double kLeast = 1e-9;  // of the area to the power of 3/2: sheets have no volume
+  struct Part {
+    EdgeHash edges;
+    Vector3 origin{};
+    double volume = 0.0;
+    double area = 0.0;
+  };
+  std::vector<Part> parts(found.parts);
+  double size = 0.0;
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const Vector3 p = mesh.positions[v];
+    for (const double x : p) size = std::max(size, std::abs(x));
+  }
+  for (std::size_t t = 0; t < found.part_of.size(); ++t) {
+    if (found.part_of[t] < 0) continue;
+    Part& part = parts[static_cast<std::size_t>(found.part_of[t])];
+    const auto [a, b, c] = named[t];
+    part.edges += EdgeHash::of(a, b, c);
+    std::array<Vector3, 3> p = mesh.corners(t);
+    if (part.area == 0.0) part.origin = p[0];
+    for (Vector3& corner : p) {
+      for (std::size_t i = 0; i < 3; ++i) corner[i] = (corner[i] - part.origin[i]) / size;
+    }
+    part.volume += dot(p[0], cross(p[1], p[2])) / 6.0;
+    part.area += length(cross(p[1] - p[0], p[2] - p[0])) / 2.0;
+  }
+  return static_cast<std::size_t>(std::count_if(parts.begin(), parts.end(), [](const Part& part) {
+    return part.edges.is_zero() && part.volume < -kLeast * part.area * std::sqrt(part.area);
+  }));
+}
+
 MeshTopology topology_of(const NamedTriangles& mesh, const Counts& counts,
                          DisjointSets<std::uint32_t>&& parts) {
   MeshTopology result;
@@ -285,7 +321,9 @@ MeshTopology mesh_topology(const InputMesh& mesh, bool welds, const Progress& pr
       counts = counted(&parts, progress.part(0.6, 0.9));
     }
   }
-  MeshTopology result = topology_of({mesh.triangles, names}, counts, std::move(parts));
+  const NamedTriangles named = {mesh.triangles, names};
+  MeshTopology result = topology_of(named, counts, std::move(parts));
+  result.cavities = count_cavities(mesh, named, result);
   progress.report(1.0);
   return result;
 }

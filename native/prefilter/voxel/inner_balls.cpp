@@ -115,7 +115,7 @@ std::optional<InnerBall> InnerBalls::at(const Vector3& point, const Vector3& nor
                                         const Across& across) const {
   // From a little outside, so that the other face of a sheet is below the point.
   const Vector3 start = point + kJustOutside * normal;
-  InnerBall ball = {largest, 0.0};
+  InnerBall ball = {largest, 0.0, 0.0};
   for (int step = 0; step < kMostSteps; ++step) {
     const double reach = ball.radius * (1.0 - kSettled) - 0.1 * kJustOutside;
     if (!(reach > 0.0)) break;
@@ -126,6 +126,7 @@ std::optional<InnerBall> InnerBalls::at(const Vector3& point, const Vector3& nor
     const double depth = dot(away, normal);
     if (!(depth > 0.0)) break;
     ball.facing = std::min(ball.facing, touched->facing);
+    ball.across = touched->facing;
     ball.radius = dot(away, away) / (2.0 * depth);
   }
   if (ball.radius >= largest) return std::nullopt;

@@ -22,6 +22,7 @@ inline constexpr double kJustOutside = 0.01;
 struct InnerBall {
   double radius;
   double facing;  // the least cosine between the normals of the point and of what is across
+  double across;  // that with what it touches
 };
 
 /// Searches among the triangles of a mesh that are given; lengths are cells.

@@ -32,7 +32,8 @@ constexpr double kFromAbove = kToSample + kHalfDiagonal;
 constexpr double kLeastArea = 1e-3;  // of a piece whose plane is looked at, in cells
 constexpr float kLeastAdded = 0.02F;
 constexpr double kUsualThickness = 1.5;
-constexpr double kMargin = 4.0;  // around the root, of what may reach into it
+constexpr double kThinnestOfWalls = 0.1;  // of the area of each triangle: it does not count
+constexpr double kMargin = 4.0;           // around the root, of what may reach into it
 
 struct PieceCell {
   struct Near {
@@ -267,45 +268,53 @@ ThickPieces pieces_for(const RootTriangles& mesh, double thickness, const Octree
   return found;
 }
 
-bool is_before(const ThinTriangle& a, const ThinTriangle& b) { return a.triangle < b.triangle; }
-
-// In order, and one of each triangle: what is the thinnest of it, and the area of all.
-void merge(std::vector<ThinTriangle>* all) {
-  std::stable_sort(all->begin(), all->end(), is_before);
+// In order, and one of each triangle: where all but a share of its area is thicker, with the area
+// of all.
+void merge(double share, std::vector<ThinTriangle>* all) {
+  std::stable_sort(all->begin(), all->end(), [](const ThinTriangle& a, const ThinTriangle& b) {
+    return a.triangle != b.triangle ? a.triangle < b.triangle : a.thickness < b.thickness;
+  });
   std::size_t count = 0;
-  for (const ThinTriangle& one : *all) {
-    if (count == 0 || (*all)[count - 1].triangle != one.triangle) {
-      (*all)[count++] = one;
-      continue;
+  for (std::size_t i = 0; i < all->size();) {
+    std::size_t end = i;
+    double area = 0.0;
+    for (; end < all->size() && (*all)[end].triangle == (*all)[i].triangle; ++end) {
+      area += (*all)[end].area;
     }
-    ThinTriangle& same = (*all)[count - 1];
-    const double area = same.area + one.area;
-    if (one.thickness < same.thickness) same = one;
-    same.area = area;
+    std::size_t chosen = i;
+    for (double thinner = 0.0; chosen + 1 < end; ++chosen) {
+      thinner += (*all)[chosen].area;
+      if (thinner > share * area) break;
+    }
+    ThinTriangle one = (*all)[chosen];
+    one.area = area;
+    (*all)[count++] = one;
+    i = end;
   }
   all->resize(count);
 }
 
-// The triangles above the pieces.
-std::vector<ThinTriangle> thin_triangles(const ThickPieces& found) {
+// The triangles above the pieces, or above those of walls, where all but a share is thicker.
+std::vector<ThinTriangle> thin_triangles(const ThickPieces& found, bool only_walls, double share) {
   std::vector<ThinTriangle> all;
-  all.reserve(found.pieces.size());
   for (const ThickPiece& piece : found.pieces) {
+    if (only_walls && !piece.is_wall) continue;
     all.push_back({piece.triangle, piece.thickness, 2.0 * piece.radius, piece.area});
   }
-  merge(&all);
+  merge(share, &all);
   const auto count = static_cast<std::ptrdiff_t>(all.size());
   for (const Represented& other : found.others) {
     const auto known = all.begin() + count;
     const auto same = std::lower_bound(
-        all.begin(), known, ThinTriangle{other.representative, 0.0, 0.0, 0.0}, is_before);
+        all.begin(), known, other.representative,
+        [](const ThinTriangle& one, std::uint32_t triangle) { return one.triangle < triangle; });
     if (same == known || same->triangle != other.representative) continue;
     ThinTriangle one = *same;
     one.triangle = other.triangle;
     if (!other.is_back) one.area = other.area;
     all.push_back(one);
   }
-  merge(&all);
+  merge(share, &all);
   return all;
 }
 
@@ -331,7 +340,8 @@ void thicken(const RootTriangles& mesh, double thickness, const Progress& progre
   }
   if (!found.pieces.empty()) {
     octree->thickened = std::move(thickened);
-    octree->thin = thin_triangles(found);
+    octree->thin = thin_triangles(found, false, 0.0);
+    octree->thin_walls = thin_triangles(found, true, kThinnestOfWalls);
   }
   progress.report(1.0);
 }

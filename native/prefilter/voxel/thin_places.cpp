@@ -22,7 +22,8 @@ namespace {
 constexpr double kPiece = 1.0;         // the longest side of a piece, in cells
 constexpr double kLargestPiece = 4.0;  // of one that is as thin everywhere
 constexpr double kLeastBrick = 2.0;    // in cells
-constexpr double kOpposite = -0.85;  // the cosine between normals of what is opposite: 148 degrees
+constexpr double kOpposite = -0.85;   // the cosine between normals of what is opposite: 148 degrees
+constexpr double kParallel = -0.985;  // the cosine between normals of a wall: 170 degrees
 // How much thicker than a plate that cells hold together a rod and a speck have to be: the quarter
 // of a disc that cells have of a rod along their common edge, and the eighth of a ball at their
 // common corner, are half of a cell.
@@ -223,7 +224,7 @@ class CandidateFinder {
     return counts;
   }
 
-  static constexpr InnerBall kSheet = {0.0, -1.0};  // what has no inside
+  static constexpr InnerBall kSheet = {0.0, -1.0, -1.0};  // what has no inside
 
   struct MayMeet {
     const OpposedBricks& bricks;
@@ -333,7 +334,8 @@ ThickPieces thick_pieces(const MeshView<std::int32_t>& mesh, double thickness, c
   }
   for (const Candidate& one : candidates) {
     if (one.is_plate) {
-      result.pieces.push_back({one.corners, plate, one.triangle, 0.0, triangle_area(one.corners)});
+      result.pieces.push_back(
+          {one.corners, plate, one.triangle, 0.0, triangle_area(one.corners), true});
       continue;
     }
     const Vector3 middle = one.middle();
@@ -348,8 +350,12 @@ ThickPieces thick_pieces(const MeshView<std::int32_t>& mesh, double thickness, c
     const Vector3 mean = (1.0 / around.area) * around.middles;
     const Vector3 moved = middle + rod_of(values) * across(mean - middle);
     const Vector3 from = triangle_middle(one.corners);
-    ThickPiece piece = {
-        {}, radius, one.triangle, 2.0 * one.ball.radius, triangle_area(one.corners)};
+    ThickPiece piece = {{},
+                        radius,
+                        one.triangle,
+                        2.0 * one.ball.radius,
+                        triangle_area(one.corners),
+                        one.ball.across < kParallel};
     for (std::size_t i = 0; i < 3; ++i) {
       const Vector3 offset = one.corners[i] - from;
       piece.middles[i] = moved + offset - across(offset);

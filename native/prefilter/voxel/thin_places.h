@@ -23,6 +23,7 @@ struct ThickPiece {
   std::uint32_t triangle;  // of the mesh, that it is below
   double thickness;        // of the solid there
   double area;             // of the triangle, that it is below
+  bool is_wall;            // whether the faces of the solid are nearly parallel there
 };
 
 /// The pieces, the triangles that are as thin as others, and the mesh's winding numbers; these are

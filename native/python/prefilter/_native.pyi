@@ -292,7 +292,7 @@ def mesh_topology(
     welds: bool,
     progress: ProgressCallback | None,
     threads: int,
-) -> tuple[int, int, int | None, npt.NDArray[np.int32], npt.NDArray[np.int32]]: ...
+) -> tuple[int, int, int, int | None, npt.NDArray[np.int32], npt.NDArray[np.int32]]: ...
 def nearest_points(
     points: npt.NDArray[np.float64],
     positions: npt.NDArray[np.floating],
@@ -602,6 +602,7 @@ def cube_around(
 ) -> tuple[list[float], list[float]]: ...
 def thin_triangles(
     octree: Octree,
+    only_walls: bool,
 ) -> tuple[
     npt.NDArray[np.int64],
     npt.NDArray[np.float64],

@@ -3,6 +3,7 @@
 """What the report says of meshes: each number against what the mesh was built with."""
 
 import importlib
+import math
 
 import bmesh
 import bodies
@@ -43,6 +44,39 @@ def test_parts_and_genus_of_what_is_whole():
         "genus: 0 before, 0 after",
     ]
     assert the_line(outcome(torus())) == ["parts: 1 before, 1 after", "genus: 1 before, 1 after"]
+
+
+@pytest.mark.parametrize("is_turned", [False, True])
+@pytest.mark.parametrize("radius", [0.5, 0.02])
+def test_cavities(radius, is_turned):
+    """A hollow ball is one part, whichever way its faces look; a cavity of half a cell goes."""
+    obj = bodies.sphere(subdivisions=3)
+
+    def change(bm):
+        made = bmesh.ops.create_icosphere(bm, subdivisions=3, radius=radius)["verts"]
+        inner = list({face for vertex in made for face in vertex.link_faces})
+        bmesh.ops.reverse_faces(bm, faces=bm.faces[:] if is_turned else inner)
+        if is_turned:
+            bmesh.ops.reverse_faces(bm, faces=inner)
+
+    bodies.changed(obj, change)
+    line = the_line(outcome(obj))
+    assert line[0] == "parts: 1 before, 1 after"
+    lost = ["cavities: 1 before, 0 after"] if radius < 0.1 else []
+    assert line[1:] == [*lost, "genus: 0 before, 0 after"]
+
+
+@pytest.mark.parametrize(("degrees", "is_told"), [(6.0, True), (16.0, False), (25.0, False)])
+def test_wedges_are_no_walls(degrees, is_told):
+    """No depth keeps the edge of a wedge, and nobody is told of walls of 0.01 cells."""
+    obj = plate(1.0)
+    far = math.tan(math.radians(degrees / 2))
+    for vertex in obj.data.vertices:
+        vertex.co.z = math.copysign(far * (vertex.co.x + 5.0), vertex.co.z)
+    line = the_line(outcome(obj))
+    assert any(row.startswith("faces thickened: ") for row in line)
+    assert any(row.startswith("walls of ") for row in line) == is_told
+    assert not any("no depth" in row for row in line)
 
 
 @pytest.mark.parametrize(("thickness", "depth"), [(1.0, 7), (0.5, 8), (0.3, 9)])
@@ -178,6 +212,8 @@ def test_a_monkey_loses_no_eyes(faces):
     assert line[0] == f"parts: 3 before, {parts} after"
     assert line[1] == f"genus: 0 before, {genus} after"
     assert (parts, genus) == (1, 0)
+    # Its ears are thin, and its eyelids are wedges.
+    assert line[-1] == "walls of 0.9 cells: depth 8 keeps them"
     assert not any("lost" in row for row in line)
     for point in fronts:
         _, place, _, _ = monkey.closest_point_on_mesh(point)

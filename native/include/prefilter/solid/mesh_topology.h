@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// How many parts a mesh has, and how many handles and borders.
+// How many parts a mesh has, and how many cavities, handles and borders.
 #pragma once
 
 #include <array>
@@ -15,7 +15,9 @@
 namespace prefilter {
 
 struct MeshTopology {
-  std::size_t parts = 0;    // of triangles that hang together by edges
+  std::size_t parts = 0;  // of triangles that hang together by edges
+  // Of these: closed, all faces agree on which side is out, and that is within.
+  std::size_t cavities = 0;
   std::size_t borders = 0;  // loops of edges with a single triangle
   // Of all parts together: half of what 2 - borders of each is above its Euler characteristic. None
   // where more than two triangles share an edge, or a surface has one side.

@@ -18,6 +18,7 @@ class MeshTopology:
 
     Attributes:
         parts: How many there are: triangles that hang together by edges.
+        cavities: How many parts bound one: closed, with faces that agree on a side, and inside out.
         borders: Loops of edges with a single triangle.
         genus: The handles of all parts together: 0 for spheres and discs, 1 for a ring. None if
             more than two triangles share an edge, or a surface has one side.
@@ -28,10 +29,16 @@ class MeshTopology:
     """
 
     parts: int
+    cavities: int
     borders: int
     genus: int | None
     border_edges: npt.NDArray[np.int32]
     part_of: npt.NDArray[np.int32]
+
+    @property
+    def solids(self) -> int:
+        """How many parts there are without cavities: what hangs together as a solid."""
+        return self.parts - self.cavities
 
 
 def mesh_topology(

@@ -76,7 +76,16 @@ class Octree(_native.Octree):
     @property
     def thin_places(self) -> ThinPlaces:
         """Where the mesh was thinner than the `thickness` of `voxelize`, which made this octree."""
-        return ThinPlaces(*_native.thin_triangles(self))
+        return ThinPlaces(*_native.thin_triangles(self, False))
+
+    @property
+    def thin_walls(self) -> ThinPlaces:
+        """Those of `thin_places` whose faces are within 10 degrees of parallel.
+
+        Wedges and tips end in nothing, so that finer cells never keep all of them. Of each triangle
+        the thickness is that which nine tenths of the wall below it have at least.
+        """
+        return ThinPlaces(*_native.thin_triangles(self, True))
 
     def dense(
         self,
