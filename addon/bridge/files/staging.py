@@ -5,10 +5,10 @@
 import os
 from pathlib import Path
 
+from prefilter._border.replacing import beside
 from prefilter._border.staging import (
     StagedFile,
     StagedFolder,
-    beside,
     check_target,
     check_writable,
     commit_all,

@@ -9,11 +9,13 @@ import os
 import shutil
 import stat
 from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO, cast
 
 from .input import as_path
+from .replacing import Kept, beside, journal, put_back, recover, rename, second_name
 
 Output = str | os.PathLike[str] | BinaryIO
 
@@ -33,7 +35,7 @@ class StagedFile:
         check_regular(self.target)
         if self.target.exists():
             shutil.copymode(self.target, self.temporary)
-        _rename(self.temporary, self.target)
+        rename(self.temporary, self.target)
 
     def discard(self) -> None:
         """Removes the temporary file, if it is still there."""
@@ -58,18 +60,13 @@ class StagedFolder:
         shutil.rmtree(self.temporary, ignore_errors=True)
 
 
-def beside(target: Path, suffix: str | None = None) -> Path:
-    """Returns a name in the folder of a target that nobody else thinks of, with its suffix."""
-    ending = target.suffix if suffix is None else suffix
-    return target.with_name(f".prefilter-{os.urandom(4).hex()}{ending}")
-
-
 def stage_with(target: Path, write: Callable[[Path], object]) -> StagedFile:
     """Has a function write a file beside its target, by its path.
 
     Raises:
         OSError: The file cannot be written.
     """
+    recover(target.parent)
     staged = StagedFile(beside(target), target)
     try:
         write(staged.temporary)
@@ -99,6 +96,7 @@ def stage_folder(target: Path, write: Callable[[Path], object]) -> StagedFolder:
     Raises:
         OSError: The file cannot be written.
     """
+    recover(target.parent)
     staged = StagedFolder(beside(target, ""), target)
     staged.temporary.mkdir()
     try:
@@ -127,23 +125,31 @@ def write_output(output: Path | BinaryIO, write: Callable[[BinaryIO], object]) -
 def commit_all(files: Sequence[StagedFile]) -> None:
     """Renames files into place: all of them, or none.
 
+    Where the program is killed in between, the next one that stages a file in a folder of theirs
+    puts the earlier files back.
+
     Raises:
         OSError: One cannot be put into place, and the others are as they were; but for those that
             the message names.
     """
+    for folder in dict.fromkeys(file.target.parent for file in files):
+        recover(folder)
     if len(files) == 1:
         files[0].commit()
         return
-    kept: list[tuple[Path, Path | None]] = []
-    try:
-        for file in files:
-            kept.append((file.target, _second_name(file.target)))
-            file.commit()
-    except BaseException as error:
-        lost = [text for target, earlier in kept if (text := _put_back(target, earlier))]
-        if lost:
-            raise OSError("; ".join([str(error), *lost])) from error
-        raise
+    kept: list[Kept] = []
+    with ExitStack() as stack:
+        try:
+            for file in files:
+                kept.append((file.target, second_name(file.target)))
+            stack.enter_context(journal(kept, [file.temporary for file in files]))
+            for file in files:
+                file.commit()
+        except BaseException as error:
+            lost = [text for target, earlier in kept if (text := put_back(target, earlier))]
+            if lost:
+                raise OSError("; ".join([str(error), *lost])) from error
+            raise
     for _, earlier in kept:
         if earlier is not None:
             earlier.unlink(missing_ok=True)
@@ -200,43 +206,6 @@ def check_regular(path: Path, who: str = "") -> None:
     if not stat.S_ISREG(mode):
         kind = _KINDS.get(stat.S_IFMT(mode), "device")
         raise OSError(f"{who}'{path}' is a {kind}; a regular file, or a new one, is needed")
-
-
-def _rename(new: Path, target: Path) -> None:
-    try:
-        os.replace(new, target)
-    except PermissionError as error:
-        if os.name == "nt" and target.exists():
-            message = f"'{target}' cannot be replaced: another program has it open"
-            raise OSError(message) from error
-        raise
-
-
-def _second_name(target: Path) -> Path | None:
-    """Gives a file a second name that outlasts its replacement; None where there is no file."""
-    if not target.exists():
-        return None
-    other = beside(target)
-    try:
-        os.link(target, other)
-    except OSError:  # Some file systems have no links.
-        shutil.copy2(target, other)
-    return other
-
-
-def _put_back(target: Path, earlier: Path | None) -> str:
-    """Undoes a replacement; returns what is to be told where that fails, else nothing."""
-    try:
-        if earlier is None:
-            target.unlink(missing_ok=True)
-        else:
-            _rename(earlier, target)
-            # Renaming does nothing where both are still names of one file.
-            earlier.unlink(missing_ok=True)
-    except OSError as error:
-        kept = "" if earlier is None else f"; the earlier file is kept as '{earlier}'"
-        return f"'{target}' was written, which cannot be undone{kept}: {error}"
-    return ""
 
 
 def _is_writable(path: Path) -> bool:
