@@ -190,6 +190,58 @@ def test_alpha_is_described(tmp_path, kind, alpha, format):
     assert opaque.alpha == ("opaque" if kind == "dds" else "straight")
 
 
+LEGACY = {"r8", "rgba8", "bc1", "bc1-rgb", "bc3", "bc4", "bc5"}
+"""The formats that the header of Direct3D 9 describes whole, where they are linear."""
+
+
+@pytest.mark.parametrize("format", [name for name in NAMES if NAMES[name][0]])
+@pytest.mark.parametrize("encoding", ["linear", "srgb"])
+@pytest.mark.parametrize("alpha", [None, "straight", "premultiplied", "independent"])
+def test_dds_has_the_legacy_header_where_it_loses_nothing(tmp_path, format, encoding, alpha):
+    if encoding == "srgb" and (NAMES[format][1] is None or format in {"r8", "rg8"}):
+        pytest.skip("there is no such file")
+    levels = chain(8, 12, 3 if alpha is None else 4)
+    options = {"format": format, "encoding": encoding, "alpha": alpha or "straight"}
+    files = {
+        header: written(tmp_path, "dds", levels, header=header, **options)
+        for header in ("auto", "dx10", *(["legacy"] if format in LEGACY else []))
+    }
+    assert files["dx10"].has_dx10
+    has_alpha = FORMATS[files["dx10"].format][2] == 4 and format != "bc1-rgb"
+    is_plain = not has_alpha or alpha in {None, "straight"}
+    # Luminance is not quite the red of "r8".
+    has_whole_legacy = format in LEGACY - {"r8"}
+    assert files["auto"].has_dx10 == (not has_whole_legacy or encoding == "srgb" or not is_plain)
+    for file in files.values():
+        assert file.level_data == files["dx10"].level_data
+        assert (file.width, file.height) == (12, 8)
+    if not files["auto"].has_dx10:
+        assert files["auto"] == files["legacy"]
+        assert files["auto"].alpha == files["dx10"].alpha
+        assert files["auto"].format == files["dx10"].format
+
+
+@pytest.mark.parametrize("format", ["rgba16f", "rgba32f"])
+def test_floats_have_a_legacy_header_on_wish(tmp_path, format):
+    levels = chain(3, 5, 4, floats=True)
+    files = [
+        written(tmp_path, "dds", levels, format=format, header=header)
+        for header in ("auto", "legacy")
+    ]
+    assert [file.has_dx10 for file in files] == [True, False]
+    assert files[0].format == files[1].format
+    assert files[0].level_data == files[1].level_data
+
+
+@pytest.mark.parametrize("format", ["rg8", "bc6h", "bc7"])
+def test_formats_that_have_no_legacy_header(tmp_path, format):
+    with pytest.raises(ValueError, match=f"format: legacy DDS files have no '{format}'"):
+        prefilter.write_dds(tmp_path / "levels", GOOD, format=format, header="legacy")
+    with pytest.raises(ValueError, match="header: 'dx9' is not one of"):
+        prefilter.write_dds(tmp_path / "levels", GOOD, header="dx9")
+    assert os.listdir(tmp_path) == []
+
+
 def smooth_chain(height: int, width: int, channels: int) -> list:
     """Levels that vary slowly, in bytes."""
     levels = []
@@ -493,17 +545,21 @@ def test_canceling_writes_nothing(tmp_path, kind):
 
 @pytest.mark.parametrize("size", [*SIZES, (32, 24)])
 @pytest.mark.parametrize("format", ["rgba8", *BLOCKS])
-@pytest.mark.parametrize("encoding", ["linear", "srgb"])
-def test_pillow_and_openimageio_agree_on_dds(tmp_path, size, format, encoding):
+@pytest.mark.parametrize(
+    ("encoding", "header"), [("linear", "legacy"), ("linear", "dx10"), ("srgb", "dx10")]
+)
+def test_pillow_and_openimageio_agree_on_dds(tmp_path, size, format, encoding, header):
     if encoding == "srgb" and NAMES[format][1] is None:
         encoding = "linear"
+    if format not in LEGACY:
+        header = "auto"
     levels = chain(*size, 4)
     if format == "bc1":
         levels = [level[..., :3] for level in levels]
     compared = 0
     for number in range(len(levels)):
         path = tmp_path / f"{number}.dds"
-        prefilter.write_dds(path, levels[number:], format=format, encoding=encoding)
+        prefilter.write_dds(path, levels[number:], format=format, encoding=encoding, header=header)
         expected = read_dds(path).level(0)
         # Decoders may round the ends to bytes, which is half a step, and then cut off the mean.
         near = 0 if format in {"rgba8", "bc7"} else 1.5

@@ -5,6 +5,7 @@
 A file is read into a `File`, whose levels are as stored: the top row first.
 """
 
+import itertools
 import struct
 import tempfile
 from dataclasses import dataclass, field
@@ -65,6 +66,7 @@ class File:
     alpha: str
     samples: list[dict] = field(default_factory=list)
     metadata: dict[str, str] = field(default_factory=dict)
+    has_dx10: bool = False
 
     @property
     def is_srgb(self) -> bool:
@@ -100,19 +102,32 @@ def block_side(name: str) -> int:
     return int(name[5]) if name.startswith("ASTC") else 4
 
 
+# The codes of Direct3D 9, and the pixel format that says the same with masks:
+# (flags without that of alpha, bits a texel, masks of red, green, blue and alpha).
+FOUR_CCS = {
+    b"DXT1": "BC1_UNORM",
+    b"DXT5": "BC3_UNORM",
+    b"ATI1": "BC4_UNORM",
+    b"ATI2": "BC5_UNORM",
+    b"\x71\0\0\0": "R16G16B16A16_SFLOAT",  # D3DFMT_A16B16G16R16F
+    b"\x74\0\0\0": "R32G32B32A32_SFLOAT",  # D3DFMT_A32B32G32R32F
+}
+MASKS = {
+    (0x20000, 8, 0xFF, 0, 0): "R8_UNORM",  # D3DFMT_L8
+    (0x40, 32, 0xFF0000, 0xFF00, 0xFF): "R8G8B8A8_UNORM",  # D3DFMT_A8R8G8B8
+}
+
+
 def read_dds(path: Path) -> File:
-    """Reads a DDS file with the DX10 header, and checks what its header has to say."""
+    """Reads a DDS file with either header, and checks what its header has to say."""
     data = path.read_bytes()
     assert data[:4] == b"DDS "
     size, flags, height, width, pitch, depth, mips = struct.unpack_from("<7I", data, 4)
     assert (size, depth) == (124, 0)
-    pixel_size, pixel_flags, four_cc = struct.unpack_from("<2I4s", data, 76)
-    assert (pixel_size, pixel_flags, four_cc) == (32, 4, b"DX10")
     caps, caps2, caps3, caps4, reserved = struct.unpack_from("<5I", data, 108)
     assert (caps2, caps3, caps4, reserved) == (0, 0, 0, 0)
-    dxgi, dimension, misc, array_size, misc2 = struct.unpack_from("<5I", data, 128)
-    assert (dimension, misc, array_size) == (3, 0, 1)
-    name = next(name for name, entry in FORMATS.items() if entry[0] == dxgi)
+    has_dx10 = data[84:88] == b"DX10"
+    name, alpha = (_read_dx10 if has_dx10 else _read_pixel_format)(data)
 
     assert flags & 0x1007 == 0x1007
     assert mips >= 1
@@ -125,14 +140,40 @@ def read_dds(path: Path) -> File:
         assert flags & 0x80008 == 0x8
         assert pitch == width * FORMATS[name][4]
 
-    offset, levels = 148, []
+    offset, levels = 148 if has_dx10 else 128, []
     for number in range(mips):
         count = level_bytes(name, width, height, number)
-        levels.append(data[offset : offset + count])
+        level = data[offset : offset + count]
+        if not has_dx10 and name.startswith("R8G8B8A8"):
+            blue, green, red, rest = (level[channel::4] for channel in range(4))
+            level = bytes(itertools.chain.from_iterable(zip(red, green, blue, rest, strict=True)))
+        levels.append(level)
         offset += count
     assert offset == len(data)
-    alpha = {1: "straight", 2: "premultiplied", 3: "opaque", 4: "custom"}[misc2]
-    return File(name, width, height, levels, alpha)
+    return File(name, width, height, levels, alpha, has_dx10=has_dx10)
+
+
+def _read_dx10(data: bytes) -> tuple[str, str]:
+    """The format, and the kind of alpha."""
+    assert struct.unpack_from("<2I", data, 76) == (32, 4)
+    dxgi, dimension, misc, array_size, misc2 = struct.unpack_from("<5I", data, 128)
+    assert (dimension, misc, array_size) == (3, 0, 1)
+    name = next(name for name, entry in FORMATS.items() if entry[0] == dxgi)
+    return name, {1: "straight", 2: "premultiplied", 3: "opaque", 4: "custom"}[misc2]
+
+
+def _read_pixel_format(data: bytes) -> tuple[str, str]:
+    """The same of the header of Direct3D 9."""
+    size, flags, code, bits, *masks, alpha_mask = struct.unpack_from("<2I4s5I", data, 76)
+    assert size == 32
+    alpha = "straight" if flags & 1 else "opaque"
+    if flags & 4:
+        assert flags | 1 == 5
+        assert (bits, masks, alpha_mask) == (0, [0, 0, 0], 0)
+        return FOUR_CCS[code], alpha
+    assert code == bytes(4)
+    assert alpha_mask == (0xFF000000 if flags & 1 else 0)
+    return MASKS[(flags & ~1, bits, *masks)], alpha
 
 
 def read_ktx2(path: Path) -> File:

@@ -12,8 +12,7 @@ from .. import _native
 from .._border.arguments import ProgressCallback, as_one_of, as_progress, is_srgb
 from .._border.arrays import as_threads
 from .._border.staging import Output, as_output, write_output
-from . import etc1s
-from .dds import DDS
+from . import dds, etc1s
 from .ktx2 import KTX2
 from .texel_formats import ALPHAS, EFFORTS, SUPERCOMPRESSIONS, Container, TexelFormat, Texture
 from .texels import as_format, as_levels, encoded
@@ -29,10 +28,11 @@ def write_dds(
     encoding: str = "linear",
     alpha: str = "straight",
     effort: str = "normal",
+    header: str = "auto",
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> None:
-    """Writes levels as a DDS file (DirectDraw Surface, with the header of Direct3D 10 and later).
+    """Writes levels as a DDS file (DirectDraw Surface).
 
     The file is written beside `path` and renamed, so a failure leaves what was there.
 
@@ -61,6 +61,12 @@ def write_dds(
         effort: How long a search for closer blocks may take: "fast" (BC7 in a thirtieth of the time
             of "normal"), "normal" or "best" (BC7 in ten times the time). Levels of up to 64 x 64
             texels get the effort above. Sizes are the same.
+        header: "dx10", the header of Direct3D 10 and later, says all of this. "legacy", that of
+            Direct3D 9, is read by more programs. It knows all formats but "rg8", "bc6h" and "bc7",
+            and says neither that colors are sRGB nor which kind alpha is of; bytes are in the order
+            blue, green, red, and "r8" is luminance. "auto" takes it where nothing is lost: for
+            linear levels in "rgba8", "bc1", "bc1-rgb", "bc3", "bc4" and "bc5", with straight alpha
+            or none.
         progress: Called with the fraction done, in [0, 1]; may return False to stop.
         threads: How many to use; 0 = all processors. The file does not depend on it.
 
@@ -70,7 +76,10 @@ def write_dds(
         OSError: The file cannot be written.
         Cancelled: The progress callback returned False.
     """
-    _write(path, levels, format, encoding, alpha, effort, "none", _QUALITY, progress, threads, DDS)
+    container = dds.container(as_one_of("header", header, dds.HEADERS))
+    _write(
+        path, levels, format, encoding, alpha, effort, "none", _QUALITY, progress, threads, container
+    )
 
 
 def write_ktx2(
