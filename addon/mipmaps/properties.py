@@ -22,7 +22,10 @@ from .choices import (
 from .importance import suggested_names
 
 _FRAMES = ("use_frames", "frame_start", "frame_end", "frame_step")
-_OF_FILES = ("texture_format", "effort", "supercompression", "use_multiples_of_4")
+_OF_FILES = (
+    *("texture_format", "effort", "supercompression", "quality"),
+    "use_multiples_of_4",
+)
 _OF_ANY_SIDES = ("rgba", "etc2", "eac", "astc")
 """How the names of formats begin whose readers take any number of texels."""
 BAKE = presets.Kind("bake", "prefilter_bake", [(ResultSettings, ()), (Settings, _FRAMES)])
@@ -196,7 +199,9 @@ def _draw_compression(settings: Any, layout: bpy.types.UILayout) -> None:
         row.active = not settings.texture_format.startswith(_OF_ANY_SIDES)
         row.prop(settings, "use_multiples_of_4")
     if engines.has_supercompression(ending):
-        layout.prop(settings, "supercompression")
+        # ETC1S has a compression of its own.
+        is_etc1s = settings.texture_format == "etc1s"
+        layout.prop(settings, "quality" if is_etc1s else "supercompression")
 
 
 def _draw_surface(settings: Any, layout: bpy.types.UILayout) -> None:

@@ -23,7 +23,7 @@ from .source import WANTED
 _ENDINGS = (".glb", ".gltf")
 _USED = {
     *("filepath", "filter", "lookups", "bounds", "seam_budget", "threads"),
-    *("texture_format", "effort", "supercompression"),
+    *("texture_format", "effort", "supercompression", "quality"),
 }
 
 
@@ -41,7 +41,7 @@ def bake_gltf(options: argparse.Namespace, settings: Settings) -> None:
     names = [obj.name for obj in bpy.context.view_layer.objects]
     if options.object:
         names = [obj.name for obj in scenes.chosen(objects, options.object, WANTED)]
-    shared = {"texture_format", "effort", "supercompression"}
+    shared = {"texture_format", "effort", "supercompression", "quality"}
     chosen = {key: value for key, value in given(options, Settings).items() if key in shared}
     fallback = given(options, GltfSettings)
     export = Export(settings, GltfSettings(use_mipmaps=True, **chosen, **fallback))

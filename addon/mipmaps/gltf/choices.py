@@ -5,7 +5,7 @@
 from dataclasses import dataclass
 
 from ...core.choices import Choice
-from ...core.options import one_of, switch
+from ...core.options import number, one_of, switch
 from ..choices import EFFORTS, SUPERCOMPRESSIONS
 
 FALLBACKS = {
@@ -53,6 +53,14 @@ class GltfSettings:
         "Compression",
         "Supercompression: KTX 2 files in UASTC are compressed once more, on top of the format",
         SUPERCOMPRESSIONS,
+        flag="",
+    )
+    quality: int = number(
+        192,
+        "ETC1S Quality",
+        "1 makes the smallest files, 255 those closest to the image",
+        low=1,
+        high=255,
         flag="",
     )
     fallback: str = one_of(

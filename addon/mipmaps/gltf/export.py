@@ -70,6 +70,7 @@ class Export:
                 texture_format=options.texture_format,
                 effort=options.effort,
                 supercompression=options.supercompression,
+                quality=options.quality,
                 use_images=False,
                 filepath=_FILE,
                 threads=settings.threads,
@@ -86,13 +87,8 @@ class Export:
             bounds=bake.bounds,
             seam_budget=bake.seam_budget,
         )
-        options = GltfSettings(
-            use_mipmaps=True,
-            texture_format=gltf.texture_format,
-            effort=gltf.effort,
-            supercompression=gltf.supercompression,
-            fallback=gltf.fallback,
-        )
+        names = ("texture_format", "effort", "supercompression", "quality", "fallback")
+        options = GltfSettings(True, **{name: getattr(gltf, name) for name in names})
         return cls(settings, options)
 
     def add_scene(self, scene: Any) -> None:

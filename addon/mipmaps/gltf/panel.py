@@ -21,6 +21,8 @@ def draw_export(context: bpy.types.Context, layout: bpy.types.UILayout) -> None:
         body.prop(context.scene.prefilter_bake, "lookups")
         body.prop(settings, "texture_format")
         body.prop(settings, "effort")
+        if settings.texture_format == "etc1s":
+            body.prop(settings, "quality")
         body.prop(settings, "supercompression")
         body.prop(settings, "fallback")
 

@@ -6,6 +6,7 @@ import io
 import json
 import struct
 import sys
+from pathlib import Path
 
 import bpy
 import numpy as np
@@ -14,6 +15,10 @@ import pytest
 import scenes
 from command_line import assert_fails, run
 from conftest import PACKAGE
+
+sys.path.append(str(Path(__file__).resolve().parents[3] / "docs" / "pictures" / "windows"))
+
+import drawn
 
 TYPES = {5123: np.uint16, 5125: np.uint32, 5126: np.float32}
 WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}
@@ -155,6 +160,43 @@ def test_etc1s_is_for_all_but_normal_maps(tmp_path):
     for one, other in zip(*levels, strict=True):
         assert abs(one.astype(float).mean() - other.mean()) < 6
     assert len(found["color"]) < len(fine)
+
+
+def test_the_quality_of_etc1s_is_that_of_the_dialog(tmp_path):
+    painted("Paint", scenes.noise(64, 64))
+    settings = bpy.context.scene.prefilter_gltf
+    settings.texture_format = "etc1s"
+    sizes = {}
+    for quality in (192, 64, 8):
+        settings.quality = quality
+        export(tmp_path / f"{quality}.glb", export_format="GLB")
+        file, buffer = read_glb(tmp_path / f"{quality}.glb")
+        data = ktx2_of(file, buffer, base_color(file, 0))
+        texels = as_bytes(scenes.noise(64, 64)[..., :3])
+        made = prefilter.mipmaps(
+            texels, [surface_of(file, buffer)], encoding="srgb", footprint=1.0, wrap="repeat"
+        )
+        path = tmp_path / "alone.ktx2"
+        prefilter.write_ktx2(path, made, format="etc1s", encoding="srgb", quality=quality)
+        assert data == path.read_bytes()
+        sizes[quality] = len(data)
+    assert sizes[8] < sizes[64] < sizes[192]
+
+
+def test_the_dialog_has_the_quality_where_it_counts(addon):
+    panel = addon("mipmaps.gltf.panel")
+    settings = bpy.context.scene.prefilter_gltf
+    settings.use_mipmaps = True
+    shown = {}
+    for texture_format in ("uastc", "etc1s"):
+        settings.texture_format = texture_format
+        rows = []
+        panel.draw_export(bpy.context, drawn.Layout(rows))
+        shown[texture_format] = [row[2] for row in rows if row[0] == "setting"]
+    assert shown["uastc"] == [
+        *("Prefilter Mipmaps", "Filter", "Lookups", "Format", "Compression", "Fallback")
+    ]
+    assert shown["etc1s"] == [*shown["uastc"][:4], "ETC1S Quality", *shown["uastc"][4:]]
 
 
 def test_files_by_themselves_with_a_fallback(tmp_path):

@@ -64,6 +64,23 @@ def test_what_files_have_shows_where_it_matters(
     assert ("supercompression" in names) == supercompression
 
 
+def test_etc1s_has_a_quality_in_place_of_a_compression():
+    settings = bpy.context.scene.prefilter_bake
+    settings.result, settings.file_format = "file", "ktx2"
+    for texture_format, present, absent in (
+        ("etc1s", "quality", "supercompression"),
+        ("uastc", "supercompression", "quality"),
+    ):
+        settings.texture_format = texture_format
+        names = shown(settings)
+        assert present in names
+        assert absent not in names
+    settings.texture_format, settings.file_format = "etc1s", "dds"
+    assert "quality" not in shown(settings)
+    settings.quality = 31
+    assert settings.to_settings().quality == 31
+
+
 def test_the_file_of_a_roughness_image():
     settings = bpy.context.scene.prefilter_bake
     settings.result, settings.content, settings.roughness = "file", "normal", "Rough"
@@ -87,7 +104,7 @@ def test_everything_is_shown_once(name):
     declared = {*type(settings).__annotations__, *dir(settings)} & set(names)
     own = {one.identifier for one in settings.bl_rna.properties if not one.is_hidden}
     missing = own - set(names) - {"rna_type", "name"}
-    assert missing == ({"threshold"} if name == "prefilter_bake" else set())
+    assert missing == ({"quality", "threshold"} if name == "prefilter_bake" else {"quality"})
     assert declared == set(names)
 
 
@@ -113,8 +130,8 @@ def test_the_preview_shows_what_a_bake_of_all_images_makes(addon):
     all_images.reader, all_images.seam_budget, all_images.use_frames = "srgb-after", 0.5, True
     _, made = all_images.to_settings()
     shown = one.to_settings()
-    of_files = {"filepath", "texture_format", "effort", "supercompression", "use_multiples_of_4"}
-    own = {*choices.NOT_OF_MODELS, "use_images", *of_files}
+    of_files = {"filepath", "texture_format", "effort", "supercompression", "quality"}
+    own = {*choices.NOT_OF_MODELS, "use_images", "use_multiples_of_4", *of_files}
     fields = {field.name for field in dataclasses.fields(choices.Settings)} - own
     assert {name: getattr(made, name) for name in fields} == {
         name: getattr(shown, name) for name in fields

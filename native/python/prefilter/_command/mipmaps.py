@@ -27,7 +27,7 @@ from . import telling
 FLAGS = (
     *("filter", "reader", "lookups", "wrap", "wrap_v", "content", "threshold", "roughness"),
     *("roughness_channel", "bounds", "seam_budget", "filepath", "roughness_filepath"),
-    *("texture_format", "effort", "supercompression", "use_multiples_of_4", "threads"),
+    *("texture_format", "effort", "supercompression", "quality", "use_multiples_of_4", "threads"),
 )
 """The options of a bake that need no Blender."""
 _WITHOUT_MESH = "ls-bilinear"

@@ -369,6 +369,16 @@ class Settings:
         SUPERCOMPRESSIONS,
         metavar="SCHEME",
     )
+    quality: int = number(
+        192,
+        "ETC1S Quality",
+        "1 makes the smallest files, 255 those closest to the image",
+        low=1,
+        high=255,
+        flag_description="Quality of the texture format etc1s: 1 makes the smallest files, 255 "
+        "those closest to the image",
+        metavar="N",
+    )
     use_multiples_of_4: bool = switch(
         True,
         "Multiples of 4",

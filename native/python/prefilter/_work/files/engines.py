@@ -156,6 +156,7 @@ def stage(
     *,
     effort: str = "normal",
     supercompression: str = "none",
+    quality: int | None = None,
     threads: int = 0,
 ) -> list[StagedFile]:
     """Writes a DDS or KTX 2 file, or a PNG for each level, beside the target.
@@ -170,6 +171,7 @@ def stage(
         check: Called now and then.
         effort: As of `prefilter.write_dds`.
         supercompression: As of `prefilter.write_ktx2`; other files have none.
+        quality: As of `prefilter.write_ktx2`; other formats than "etc1s" have none.
         threads: How many threads to use; 0 for all.
 
     Raises:
@@ -201,7 +203,9 @@ def stage(
         progress=go_on,
         threads=threads,
     )
-    if has_supercompression(target.name) and not chosen.is_shared:
+    if chosen.is_shared and quality is not None:
+        write = partial(write, quality=quality)
+    elif has_supercompression(target.name) and not chosen.is_shared:
         write = partial(write, supercompression=supercompression)
     return [staging.stage_bytes(target, write)]
 

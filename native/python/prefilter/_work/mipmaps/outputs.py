@@ -76,6 +76,7 @@ def staged(
             check,
             effort=settings.effort,
             supercompression=settings.supercompression,
+            quality=settings.quality,
             threads=threads,
         )
     elif target is not None:
