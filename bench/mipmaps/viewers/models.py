@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Writes the models that bench/mipmaps/viewers/three_js.py draws.
+"""Writes the models that bench/mipmaps/viewers/three_js.py and docs/pictures/viewers.py draw.
 
 Usage: blender --background --python-exit-code 1 --python bench/mipmaps/viewers/models.py
        (--help lists the options, after --)
@@ -19,18 +19,21 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[3]))
 from bench.mipmaps import cycles, subjects
 
 FOLDER = Path(__file__).resolve().parents[3] / "build/viewers"
+KINDS = {"plain": None, "fitted": "one-lookup", "views": "views"}
 
 
 def main() -> None:
     """Writes the models of the command line."""
     parser = subjects.argument_parser("models.py", __doc__)
     parser.add_argument("--folder", type=Path, default=FOLDER, help="default: %(default)s")
+    parser.add_argument("--kinds", nargs="+", choices=KINDS, default=KINDS, help="default: all")
     options = subjects.parse(parser)
     options.folder.mkdir(parents=True, exist_ok=True)
     for model in options.models:
         cycles.load(options.data / model)
         scene = bpy.context.scene
-        for kind, lookups in (("plain", None), ("fitted", "one-lookup"), ("views", "views")):
+        for kind in options.kinds:
+            lookups = KINDS[kind]
             scene.prefilter_gltf.use_mipmaps = lookups is not None
             if lookups is not None:
                 scene.prefilter_bake.lookups = lookups

@@ -99,10 +99,12 @@ def task(
     }
 
 
-def drawn(tasks: list[dict[str, Any]], modules: Path, models: Path) -> dict[str, Any]:
-    """What three.js answers: its `revision`, and `results`, one a task."""
+def drawn(
+    tasks: list[dict[str, Any]], modules: Path, models: Path, *, page: str = "three_js.html"
+) -> dict[str, Any]:
+    """What a viewer answers: its `revision`, and `results`, one a task."""
     answer: dict[str, Any] = ask(
-        "three_js.html", {"tasks": tasks}, {"modules": modules, "models": models}, timeout=900
+        page, {"tasks": tasks}, {"modules": modules, "models": models}, timeout=900
     )
     return answer
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""KTX 2 textures of a glTF file in three.js, in a headless Chromium, where both are installed."""
+"""Textures in three.js and Babylon.js, in a headless Chromium, where these are installed."""
 
 import json
 import os
@@ -16,12 +16,23 @@ from bench.mipmaps.viewers import three_js
 
 MODULES = Path(os.environ.get("PREFILTER_NODE_MODULES", "node_modules"))
 
-pytestmark = [
-    pytest.mark.skipif(shutil.which("chromium") is None, reason="Chromium is not installed"),
-    pytest.mark.skipif(
-        not (MODULES / "three").is_dir(), reason="PREFILTER_NODE_MODULES names no folder with three"
-    ),
-]
+PACKAGES = {
+    "three_js.html": ["three"],
+    "babylon_js.html": ["@babylonjs/core", "@babylonjs/loaders"],
+}
+
+pytestmark = pytest.mark.skipif(
+    shutil.which("chromium") is None, reason="Chromium is not installed"
+)
+
+
+@pytest.fixture(params=PACKAGES)
+def page(request):
+    for package in PACKAGES[request.param]:
+        if not (MODULES / package).is_dir():
+            pytest.skip(f"PREFILTER_NODE_MODULES names no folder with {package}")
+    return request.param
+
 
 # Of these colors each level has one, so that a picture tells which level it shows.
 COLORS = [(255, 0, 0), (0, 255, 0), (0, 0, 255), (255, 255, 0), (0, 255, 255), (255, 0, 255)]
@@ -75,7 +86,7 @@ def write_quad(path, texture):
 @pytest.mark.parametrize(
     ("format", "supercompression"), [("uastc", "none"), ("uastc", "zstd"), ("etc1s", "none")]
 )
-def test_every_level_arrives_and_the_right_one_shows(tmp_path, format, supercompression):
+def test_every_level_arrives_and_the_right_one_shows(tmp_path, page, format, supercompression):
     side = 2 ** (len(COLORS) - 1)
     levels = [
         np.full((side >> number, side >> number, 3), color, np.uint8)
@@ -86,10 +97,10 @@ def test_every_level_arrives_and_the_right_one_shows(tmp_path, format, supercomp
         file, levels, format=format, encoding="srgb", supercompression=supercompression
     )
     write_quad(tmp_path / "quad.fitted.glb", file.read_bytes())
-    # The camera shows a square of side 2 on 0.444 of its width.
+    # The camera shows a square of side 2 on 0.628 of its width.
     pictures = [8, 16, 32, 64]
     tasks = [three_js.task("quad", "fitted", size, 1) for size in pictures]
-    results = three_js.drawn(tasks, MODULES, tmp_path)["results"]
+    results = three_js.drawn(tasks, MODULES, tmp_path, page=page)["results"]
     for size, result in zip(pictures, results, strict=True):
         (texture,) = result["textures"]
         assert texture["compressed"]
@@ -99,5 +110,52 @@ def test_every_level_arrives_and_the_right_one_shows(tmp_path, format, supercomp
         middle = three_js.frames_of(result, size)[0, size // 2, size // 2]
         shown = int(np.argmin([np.abs(middle - np.array(color) / 255).sum() for color in COLORS]))
         assert np.abs(middle - np.array(COLORS[shown]) / 255).max() < 0.02
-        texels_a_pixel = side / (0.444 * size)
+        texels_a_pixel = side / (0.628 * size)
         assert shown == round(max(0, np.log2(texels_a_pixel)))
+
+
+# Formats whose legacy header Babylon.js reads, and those that it does not know with either.
+LEGACY = ["bc1", "bc3", "rgba8", "r8", "rgba16f", "rgba32f"]
+# Of these it reads all levels, and then makes its own of level 0.
+REMADE = ["rgba8", "r8"]
+UNKNOWN = ["bc4", "bc5", "bc7"]
+
+
+@pytest.mark.parametrize("encoding", ["linear", "srgb"])
+def test_dds_files_with_a_legacy_header_in_babylon_js(tmp_path, encoding):
+    page = "babylon_js.html"
+    if not (MODULES / "@babylonjs/core").is_dir():
+        pytest.skip("PREFILTER_NODE_MODULES names no folder with @babylonjs/core")
+    side, size = 2 ** (len(COLORS) - 1), 16
+    colors = [tuple(max(40, value) for value in color) for color in COLORS]
+    levels = [
+        np.full((side >> number, side >> number, 3), color, np.uint8)
+        for number, color in enumerate(colors)
+    ]
+    tasks = []
+    for format in LEGACY + UNKNOWN:
+        if encoding == "srgb" and format in {"r8", "bc4", "bc5"}:
+            continue
+        header = "legacy" if format in LEGACY else "auto"
+        path = tmp_path / f"{format}.dds"
+        prefilter.write_dds(path, levels, format=format, encoding=encoding, header=header)
+        task = three_js.task(format, "dds", size, 1)
+        is_srgb = encoding == "srgb" and not prefilter.TEXEL_FORMATS[format].is_float
+        tasks.append({**task, "url": f"/models/{path.name}", "mayFail": True, "srgb": is_srgb})
+    results = three_js.drawn(tasks, MODULES, tmp_path, page=page)["results"]
+    # A pixel is 32 / (0.628 * 16) texels wide.
+    shown = np.array(colors, np.float32)[None] / 255
+    if encoding == "srgb":
+        shown = prefilter.to_linear(shown)
+    for task, result in zip(tasks, results, strict=True):
+        format = task["name"].split()[0]
+        (texture,) = result["textures"]
+        if format in UNKNOWN:
+            assert texture["levels"] == [], format
+            continue
+        sizes = [level[:2] for level in texture["levels"]]
+        assert sizes == [[side >> number] * 2 for number in range(len(COLORS))], format
+        middle = three_js.frames_of(result, size)[0, size // 2, size // 2]
+        count = 1 if format == "r8" else 3
+        expected = shown[0, 0 if format in REMADE else 2]
+        assert np.abs(middle - expected)[:count].max() < 0.02, format
