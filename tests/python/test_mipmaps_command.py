@@ -2,12 +2,15 @@
 
 """The command `mipmaps`: files of levels as the package's functions make them."""
 
+import os
+
 import numpy as np
 import prefilter
 import pytest
 from command_files import fails, noise, run, write_picture, write_quad
 from prefilter._options.mipmaps import FILTERS, TEXTURE_SPACE_FILTERS
 from prefilter._work import mesh_files
+from prefilter._work.up_to_date import fingerprint
 from texture_readers import read_dds, read_ktx2
 
 pytest.importorskip("OpenImageIO", reason="scripts/decoders.txt is not installed")
@@ -233,3 +236,105 @@ def test_the_result_does_not_depend_on_threads(texture, quad, tmp_path):
 
 def test_filters_without_a_mesh_are_there():
     assert set(FILTERS) > TEXTURE_SPACE_FILTERS
+
+
+def changed(path, data):
+    """Gives a file other contents, with the same time."""
+    time = path.stat().st_mtime_ns
+    path.write_bytes(data)
+    os.utime(path, ns=(time, time))
+
+
+def test_what_is_up_to_date_is_skipped(texture, quad, tmp_path, capsys):
+    out = tmp_path / "out.ktx2"
+    command = ("mipmaps", texture, quad, "-o", out, "--skip-up-to-date")
+
+    def is_made(*more):
+        before = out.stat().st_ino if out.exists() else None
+        capsys.readouterr()
+        assert run(*command, *more) == 0
+        told = capsys.readouterr().out
+        made = out.stat().st_ino != before
+        assert made == ("Baked" in told) != ("Up to date" in told)
+        return made
+
+    assert is_made()
+    _, info = prefilter.read_ktx2(out)
+    assert set(info.metadata) == {"KTXorientation", "KTXwriter", "PrefilterInputs"}
+    assert not is_made()
+    assert not is_made("--threads", 1)
+    # Names and times do not count, contents and settings do.
+    os.utime(texture, ns=(1, 1))
+    assert not is_made()
+    moved = texture.rename(tmp_path / "moved.png")
+    command = ("mipmaps", moved, quad, "-o", out, "--skip-up-to-date")
+    assert not is_made()
+    assert is_made("--filter", "box")
+    assert not is_made("--filter", "box")
+    assert is_made("--wrap", "clamp")
+    assert is_made()
+    mesh = quad.read_bytes()
+    changed(quad, mesh.replace(b"v 3 1 2", b"v 3 1 9"))
+    assert is_made()
+    assert not is_made()
+    picture = write_picture(tmp_path / "other.png", noise(8, 16, seed=5)).read_bytes()
+    changed(moved, picture)
+    assert is_made()
+    # Files that were not made this way, or are damaged, are made again.
+    data = out.read_bytes()
+    for other in (b"", data[:90], data.replace(b"PrefilterInputs", b"PrefilterOutputs")):
+        out.write_bytes(other)
+        assert is_made()
+    out.unlink()
+    assert is_made()
+    plain = tmp_path / "plain.ktx2"
+    assert run("mipmaps", moved, quad, "-o", plain) == 0
+    found, _ = prefilter.read_ktx2(plain)
+    made, _ = prefilter.read_ktx2(out)
+    for one, other in zip(found, made, strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+def test_roughness_counts_where_a_set_is_up_to_date(quad, tmp_path, capsys):
+    rough = write_picture(tmp_path / "rough.png", np.full((8, 16, 3), 80, np.uint8))
+    normal = write_picture(tmp_path / "normal.png", noise(8, 16))
+    command = (
+        *("mipmaps", normal, quad, "-o", tmp_path / "n.ktx2", "--content", "normal"),
+        *("--roughness", rough, "--roughness-output", tmp_path / "r.ktx2", "--skip-up-to-date"),
+    )
+    for prepare, words in (
+        (lambda: None, "Baked"),
+        (lambda: None, "Up to date"),
+        (lambda: (tmp_path / "r.ktx2").unlink(), "Baked"),
+        (lambda: None, "Up to date"),
+        (lambda: write_picture(rough, np.full((8, 16, 3), 81, np.uint8)), "Baked"),
+    ):
+        prepare()
+        capsys.readouterr()
+        assert run(*command) == 0
+        assert words in capsys.readouterr().out
+
+
+def test_the_buffers_of_gltf_files_count(texture, tmp_path):
+    trimesh = pytest.importorskip("trimesh")
+    mesh = trimesh.Trimesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], process=False)
+    mesh.visual = trimesh.visual.TextureVisuals(uv=[[0, 0], [1, 0], [0, 1]])
+    model = tmp_path / "model.gltf"
+    for name, data in mesh.export(file_type="gltf").items():
+        (tmp_path / name).write_bytes(data)
+    numbers = [fingerprint([texture, model], {})]
+    buffer = min(tmp_path.glob("*.bin"))
+    data = buffer.read_bytes()
+    changed(buffer, data[:-1] + bytes([data[-1] ^ 1]))
+    numbers.append(fingerprint([texture, model], {}))
+    numbers.append(fingerprint([model, texture], {}))
+    numbers.append(fingerprint([texture, model], {"filter": "box"}))
+    assert len(set(numbers)) == 4
+
+
+@pytest.mark.parametrize("name", ["out.dds", "out.exr", "out.png"])
+def test_other_files_cannot_tell_that_they_are_up_to_date(texture, tmp_path, capsys, name):
+    line = fails(capsys, 2, "mipmaps", texture, "-o", tmp_path / name, "--skip-up-to-date")
+    assert name in line
+    assert "only .ktx2 files" in line
+    assert not (tmp_path / name).exists()

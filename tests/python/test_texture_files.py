@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import prefilter
 import pytest
+from prefilter.textures.ktx2_reader import read_metadata
 from texture_readers import FORMATS, read_dds, read_ktx2
 
 WRITERS = {"dds": (prefilter.write_dds, read_dds), "ktx2": (prefilter.write_ktx2, read_ktx2)}
@@ -188,6 +189,30 @@ def test_alpha_is_described(tmp_path, kind, alpha, format):
         np.testing.assert_array_equal(file.levels[0], levels[0])
     opaque = written(tmp_path, kind, chain(4, 4, 3), alpha=alpha, format=format)
     assert opaque.alpha == ("opaque" if kind == "dds" else "straight")
+
+
+def test_ktx2_keeps_metadata(tmp_path):
+    given = {"Zoo": "ä", "Animal": "", "KUX": "b"}
+    for format in ("rgba8", "etc1s"):
+        path = tmp_path / "levels.ktx2"
+        prefilter.write_ktx2(path, chain(8, 4, 3), format=format, metadata=given)
+        _, info = prefilter.read_ktx2(path)
+        own = {name: info.metadata[name] for name in ("KTXorientation", "KTXwriter")}
+        assert info.metadata == {**own, **given}
+        assert list(info.metadata) == ["Animal", "KTXorientation", "KTXwriter", "KUX", "Zoo"]
+        assert read_metadata(path) == info.metadata
+    path.write_bytes(path.read_bytes()[:60])
+    with pytest.raises(ValueError, match="is damaged"):
+        read_metadata(path)
+
+
+@pytest.mark.parametrize(
+    "metadata", [3, {"KTXwriter": "x"}, {"": "x"}, {"a\0": "x"}, {"a": "\0"}, {"a": 1}, {1: "a"}]
+)
+def test_metadata_that_cannot_be_kept(tmp_path, metadata):
+    with pytest.raises(ValueError, match=r"metadata: .* (is|are) needed"):
+        prefilter.write_ktx2(tmp_path / "levels", GOOD, metadata=metadata)
+    assert os.listdir(tmp_path) == []
 
 
 LEGACY = {"r8", "rgba8", "bc1", "bc1-rgb", "bc3", "bc4", "bc5"}

@@ -4,11 +4,13 @@
 
 import argparse
 import os
-from dataclasses import replace
+from collections.abc import Mapping
+from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
+from .._border.replacing import recover
 from .._border.staging import StagedFile, commit_all
 from .._options.flags import add_flags, given, tables
 from .._options.mipmaps import FILTERS, TEXTURE_SPACE_FILTERS, Settings
@@ -21,7 +23,8 @@ from .._work.mipmaps.source import Source
 from .._work.outcome import Outcome
 from .._work.picture import Encoding, Picture
 from .._work.progress import Progress, go_on, share
-from .._work.wording import either
+from .._work.up_to_date import ENDING, KEY, fingerprint, is_up_to_date
+from .._work.wording import either, listed
 from . import telling
 
 FLAGS = (
@@ -62,14 +65,27 @@ def add(commands: Any, purpose: str) -> None:
         help="a mesh of the files that counts; repeat for several (default: all)",
     )
     add_flags(parser, Settings, *FLAGS, short={"filepath": "-o"})
+    parser.add_argument(
+        "--skip-up-to-date",
+        action="store_true",
+        help="do nothing where the .ktx2 files were made of the same inputs, by their contents, "
+        "with the same settings; the files then keep a number that tells",
+    )
     parser.set_defaults(execute=_run, usage_error=parser.error)
 
 
 class Levels:
     """The levels of one texture, to a file."""
 
-    def __init__(self, source: Source, outputs: Outputs, warnings: list[str]) -> None:
-        """Takes what was read."""
+    def __init__(
+        self,
+        source: Source,
+        outputs: Outputs,
+        warnings: list[str],
+        metadata: Mapping[str, str] | None = None,
+    ) -> None:
+        """Takes what was read, and what KTX 2 files are to keep, by keys."""
+        self._metadata = metadata
         self._source = source
         self._outputs = outputs
         self._warnings = warnings
@@ -94,7 +110,13 @@ class Levels:
         )
         self._notes += [note] if note else []
         check = partial(go_on, progress, _FILTERED)
-        stage = partial(staged, settings=source.settings, wrap=source.wrap, check=check)
+        stage = partial(
+            staged,
+            settings=source.settings,
+            wrap=source.wrap,
+            check=check,
+            metadata=self._metadata,
+        )
         files, _ = stage(source.picture, made, outputs.target, source.settings.texture_format)
         self._staged += files
         if rough is not None:
@@ -122,7 +144,35 @@ class Levels:
 def _run(options: argparse.Namespace) -> None:
     for path in options.meshes:
         telling.check_ending(options, "MESH", path, mesh_files.ENDINGS)
-    telling.tell(telling.done(_read(options, _settings(options))))
+    settings = _settings(options)
+    number = _fingerprint(options, settings) if options.skip_up_to_date else None
+    if number is not None:
+        targets = [textures.check_target(path) for path in _paths(settings)]
+        for target in targets:
+            recover(target.parent)
+        if is_up_to_date(targets, number):
+            print(f"Up to date: {listed(map(str, targets))}")
+            return
+    metadata = None if number is None else {KEY: number}
+    telling.tell(telling.done(_read(options, settings, metadata)))
+
+
+def _paths(settings: Settings) -> list[str]:
+    return [path for path in (settings.filepath, settings.roughness_filepath) if path]
+
+
+def _fingerprint(options: argparse.Namespace, settings: Settings) -> str:
+    """Returns what the files keep; ends the program where one cannot."""
+    for path in _paths(settings):
+        if not path.lower().endswith(ENDING):
+            options.usage_error(f"--skip-up-to-date: found '{path}', and only .ktx2 files can tell")
+    chosen = asdict(settings)
+    for name in ("filepath", "roughness_filepath", "roughness", "threads"):
+        del chosen[name]
+    sources = [options.texture, *([settings.roughness] if settings.roughness else [])]
+    chosen["objects of the meshes"] = options.object
+    chosen["sources"] = [len(sources), len(options.meshes)]
+    return fingerprint([*sources, *options.meshes], chosen)
 
 
 def _settings(options: argparse.Namespace) -> Settings:
@@ -156,7 +206,9 @@ def _without_mesh() -> list[str]:
     return [name for name in FILTERS if name in TEXTURE_SPACE_FILTERS]
 
 
-def _read(options: argparse.Namespace, settings: Settings) -> Levels:
+def _read(
+    options: argparse.Namespace, settings: Settings, metadata: Mapping[str, str] | None
+) -> Levels:
     """Reads the files, and checks what the settings say of them."""
     target = textures.check_target(settings.filepath)
     is_data = settings.content in {"normal", "data"}
@@ -192,7 +244,8 @@ def _read(options: argparse.Namespace, settings: Settings) -> Levels:
             is_stretched=settings.use_multiples_of_4,
         )
     told += checks.odd_uses(settings, picture, content, [target], rough, is_encoded=is_encoded)
-    return _on_meshes(options, settings, picture, content, Outputs(target, *_of(rough)), told)
+    outputs = Outputs(target, *_of(rough))
+    return Levels(_on_meshes(options, settings, picture, content, told), outputs, told, metadata)
 
 
 def _on_meshes(
@@ -200,15 +253,15 @@ def _on_meshes(
     settings: Settings,
     picture: Picture,
     content: str,
-    outputs: Outputs,
     told: list[str],
-) -> Levels:
+) -> Source:
+    """Returns the picture on its surfaces; `told` gets what is to be known of these, first."""
     parts = mesh_files.chosen(mesh_files.read("MESH", options.meshes), options.object)
     surfaces, names, without = mesh_files.surfaces(parts)
     wrap = "repeat" if settings.wrap == "auto" else settings.wrap
     wraps = (wrap, wrap if settings.wrap_v == "same" else settings.wrap_v)
-    source = Source(picture, surfaces, names, settings, content, wraps)
-    return Levels(source, outputs, [*without, *told])
+    told[:0] = without
+    return Source(picture, surfaces, names, settings, content, wraps)
 
 
 def _rough(settings: Settings) -> Picture:

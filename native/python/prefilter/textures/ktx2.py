@@ -4,7 +4,7 @@
 
 import math
 import struct
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -24,8 +24,12 @@ _SCHEMES = {"none": 0, "basislz": 1, "zstd": 2}
 
 def _parts(texture: Texture) -> Iterator[bytes]:
     descriptor = _descriptor(texture)
-    # Sorted by key, as it has to be. Rows go down, as most tools have them.
-    metadata = _entry("KTXorientation", "rd") + _entry("KTXwriter", f"prefilter {VERSION}")
+    # Rows go down, as most tools have them.
+    own = (("KTXorientation", "rd"), ("KTXwriter", f"prefilter {VERSION}"))
+    metadata = b"".join(
+        _entry(key, value)
+        for key, value in sorted((*own, *texture.metadata), key=lambda entry: entry[0].encode())
+    )
     descriptor_offset = _HEADER_BYTES + _LEVEL_INDEX_BYTES * len(texture.levels)
     metadata_offset = descriptor_offset + len(descriptor)
     end = metadata_offset + len(metadata)
@@ -110,6 +114,23 @@ def _samples(texture: Texture) -> Iterator[bytes]:
 def _entry(key: str, value: str) -> bytes:
     text = f"{key}\0{value}\0".encode()
     return struct.pack("<I", len(text)) + text + bytes(-len(text) % 4)
+
+
+def as_metadata(metadata: Mapping[str, str] | None) -> tuple[tuple[str, str], ...]:
+    """The argument, checked."""
+    if metadata is None:
+        return ()
+    if not isinstance(metadata, Mapping):
+        raise ValueError(f"metadata: {metadata!r}; texts by keys are needed")
+    for key, value in metadata.items():
+        if not (isinstance(key, str) and isinstance(value, str)):
+            raise ValueError(f"metadata: {key!r}: {value!r}; texts by keys are needed")
+        if not key or key.startswith("KTX") or "\0" in key + value:
+            raise ValueError(
+                f"metadata: {key!r}; keys that do not begin with KTX, and no null characters, are "
+                f"needed"
+            )
+    return tuple(metadata.items())
 
 
 KTX2 = Container("KTX 2", lambda texel_format: texel_format.vulkan, _parts)

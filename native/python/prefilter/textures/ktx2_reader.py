@@ -139,6 +139,26 @@ def read_ktx2(
         raise ValueError(f"path: {who} is damaged: {error}") from error
 
 
+def read_metadata(path: str | os.PathLike[str]) -> dict[str, str]:
+    """Reads the texts that a KTX 2.0 file keeps by keys, and nothing else of it.
+
+    Raises:
+        ValueError: The file is no KTX 2 file, or damaged.
+        OSError: The file cannot be read.
+    """
+    source = as_path(path)
+    with open_file(source) as file:
+        head = file.read(len(_IDENTIFIER) + _HEADER.size)
+        try:
+            if not head.startswith(_IDENTIFIER):
+                raise ValueError("no KTX 2 file")
+            at, size = _HEADER.unpack_from(head, len(_IDENTIFIER))[11:13]
+            file.seek(at)
+            return _metadata(file.read(min(size, _MOST_METADATA)))
+        except (ValueError, struct.error) as error:
+            raise ValueError(f"path: '{source}' is damaged: {error}") from error
+
+
 def _read(path: Any) -> tuple[str, bytes]:
     if hasattr(path, "read"):
         data = path.read()

@@ -95,6 +95,7 @@ class Texture:
         supercompression: How the levels are compressed once more, one of `SUPERCOMPRESSIONS`.
         level_bytes: How many each level had before that; 0 where a reader does not ask.
         shared: What the levels share, as BasisLZ has it.
+        metadata: More texts by keys, where the container has a place for them.
     """
 
     texel_format: TexelFormat
@@ -107,6 +108,7 @@ class Texture:
     supercompression: str = "none"
     level_bytes: tuple[int, ...] = ()
     shared: bytes = b""
+    metadata: tuple[tuple[str, str], ...] = ()
 
 
 class Container(NamedTuple):

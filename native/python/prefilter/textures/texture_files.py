@@ -2,7 +2,7 @@
 
 """Texture files that engines and viewers read: DDS and KTX 2, with all levels."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import BinaryIO
 
 import numpy as np
@@ -13,7 +13,7 @@ from .._border.arguments import ProgressCallback, as_one_of, as_progress, is_srg
 from .._border.arrays import as_threads
 from .._border.staging import Output, as_output, write_output
 from . import dds, etc1s
-from .ktx2 import KTX2
+from .ktx2 import KTX2, as_metadata
 from .texel_formats import ALPHAS, EFFORTS, SUPERCOMPRESSIONS, Container, TexelFormat, Texture
 from .texels import as_format, as_levels, encoded
 
@@ -92,6 +92,7 @@ def write_ktx2(
     effort: str = "normal",
     supercompression: str = "none",
     quality: int = _QUALITY,
+    metadata: Mapping[str, str] | None = None,
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> None:
@@ -118,6 +119,8 @@ def write_ktx2(
             is compressed by BasisLZ.
         quality: Of "etc1s", 1 to 255: from the smallest file to the best picture. No other format
             uses it.
+        metadata: More texts that the file keeps, by keys; those that begin with "KTX" are the
+            format's own.
         progress: As for `write_dds`.
         threads: As for `write_dds`. In "etc1s" the file may depend on the C++ standard library.
 
@@ -126,9 +129,10 @@ def write_ktx2(
         OSError: As for `write_dds`.
         Cancelled: As for `write_dds`.
     """
+    texts = as_metadata(metadata)
     _write(
         *(path, levels, format, encoding, alpha, effort, supercompression, quality),
-        *(progress, threads, KTX2),
+        *(progress, threads, KTX2, texts),
     )
 
 
@@ -144,6 +148,7 @@ def _write(
     progress: ProgressCallback | None,
     threads: int,
     container: Container,
+    metadata: tuple[tuple[str, str], ...] = (),
 ) -> None:
     srgb = is_srgb(encoding)
     images = as_levels(levels, srgb)
@@ -193,6 +198,7 @@ def _write(
         supercompression=scheme,
         level_bytes=tuple(sizes),
         shared=shared,
+        metadata=metadata,
     )
 
     def write_parts(file: BinaryIO) -> None:

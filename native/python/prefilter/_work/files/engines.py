@@ -10,7 +10,7 @@
 """
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -157,6 +157,7 @@ def stage(
     effort: str = "normal",
     supercompression: str = "none",
     quality: int | None = None,
+    metadata: Mapping[str, str] | None = None,
     threads: int = 0,
 ) -> list[StagedFile]:
     """Writes a DDS or KTX 2 file, or a PNG for each level, beside the target.
@@ -172,6 +173,7 @@ def stage(
         effort: As of `prefilter.write_dds`.
         supercompression: As of `prefilter.write_ktx2`; other files have none.
         quality: As of `prefilter.write_ktx2`; other formats than "etc1s" have none.
+        metadata: As of `prefilter.write_ktx2`; other files have none.
         threads: How many threads to use; 0 for all.
 
     Raises:
@@ -203,6 +205,8 @@ def stage(
         progress=go_on,
         threads=threads,
     )
+    if metadata is not None and has_supercompression(target.name):
+        write = partial(write, metadata=metadata)
     if chosen.is_shared and quality is not None:
         write = partial(write, quality=quality)
     elif has_supercompression(target.name) and not chosen.is_shared:

@@ -2,7 +2,7 @@
 
 """What becomes of the levels of an image: files of them, and a line that says so."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -48,6 +48,7 @@ def staged(
     settings: Settings,
     wrap: tuple[str, str],
     check: Callable[[], None],
+    metadata: Mapping[str, str] | None = None,
 ) -> tuple[list[StagedFile], list[FloatArray]]:
     """Stages a file of an image and its levels; returns these as level images hold them, too.
 
@@ -59,6 +60,7 @@ def staged(
         settings: Of the bake.
         wrap: What lookups read outside of the image along u and v.
         check: Called now and then.
+        metadata: What KTX 2 files keep, by keys.
     """
     stored: list[FloatArray] = []
     if settings.use_images or (target is not None and textures.is_stored(target)):
@@ -77,6 +79,7 @@ def staged(
             effort=settings.effort,
             supercompression=settings.supercompression,
             quality=settings.quality,
+            metadata=metadata,
             threads=threads,
         )
     elif target is not None:
