@@ -193,6 +193,11 @@ def test_a_folder_that_was_moved(tmp_path):
     assert texts(new) == ([("a.txt", "old")], 0)
 
 
+def test_an_empty_set(tmp_path):
+    staging.commit_all([])
+    assert texts(tmp_path) == ([], 0)
+
+
 def test_folders_that_cannot_be_listed(tmp_path):
     replacing.recover(tmp_path / "missing")
     replacing.recover(Path(__file__))

@@ -134,8 +134,9 @@ def commit_all(files: Sequence[StagedFile]) -> None:
     """
     for folder in dict.fromkeys(file.target.parent for file in files):
         recover(folder)
-    if len(files) == 1:
-        files[0].commit()
+    if len(files) < 2:
+        for file in files:
+            file.commit()
         return
     kept: list[Kept] = []
     with ExitStack() as stack:
