@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // Cubes with suspects are bits by a hash: where two share one, only more triangles are looked at.
+// Of triangles that follow each other many lie together: these are looked at one by one only where
+// larger cubes around all of them have suspects.
 //
 // Where all normals in a cube are within 60 degrees of one of them a mesh does not meet itself.
 // It came, piece by piece with the same borders, of one that does not: seen along that direction
@@ -17,6 +19,9 @@
 
 namespace prefilter {
 namespace {
+
+constexpr std::size_t kRun = 32;    // triangles
+constexpr double kLargeSide = 4.0;  // of cubes for runs, in sides
 
 using Cube = std::array<std::int64_t, 3>;
 using Corners = std::array<Vector3, 3>;
@@ -151,6 +156,17 @@ class NormalCubes {
   std::vector<Normal> firsts_;
   bool has_large_ = false;
 };
+
+// Three points that have the same box as the triangles from one to another, without those that are
+// gone.
+Corners corners_of_box(const MeshView<std::int32_t>& mesh, std::size_t begin, std::size_t end) {
+  Box box = kEmptyBox;
+  for (std::size_t t = begin; t < end; ++t) {
+    if (mesh.triangles[t][0] < 0) continue;
+    for (const Vector3& corner : mesh.corners(t)) box.include(corner);
+  }
+  return {box.low, box.high, box.high};
+}
 }  // namespace
 
 std::vector<std::uint8_t> where_rough(const MeshView<std::int32_t>& mesh, std::size_t first,
@@ -185,13 +201,20 @@ NearTriangles near_triangles(const MeshView<std::int32_t>& mesh, std::size_t fir
   // Where most are suspect, all are looked at.
   const bool is_any = 2 * count > mesh.triangles.size() - first;
   CubeSet cubes(side, is_any ? 0 : count);
+  CubeSet large_cubes(kLargeSide * side, is_any ? 0 : count);
   for (std::size_t t = first; t < mesh.triangles.size() && !is_any; ++t) {
-    if (is_suspect[t] != 0 && mesh.triangles[t][0] >= 0) cubes.insert(mesh.corners(t));
+    if (is_suspect[t] == 0 || mesh.triangles[t][0] < 0) continue;
+    cubes.insert(mesh.corners(t));
+    large_cubes.insert(mesh.corners(t));
   }
-  for (std::size_t t = first; t < mesh.triangles.size(); ++t) {
-    if (mesh.triangles[t][0] < 0) continue;
-    if (!is_any && is_suspect[t] == 0 && !cubes.meets(mesh.corners(t))) continue;
-    near.numbers.push_back(static_cast<std::uint32_t>(t));
+  for (std::size_t begin = first; begin < mesh.triangles.size(); begin += kRun) {
+    const std::size_t end = std::min(begin + kRun, mesh.triangles.size());
+    if (!is_any && !large_cubes.meets(corners_of_box(mesh, begin, end))) continue;
+    for (std::size_t t = begin; t < end; ++t) {
+      if (mesh.triangles[t][0] < 0) continue;
+      if (!is_any && is_suspect[t] == 0 && !cubes.meets(mesh.corners(t))) continue;
+      near.numbers.push_back(static_cast<std::uint32_t>(t));
+    }
   }
   near.triangles.reserve(near.numbers.size());
   near.is_suspect.reserve(near.numbers.size());
