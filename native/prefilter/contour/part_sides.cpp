@@ -70,8 +70,10 @@ PartSides::PartSides(const ContourTree& tree, const RootFrame& frame, const Sour
 
 std::optional<PartSides::Parts> PartSides::parts_near(const Vector3& point) const {
   Parts parts;
-  for (const std::int32_t part : surface_.meeting_parts(point)) {
-    if (parts.count == kMostParts) return std::nullopt;
+  const std::span<const std::int32_t> meeting = surface_.meeting_parts(point);
+  for (std::size_t i = 0; i < meeting.size(); ++i) {
+    const std::int32_t part = meeting[i];
+    if (parts.count == kMostParts || parts.count + (meeting.size() - i) < 2) return std::nullopt;
     const std::optional<SourcePoint> plane =
         surface_.nearest_plane(point, kReachCells * surface_.cell(), part);
     if (!plane) continue;
