@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // Half-edge collapses, those first that move the surface least by the quadric error of Garland and
-// Heckbert. The quadrics only say in which order.
+// Heckbert. The quadrics say in which order, and what is not worth a try.
 #include "prefilter/remesh/patch.h"
 
 #include <algorithm>
