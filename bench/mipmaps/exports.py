@@ -104,7 +104,8 @@ def make(case: Case, folder: Path) -> None:
                 for corner in polygon.loop_indices:
                     uvs[corner].uv.x += 1.0
     material = bpy.data.materials.new("Material")
-    material.use_nodes = True
+    if material.node_tree is None:  # Blender 5 and later makes it.
+        material.use_nodes = True
     mesh.data.materials.append(material)
     ROLES[case.role](material, case.size, folder)
 
