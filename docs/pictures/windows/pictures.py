@@ -83,6 +83,7 @@ WHOLE = {
         ("PREFILTER_PT_welcome",), "demonstration", opened=("PREFILTER_PT_welcome",)
     ),
     "model": Photograph(("PREFILTER_PT_model",), "model", opened=("PREFILTER_PT_model",)),
+    "gltf": Photograph((), "gltf"),
 }
 """Photographs of a window: `NAME.png`."""
 

@@ -8,6 +8,7 @@ usage: blender --python scenes.py -- panels|windows NAME
 import json
 import os
 import sys
+import tempfile
 import traceback
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -468,6 +469,28 @@ def show_model(shown: Photograph) -> Iterator[float]:
     rearrange(shown.opened, only=shown.panels)
     bpy.context.scene.prefilter_model.folder = "/textures/"
     yield from open_tab(area)
+
+
+def show_gltf(shown: Photograph) -> Iterator[float]:
+    """The dialog of Blender's own glTF export, with the part of the add-on in it open."""
+    obj = demo_scene.add_monkey()
+    albedo = demo_scene.new_image(demo_scene.paint(demo_scene.read_model(obj)))
+    demo_scene.add_material(obj, albedo)
+    package = sys.modules["bl_ext.user_default.prefilter"]
+    draw = package.draw_export
+    package.draw_export = lambda context, layout: draw(context, Unfolded(layout))
+    settings = bpy.context.scene.prefilter_gltf
+    settings.use_mipmaps, settings.texture_format = True, "etc1s"
+    bpy.context.preferences.view.filebrowser_display_type = "SCREEN"
+    folder = Path(tempfile.gettempdir()) / "models"
+    folder.mkdir(exist_ok=True)
+    with inside(largest_area()):
+        bpy.ops.export_scene.gltf("INVOKE_DEFAULT", filepath=str(folder / "monkey.glb"))
+    yield 2.0
+    for area in bpy.context.window_manager.windows[0].screen.areas:
+        if area.type == "FILE_BROWSER":  # Folders of the machine are nobody's business.
+            area.spaces.active.show_region_toolbar = False
+    yield 1.0
 
 
 def show_on_model(shown: Photograph) -> Iterator[float]:
