@@ -4,22 +4,23 @@
 
 from typing import Any
 
-from prefilter._command import resample, resize
+from prefilter._command import resample, resize, sampling_table
+from prefilter._command.host import Host
 from prefilter._command.program import COMMANDS
 
 from ...bridge import images
 from ...bridge.images import Picture
-from ...core import presets
+from ...core import flags, presets
 from ..new_picture import read
 from ..properties import RESAMPLE, RESIZE
-from . import sampling_table
 
 
 def add(commands: Any) -> None:
     """Adds the commands."""
     resize.add(commands, COMMANDS["resize"], presets.host(RESIZE, read=_read))
     resample.add(commands, COMMANDS["resample"], presets.host(RESAMPLE, read=_read))
-    sampling_table.add(commands)
+    preferences = Host(settings=flags.settings_given, preferred=flags.PREFERRED)
+    sampling_table.add(commands, COMMANDS["sampling-table"], preferences)
 
 
 def _read(argument: str, path: str, *, is_data: bool) -> Picture:

@@ -14,11 +14,12 @@ COMMANDS = {
     "mipmaps": "make the mipmap levels of a texture, weighted by the meshes that wear it",
     "resize": "make a picture larger or smaller",
     "resample": "scale, rotate, or warp a picture between corners",
+    "sampling-table": "make a sampling table, as a file and as shader code",
     "voxelize": "make closed surfaces, or volumes, of any meshes, through voxels",
     "rasterize": "make an image of curves and texts, of an SVG file, or of a UV map",
     "reconstruct": "make the surface of points that a scanner has measured",
 }
-"""What each command does; the module of the same name in this folder adds its arguments."""
+"""What each command does; the module of that name, with underscores, adds its arguments."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -64,7 +65,7 @@ def parser(chosen: Sequence[str] = tuple(COMMANDS)) -> argparse.ArgumentParser:
     commands = found.add_subparsers(title="commands", metavar="COMMAND", required=True)
     for name, purpose in COMMANDS.items():
         if name in chosen:
-            import_module(f".{name}", __package__).add(commands, purpose)
+            import_module(f".{name.replace('-', '_')}", __package__).add(commands, purpose)
         else:
             commands.add_parser(name, help=purpose)
     return found

@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Sampling tables: built or loaded anywhere, then written as files."""
+
+import tempfile
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+
+import prefilter
+
+from ..._border import staging
+from ..._options.resampling import METHODS, TABLE_FILTERS
+from ..._options.tables import LANGUAGES, TableSettings
+from ...sampling.sampling_table import STANDARD_TARGETS
+from ..outcome import Outcome
+from ..progress import Progress, go_on, share
+from ..wording import Sentence, listed
+from .resampling import load
+
+ENDINGS = tuple(f".{language}" for language in LANGUAGES)
+"""What files of tables may end in, which says what is written."""
+
+_BUILT = 0.9  # What the progress is once there is a table.
+
+
+class TableMaking:
+    """One table, and files of it."""
+
+    def __init__(self, settings: TableSettings, targets: Sequence[Path] = ()) -> None:
+        """Keeps the settings.
+
+        Args:
+            settings: The filter, the number of texels, and more.
+            targets: Files to write, each in the language that its ending says; if there is none,
+                the text is kept in the language of the settings.
+        """
+        self.source = ""
+        self.settings = settings
+        self.targets = targets
+        self._table: prefilter.SamplingTable | None = None
+        self._staged: list[staging.StagedFile] = []
+
+    @property
+    def table(self) -> "prefilter.SamplingTable":
+        """What was computed."""
+        assert self._table is not None
+        return self._table
+
+    def compute(self, progress: Progress) -> None:
+        """Builds or loads the table, and stages the files.
+
+        Raises:
+            prefilter.Cancelled: `progress` returned False.
+            ValueError: The settings ask for a table that cannot be, or the file holds none.
+            OSError: A file cannot be read or written.
+        """
+        go_on(progress, 0.0)
+        self._table = self._made(share(progress, 0.0, _BUILT))
+        go_on(progress, _BUILT)
+        for target in self.targets:
+            write = partial(_write, self._table, target.suffix.lower().removeprefix("."))
+            self._staged.append(staging.stage_with(target, write))
+        if not self.targets:
+            self.source = _source(self._table, self.settings.language)
+        go_on(progress, 1.0)
+
+    def write(self) -> Outcome:
+        """Puts the files into place.
+
+        Raises:
+            OSError: They cannot be.
+        """
+        staging.commit_all(self._staged)
+        return self.outcome([str(target) for target in self.targets])
+
+    def outcome(self, names: Sequence[str]) -> Outcome:
+        """Returns what to say of a table that was written under some names."""
+        table = self.table
+        return Outcome(
+            Sentence(
+                "Wrote {}: {} from {} texels, with {} times the error of trilinear interpolation",
+                *(listed(names), Sentence(TABLE_FILTERS[table.target].label), table.texels),
+                f"{table.error_ratio:.3g}",
+            ),
+            files=[str(target) for target in self.targets],
+            notes=_proof(table),
+        )
+
+    def discard(self) -> None:
+        """Removes files that were staged, if they were not put into place."""
+        for staged in self._staged:
+            staged.discard()
+
+    def _made(self, progress: Progress) -> "prefilter.SamplingTable":
+        settings = self.settings
+        if settings.table:
+            return load("Load", settings.table)
+        target = None if settings.target in ("filter", settings.filter) else settings.target
+        has_standard = target is None or (settings.filter, target) in STANDARD_TARGETS
+        if settings.is_standard and has_standard and str(settings.texels) in METHODS:
+            return prefilter.SamplingTable.standard(settings.filter, settings.texels, target=target)
+        return prefilter.SamplingTable.build(
+            settings.filter,
+            texels=settings.texels,
+            subdomains=(settings.grid, settings.grid, settings.slices),
+            degree=settings.degree,
+            ramp_weight=settings.ramp_weight,
+            spectrum=settings.spectrum,
+            target=target,
+            certify=settings.use_certify,
+            progress=progress,
+            threads=settings.threads,
+        )
+
+
+def _proof(table: "prefilter.SamplingTable") -> list[str]:
+    """Returns what is known about how good the sets are."""
+    gaps = table.gaps
+    if gaps is None:
+        return []
+    proven = int((gaps == 0.0).sum())
+    if proven == len(gaps):
+        return [f"All {proven} sets of texels are proven to be the best"]
+    return [
+        f"{proven} of {len(gaps)} sets of texels are proven to be the best; the errors of others "
+        f"may be up to {100 * gaps.max():.2g} % too large"
+    ]
+
+
+def _source(table: "prefilter.SamplingTable", language: str) -> str:
+    if language == "json":
+        with tempfile.TemporaryDirectory() as folder:
+            copy = Path(folder) / "table.json"
+            table.save(copy)
+            return copy.read_text(encoding="utf-8")
+    written = {"glsl": table.glsl, "hlsl": table.hlsl, "osl": table.osl}
+    return written[language]()
+
+
+def _write(table: "prefilter.SamplingTable", language: str, path: Path) -> None:
+    path.write_text(_source(table, language), encoding="utf-8")
