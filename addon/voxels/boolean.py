@@ -4,11 +4,10 @@
 
 from collections.abc import Generator, Sequence
 from dataclasses import replace
-from functools import partial, reduce
 
 import bpy
 import numpy as np
-import prefilter
+from prefilter._work.voxels import booleans
 
 from ..bridge import new_meshes, solids
 from ..bridge.kept_sources import keep_more
@@ -104,7 +103,8 @@ class Boolean:
                 operands.append(Operand.of(solid, self._settings))
         operands = _sharing_materials(self._read, operands)
         with naming(self._place.name):
-            box = self._box([one.measures.box for one in operands])
+            boxes = [one.measures.box for one in operands]
+            box = booleans.box(boxes, self._settings.operation)
             self.loads = [Load.of(box, operands)]
             grid = self._grid(box)
             check_memory(grid, sum(one.measures.area for one in operands))
@@ -115,12 +115,11 @@ class Boolean:
                 tree, source = voxelized(operand, grid, self._settings, self._told, part)
             trees.append(tree)
             sources.append(source)
-        combine = getattr(prefilter.Octree, self._settings.operation)
-        tree = reduce(
-            partial(
-                combine, progress=lambda _: progress(VOXELIZED), threads=self._settings.threads
-            ),
+        tree = booleans.combined(
             trees,
+            self._settings.operation,
+            share(progress, VOXELIZED, 1.0),
+            self._settings.threads,
         )
         del trees
         with naming(self._place.name):
@@ -186,20 +185,6 @@ class Boolean:
         cells = length(settings.voxel_size)
         self._told.notes.append(Sentence("too many cells of {}: the depth counts", cells))
         return choose_grid(box, replace(settings, resolution="depth"))
-
-    def _box(self, boxes: list[Box]) -> Box:
-        if self._settings.operation == "union":
-            return (
-                np.min([low for low, _ in boxes], axis=0),
-                np.max([high for _, high in boxes], axis=0),
-            )
-        if self._settings.operation == "difference":
-            return boxes[0]
-        low = np.max([low for low, _ in boxes], axis=0)
-        high = np.min([high for _, high in boxes], axis=0)
-        if np.any(low >= high):
-            raise ValueError(Sentence("the objects have nothing in common"))
-        return low, high
 
     def _merged(self) -> solids.Solid:
         merged = solids.Solid(self._place.name, [], self._read[0].materials)

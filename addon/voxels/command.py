@@ -23,7 +23,6 @@ from .choices import BooleanSettings, VoxelizeSettings
 from .properties import BOOLEAN, VOXELIZE
 from .voxelization import Voxelization
 
-_BOOLEAN_HELP = "combine meshes by union, intersection or difference, through voxels"
 _WANTED = "visible object with a surface"
 _VOLUME = ".vdb"
 _TARGETS = (*scenes.TARGETS, _VOLUME)
@@ -68,7 +67,7 @@ def _add_voxelize(commands: Any) -> None:
 
 def _add_boolean(commands: Any) -> None:
     parser = command.add_command(
-        commands, "boolean", _BOOLEAN_HELP, *tables(BooleanSettings), _BOOLEAN_NOTES
+        commands, "boolean", COMMANDS["boolean"], *tables(BooleanSettings), _BOOLEAN_NOTES
     )
     parser.add_argument(
         "files", metavar="FILE", nargs="+", help=f"the operands: {either(scenes.SOURCES)}"

@@ -16,6 +16,7 @@ COMMANDS = {
     "resample": "scale, rotate, or warp a picture between corners",
     "sampling-table": "make a sampling table, as a file and as shader code",
     "voxelize": "make closed surfaces, or volumes, of any meshes, through voxels",
+    "boolean": "combine meshes by union, intersection or difference, through voxels",
     "rasterize": "make an image of curves and texts, of an SVG file, or of a UV map",
     "reconstruct": "make the surface of points that a scanner has measured",
 }

@@ -50,6 +50,16 @@ ORIGINALS = {
     "keep": Choice("Keep", "Keep it with the result, hidden, for Show Source and Update"),
     "replace": Choice("Replace", "Keep nothing of a mesh, which makes the file smaller"),
 }
+OPERATIONS = {
+    "difference": Choice("Difference", "Subtract the others from the active object"),
+    "union": Choice("Union", "Keep what lies in any of the objects"),
+    "intersection": Choice("Intersection", "Keep what lies in all of the objects"),
+}
+OPERANDS = {
+    "keep": Choice("Keep", "The other objects stay as they are"),
+    "hide": Choice("Hide", "The other objects are hidden, in renders too"),
+    "delete": Choice("Delete", "The other objects are deleted"),
+}
 
 
 @dataclass(frozen=True)
@@ -177,4 +187,23 @@ class VoxelizeSettings(VoxelSettings):
         ".blend file",
         subtype="FILE_PATH",
         flag="",
+    )
+
+
+@dataclass(frozen=True)
+class BooleanSettings(VoxelSettings):
+    """What `prefilter.boolean` does."""
+
+    operation: str = one_of(
+        "difference", "Operation", "How to combine the objects", OPERATIONS, metavar="OPERATION"
+    )
+    operands: str = one_of(
+        "hide", "Others", "What to do with the other selected objects", OPERANDS, flag=""
+    )
+    use_keep_resolution: bool = switch(
+        True,
+        "Keep Resolution",
+        "Use cells as large as those of the active object, if an earlier run has made it",
+        flag_description="use cells as large as those of the first operand, if an earlier run has "
+        "made it and no resolution is given",
     )

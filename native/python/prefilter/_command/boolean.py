@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""The command `boolean`."""
+
+import argparse
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import prefilter
+
+from .._border import staging
+from .._options.flags import add_flags, tables
+from .._options.voxels import BooleanSettings
+from .._work import mesh_files
+from .._work.mesh_files import Part
+from .._work.outcome import Outcome
+from .._work.progress import Progress, go_on, parts, share
+from .._work.voxels import booleans, surfaces
+from .._work.voxels.grid import check_memory, choose_grid
+from .._work.wording import amount, either, listed
+from ..meshes.measures import measure_mesh
+from . import telling, voxelize
+from .host import PLAIN
+
+FLAGS = (*voxelize.FLAGS, "operation")
+"""The options that need no Blender."""
+_VOXELIZED, _COMPUTED = 0.5, 0.95  # What the progress is once there are trees, and a surface.
+_NOTES = """\
+The meshes of one file count as one. With --object, the operands are these meshes, in this order.
+Meshes may be open, leaky, and intersect themselves. Only positions and triangles are written;
+materials and attributes need Blender.
+
+examples:
+  prefilter boolean bunny.ply armadillo.ply --operation difference --output bite.ply
+  prefilter boolean scene.glb --object Body --object Hole --output body.stl"""
+
+
+def add(commands: Any, purpose: str) -> None:
+    """Adds the command."""
+    notes = (*tables(BooleanSettings, *FLAGS), _NOTES)
+    parser = telling.add_command(commands, "boolean", purpose, *notes)
+    parser.add_argument(
+        "files", metavar="FILE", nargs="+", help=f"the operands: {either(mesh_files.ENDINGS)}"
+    )
+    parser.add_argument(
+        "--output",
+        "-o",
+        metavar="FILE",
+        required=True,
+        help=f"the file to write: {either(mesh_files.TARGETS)}",
+    )
+    parser.add_argument(
+        "--object",
+        metavar="NAME",
+        action="append",
+        default=[],
+        help="an operand; the first one is changed (default: each file is one)",
+    )
+    add_flags(parser, BooleanSettings, *FLAGS, exclusive=voxelize.RESOLUTIONS)
+    parser.set_defaults(execute=_boolean, usage_error=parser.error)
+
+
+class BooleanFile:
+    """Meshes, combined in one grid of cells, to a file."""
+
+    def __init__(self, operands: list[Part], target: Path, settings: BooleanSettings) -> None:
+        """Takes what to combine, where to, and how."""
+        self._operands = operands
+        self._target = target
+        self._settings = settings
+        self._warnings: list[str] = []
+        self._notes: list[str] = []
+        self._line = ""
+        self._staged: staging.StagedFile | None = None
+
+    def compute(self, progress: Progress) -> None:
+        """Voxelizes, combines, contours, and stages the file.
+
+        Raises:
+            ValueError: An operand encloses nothing, or nothing is left.
+            MemoryError: A result does not fit into memory.
+            OSError: The file cannot be written.
+            prefilter.Cancelled: `progress` returned False.
+        """
+        settings = self._settings
+        tree, sources, cells = self._combined(share(progress, 0.0, _VOXELIZED))
+        positions, triangles, _ = surfaces.surface(
+            tree,
+            sources,
+            settings,
+            share(progress, _VOXELIZED, _COMPUTED),
+            adaptivity=settings.adaptivity,
+        )
+        if len(triangles) == 0:
+            raise ValueError(surfaces.empty())
+        name = self._operands[0].name
+        others = listed(one.name for one in self._operands[1:])
+        self._line = (
+            f"{settings.operation.capitalize()} of '{name}' with {others} in {cells}³ cells: "
+            f"{amount(len(triangles), 'triangle')}, volume {tree.volume:.4g}"
+        )
+        made = [Part(name, positions, triangles, None)]
+        self._staged = staging.stage_with(self._target, lambda path: mesh_files.write(path, made))
+        go_on(progress, 1.0)
+
+    def write(self) -> Outcome:
+        """Puts the file into place."""
+        assert self._staged is not None
+        self._staged.commit()
+        files = [str(self._target)]
+        return Outcome(self._line, files=files, warnings=self._warnings, notes=self._notes)
+
+    def discard(self) -> None:
+        """Removes what was staged, if it was not put into place."""
+        if self._staged is not None:
+            self._staged.discard()
+
+    def _combined(self, progress: Progress) -> tuple[prefilter.Octree, list[tuple[Any, ...]], int]:
+        """Returns what is filled, the meshes that fill it, and how many cells there are."""
+        settings = self._settings
+        measures = [
+            measure_mesh(one.positions, one.triangles, threads=settings.threads)
+            for one in self._operands
+        ]
+        grid = choose_grid(
+            booleans.box([one.box for one in measures], settings.operation), settings
+        )
+        check_memory(grid, sum(one.area for one in measures))
+        trees, sources = [], []
+        steps = parts(progress, len(self._operands))
+        for operand, part in zip(self._operands, steps, strict=True):
+            try:
+                made = surfaces.occupancy(
+                    operand.positions, operand.triangles, grid, settings, part
+                )
+            except ValueError as error:
+                raise ValueError(f"mesh '{operand.name}': {error}") from error
+            warnings, notes = surfaces.lines_of(operand.name, made)
+            self._warnings += warnings
+            self._notes += notes
+            trees.append(made.tree)
+            sources.append((made.positions, made.triangles))
+        tree = booleans.combined(
+            trees, settings.operation, share(progress, 1.0, 1.0), settings.threads
+        )
+        return tree, sources, grid.cells
+
+
+def _boolean(options: argparse.Namespace) -> None:
+    if len(options.files) < 2 and len(options.object) < 2:
+        options.usage_error("FILE: give two files or more, or --object for two meshes or more")
+    for path in options.files:
+        telling.check_ending(options, "FILE", path, mesh_files.ENDINGS)
+    telling.check_ending(options, "--output", options.output, mesh_files.TARGETS)
+    target = Path(os.path.realpath(options.output))
+    staging.check_target(target)
+    settings = voxelize.settings_of(options, PLAIN, BooleanSettings)
+    telling.tell(telling.done(BooleanFile(_operands(options), target, settings)))
+
+
+def _operands(options: argparse.Namespace) -> list[Part]:
+    groups = [mesh_files.read("FILE", [path]) for path in options.files]
+    if options.object:
+        found = [part for group in groups for part in group]
+        named = [mesh_files.chosen(found, [name]) for name in options.object]
+        operands = [as_one(parts[0].name, parts) for parts in named]
+    else:
+        names = [Path(path).stem for path in options.files]
+        operands = [as_one(name, group) for name, group in zip(names, groups, strict=True)]
+    return [mesh_files.without_seams(one) for one in operands]
+
+
+def as_one(name: str, meshes: Sequence[Part]) -> Part:
+    """Returns several meshes as one, without UVs."""
+    starts = np.cumsum([0, *(len(one.positions) for one in meshes)])
+    triangles = [one.triangles + start for one, start in zip(meshes, starts, strict=False)]
+    positions = np.concatenate([one.positions for one in meshes])
+    return Part(name, positions, np.concatenate(triangles), None)
