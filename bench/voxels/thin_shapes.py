@@ -38,7 +38,7 @@ def plate(thickness: float) -> ThinShape:
 
 def rod(thickness: float) -> ThinShape:
     """A prism of twelve sides."""
-    return ThinShape(_cone(thickness / 2, thickness / 2, 40.0, 12), 1, 0)
+    return ThinShape(prism(thickness / 2, thickness / 2, 40.0, 12), 1, 0)
 
 
 def ring(thickness: float) -> ThinShape:
@@ -48,7 +48,7 @@ def ring(thickness: float) -> ThinShape:
 
 def cone(thickness: float) -> ThinShape:
     """A cone that is three times as thick at its base."""
-    return ThinShape(_cone(3 * thickness, 0.0, 40.0, 24), 1, 0)
+    return ThinShape(prism(3 * thickness, 0.0, 40.0, 24), 1, 0)
 
 
 def grating(thickness: float) -> ThinShape:
@@ -132,8 +132,8 @@ def _extruded(x: Array, y: Array, is_filled: NDArray[np.bool_], height: float) -
     return Solid(np.column_stack([flat, lift]), triangles)
 
 
-def _cone(low: float, high: float, length: float, sides: int) -> Solid:
-    """Between two discs around the z axis; the upper one may be a point."""
+def prism(low: float, high: float, length: float, sides: int) -> Solid:
+    """Between two polygons around the z axis; the upper one may be a point."""
     turn = np.arange(sides) * 2 * np.pi / sides
     ring = np.stack([np.cos(turn), np.sin(turn), np.zeros(sides)], axis=1)
     lift = np.array([0.0, 0.0, length / 2])

@@ -10,7 +10,7 @@ from solids import Solid, box, join, sheet, sphere, surface_faults
 
 from bench.solids import random_rotation
 from bench.voxels.measures import folds, topology
-from bench.voxels.thin_shapes import SHAPES, plate, posed, ring, rod
+from bench.voxels.thin_shapes import SHAPES, ThinShape, plate, posed, prism, ring, rod
 
 DEPTH = 6
 CELLS = 2**DEPTH
@@ -82,6 +82,47 @@ def test_what_is_thick_stays_as_it_is():
         rough,
     ):
         assert octrees_are_same(voxelized(solid, 0.0), voxelized(solid))
+
+
+def wedge(degrees: float) -> Solid:
+    """Opens by an angle, from an edge of 30 to 20 away."""
+    far = 20 * np.tan(np.radians(degrees / 2))
+    sections = ((0, 0), (20, far))
+    positions = np.array([(x, y, z) for x, h in sections for y in (0, 30) for z in (-h, h)])
+    faces = [(0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (4, 5, 7, 6)]
+    triangles = np.array([t for a, b, c, d in faces for t in ((a, b, c), (a, c, d))])
+    return Solid(positions - (10.0, 15, 0), triangles[:, ::-1])
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_edges_of_wedges_stay_where_they_are(seed):
+    """Their bodies hold them, and a contour places them."""
+    for degrees in (27.0, 36.0, 44.0):
+        solid = wedge(degrees).transformed(random_rotation(seed), np.full(3, CELLS / 2))
+        assert octrees_are_same(voxelized(solid, 0.0), voxelized(solid))
+        positions, triangles = surface(solid, voxelized(solid))
+        assert topology(triangles) == (1, 0)
+        start, end = solid.positions[[0, 2]]
+        points = start + np.linspace(0.05, 0.95, 40)[:, None] * (end - start)
+        corners = positions[triangles]
+        along = np.cross(corners.mean(axis=1) - start, (end - start) / 30.0)
+        corners = corners[np.linalg.norm(along, axis=1) < 3.0]
+        gaps = np.min([distances(points, *triangle) for triangle in corners], axis=0)
+        # Where it is narrow, cells that are less than half full leave notches.
+        assert degrees < 30 or (gaps > 0.1).mean() < 0.1
+    solid = wedge(12.0).transformed(random_rotation(seed), np.full(3, CELLS / 2))
+    assert voxelized(solid).volume > voxelized(solid, 0.0).volume + 20
+
+
+@pytest.mark.parametrize("sides", [4, 6, 7])
+@pytest.mark.parametrize("thickness", [0.3, 1.0, 1.4])
+def test_rods_of_few_sides_hold_together(sides, thickness):
+    """Opposite faces of seven sides are not parallel."""
+    for seed in range(3):
+        one = ThinShape(prism(thickness / 2, thickness / 2, 40.0, sides), 1, 0)
+        solid = posed(one, seed, CELLS)
+        assert topology(surface(solid, voxelized(solid))[1]) == (1, 0)
+        assert voxelized(solid).volume > 40 * np.pi * 0.75**2
 
 
 def test_parts_that_touch_or_overlap_are_no_sheets():

@@ -22,7 +22,12 @@ namespace {
 constexpr double kPiece = 1.0;         // the longest side of a piece, in cells
 constexpr double kLargestPiece = 4.0;  // of one that is as thin everywhere
 constexpr double kLeastBrick = 2.0;    // in cells
-constexpr double kOpposite = -0.85;   // the cosine between normals of what is opposite: 148 degrees
+// The cosines between normals of what is opposite, on a rod 148 degrees, and of what counts on a
+// plate and of what is opposite there, 150 and 160: what opens wider is a wedge, which its body
+// holds and whose edge contours place.
+constexpr double kOpposite = -0.85;
+constexpr double kPlateAcross = -0.866;
+constexpr double kPlateOpposite = -0.94;
 constexpr double kParallel = -0.985;  // the cosine between normals of a wall: 170 degrees
 // How much thicker than a plate that cells hold together a rod and a speck have to be: the quarter
 // of a disc that cells have of a rod along their common edge, and the eighth of a ball at their
@@ -104,6 +109,17 @@ struct Candidate {
 
 // How much of a place is a rod, by the eigenvalues of its normals.
 double rod_of(const Vector3& values) { return std::clamp(2.0 * values[1] / values[0], 0.0, 1.0); }
+
+// How much of what a place lacks it gets, by the cosine between its faces' normals.
+double thickened_share(double facing, double rod) {
+  // A wedge of which nothing counts has 0.14, a rod of five sides 1.
+  const double share = std::clamp((rod - 0.4) / 0.4, 0.0, 1.0);
+  const double across = kPlateAcross + share * (kAcross - kPlateAcross);
+  const double opposite = kPlateOpposite + share * (kOpposite - kPlateOpposite);
+  const double counted = (across - facing) / (across - opposite);
+  // Cells that little is added to would lose their edges for nothing.
+  return counted < 0.5 ? 0.0 : std::min(counted, 1.0);
+}
 
 // How much thicker than a plate it has to be.
 double extra_of(const Vector3& values) {
@@ -342,7 +358,7 @@ ThickPieces thick_pieces(const MeshView<std::int32_t>& mesh, double thickness, c
     const Place around = place_around(places, middle);
     const Vector3 values = around.eigenvalues();
     const double wanted = plate * (1.0 + extra_of(values));
-    const double share = std::clamp((kAcross - one.ball.facing) / (kAcross - kOpposite), 0.0, 1.0);
+    const double share = thickened_share(one.ball.facing, rod_of(values));
     const double radius = one.ball.radius + share * (wanted - one.ball.radius);
     if (!(radius > one.ball.radius)) continue;
     // The middle of a plate is as wide as its faces, that of a rod a line, that of a speck a point.
