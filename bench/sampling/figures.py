@@ -41,7 +41,6 @@ LEAST_GAIN = 6.0  # dB of 8 texels, over trilinear interpolation
 TEXELS = (8, 6, 4)
 SCALES = 2 ** np.linspace(0, 5, 21)[1:]
 PLACES = 64  # along each side of the grids that are rotated
-BIASES = (0.0, -0.25, -0.5, -0.75, -1.0)  # levels
 SPACING = 1e-3  # cells between samples of a pan, and levels between those of a zoom
 WALKS = 60
 SMALL = 512
@@ -57,7 +56,6 @@ def main() -> None:
     of_figures(report)
     of_images(report)
     of_scales(report)
-    of_biases(report)
     steps(report)
     report.finish(options.json)
 
@@ -170,51 +168,6 @@ def of_scales(report: Report) -> None:
             for scale, row in zip(SCALES, by_scale["lanczos2"], strict=True)
         ],
         "scales",
-    )
-
-
-def of_biases(report: Report) -> None:
-    """Trilinear interpolation that reads finer levels, as games have it, at its best bias."""
-    rows = []
-    for filter in ("tent", "mitchell", "lanczos2", "gaussian"):
-        for title, image in images():
-            levels = prefilter.sampling_levels(image, filter, wrap="repeat")
-            squares: dict[str, list[NDArray[np.float64]]] = {"itself": [], "mean": []}
-            random = np.random.default_rng(0)
-            for number, scale in enumerate(SCALES[::2]):
-                places = rotated_grid(0.7 * number, random.random(2))
-                found = [
-                    *(
-                        prefilter.sample(
-                            levels, "trilinear", places, scale * 2**bias, wrap="repeat"
-                        )
-                        for bias in BIASES
-                    ),
-                    *(
-                        prefilter.sample(
-                            levels, figures.tables(filter)[name], places, scale, wrap="repeat"
-                        )
-                        for name in ("8 texels", "4 texels")
-                    ),
-                ]
-                for truth, name in (("itself", filter), ("mean", "box")):
-                    exact = prefilter.sample_exact(image, places, scale, filter=name, wrap="repeat")
-                    squares[truth].append(
-                        np.array([np.mean((one.astype(float) - exact) ** 2) for one in found])
-                    )
-            row = [f"{filter}, {title}"]
-            for truth in ("itself", "mean"):
-                psnrs = -10 * np.log10(np.mean(squares[truth], axis=0))
-                best = int(np.argmax(psnrs[: len(BIASES)]))
-                row += [f"{psnrs[best]:.1f} at {BIASES[best]:g}"]
-                row += [f"{one:.1f}" for one in psnrs[len(BIASES) :]]
-            rows.append(row)
-    names = ("trilinear at its best bias", "8 texels", "4 texels")
-    report.table(
-        "Against the exact filter, and against the mean over a pixel (a box)",
-        ("levels, image", *names, *(f"mean: {name}" for name in names)),
-        rows,
-        "biases",
     )
 
 

@@ -243,3 +243,10 @@ def test_what_is_no_spectrum_or_target_is_refused(arguments, message):
 def test_targets_without_a_standard_table_are_refused():
     with pytest.raises(ValueError, match="target: 'mitchell' with levels of 'tent'"):
         prefilter.SamplingTable.standard("tent", target="mitchell")
+
+
+def test_shaders_name_the_target_and_the_filter_of_the_levels():
+    table = prefilter.SamplingTable.standard("tent", 4, target="box")
+    for source in (table.glsl(), table.hlsl(), table.osl()):
+        assert '"box": 4 texels' in source
+        assert 'filter="tent")' in source

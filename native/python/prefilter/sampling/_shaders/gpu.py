@@ -13,7 +13,7 @@ from .table_numbers import Table, TableNumbers, checked_name, commented, number,
 
 _ABOUT = """
 Samples a texture at any scale from $texels texels of its mipmap, by a table for the filter
-"$filter": $about.
+"$target": $about.
 
 Written by Prefilter. Prefilter's license does not extend to this text: use, change and pass it
 on as you like. It comes without any warranty.
@@ -343,6 +343,7 @@ def _source(table: Table, name: str, language: _Language) -> str:
         **names,
         **numbers.constants(),
         "filter": numbers.filter,
+        "target": numbers.target,
         "about": numbers.about(),
         "texture": language.texture_type,
         "derivatives": language.derivatives,

@@ -8,7 +8,7 @@ from .table_numbers import Table, TableNumbers, checked_name, commented, number,
 
 _ABOUT = """
 Samples a texture at any scale from $texels texels of its mipmap, by a table for the filter
-"$filter": $about.
+"$target": $about.
 
 Written by Prefilter. Prefilter's license does not extend to this text: use, change and pass it
 on as you like. It comes without any warranty.
@@ -196,6 +196,7 @@ def osl(table: Table, name: str) -> str:
         **numbers.constants(),
         "name": checked_name(name),
         "filter": numbers.filter,
+        "target": numbers.target,
         "about": numbers.about(),
         "numbers": numbers.coefficients.size,
         "terms": terms,

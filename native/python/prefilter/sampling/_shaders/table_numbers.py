@@ -34,6 +34,8 @@ class Table(Protocol):
     @property
     def filter(self) -> str: ...
     @property
+    def target(self) -> str: ...
+    @property
     def texels(self) -> int: ...
     @property
     def subdomains(self) -> tuple[int, int, int]: ...
@@ -52,6 +54,7 @@ class TableNumbers:
     """
 
     filter: str
+    target: str
     texels: int
     grid: int
     slices: int
@@ -65,6 +68,7 @@ class TableNumbers:
         offsets = np.concatenate([np.reshape(section.offsets, (-1, 3)) for section in sections])
         return cls(
             filter=table.filter,
+            target=table.target,
             texels=table.texels,
             grid=table.subdomains[0],
             slices=table.subdomains[2],
