@@ -78,7 +78,8 @@ def write_dds(
     """
     container = dds.container(as_one_of("header", header, dds.HEADERS))
     _write(
-        path, levels, format, encoding, alpha, effort, "none", _QUALITY, progress, threads, container
+        *(path, levels, format, encoding, alpha, effort, "none", _QUALITY),
+        *(progress, threads, container),
     )
 
 
