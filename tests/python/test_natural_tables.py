@@ -117,15 +117,17 @@ def test_errors_are_double_integrals_over_the_plane(filter, target, levels):
     offsets, coefficients = section.offsets[0].tolist(), section.coefficients[0]
     plane = Plane(filter, table.target, levels, offsets)
     error = trilinear = 0.0
-    for x, y, f, weight in part.nodes(1, 4):
+    # With fewer levels, sums have kinks where a texel comes into a filter's reach.
+    panels, trilinear_nodes = (1, 2) if levels == 3 else (2, 3)
+    for x, y, f, weight in part.nodes(panels, 4):
         error += weight * plane.error(coefficients @ oracle.terms(1, x, y, f), x, y, f)
-    for x, y, f, weight in part.nodes(2, 2):
+    for x, y, f, weight in part.nodes(2, trilinear_nodes):
         texels, weights = oracle.trilinear_texels(levels, x, y, f)
         trilinear += weight * Plane(filter, table.target, levels, texels).error(weights, x, y, f)
     assert section.errors[0] == pytest.approx(error, rel=2e-2, abs=1e-6)
     assert section.trilinear_errors[0] == pytest.approx(trilinear, rel=2e-2, abs=1e-6)
     # No other weights are better.
-    least = System(filter, table.target, part, offsets, 1, 4).solve(range(len(offsets)))[1]
+    least = System(filter, table.target, part, offsets, panels, 4).solve(range(len(offsets)))[1]
     assert error <= least * (1 + 1e-2) + 1e-6
 
 
