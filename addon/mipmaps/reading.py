@@ -2,8 +2,8 @@
 
 """The first step of a bake: everything that it needs is copied out of Blender, and checked."""
 
-from collections.abc import Generator, Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Generator, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import bpy
@@ -52,6 +52,7 @@ class Request:
         may_lose_channels: See `engines.checked`.
         writes_image: Whether the image itself is baked; else only the roughness that it is the
             normal map of, for the surfaces of that.
+        pictures: What was read of images before, by their full names.
     """
 
     image: bpy.types.Image
@@ -63,6 +64,11 @@ class Request:
     roughness_texture_format: str = ""
     may_lose_channels: bool = False
     writes_image: bool = True
+    pictures: Mapping[str, Picture] = field(default_factory=dict)
+
+    def picture_of(self, image: bpy.types.Image) -> Picture:
+        """The pixels of an image without tiles."""
+        return self.pictures.get(image.name_full) or images.read(image)
 
 
 @dataclass(frozen=True)
@@ -131,7 +137,8 @@ def read_level_0(request: Request) -> Level0:
     targets = [textures.check_target(path) for path in udim.paths(settings.filepath, numbers)]
     if not targets and not settings.use_images and request.writes_image:
         raise ValueError(Sentence("nothing to write: choose level images or a file"))
-    pictures = [images.read_tile(image, number) for number in numbers] or [images.read(image)]
+    pictures = [images.read_tile(image, number) for number in numbers]
+    pictures = pictures or [request.picture_of(image)]
     for picture in pictures:
         _check_levels(picture, settings.levels)
     used_by = meshes.materials_of_objects(request.objects)
@@ -243,7 +250,7 @@ def read_roughness(request: Request, level_0: Level0) -> Rough:
         level_0.pictures[0],
         level_0.content,
         level_0.targets,
-        lambda: images.read(images.find(settings.roughness)),
+        lambda: request.picture_of(images.find(settings.roughness)),
         request.roughness_texture_format,
     )
 

@@ -219,6 +219,7 @@ class ModelBake:
             roughness_texture_format=made.roughness_texture_format,
             may_lose_channels=fits,
             writes_image=pair.normal_map is None or pair.is_normal_map,
+            pictures=made.pictures,
         )
         bake = yield from reading.reading(request)
         self.rows += made.rows

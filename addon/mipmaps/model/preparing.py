@@ -63,6 +63,7 @@ class Prepared:
         roughness_texture_format: That of the file of the roughness; empty for none.
         rows: What is said of each image that is baked.
         note: Why the image is taken for something else than the nodes say; empty if it is not.
+        pictures: What was read of images without tiles, by their full names.
     """
 
     picture: Picture
@@ -72,6 +73,7 @@ class Prepared:
     roughness_texture_format: str
     rows: list[Row]
     note: str
+    pictures: dict[str, Picture]
 
     @property
     def target(self) -> Path | None:
@@ -111,7 +113,8 @@ def prepared(job: Job, pair: Pair, settings: Settings, files: Mapping[str, str])
         files: The path of each image, by its full name; empty for none.
     """
     item, file = job.item, files[job.item.full_name]
-    picture = _first(pair.image)
+    read: dict[str, Picture] = {}
+    picture = _first(pair.image, read)
     decision = decisions.decided(item, picture)
     picture = contents.as_content(picture, decision.content)
     chosen = _format(settings, item, picture, decision.content, file)
@@ -123,7 +126,8 @@ def prepared(job: Job, pair: Pair, settings: Settings, files: Mapping[str, str])
         filepath=file,
     )
     row = _row(item, pair.image, decision.content, own, picture, file, chosen)
-    made = Prepared(picture, file, lookups.resolved(own), chosen, "", [row], decision.note)
+    own = lookups.resolved(own)
+    made = Prepared(picture, file, own, chosen, "", [row], decision.note, read)
     return made if pair.rough is None else _with_roughness(made, job, pair, settings, files)
 
 
@@ -135,7 +139,7 @@ def _with_roughness(
     assert pair.normal_map is not None
     item = job.roughness or job.item
     file = files[item.full_name]
-    picture = _first(pair.rough) if pair.is_normal_map else made.picture
+    picture = _first(pair.rough, made.pictures) if pair.is_normal_map else made.picture
     chosen = _format(settings, item, picture, "data", file)
     told = f"its levels compensate for detail lost in the levels of '{pair.normal_map.name}'"
     row = made.rows[0]
@@ -195,10 +199,16 @@ def _target(file: str) -> Path | None:
     return Path(file) if file else None
 
 
-def _first(image: bpy.types.Image) -> Picture:
-    """Returns the pixels of an image, or of its first tile that can be read."""
+def _first(image: bpy.types.Image, read: dict[str, Picture]) -> Picture:
+    """Returns the pixels of an image, or of its first tile that can be read.
+
+    `read` gets those of an image without tiles.
+    """
     numbers = images.tile_numbers(image)
-    return images.read_tile(image, numbers[0]) if numbers else images.read(image)
+    if numbers:
+        return images.read_tile(image, numbers[0])
+    read[image.name_full] = images.read(image)
+    return read[image.name_full]
 
 
 def _size(image: bpy.types.Image) -> str:
