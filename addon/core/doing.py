@@ -77,9 +77,9 @@ class Doing:
         return lambda: None
 
     def load(self) -> Any:
-        """Returns what `effort` needs to know about what was read and computed."""
+        """Returns what `duration` needs to know about what was read and computed."""
 
-    def effort(self, load: Any) -> float:
+    def duration(self, load: Any) -> float:
         """Returns how long the present settings take, in a unit of the operator's own.
 
         Args:

@@ -358,11 +358,11 @@ class BackgroundOperator(Doing):
         return {"CANCELLED"}
 
     def _expected_seconds(self) -> float:
-        return redo.expected_seconds(self._key(), self.effort)
+        return redo.expected_seconds(self._key(), self.duration)
 
     def _note_run(self, seconds: float, earlier: redo.Past | None = None) -> None:
         load = self.load() if earlier is None else earlier.load
-        redo.note(self._key(), redo.Past(seconds, load, self.effort(load)))
+        redo.note(self._key(), redo.Past(seconds, load, self.duration(load)))
 
     def _finish(self, context: bpy.types.Context, result: Any) -> None:
         with self._parts.clock():

@@ -29,7 +29,7 @@ class Past:
 
     seconds: float
     load: Any
-    effort: float
+    duration: float
 
 
 def past(key: str) -> Past | None:
@@ -42,18 +42,18 @@ def note(key: str, run: Past) -> None:
     _pasts[key] = run
 
 
-def expected_seconds(key: str, effort: Callable[[Any], float]) -> float:
+def expected_seconds(key: str, duration: Callable[[Any], float]) -> float:
     """Returns how long an operator is expected to take; 0 where nothing tells.
 
     Args:
         key: Its identifier.
-        effort: What `Doing.effort` says of the present settings.
+        duration: What `Doing.duration` says of the present settings.
     """
     run = past(key)
     if run is None:
         return 0.0
     try:
-        return run.seconds * effort(run.load) / run.effort
+        return run.seconds * duration(run.load) / run.duration
     except ValueError:  # Settings that are refused: the work says why, at once.
         return 0.0
 

@@ -42,7 +42,7 @@ class PREFILTER_OT_resample_image(
 
         return Resampling(picture, self.to_settings(), keep=self.keep)
 
-    def effort(self, load: tuple[int, int]) -> float:
+    def duration(self, load: tuple[int, int]) -> float:
         """Returns about how long it takes."""
         from prefilter._work.resampling.resampling import effort
 

@@ -37,7 +37,7 @@ class PREFILTER_OT_resize_image(
 
         return Resizing(picture, self.to_settings(), keep=self.keep)
 
-    def effort(self, load: tuple[int, int]) -> float:
+    def duration(self, load: tuple[int, int]) -> float:
         """Returns about how many pixels are read and written, times the filter's cost."""
         width, height = self.to_settings().new_size(*load)
         slow = {"least-squares": 8.0, "radial2": 6.0, "radial3": 12.0}

@@ -50,7 +50,7 @@ class PREFILTER_OT_sampling_table(TableProperties, WorkOperator, bpy.types.Opera
             context.space_data.text = text
         return said
 
-    def effort(self, load: None) -> float:
+    def duration(self, load: None) -> float:
         """Returns about how long it takes."""
         from ..sampling_tables import effort
 

@@ -77,7 +77,7 @@ class PREFILTER_OT_reconstruct(ScanProperties, PresetsOperator, WorkOperator, bp
         assert self.work is not None
         return self.work.load
 
-    def effort(self, load: "Load") -> float:
+    def duration(self, load: "Load") -> float:
         """Returns about how many seconds the points take with the present settings."""
         return load.seconds(self.to_settings())
 

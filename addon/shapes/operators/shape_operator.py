@@ -29,7 +29,7 @@ class ShapeOperator(MakesImage):
         assert self.work.load is not None
         return self.work.load
 
-    def effort(self, load: "Load") -> float:
+    def duration(self, load: "Load") -> float:
         """Returns about how many seconds the image takes with the present settings."""
         return load.seconds(self.to_settings())
 

@@ -40,7 +40,7 @@ class PREFILTER_OT_update_drawn(ImageOperator, ShapeOperator, bpy.types.Operator
             return False
         return True
 
-    def effort(self, load: "Load") -> float:
+    def duration(self, load: "Load") -> float:
         """Returns how long it takes: as long as before."""
         del load
         return 1.0

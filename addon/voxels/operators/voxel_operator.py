@@ -41,7 +41,7 @@ class VoxelOperator(PresetsOperator, WorkOperator):
         assert self.work is not None
         return self.work.loads
 
-    def effort(self, load: "list[Load]") -> float:
+    def duration(self, load: "list[Load]") -> float:
         """Returns about how many seconds voxels take with the present settings."""
         return sum((one.seconds(self.to_settings()) for one in load), 0.0)
 

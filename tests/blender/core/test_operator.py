@@ -278,7 +278,7 @@ def test_redo_that_is_slow_waits(probe, context):
     assert played(probe(), context) == {"FINISHED"}
     operator = probe()
     operator.options = SimpleNamespace(is_repeat=True, is_repeat_last=False)
-    operator.effort = lambda load: 1e9
+    operator.duration = lambda load: 1e9
     operator.read = None
     assert operator.execute(context) == {"CANCELLED"}
     assert operator._waits > 1.0
