@@ -194,9 +194,9 @@ def test_the_dialog_has_the_quality_where_it_counts(addon):
         panel.draw_export(bpy.context, drawn.Layout(rows))
         shown[texture_format] = [row[2] for row in rows if row[0] == "setting"]
     assert shown["uastc"] == [
-        *("Prefilter Mipmaps", "Filter", "Lookups", "Format", "Compression", "Fallback")
+        *("Prefilter Mipmaps", "Filter", "Lookups", "Format", "Effort", "Compression", "Fallback")
     ]
-    assert shown["etc1s"] == [*shown["uastc"][:4], "ETC1S Quality", *shown["uastc"][4:]]
+    assert shown["etc1s"] == [*shown["uastc"][:5], "ETC1S Quality", *shown["uastc"][5:]]
 
 
 def test_files_by_themselves_with_a_fallback(tmp_path):
