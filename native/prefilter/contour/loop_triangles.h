@@ -26,9 +26,9 @@ struct LoopTriangles {
 std::int32_t label_of(const VertexSamples& samples, const std::array<std::int32_t, 3>& triangle);
 
 /// Adds a vertex for each loop of `merged` that is its own first one, and the loops' triangles: a
-/// fan around the vertex, whose sides are flipped where loops are joined. Where the fan folds on one
-/// side of the edge, what is there gets the triangles that lie best on its region. Loops that are
-/// not sharp have triangles of `plain`, those of LoopedMesh.
+/// fan around the vertex, whose sides are flipped where loops are joined. Where the fan folds on
+/// one side of the edge, what is there gets the triangles that lie best on its region. Loops that
+/// are not sharp have triangles of `plain`, those of LoopedMesh.
 LoopTriangles add_loops(const LinkedLoops& loops,
                         std::span<const std::array<std::int32_t, 3>> plain,
                         std::span<const Feature> features, std::span<const std::uint8_t> is_sharp,
