@@ -239,7 +239,6 @@ struct BentLoop {
                                     {-0.135, 0.48, 0.0}, {0.2, 0.0, -0.5},  {-0.4, 0.0, -0.5},
                                     {-1.0, 0.5, 0.0},    {1.0, 0.5, 0.0}};
   VertexSamples samples = samples_of(positions);
-  std::vector<Feature> features;
 
   BentLoop() {
     for (std::size_t v = 0; v < positions.size(); ++v) {
@@ -250,13 +249,24 @@ struct BentLoop {
       sample.normal = is_below ? Vector3{0.0, 1.0, 0.0} : Vector3{0.0, 0.0, 1.0};
       samples.facing[v] = -1.0F;
     }
-    features = {LoopedCube::feature({0.0, 0.0, 0.0}), LoopedCube::feature({-0.5, 0.0, 0.0}),
-                LoopedCube::feature({0.5, 0.0, 0.0})};
+  }
+
+  // On the edge: in the middle, or on the side where most of a loop is.
+  Feature feature_of(const SharpLoop& loop) const {
+    if (loop.count == 6) return LoopedCube::feature({0.0, 0.0, 0.0});
+    double sum = 0.0;
+    for (int k = 0; k < loop.count; ++k) {
+      const std::int32_t corner = loop.from(static_cast<std::size_t>(k));
+      sum += positions[static_cast<std::size_t>(corner)][0];
+    }
+    return LoopedCube::feature({sum < 0.0 ? -0.5 : 0.5, 0.0, 0.0});
   }
 
   // Of the middle loop, in z = 0.
   std::vector<Triangle> triangles(const std::vector<SharpLoop>& sharp) const {
     const LinkedLoops loops = link_loops(sharp, Wedge(), samples, Progress(), 1);
+    std::vector<Feature> features;
+    for (const SharpLoop& loop : sharp) features.push_back(feature_of(loop));
     FacetedMesh mesh = {positions, {}, {}, LoopedCube::Kinds(8, VertexKind::kSurface)};
     const LoopTriangles made =
         add_loops(loops, {}, features, Flags(sharp.size(), 1), own(sharp.size()), samples, &mesh);
