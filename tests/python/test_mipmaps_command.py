@@ -316,7 +316,9 @@ def test_roughness_counts_where_a_set_is_up_to_date(quad, tmp_path, capsys):
 
 
 def test_the_buffers_of_gltf_files_count(texture, tmp_path):
-    trimesh = pytest.importorskip("trimesh")
+    pytest.importorskip("PIL", reason="Pillow copies trimesh's materials")
+    import trimesh
+
     mesh = trimesh.Trimesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], process=False)
     mesh.visual = trimesh.visual.TextureVisuals(uv=[[0, 0], [1, 0], [0, 1]])
     model = tmp_path / "model.gltf"
