@@ -58,14 +58,16 @@ Corners least_squares(const EtcTexels& texels, std::size_t channel) {
   return corners;
 }
 
-ChannelPlane search(const EtcTexels& texels, std::size_t channel) {
+ChannelPlane search(const EtcTexels& texels, std::size_t channel, bool is_level) {
   const int most = (1 << kBits[channel]) - 1;
   ChannelPlane best{least_squares(texels, channel), 0};
   best.error = error_of(texels, channel, best.corners);
   for (bool is_better = true; is_better;) {
     is_better = false;
     const Corners middle = best.corners;
-    for (int neighbor = 0; neighbor < 27; ++neighbor) {
+    // A level one moves by the first, the middle and the last of them, which is alike in all
+    // corners.
+    for (int neighbor = 0; neighbor < 27; neighbor += is_level ? 13 : 1) {
       const Corners next{std::clamp(middle[0] + neighbor / 9 - 1, 0, most),
                          std::clamp(middle[1] + neighbor / 3 % 3 - 1, 0, most),
                          std::clamp(middle[2] + neighbor % 3 - 1, 0, most)};
@@ -94,9 +96,11 @@ std::uint64_t packed(const Corners& red, const Corners& green, const Corners& bl
 }  // namespace
 
 EtcBlock search_etc_plane(const EtcTexels& texels) {
-  const ChannelPlane red = search(texels, 0);
-  const ChannelPlane green = search(texels, 1);
-  const ChannelPlane blue = search(texels, 2);
+  const bool is_level = std::all_of(texels.colors.begin(), texels.colors.end(),
+                                    [&](const EtcColor& one) { return one == texels.colors[0]; });
+  const ChannelPlane red = search(texels, 0, is_level);
+  const ChannelPlane green = search(texels, 1, is_level);
+  const ChannelPlane blue = search(texels, 2, is_level);
   return {packed(red.corners, green.corners, blue.corners), red.error + green.error + blue.error};
 }
 

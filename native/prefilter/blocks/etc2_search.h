@@ -30,7 +30,7 @@ EtcBlock search_etc_halves(const EtcTexels& texels);
 /// Two colors, and lighter and darker ones of the second or of both: T and H.
 EtcBlock search_etc_paints(const EtcTexels& texels);
 
-/// A plane through the colors of three corners.
+/// A plane through the colors of three corners; a level one where all texels are of one color.
 EtcBlock search_etc_plane(const EtcTexels& texels);
 
 inline int square(int value) { return value * value; }

@@ -127,6 +127,27 @@ TEST(BlockEffort, OneColorIsNeverFarOff) {
   }
 }
 
+// Of one color, inside and at the edges, where a block has but a few texels.
+TEST(BlockEffort, FlatLevelsStayFlat) {
+  constexpr int kWidth = 7, kHeight = 6;
+  std::mt19937 random(7);
+  for (int i = 0; i < 300; ++i) {
+    const std::array<int, 4> color = {static_cast<int>(random() % 256),
+                                      static_cast<int>(random() % 256),
+                                      static_cast<int>(random() % 256), 255};
+    Bytes texels;
+    for (int t = 0; t < kWidth * kHeight; ++t) {
+      for (const int c : color) texels.push_back(static_cast<std::uint8_t>(c));
+    }
+    for (const BlockEffort effort : kEfforts) {
+      const Bytes found =
+          decoded(compressed(texels, kWidth, kHeight, BlockFormat::kEtc2Rgb, effort), kWidth,
+                  kHeight, BlockFormat::kEtc2Rgb);
+      for (std::size_t t = 4; t < found.size(); ++t) ASSERT_EQ(found[t], found[t - 4]) << i;
+    }
+  }
+}
+
 TEST(BlockEffort, BlocksDoNotDependOnThreads) {
   const Bytes texels = coarse_level(70, 21, true, 3);
   for (const BlockFormat format : {BlockFormat::kBc7, BlockFormat::kEtc2Rgba}) {
