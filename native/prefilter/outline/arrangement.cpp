@@ -133,7 +133,7 @@ bool Arrangement::collect_sites(const Progress& progress, SiteList* list) const 
 }
 
 // Sites that are near each other become one vertex.
-void Arrangement::merge_sites(SiteList* list) {
+void Arrangement::merge_sites(Pulse* pulse, SiteList* list) {
   const std::vector<Site>& sites = list->sites;
   DisjointSets<std::uint32_t>& same = list->same;
   struct PlaceHash {
@@ -149,6 +149,7 @@ void Arrangement::merge_sites(SiteList* list) {
                      static_cast<std::int64_t>(std::floor(off.y / precision_))};
   };
   for (std::uint32_t i = 0; i < sites.size(); ++i) {
+    pulse->step();
     const Point2& point = sites[i].point;
     const auto place = place_of(point);
     const auto [found, is_new] = places.try_emplace(place, i);
@@ -174,8 +175,10 @@ void Arrangement::merge_sites(SiteList* list) {
     const Site& site = sites[i];
     return std::tuple(roots[i], !site.is_joint, site.point.x, site.point.y);
   };
-  std::sort(order.begin(), order.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    pulse->step();
+    return key(a) < key(b);
+  });
   for (std::size_t i = 0; i < order.size(); ++i) {
     const Site& site = sites[order[i]];
     if (i == 0 || roots[order[i]] != roots[order[i - 1]]) {
@@ -188,20 +191,22 @@ void Arrangement::merge_sites(SiteList* list) {
 bool Arrangement::cut(const Progress& progress) {
   SiteList list(contours_);
   if (!collect_sites(progress, &list)) return false;
-  merge_sites(&list);
-  std::sort(cuts_.begin(), cuts_.end(), [](const Cut& a, const Cut& b) {
+  Pulse pulse(progress);
+  merge_sites(&pulse, &list);
+  std::sort(cuts_.begin(), cuts_.end(), [&](const Cut& a, const Cut& b) {
+    pulse.step();
     return std::tie(a.place, a.parameter, a.vertex) < std::tie(b.place, b.parameter, b.vertex);
   });
   const auto last = std::unique(cuts_.begin(), cuts_.end(), [](const Cut& a, const Cut& b) {
     return a.place == b.place && a.parameter == b.parameter && a.vertex == b.vertex;
   });
   cuts_.erase(last, cuts_.end());
-  make_chains();
-  group_chains();
+  make_chains(&pulse);
+  group_chains(&pulse);
   return true;
 }
 
-void Arrangement::make_chains() {
+void Arrangement::make_chains(Pulse* pulse) {
   std::uint32_t cut = 0;
   const auto cut_count = static_cast<std::uint32_t>(cuts_.size());
   for (std::uint32_t c = 0; c < contours_.contours().size(); ++c) {
@@ -212,6 +217,7 @@ void Arrangement::make_chains() {
       continue;
     }
     for (std::uint32_t i = first; i < cut; ++i) {
+      pulse->step();
       const OutlineChain chain = {c, i, i + 1 < cut ? i + 1 : first};
       if (!is_negligible(chain)) chains_.push_back(chain);
     }
@@ -246,7 +252,7 @@ std::optional<Arrangement::Part> Arrangement::only_part(const OutlineChain& chai
   return found;
 }
 
-void Arrangement::group_chains() {
+void Arrangement::group_chains(Pulse* pulse) {
   struct Entry {
     std::uint32_t low;
     std::uint32_t high;
@@ -260,10 +266,12 @@ void Arrangement::group_chains() {
     const std::uint32_t b = cuts_[chains_[i].end_cut].vertex;
     if (a != b) entries.push_back({std::min(a, b), std::max(a, b), i});
   }
-  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+  std::sort(entries.begin(), entries.end(), [&](const Entry& a, const Entry& b) {
+    pulse->step();
     return std::tie(a.low, a.high, a.chain) < std::tie(b.low, b.high, b.chain);
   });
   for (std::size_t i = 0; i < entries.size(); ++i) {
+    pulse->step();
     for (std::size_t j = i + 1; j < entries.size() && entries[j].low == entries[i].low &&
                                 entries[j].high == entries[i].high;
          ++j) {

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "prefilter/base/progress.h"
+#include "prefilter/base/pulse.h"
 #include "prefilter/outline/meetings.h"
 #include "prefilter/outline/monotone_contours.h"
 #include "prefilter/outline/run_tree.h"
@@ -81,9 +81,9 @@ class Arrangement {
   bool collect_sites(const Progress& progress, SiteList* list) const;
   Site site_at(const PieceId& id, const MonotonePiece& piece, double parameter,
                const Point2& point) const;
-  void merge_sites(SiteList* list);
-  void make_chains();
-  void group_chains();
+  void merge_sites(Pulse* pulse, SiteList* list);
+  void make_chains(Pulse* pulse);
+  void group_chains(Pulse* pulse);
   bool is_negligible(const OutlineChain& chain) const;
   std::optional<Part> only_part(const OutlineChain& chain) const;
   std::optional<Reach> farthest_part(const OutlineChain& chain) const;
