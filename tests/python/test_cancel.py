@@ -112,8 +112,9 @@ WORK = {
     ),
     "seam_contrast": lambda **options: prefilter.seam_contrast([IMAGE], SURFACE, **options),
     "fit_to_views": lambda **options: prefilter.fit_to_views(
-        [IMAGE, *(np.zeros((IMAGE.shape[0] >> k, IMAGE.shape[1] >> k, 3)) for k in (1, 2))],
+        [IMAGE[:256, :256], *(np.zeros((256 >> k, 256 >> k, 3)) for k in (1, 2))],
         SURFACE,
+        effort=0.25,
         threads=1,
         **options,
     ),

@@ -101,7 +101,7 @@ std::vector<double> pulls_of(const std::vector<View>& views, std::size_t level_c
 std::vector<SeenPixels> all_seen(const std::vector<View>& views,
                                  const std::vector<ImageView>& levels,
                                  const ViewFitOptions& options, const Progress& progress) {
-  constexpr std::int64_t kMostSamples = 1 << 20;
+  constexpr std::int64_t kMostSamples = 1 << 18;
   struct Rows {
     const View* view;
     int begin;

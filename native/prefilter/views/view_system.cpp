@@ -13,7 +13,7 @@ namespace prefilter {
 namespace {
 
 constexpr std::int64_t kTexelsPerTask = 1 << 14;
-constexpr std::size_t kPixelsPerTurn = 40'000;
+constexpr std::size_t kPixelsPerTurn = 20'000;
 constexpr std::size_t kMostSlices = 8;
 constexpr std::size_t kFewestSlices = 2;
 constexpr std::size_t kTexelsOfSlices = 12'000'000;  // of all together
