@@ -131,7 +131,7 @@ class Settling {
     }
     const double side = kCubeCells * std::max({cell_[0], cell_[1], cell_[2]});
     Pairs pairs = near_intersections(view, 0, may_intersect, side, progress, threads);
-    for (const auto& fold : folded_pairs(view, 0, is_suspect)) {
+    for (const auto& fold : folded_pairs(view, 0, is_suspect, progress)) {
       if (!is_at_wedge(fold)) pairs.push_back(fold);
     }
     for (std::uint32_t t = 0; t < triangles_.size(); ++t) {

@@ -223,11 +223,11 @@ Pairs faulty_pairs(const LayeredMesh& layered, const Crossings& crossings, const
   const double cell = surface.cell();
   const MeshView<std::int32_t> view{layered.mesh.positions, layered.mesh.triangles};
   const double side = kCubeCells * cell;
-  const Flags may_meet =
-      where_rough(view, layered.near, may_intersect(layered, crossings, is_suspect), side);
+  const Flags may_meet = where_rough(view, layered.near,
+                                     may_intersect(layered, crossings, is_suspect), side, progress);
   // Among all triangles: those far from edges stay, and are in the way of what leaves its lines.
   Pairs pairs = near_intersections(view, 0, may_meet, side, progress, threads);
-  for (const auto& fold : folded_pairs(view, 0, is_suspect)) {
+  for (const auto& fold : folded_pairs(view, 0, is_suspect, progress)) {
     if (are_at_edge(view, layered.mesh.labels, fold, surface, samples, turned)) continue;
     pairs.push_back(fold);
   }

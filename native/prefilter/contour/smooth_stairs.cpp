@@ -185,7 +185,7 @@ void smooth_stairs(double cell, const std::function<bool(const Vector3&)>& is_fr
   for (int i = 0; i < kMostReturns; ++i) {
     const Flags is_changed = stairs.changed();
     auto pairs = near_intersections(view, 0, is_changed, kCube * cell, progress, threads);
-    const auto folds = folded_pairs(view, 0, is_changed);
+    const auto folds = folded_pairs(view, 0, is_changed, progress);
     pairs.insert(pairs.end(), folds.begin(), folds.end());
     if (!stairs.put_back(pairs)) return;
   }

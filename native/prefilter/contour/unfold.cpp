@@ -122,7 +122,7 @@ class Folds {
   bool move_vertices(const Move& move) {
     Flags is_seen(region_.positions.size(), 0);
     bool has_moved = false;
-    for (const auto& pair : folded_pairs(region_.view(), 0, {})) {
+    for (const auto& pair : folded_pairs(region_.view(), 0, {}, {})) {
       for (const std::uint32_t t : pair) {
         for (const std::int32_t corner : region_.triangles[t]) {
           const auto v = static_cast<std::size_t>(corner);
@@ -194,7 +194,7 @@ double excess(const MeshView<std::int32_t>& mesh) {
     return cross(b - a, c - a);
   };
   double sum = 0.0;
-  for (const auto& pair : folded_pairs(mesh, 0, {})) {
+  for (const auto& pair : folded_pairs(mesh, 0, {}, {})) {
     const Vector3 a = normal_of(pair[0]);
     const Vector3 b = normal_of(pair[1]);
     sum += kFold - dot(a, b) / std::sqrt(dot(a, a) * dot(b, b));
@@ -218,7 +218,7 @@ std::optional<Slide> best_slide(const std::array<std::uint32_t, 2>& pair,
   std::vector<Triangle> before;
   for (const std::size_t t : around) before.push_back(region->triangles[t]);
   const auto folded = [&](const std::vector<Triangle>& triangles) {
-    return folded_pairs({region->positions, triangles}, 0, {});
+    return folded_pairs({region->positions, triangles}, 0, {}, {});
   };
   double least = excess({region->positions, before}) - kLeastGain;
   std::optional<Slide> best;
@@ -253,11 +253,11 @@ void slide(std::span<const GridPlace> places, const Vector3& cell, const Folds& 
   bool has_slid = true;
   for (int round = 0; round < kMostRounds && has_slid; ++round) {
     has_slid = false;
-    const Pairs pairs = folded_pairs(region->view(), 0, {});
+    const Pairs pairs = folded_pairs(region->view(), 0, {}, {});
     double sum = excess(region->view());
     for (const auto& pair : pairs) {
       const std::array<Triangle, 2> both = {region->triangles[pair[0]], region->triangles[pair[1]]};
-      if (!folds.are_movable(pair) || folded_pairs({region->positions, both}, 0, {}).empty()) {
+      if (!folds.are_movable(pair) || folded_pairs({region->positions, both}, 0, {}, {}).empty()) {
         continue;
       }
       const std::vector<std::size_t> around = triangles_around(pair, *region);
@@ -294,7 +294,7 @@ Flags movable_vertices(const VertexSamples& samples, const Crossings& crossings,
 
 void unfold_all_loops(std::span<const GridPlace> places, Region* region) {
   for (int pass = 0; pass < kMostPasses; ++pass) {
-    const auto pairs = folded_pairs(region->view(), 0, {});
+    const auto pairs = folded_pairs(region->view(), 0, {}, {});
     if (!unfold_loops(region->positions, places, pairs, &region->triangles)) return;
   }
 }
@@ -356,7 +356,7 @@ Pairs plain_folds(const MeshView<std::int32_t>& mesh, const Crossings& crossings
     triangles.push_back(triangle);
     numbers.push_back(static_cast<std::uint32_t>(t));
   }
-  Pairs pairs = folded_pairs({mesh.positions, triangles}, 0, {});
+  Pairs pairs = folded_pairs({mesh.positions, triangles}, 0, {}, {});
   for (auto& [one, other] : pairs) {
     one = numbers[one];
     other = numbers[other];
@@ -383,7 +383,7 @@ Flags changed_triangles(const Region& before, const Region& after, std::size_t c
 void unfold(const VertexSamples& samples, const Vector3& cell, Crossings* crossings,
             LoopedMesh* looped) {
   for (int i = 0; i < kMostRegions; ++i) {
-    const Pairs pairs = folded_pairs({looped->positions, looped->triangles}, 0, {});
+    const Pairs pairs = folded_pairs({looped->positions, looped->triangles}, 0, {}, {});
     if (pairs.empty()) return;
     Region region = region_around(pairs, {looped->positions, looped->triangles});
     const bool goes_on = unfold_region(samples, cell, crossings, &region);

@@ -209,7 +209,7 @@ double angle_between(const MeshView<std::int32_t>& mesh,
 // Of the ends of edges of the shape that are as sharp as a fold: by how much they turn; 0
 // elsewhere.
 std::vector<float> wedge_turns(const MeshView<std::int32_t>& mesh,
-                               const std::vector<VertexKind>& kinds) {
+                               const std::vector<VertexKind>& kinds, const Progress& progress) {
   std::vector<float> turns(mesh.positions.size(), 0.0F);
   if (kinds.empty()) return turns;
   Flags is_suspect(mesh.triangles.size(), 0);
@@ -219,7 +219,7 @@ std::vector<float> wedge_turns(const MeshView<std::int32_t>& mesh,
           return kinds[static_cast<std::size_t>(v)] != VertexKind::kSurface;
         }) > 1;
   }
-  for (const auto& pair : folded_pairs(mesh, 0, is_suspect)) {
+  for (const auto& pair : folded_pairs(mesh, 0, is_suspect, progress)) {
     const auto turn = static_cast<float>(angle_between(mesh, pair));
     for (const std::int32_t v : shared_vertices(mesh.triangles[pair[0]], mesh.triangles[pair[1]])) {
       float& most = turns[static_cast<std::size_t>(v)];
@@ -234,11 +234,12 @@ std::vector<float> wedge_turns(const MeshView<std::int32_t>& mesh,
 // is known that they do not.
 class CrossingSearch {
  public:
-  CrossingSearch(const FacetedMesh& mesh, const std::vector<Triangle>& original, int threads)
+  CrossingSearch(const FacetedMesh& mesh, const std::vector<Triangle>& original,
+                 const Progress& progress, int threads)
       : original_(original),
         threads_(threads),
         side_(cube_side({mesh.positions, original})),
-        wedge_turns_(wedge_turns({mesh.positions, original}, mesh.kinds)) {}
+        wedge_turns_(wedge_turns({mesh.positions, original}, mesh.kinds, progress)) {}
 
   // The triangles of pairs that are not as they were before the mesh was edited.
   std::vector<std::uint32_t> find(const FacetedMesh& mesh, const Progress& progress) {
@@ -282,7 +283,7 @@ class CrossingSearch {
                                         const Progress& progress) const {
     const MeshView<std::int32_t> all{mesh.positions, mesh.triangles};
     const NearTriangles near =
-        near_triangles(all, 0, where_rough(all, 0, is_suspect, side_), side_);
+        near_triangles(all, 0, where_rough(all, 0, is_suspect, side_, progress), side_, progress);
     std::vector<std::uint32_t> crossing;
     const auto add = [&](const std::vector<std::array<std::uint32_t, 2>>& pairs) {
       for (const auto& pair : pairs) {
@@ -294,7 +295,8 @@ class CrossingSearch {
     };
     const MeshView<std::int32_t> view{mesh.positions, near.triangles};
     add(intersecting_triangles(view, near.is_suspect, progress, threads_));
-    std::vector<std::array<std::uint32_t, 2>> folds = folded_pairs(view, 0, near.is_suspect);
+    std::vector<std::array<std::uint32_t, 2>> folds =
+        folded_pairs(view, 0, near.is_suspect, progress);
     std::erase_if(folds, [&](const auto& pair) {
       const std::vector<std::int32_t> side =
           shared_vertices(view.triangles[pair[0]], view.triangles[pair[1]]);
@@ -383,7 +385,7 @@ void mend(const TriangleParts& patches, const Snapshot& original, Borders border
           const Progress& progress, int threads, EditedMesh* edited,
           std::vector<std::vector<std::uint32_t>>* narrow) {
   FacetedMesh& mesh = edited->mesh;
-  CrossingSearch search(mesh, original.triangles, threads);
+  CrossingSearch search(mesh, original.triangles, progress, threads);
   if (search.find(mesh, progress.part(0.0, 0.4)).empty()) return;
   for (std::size_t i = 0; i < borders.parts.count(); ++i) borders.undo(i, &mesh);
   std::fill(edited->owners.begin(), edited->owners.end(), EditedMesh::kNobody);

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "prefilter/base/pulse.h"
+
 namespace prefilter {
 namespace {
 
@@ -37,8 +39,8 @@ Normal unit_normal(const MeshView<std::int32_t>& mesh, std::size_t t) {
 }
 
 // Those of the vertices at which some normal is more than 60 degrees from the first one.
-Flags rough_vertices(const MeshView<std::int32_t>& mesh, std::size_t first,
-                     const Flags& is_touched) {
+Flags rough_vertices(const MeshView<std::int32_t>& mesh, std::size_t first, const Flags& is_touched,
+                     Pulse* pulse) {
   constexpr float kLeast = 0.51F;  // cosine
   std::vector<std::uint32_t> places(mesh.positions.size());
   std::uint32_t count = 0;
@@ -49,6 +51,7 @@ Flags rough_vertices(const MeshView<std::int32_t>& mesh, std::size_t first,
   std::vector<Normal> firsts(count);
   Flags is_rough(mesh.positions.size(), 0);
   for (std::size_t t = first; t < mesh.triangles.size(); ++t) {
+    pulse->step();
     const auto& corners = mesh.triangles[t];
     const auto is_any = [&](std::int32_t v) {
       return is_touched[static_cast<std::size_t>(v)] != 0;
@@ -70,9 +73,10 @@ Flags rough_vertices(const MeshView<std::int32_t>& mesh, std::size_t first,
 
 // Those between two flagged vertices, in the order of their lower ends.
 std::vector<Side> sides_between(const MeshView<std::int32_t>& mesh, std::size_t first,
-                                const Flags& is_flagged) {
+                                const Flags& is_flagged, Pulse* pulse) {
   std::vector<Side> sides;
   for (std::size_t t = first; t < mesh.triangles.size(); ++t) {
+    pulse->step();
     for (std::size_t k = 0; k < 3; ++k) {
       const auto a = static_cast<std::uint32_t>(mesh.triangles[t][k]);
       const auto b = static_cast<std::uint32_t>(mesh.triangles[t][(k + 1) % 3]);
@@ -89,7 +93,9 @@ std::vector<Side> sides_between(const MeshView<std::int32_t>& mesh, std::size_t 
 
 std::vector<std::array<std::uint32_t, 2>> folded_pairs(const MeshView<std::int32_t>& mesh,
                                                        std::size_t first,
-                                                       std::span<const std::uint8_t> is_suspect) {
+                                                       std::span<const std::uint8_t> is_suspect,
+                                                       const Progress& progress) {
+  Pulse pulse(progress);
   const auto is_counted = [&](std::size_t t) { return is_suspect.empty() || is_suspect[t] != 0; };
   Flags is_touched(mesh.positions.size(), 0);
   for (std::size_t t = first; t < mesh.triangles.size(); ++t) {
@@ -97,7 +103,7 @@ std::vector<std::array<std::uint32_t, 2>> folded_pairs(const MeshView<std::int32
     for (const std::int32_t v : mesh.triangles[t]) is_touched[static_cast<std::size_t>(v)] = 1;
   }
   const std::vector<Side> sides =
-      sides_between(mesh, first, rough_vertices(mesh, first, is_touched));
+      sides_between(mesh, first, rough_vertices(mesh, first, is_touched, &pulse), &pulse);
   std::vector<std::array<std::uint32_t, 2>> pairs;
   for (std::size_t i = 0; i < sides.size(); ++i) {
     for (std::size_t j = i + 1; j < sides.size() && sides[j].low == sides[i].low; ++j) {

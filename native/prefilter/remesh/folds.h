@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
+#include "prefilter/base/progress.h"
 
 namespace prefilter {
 
@@ -17,9 +18,10 @@ namespace prefilter {
 inline constexpr double kFold = -0.5;
 
 /// The pairs of triangles with such an edge, of all from `first` on, with one suspect at least;
-/// without flags all are.
+/// without flags all are. Throws Error(kCancelled).
 std::vector<std::array<std::uint32_t, 2>> folded_pairs(const MeshView<std::int32_t>& mesh,
                                                        std::size_t first,
-                                                       std::span<const std::uint8_t> is_suspect);
+                                                       std::span<const std::uint8_t> is_suspect,
+                                                       const Progress& progress);
 
 }  // namespace prefilter

@@ -15,6 +15,7 @@
 #include <cmath>
 #include <limits>
 
+#include "prefilter/base/pulse.h"
 #include "prefilter/remesh/intersections.h"
 
 namespace prefilter {
@@ -170,7 +171,8 @@ Corners corners_of_box(const MeshView<std::int32_t>& mesh, std::size_t begin, st
 }  // namespace
 
 std::vector<std::uint8_t> where_rough(const MeshView<std::int32_t>& mesh, std::size_t first,
-                                      std::vector<std::uint8_t> is_suspect, double side) {
+                                      std::vector<std::uint8_t> is_suspect, double side,
+                                      const Progress& progress) {
   // The rest takes about as long as a tenth of the suspects.
   constexpr std::size_t kFew = 10;
   const auto suspects = static_cast<std::size_t>(
@@ -178,8 +180,10 @@ std::vector<std::uint8_t> where_rough(const MeshView<std::int32_t>& mesh, std::s
                     [](std::uint8_t flag) { return flag != 0; }));
   if (kFew * suspects < mesh.triangles.size() - first) return is_suspect;
   NormalCubes cubes(side, mesh.triangles.size() - first);
+  Pulse pulse(progress);
   const auto visit = [&](const auto& work) {
     for (std::size_t t = first; t < mesh.triangles.size(); ++t) {
+      pulse.step();
       if (mesh.triangles[t][0] >= 0) work(t, mesh.corners(t));
     }
   };
@@ -191,7 +195,8 @@ std::vector<std::uint8_t> where_rough(const MeshView<std::int32_t>& mesh, std::s
 }
 
 NearTriangles near_triangles(const MeshView<std::int32_t>& mesh, std::size_t first,
-                             std::span<const std::uint8_t> is_suspect, double side) {
+                             std::span<const std::uint8_t> is_suspect, double side,
+                             const Progress& progress) {
   std::size_t count = 0;
   for (std::size_t t = first; t < mesh.triangles.size(); ++t) {
     if (is_suspect[t] != 0 && mesh.triangles[t][0] >= 0) ++count;
@@ -202,7 +207,9 @@ NearTriangles near_triangles(const MeshView<std::int32_t>& mesh, std::size_t fir
   const bool is_any = 2 * count > mesh.triangles.size() - first;
   CubeSet cubes(side, is_any ? 0 : count);
   CubeSet large_cubes(kLargeSide * side, is_any ? 0 : count);
+  Pulse pulse(progress);
   for (std::size_t t = first; t < mesh.triangles.size() && !is_any; ++t) {
+    pulse.step();
     if (is_suspect[t] == 0 || mesh.triangles[t][0] < 0) continue;
     cubes.insert(mesh.corners(t));
     large_cubes.insert(mesh.corners(t));
@@ -211,6 +218,7 @@ NearTriangles near_triangles(const MeshView<std::int32_t>& mesh, std::size_t fir
     const std::size_t end = std::min(begin + kRun, mesh.triangles.size());
     if (!is_any && !large_cubes.meets(corners_of_box(mesh, begin, end))) continue;
     for (std::size_t t = begin; t < end; ++t) {
+      pulse.step();
       if (mesh.triangles[t][0] < 0) continue;
       if (!is_any && is_suspect[t] == 0 && !cubes.meets(mesh.corners(t))) continue;
       near.numbers.push_back(static_cast<std::uint32_t>(t));
@@ -228,7 +236,7 @@ NearTriangles near_triangles(const MeshView<std::int32_t>& mesh, std::size_t fir
 std::vector<std::array<std::uint32_t, 2>> near_intersections(
     const MeshView<std::int32_t>& mesh, std::size_t first, std::span<const std::uint8_t> is_suspect,
     double side, const Progress& progress, int threads) {
-  const NearTriangles near = near_triangles(mesh, first, is_suspect, side);
+  const NearTriangles near = near_triangles(mesh, first, is_suspect, side, progress);
   std::vector<std::array<std::uint32_t, 2>> pairs =
       intersecting_triangles({mesh.positions, near.triangles}, near.is_suspect, progress, threads);
   for (auto& pair : pairs) {

@@ -22,17 +22,19 @@ struct NearTriangles {
 };
 
 /// Those of a mesh from `first` on whose first corner is not negative. Cubes have this side; a few
-/// more triangles may be among them.
+/// more triangles may be among them. Throws Error(kCancelled), as the others do.
 NearTriangles near_triangles(const MeshView<std::int32_t>& mesh, std::size_t first,
-                             std::span<const std::uint8_t> is_suspect, double side);
+                             std::span<const std::uint8_t> is_suspect, double side,
+                             const Progress& progress);
 
 /// Those of the suspects that may meet others, or fold: in a cube where normals are more than 60
 /// degrees off. For a mesh that did not meet itself before pieces of it were made anew.
 std::vector<std::uint8_t> where_rough(const MeshView<std::int32_t>& mesh, std::size_t first,
-                                      std::vector<std::uint8_t> is_suspect, double side);
+                                      std::vector<std::uint8_t> is_suspect, double side,
+                                      const Progress& progress);
 
 /// The pairs of intersecting_triangles, of all from `first` on, with one suspect at least. Only
-/// triangles are looked at that are in one cube with a suspect. Throws Error(kCancelled).
+/// triangles are looked at that are in one cube with a suspect.
 std::vector<std::array<std::uint32_t, 2>> near_intersections(
     const MeshView<std::int32_t>& mesh, std::size_t first, std::span<const std::uint8_t> is_suspect,
     double side, const Progress& progress, int threads);

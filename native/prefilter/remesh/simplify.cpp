@@ -165,12 +165,12 @@ Meetings find_meetings(const std::vector<Vector3>& positions, const std::vector<
     is_suspect.resize(triangles.size(), 0);
   }
   Meetings found;
-  const NearTriangles near = near_triangles({positions, triangles}, 0, is_suspect, side);
+  const NearTriangles near = near_triangles({positions, triangles}, 0, is_suspect, side, progress);
   if (near.triangles.empty()) return found;
   const MeshView<std::int32_t> view{positions, near.triangles};
   auto pairs = intersecting_triangles(view, near.is_suspect, progress, threads);
   for (auto& pair : pairs) pair = {near.numbers[pair[0]], near.numbers[pair[1]]};
-  for (const auto& fold : folded_pairs(view, 0, near.is_suspect)) {
+  for (const auto& fold : folded_pairs(view, 0, near.is_suspect, progress)) {
     // Between regions there are edges of the shape, of any angle.
     const std::array<std::uint32_t, 2> pair = {near.numbers[fold[0]], near.numbers[fold[1]]};
     if (labels.empty() || labels[pair[0]] == labels[pair[1]]) pairs.push_back(pair);

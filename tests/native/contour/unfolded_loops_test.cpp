@@ -43,11 +43,11 @@ std::map<std::pair<std::int32_t, std::int32_t>, int> sides_of(const Triangles& t
 
 TEST(UnfoldedLoops, ALoopIsTriangulatedWithoutFolds) {
   const std::vector<Vector3> at = positions();
-  const Pairs folds = folded_pairs(MeshView<std::int32_t>{at, kFolded}, 0, {});
+  const Pairs folds = folded_pairs(MeshView<std::int32_t>{at, kFolded}, 0, {}, {});
   ASSERT_EQ(folds, (Pairs{{0, 1}}));
   Triangles mended = kFolded;
   EXPECT_TRUE(unfold_loops(at, kPlaces, folds, &mended));
-  EXPECT_TRUE(folded_pairs(MeshView<std::int32_t>{at, mended}, 0, {}).empty());
+  EXPECT_TRUE(folded_pairs(MeshView<std::int32_t>{at, mended}, 0, {}, {}).empty());
   ASSERT_EQ(mended.size(), kFolded.size());
   const auto sides = sides_of(mended);
   const auto count = static_cast<std::int32_t>(kPlaces.size());
@@ -101,10 +101,11 @@ TEST(UnfoldedLoops, NoDiagonalIsInAFace) {
             });
       }
       const auto before = sides_of(triangles).size();
-      const Pairs folds = folded_pairs(MeshView<std::int32_t>{at, triangles}, 0, {});
+      const Pairs folds = folded_pairs(MeshView<std::int32_t>{at, triangles}, 0, {}, {});
       if (!unfold_loops(at, places, folds, &triangles)) continue;
       ++changes;
-      EXPECT_LT(folded_pairs(MeshView<std::int32_t>{at, triangles}, 0, {}).size(), folds.size());
+      EXPECT_LT(folded_pairs(MeshView<std::int32_t>{at, triangles}, 0, {}, {}).size(),
+                folds.size());
       const auto sides = sides_of(triangles);
       EXPECT_EQ(sides.size(), before);
       for (const auto& [side, times] : sides) {

@@ -83,7 +83,7 @@ TEST(FoldedPairs, AreThoseThatTurnByMoreThan120Degrees) {
     if (height > 1.0) {
       EXPECT_GT(expected.size(), 10U);
     }
-    EXPECT_EQ(in_order(folded_pairs(sheet.view(), 0, {})), expected) << height;
+    EXPECT_EQ(in_order(folded_pairs(sheet.view(), 0, {}, {})), expected) << height;
   }
 }
 
@@ -93,7 +93,7 @@ TEST(FoldedPairs, HaveOneSuspectAtLeast) {
   for (std::size_t t = 0; t < is_suspect.size(); t += 5) is_suspect[t] = 1;
   const Pairs expected = sheet.folds(is_suspect);
   EXPECT_GT(expected.size(), 10U);
-  EXPECT_EQ(in_order(folded_pairs(sheet.view(), 0, is_suspect)), expected);
+  EXPECT_EQ(in_order(folded_pairs(sheet.view(), 0, is_suspect, {})), expected);
 }
 
 }  // namespace

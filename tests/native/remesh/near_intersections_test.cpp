@@ -36,7 +36,7 @@ struct Sheets {
 
   std::vector<std::uint8_t> rough() const {
     return where_rough({positions, triangles}, 0, std::vector<std::uint8_t>(triangles.size(), 1),
-                       2.0);
+                       2.0, {});
   }
 };
 
@@ -71,7 +71,7 @@ TEST(WhereRough, LooksAtAllOfFew) {
   sheets.add([](int) { return 0.0; }, false);
   std::vector<std::uint8_t> is_suspect(sheets.triangles.size(), 0);
   is_suspect[5] = 1;
-  EXPECT_EQ(where_rough({sheets.positions, sheets.triangles}, 0, is_suspect, 2.0), is_suspect);
+  EXPECT_EQ(where_rough({sheets.positions, sheets.triangles}, 0, is_suspect, 2.0, {}), is_suspect);
 }
 
 }  // namespace
