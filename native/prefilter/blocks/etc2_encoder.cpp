@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <numeric>
 #include <utility>
 
 #include "prefilter/blocks/block_errors.h"
@@ -33,17 +32,6 @@ EtcTexels texels_of(const std::uint8_t* rgba, int rows, int columns) {
   return texels;
 }
 
-// Where all inside of the image have one color, those beyond count as well, so that all blocks of a
-// color are alike.
-void complete_flat(EtcTexels* texels) {
-  const EtcColor& color = texels->colors[0];
-  for (std::size_t t = 0; t < EtcTexels::kCount; ++t) {
-    if (texels->weights[t] != 0 && texels->colors[t] != color) return;
-  }
-  texels->colors.fill(color);
-  texels->weights.fill(1);
-}
-
 class Etc2Encoder final : public ByteEncoder {
  public:
   Etc2Encoder(std::unique_ptr<ByteEncoder> first, const BlockOptions& options)
@@ -59,13 +47,10 @@ class Etc2Encoder final : public ByteEncoder {
       const std::int64_t error = errors[static_cast<std::size_t>(i)];
       if (error == 0) continue;
       const int columns = i == row.count - 1 ? row.last_columns : static_cast<int>(kSide);
-      EtcTexels texels = texels_of(row.texels + kTexelBytes * i, row.rows_inside, columns);
-      const int inside = columns * row.rows_inside;
-      complete_flat(&texels);
+      const EtcTexels texels = texels_of(row.texels + kTexelBytes * i, row.rows_inside, columns);
       const EtcBlock found = closer(closer(search_etc_plane(texels), search_etc_halves(texels)),
                                     search_etc_paints(texels));
-      const int counted = std::accumulate(texels.weights.begin(), texels.weights.end(), 0);
-      if (std::int64_t{found.error} * inside >= error * counted) continue;
+      if (found.error >= error) continue;
       std::uint8_t* color = blocks + block_bytes_ * (i + 1) - kColorBytes;
       for (int byte = 0; byte < kColorBytes; ++byte) {
         color[byte] = static_cast<std::uint8_t>(found.bits >> (56 - 8 * byte));
