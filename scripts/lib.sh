@@ -36,6 +36,8 @@ export PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin:$caller
 
 host_packages=(ca-certificates cmake ninja-build g++ libgtest-dev python3-dev python3-pip pybind11-dev python3-numpy
   python3-pytest)
+# Others do without it where it is missing.
+((EUID != 0)) || host_packages+=(ccache)
 # Debian's Blender comes without OpenImageIO's and OpenVDB's Python modules, without fonts and without a screen.
 blender_packages=(python3-openimageio openimageio-tools python3-numpy python3-scipy python3-pytest
   python3-pil python3-openvdb fonts-dejavu-core xvfb xauth)
@@ -367,11 +369,23 @@ find_headers() {
   [[ ! -e $folder ]] || pybind11_include=$folder
 }
 
+# use_ccache: what was compiled before, in any checkout, is taken from a cache beside the others; not where the caller
+# has chosen a launcher.
+use_ccache() {
+  [[ -z ${CMAKE_CXX_COMPILER_LAUNCHER:-} ]] && type -P ccache >/dev/null || return 0
+  export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
+  export CCACHE_DIR=${CCACHE_DIR:-$cache_dir/ccache} CCACHE_MAXSIZE=${CCACHE_MAXSIZE:-2G}
+  # As headers are precompiled; paths are relative to the checkout.
+  export CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
+  export CCACHE_BASEDIR=$source_dir CCACHE_NOHASHDIR=1
+}
+
 # setup_host: installs or fetches what building needs, and sets blender_kind and, for a host's Blender, blender_file.
 setup_host() {
   lock "$cache_dir/.lock"
   choose_blender
   ensure_packages "${host_packages[@]}"
+  use_ccache
   ensure_sources
   ensure_wheels
   ensure_reader
@@ -413,8 +427,10 @@ configured() {
 # CMakePresets.json there is cross/<platform>, for each table of scripts/platforms.toml.
 configure() {
   local preset=$1 folder=$build_dir/$1 how=(--preset "$1")
+  # Zig has a cache of its own.
   [[ $preset != cross/* ]] ||
-    how=(-S . -B "$folder" -G Ninja --toolchain "$source_dir/native/cross/zig.cmake" -DCMAKE_BUILD_TYPE=Release)
+    how=(-S . -B "$folder" -G Ninja --toolchain "$source_dir/native/cross/zig.cmake" -DCMAKE_BUILD_TYPE=Release
+      -DCMAKE_C_COMPILER_LAUNCHER= -DCMAKE_CXX_COMPILER_LAUNCHER=)
   shift
   lock "$(build_lock "$preset")"
   if ! configured "$folder" "CMAKE_HOME_DIRECTORY=$source_dir" "$@"; then
