@@ -358,7 +358,7 @@ TEST(ContourTree, NeedsARootWithCells) {
 }
 
 TEST(ContourTree, ThreadsDoNotChangeTheResult) {
-  const CellTree tree = random_tree(11, 7);
+  const CellTree tree = random_tree(11, 6);
   for (const Interpolant interpolant : kInterpolants) {
     const TriangleMesh one = contour_tree(tree, kUnitBox, options_of(interpolant, 1));
     const TriangleMesh three = contour_tree(tree, kUnitBox, options_of(interpolant, 3));
