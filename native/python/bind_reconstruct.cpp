@@ -82,6 +82,7 @@ py::dict to_dict(const ReconstructReport& report) {
   py::dict found;
   found["points"] = report.points;
   found["dropped"] = report.dropped;
+  found["strays"] = report.strays;
   found["outliers"] = report.outliers;
   found["vertices"] = report.vertices;
   found["triangles"] = report.triangles;

@@ -95,6 +95,18 @@ def test_points_that_tell_nothing_are_counted() -> None:
     np.testing.assert_array_equal(found[0], expected[0])
 
 
+def test_strays_are_left_out() -> None:
+    cloud = sphere(20_000)
+    points = np.concatenate([cloud.points, [(20.0, 0.0, 0.0), (0.0, -1e6, 0.0)]])
+    normals = np.concatenate([cloud.normals, [(0.0, 0.0, 1.0)] * 2])
+    report = prefilter.ReconstructionReport()
+    found = prefilter.reconstruct(points, normals, depth=6, report=report)
+    assert (report.points, report.dropped, report.strays) == (20_002, 0, 2)
+    expected = prefilter.reconstruct(cloud.points, cloud.normals, depth=6)
+    np.testing.assert_array_equal(found[0], expected[0])
+    np.testing.assert_array_equal(found[1], expected[1])
+
+
 def test_normals_are_estimated() -> None:
     cloud = CLOUDS["sphere"]
     report = prefilter.ReconstructionReport()

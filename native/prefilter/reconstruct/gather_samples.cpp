@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "prefilter/base/elementary.h"
-#include "prefilter/base/parallel.h"
 #include "prefilter/base/radix_sort.h"
+#include "prefilter/reconstruct/point_batches.h"
 
 namespace prefilter {
 namespace {
@@ -17,14 +17,14 @@ namespace {
 // Of which sums are finite.
 constexpr float kLargestWeight = 1e30F;
 
-float weight_of(const PointBatch& batch, std::size_t i) {
+float float_weight(const PointBatch& batch, std::size_t i) {
   return batch.weights.empty() ? 1.0F : batch.weights[i];
 }
 
 // One over the length of the point's normal; 0 where the point does not count.
 float normal_scale(const PointBatch& batch, std::size_t i) {
   const Vector3& p = batch.positions[i];
-  const float weight = weight_of(batch, i);
+  const float weight = float_weight(batch, i);
   const auto& [x, y, z] = batch.normals[i];
   const float squared = x * x + y * y + z * z;
   const double sum = std::abs(p[0]) + std::abs(p[1]) + std::abs(p[2]);
@@ -35,32 +35,6 @@ float normal_scale(const PointBatch& batch, std::size_t i) {
   const double length =
       elementary::hypot(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
   return length > 1e-37 && std::isfinite(length) ? static_cast<float>(1.0 / length) : 0.0F;
-}
-
-// Reads batches, hands some at a time to threads, and joins what these make of them in order.
-template <typename Part, typename Make, typename Join>
-void for_batches(PointSource* source, const Progress& progress, int threads, const Make& make,
-                 const Join& join) {
-  const auto width = static_cast<std::size_t>(resolve_threads(threads));
-  std::vector<PointBatch> batches(width);
-  std::vector<Part> parts(width);
-  const double count = static_cast<double>(source->count().value_or(0));
-  std::size_t done = 0;
-  source->rewind();
-  for (bool is_more = true; is_more;) {
-    std::size_t filled = 0;
-    while (filled < width) {
-      is_more = source->read(PointOrder::kMostPoints, &batches[filled]);
-      if (!is_more) break;
-      done += batches[filled].positions.size();
-      ++filled;
-    }
-    parallel_for(static_cast<std::int64_t>(filled), threads, Progress(), [&](std::int64_t i) {
-      make(batches[static_cast<std::size_t>(i)], &parts[static_cast<std::size_t>(i)]);
-    });
-    for (std::size_t i = 0; i < filled; ++i) join(parts[i]);
-    progress.report(count > 0.0 ? std::min(1.0, static_cast<double>(done) / count) : 0.0);
-  }
 }
 
 struct Scratch {
@@ -74,7 +48,7 @@ void add_point(const PointBatch& batch, std::size_t i, const SampleGrid& grid,
   const CellPosition at = cell_position(cell.key);
   const Vector3 p = grid.in_cells(batch.positions[i]);
   const float scale = normal_scale(batch, i);
-  const float weight = weight_of(batch, i);
+  const float weight = float_weight(batch, i);
   const std::array<float, 3> n = grid.turned(batch.normals[i]);
   cell.weight += weight;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -126,32 +100,62 @@ const std::vector<std::uint64_t>& PointOrder::sort(const PointBatch& batch,
 }
 
 std::array<float, 3> weighted_normal(const PointBatch& batch, std::size_t i) {
-  const float scale = weight_of(batch, i) * normal_scale(batch, i);
+  const float scale = float_weight(batch, i) * normal_scale(batch, i);
   const auto& [x, y, z] = batch.normals[i];
   return scale > 0.0F ? std::array{scale * x, scale * y, scale * z} : std::array<float, 3>{};
+}
+
+bool does_count(const PointBatch& batch, std::size_t i) { return normal_scale(batch, i) > 0.0F; }
+
+double weight_of(const PointBatch& batch, std::size_t i) {
+  return static_cast<double>(float_weight(batch, i));
+}
+
+void CloudPart::include(const Vector3& point, double point_weight) {
+  box.include(point);
+  weight += point_weight;
+  const double share = 1.0 / static_cast<double>(++points);
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double off = point[a] - mean[a];
+    mean[a] += share * off;
+    squares[a] += off * (point[a] - mean[a]);
+  }
+}
+
+void CloudPart::include(const CloudPart& other) {
+  if (other.points == 0) return;
+  const auto own = static_cast<double>(points);
+  const auto more = static_cast<double>(other.points);
+  box.include(other.box);
+  points += other.points;
+  weight += other.weight;
+  const double share = more / (own + more);
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double off = other.mean[a] - mean[a];
+    mean[a] += share * off;
+    squares[a] += other.squares[a] + own * share * off * off;
+  }
 }
 
 CloudExtent measure_cloud(PointSource* source, const Progress& progress, int threads) {
   CloudExtent extent;
   for_batches<CloudExtent>(
       source, progress, threads,
-      [](const PointBatch& batch, CloudExtent* part) {
-        *part = CloudExtent();
-        part->points = batch.positions.size();
+      [](const PointBatch& batch, CloudExtent* found) {
+        *found = CloudExtent();
+        found->points = batch.positions.size();
         for (std::size_t i = 0; i < batch.positions.size(); ++i) {
-          if (normal_scale(batch, i) > 0.0F) {
-            part->box.include(batch.positions[i]);
-            part->weight += static_cast<double>(weight_of(batch, i));
+          if (does_count(batch, i)) {
+            found->part.include(batch.positions[i], weight_of(batch, i));
           } else {
-            ++part->dropped;
+            ++found->dropped;
           }
         }
       },
-      [&](const CloudExtent& part) {
-        extent.box.include(part.box);
-        extent.points += part.points;
-        extent.dropped += part.dropped;
-        extent.weight += part.weight;
+      [&](const CloudExtent& found) {
+        extent.part.include(found.part);
+        extent.points += found.points;
+        extent.dropped += found.dropped;
       });
   return extent;
 }

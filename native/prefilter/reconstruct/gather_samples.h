@@ -16,12 +16,24 @@
 
 namespace prefilter {
 
+/// Where points are.
+struct CloudPart {
+  Box box = kEmptyBox;
+  std::size_t points = 0;
+  double weight = 0.0;
+  Vector3 mean{};
+  Vector3 squares{};  // of the distances from the mean along each axis, summed
+
+  void include(const Vector3& point, double point_weight);
+  void include(const CloudPart& other);
+};
+
 /// What a first look at a cloud finds.
 struct CloudExtent {
-  Box box = kEmptyBox;      // around the points that count
+  CloudPart part;           // of the points that count
   std::size_t points = 0;   // that there are
   std::size_t dropped = 0;  // that are not finite, have no normal or a weight that is not positive
-  double weight = 0.0;      // of the points that count
+  std::size_t strays = 0;   // that are far from all others
 };
 
 /// Reads the source once.
@@ -50,6 +62,12 @@ class PointOrder {
   std::vector<std::uint64_t> order_;
   std::vector<std::uint64_t> other_;
 };
+
+/// Whether a point of a batch counts.
+bool does_count(const PointBatch& batch, std::size_t i);
+
+/// 1, where a batch has no weights.
+double weight_of(const PointBatch& batch, std::size_t i);
 
 /// A point's normal, 1 long and times its weight; zero for one that does not count.
 std::array<float, 3> weighted_normal(const PointBatch& batch, std::size_t i);

@@ -22,6 +22,7 @@
 #include "prefilter/reconstruct/slab_mesh.h"
 #include "prefilter/reconstruct/slab_walk.h"
 #include "prefilter/reconstruct/slabs.h"
+#include "prefilter/reconstruct/stray_points.h"
 #include "prefilter/reconstruct/surface_level.h"
 #include "prefilter/reconstruct/whole_samples.h"
 #include "prefilter/voxel/voxelize.h"
@@ -171,14 +172,15 @@ void check_options(const ReconstructOptions& options) {
 }
 
 void check_cloud(const CloudExtent& extent) {
-  if (extent.points - extent.dropped < 3) {
+  if (extent.part.points < 3) {
     throw_invalid(
         "points: " + std::to_string(extent.points) + ", of which " +
         std::to_string(extent.dropped) +
         " are not finite and at most 1e300, or have no normal or no weight; at least 3 are "
         "needed");
   }
-  const double longest = std::max({extent.box.size(0), extent.box.size(1), extent.box.size(2)});
+  const Box& box = extent.part.box;
+  const double longest = std::max({box.size(0), box.size(1), box.size(2)});
   if (!(longest > 0.0)) throw_invalid("points: all coincide; a cloud with an extent is needed");
 }
 
@@ -187,23 +189,26 @@ void check_cloud(const CloudExtent& extent) {
 ReconstructReport reconstruct(PointSource* source, const ReconstructOptions& options,
                               MeshSink* sink) {
   check_options(options);
-  const CloudExtent extent =
-      measure_cloud(source, options.progress.part(0.0, 0.1), options.threads);
+  CloudExtent extent = measure_cloud(source, options.progress.part(0.0, 0.08), options.threads);
   check_cloud(extent);
+  leave_out_strays(source, options.progress.part(0.08, 0.1), options.threads, &extent);
+  PointsWithin near(source, extent.part.box);
+  if (extent.strays > 0) source = &near;
   ReconstructReport report;
   report.points = extent.points;
   report.dropped = extent.dropped;
-  const SampleGrid grid = grid_around(extent.box, depth_for(extent.box, options));
+  report.strays = extent.strays;
+  const SampleGrid grid = grid_around(extent.part.box, depth_for(extent.part.box, options));
   report.cell = grid.cell;
   SampleStore store(grid.depth, slab_bits(grid.depth), source->attributes().size(),
                     options.memory_limit / 4, options.folder);
   gather_samples(source, grid, options.progress.part(0.1, 0.4), options.threads, &store);
   report.is_spilled = store.is_spilled();
-  const double mean_weight = extent.weight / static_cast<double>(extent.points - extent.dropped);
+  const double mean_weight = extent.part.weight / static_cast<double>(extent.part.points);
   ReconstructOptions rest = options;
   rest.progress = options.progress.part(0.4, 1.0);
   find_surface(source, grid, rest, mean_weight, &store, sink, &report);
-  report.outliers /= extent.weight;
+  report.outliers /= extent.part.weight;
   return report;
 }
 

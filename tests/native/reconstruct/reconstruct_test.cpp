@@ -61,6 +61,63 @@ Result surface_of(const Cloud& cloud, const ReconstructOptions& options) {
   return result;
 }
 
+void add(const Vector3& point, Cloud* cloud) {
+  cloud->points.push_back(point);
+  cloud->normals.push_back({0.0, 0.0, 1.0});
+  cloud->weights.push_back(1.0F);
+  cloud->attributes.push_back(0.0F);
+}
+
+// A few points far away change nothing but the report.
+TEST(Reconstruct, LeavesOutStrays) {
+  Cloud near = ball(5000);
+  for (Vector3& p : near.points) p = p + Vector3{4e5, 5e6, 100.0};
+  for (const WaveletBasis basis : {WaveletBasis::kHaar, WaveletBasis::kD4}) {
+    ReconstructOptions options;
+    options.basis = basis;
+    options.depth = 5;
+    const Result wanted = surface_of(near, options);
+    EXPECT_EQ(wanted.report.strays, 0U);
+    const std::vector<std::vector<Vector3>> cases = {
+        {{4e5, 5e6 - 20.0, 100.0}},
+        {{0.0, 0.0, 0.0}},
+        {{0.0, 0.0, 0.0}, {4e5, 5e6 - 2000.0, 100.0}, {4e5, 5e6, 107.0}},
+        {{4e5 + 1e200, 5e6, 100.0}}};
+    for (const std::vector<Vector3>& strays : cases) {
+      Cloud cloud = near;
+      for (const Vector3& p : strays) add(p, &cloud);
+      for (const int threads : {1, 3}) {
+        options.threads = threads;
+        const Result found = surface_of(cloud, options);
+        EXPECT_EQ(found.report.strays, strays.size()) << strays[0][1];
+        EXPECT_EQ(found.report.points, near.points.size() + strays.size());
+        EXPECT_EQ(found.report.dropped, 0U);
+        EXPECT_EQ(found.mesh.positions, wanted.mesh.positions);
+        EXPECT_EQ(found.mesh.triangles, wanted.mesh.triangles);
+        EXPECT_EQ(found.attributes, wanted.attributes);
+      }
+    }
+  }
+}
+
+TEST(Reconstruct, StraysAreFewAndFar) {
+  ReconstructOptions options;
+  options.depth = 4;
+  const auto strays_with = [&](int count, double distance, int more) {
+    Cloud cloud = ball(count);
+    for (int i = 0; i < more; ++i) add({distance, 0.01 * i, 0.0}, &cloud);
+    return surface_of(cloud, options).report.strays;
+  };
+  EXPECT_EQ(strays_with(5000, 8.0, 3), 3U);
+  EXPECT_EQ(strays_with(5000, 8.0, 4), 0U);
+  EXPECT_EQ(strays_with(5000, 1.8, 1), 0U);
+  EXPECT_EQ(strays_with(1500, 8.0, 1), 1U);
+  EXPECT_EQ(strays_with(1500, 8.0, 2), 0U);
+  EXPECT_EQ(strays_with(900, 100.0, 1), 0U);
+  EXPECT_EQ(strays_with(500'000, 8.0, 5), 5U);
+  EXPECT_EQ(strays_with(500'000, 8.0, 6), 0U);
+}
+
 TEST(Reconstruct, OfABallIsClosedAndNear) {
   const Cloud cloud = ball(10000);
   for (const WaveletBasis basis : {WaveletBasis::kHaar, WaveletBasis::kD4}) {

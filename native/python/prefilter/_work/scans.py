@@ -102,6 +102,9 @@ def oddities(report: "prefilter.ReconstructionReport") -> list[str]:
         dropped = amount(report.dropped, "point")
         text = "left out, because they have no normal, no finite position or no weight: {}"
         found.append(Sentence(text, dropped))
+    if report.strays:
+        strays = amount(report.strays, "point")
+        found.append(Sentence("left out, because they are far from all others: {}", strays))
     if report.outliers > _FEW:
         outliers = f"{100.0 * report.outliers:.2g} %"
         text = (

@@ -45,6 +45,8 @@ class ReconstructionReport:
     Attributes:
         points: That there were.
         dropped: Of these, how many were left out: not finite, without a normal, or of no weight.
+        strays: How many of the others were left out, because they are at least about twice as far
+            from the middle as the rest: one point in 100 000 at most, and of 1000 or more up to 3.
         outliers: The share of the others, by weight, that was left out because it lies much thinner
             than most: from 0 to 1.
         vertices: Of the mesh.
@@ -57,6 +59,7 @@ class ReconstructionReport:
 
     points: int = 0
     dropped: int = 0
+    strays: int = 0
     outliers: float = 0.0
     vertices: int = 0
     triangles: int = 0

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Points that are far from all others: a scanner's zeros in coordinates of a country, a bird.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "prefilter/base/geometry.h"
+#include "prefilter/base/progress.h"
+#include "prefilter/reconstruct/gather_samples.h"
+#include "prefilter/scan/point_source.h"
+
+namespace prefilter {
+
+/// Takes strays out of what was found of a cloud: the one in 100 000 points (one in 1000, where
+/// that are up to 3) that is about twice as far from the mean of all as the others are, or farther.
+/// Reads the source again where there may be such, once for each distance that they have.
+void leave_out_strays(PointSource* source, const Progress& progress, int threads,
+                      CloudExtent* extent);
+
+/// A source whose points outside of a box have no weight.
+class PointsWithin final : public PointSource {
+ public:
+  PointsWithin(PointSource* source, const Box& box) : source_(source), box_(box) {}
+
+  std::optional<std::size_t> count() const override { return source_->count(); }
+  bool has_normals() const override { return source_->has_normals(); }
+  const std::vector<PointAttribute>& attributes() const override { return source_->attributes(); }
+  std::optional<Vector3> viewpoint() const override { return source_->viewpoint(); }
+  bool is_double() const override { return source_->is_double(); }
+  void rewind() override { source_->rewind(); }
+  bool read(std::size_t most, PointBatch* batch) override;
+
+ private:
+  PointSource* source_;
+  Box box_;
+};
+
+}  // namespace prefilter
