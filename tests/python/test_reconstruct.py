@@ -2,6 +2,9 @@
 
 """Points to surfaces, against the surfaces that the points were taken from."""
 
+import re
+from pathlib import Path
+
 import numpy as np
 import prefilter
 import pytest
@@ -93,6 +96,32 @@ def test_points_that_tell_nothing_are_counted() -> None:
     assert (report.points, report.dropped) == (20_000, 5)
     expected = prefilter.reconstruct(points[5:], normals[5:], depth=6)
     np.testing.assert_array_equal(found[0], expected[0])
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"trim": 1e-6}, "trim: 1e-06 cells leave no triangle; more are needed, or none"),
+        ({"isovalue": 40}, "isovalue: 40 is nowhere; values are about 0 outside and 1 inside"),
+    ],
+)
+def test_a_surface_of_nothing_is_refused(
+    options: dict[str, float], message: str, tmp_path: Path
+) -> None:
+    cloud = sphere(2000)
+    with pytest.raises(ValueError, match=re.escape(message)):
+        prefilter.reconstruct(cloud.points, cloud.normals, depth=6, **options)
+    source, target = tmp_path / "points.ply", tmp_path / "mesh.ply"
+    rows = np.hstack([cloud.points, cloud.normals])
+    header = "ply\nformat ascii 1.0\nelement vertex 2000\n"
+    header += "".join(f"property float {name}\n" for name in ("x", "y", "z", "nx", "ny", "nz"))
+    text = "\n".join(" ".join(f"{value:.6g}" for value in row) for row in rows)
+    source.write_text(f"{header}end_header\n{text}\n")
+    target.write_text("before")
+    with pytest.raises(ValueError, match=re.escape(message)):
+        prefilter.reconstruct_file(source, target, depth=6, **options)
+    assert target.read_text() == "before"
+    assert sorted(tmp_path.iterdir()) == [target, source]
 
 
 def test_strays_are_left_out() -> None:

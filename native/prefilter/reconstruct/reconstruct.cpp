@@ -184,6 +184,20 @@ void check_cloud(const CloudExtent& extent) {
   if (!(longest > 0.0)) throw_invalid("points: all coincide; a cloud with an extent is needed");
 }
 
+// A mesh of nothing helps nobody.
+void check_mesh(const ReconstructOptions& options, const ReconstructReport& report) {
+  if (report.triangles > 0) return;
+  if (options.trim) {
+    throw_invalid("trim: " + to_text(*options.trim) +
+                  " cells leave no triangle; more are needed, or none");
+  }
+  if (options.isovalue == Isovalue::kGiven) {
+    throw_invalid("isovalue: " + to_text(options.given_isovalue) +
+                  " is nowhere; values are about 0 outside and 1 inside");
+  }
+  throw_invalid("points: the function is nowhere half full; use isovalue \"auto\"");
+}
+
 }  // namespace
 
 ReconstructReport reconstruct(PointSource* source, const ReconstructOptions& options,
@@ -209,6 +223,7 @@ ReconstructReport reconstruct(PointSource* source, const ReconstructOptions& opt
   rest.progress = options.progress.part(0.4, 1.0);
   find_surface(source, grid, rest, mean_weight, &store, sink, &report);
   report.outliers /= extent.part.weight;
+  check_mesh(options, report);
   return report;
 }
 

@@ -72,8 +72,8 @@ struct ReconstructReport {
 /// rounding for any order of the points.
 ///
 /// Throws Error for options out of range, cells that are too small, fewer than 3 points that count,
-/// or points that all coincide, normals that cancel each other everywhere; what the source and the
-/// sink throw; Error(kOutOfMemory); Error(kCancelled).
+/// or points that all coincide, normals that cancel each other everywhere, a mesh of no triangle;
+/// what the source and the sink throw; Error(kOutOfMemory); Error(kCancelled).
 ReconstructReport reconstruct(PointSource* source, const ReconstructOptions& options,
                               MeshSink* sink);
 

@@ -125,7 +125,8 @@ def reconstruct(
         closed and two-manifold.
 
     Raises:
-        ValueError: A shape, type or value is wrong; fewer than 3 points count; all coincide.
+        ValueError: A shape, type or value is wrong; fewer than 3 points count; all coincide; an
+            iso-value or a trim leaves nothing.
         MemoryError: The result would not fit into memory.
         OSError: A file cannot be read, or a temporary one not written.
         Cancelled: `progress` returned False.
