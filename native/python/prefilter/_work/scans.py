@@ -16,6 +16,7 @@ from .wording import Sentence, amount, listed
 
 STREAMED_TARGET = ".ply"
 
+_LABELS = {"cell_size": "Voxel Size", "trim": "Trim", "isovalue": "Iso-Value"}
 _FEW = 1e-3
 """The share of outliers that every scan may have."""
 
@@ -64,7 +65,10 @@ def labeled() -> Iterator[None]:
     try:
         yield
     except ValueError as error:
-        raise ValueError(str(error).replace("cell_size:", "Voxel Size:")) from error
+        message = str(error)
+        for name, label in _LABELS.items():
+            message = message.replace(f"{name}:", f"{label}:")
+        raise ValueError(message) from error
 
 
 def options(settings: ScanSettings) -> dict[str, Any]:
