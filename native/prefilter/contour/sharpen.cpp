@@ -162,7 +162,7 @@ std::vector<BlamedLoop> blame(const Pairs& pairs, const LoopTriangles& made, con
     for (const std::uint32_t t : pairs[p]) {
       for (const std::int32_t corner : mesh.triangles[t]) {
         const auto v = static_cast<std::size_t>(corner);
-        if (v >= crossings.fitted.size()) continue;
+        if (v >= crossings.size()) continue;
         if (!crossings.put_back(v, &mesh.positions[v])) continue;
         (*is_moved)[v] = 1;
       }
@@ -202,9 +202,9 @@ void draw_back(std::size_t i, const LinkedLoops& loops, LoopStates* states, Flag
 Flags may_intersect(const LayeredMesh& layered, const Crossings& crossings, Flags is_suspect) {
   const auto is_on_line = [&](std::int32_t corner) {
     const auto v = static_cast<std::size_t>(corner);
-    if (v >= crossings.fitted.size()) return true;  // inside of its cell
+    if (v >= crossings.size()) return true;  // inside of its cell
     const Vector3& at = layered.mesh.positions[v];
-    const Vector3& fitted = crossings.fitted[v];
+    const Vector3 fitted = crossings.fitted(v);
     return (at[0] != fitted[0]) + (at[1] != fitted[1]) + (at[2] != fitted[2]) <= 1;
   };
   for (std::size_t t = layered.near; t < layered.loops; ++t) {
@@ -314,12 +314,12 @@ class Mending {
   FacetedMesh mend(const FeaturePlaces& places) {
     const std::vector<Feature> wanted = states_.features;
     std::vector<Vector3>& positions = layered_.mesh.positions;
-    const std::vector<Vector3>& fitted = crossings_.fitted;
+    const std::size_t fitted = crossings_.size();
     const std::vector<Vector3> wanted_places(
-        positions.begin(), positions.begin() + static_cast<std::ptrdiff_t>(fitted.size()));
-    changes_ = {Flags(loops_.size(), 1), Flags(fitted.size(), 0)};
-    for (std::size_t v = 0; v < fitted.size(); ++v) {
-      if (positions[v] != fitted[v]) changes_.vertices[v] = 1;
+        positions.begin(), positions.begin() + static_cast<std::ptrdiff_t>(fitted));
+    changes_ = {Flags(loops_.size(), 1), Flags(fitted, 0)};
+    for (std::size_t v = 0; v < fitted; ++v) {
+      if (positions[v] != crossings_.fitted(v)) changes_.vertices[v] = 1;
     }
     do {
       visit_changed([&](Place place) { give_way(places, &place); });

@@ -368,10 +368,9 @@ FacetedMesh cut_tree(const RootFrame& frame, const ContourOptions& options,
                                      progress.part(0.35, 0.45), threads);
   SurfaceVertices& vertices = *cut;
   if (fits) {
-    edges.crossings.plain = vertices.positions();
+    const std::vector<Vector3> plain = vertices.positions();
     fit_vertices(tree, frame, progress.part(0.45, 0.5), threads, &vertices);
-    edges.crossings.fitted = vertices.positions();
-    edges.crossings.middle = halfway(tree, frame, vertices);
+    edges.crossings = crossings_of(tree, frame, plain, vertices);
   }
   const double cell = least_cell(frame, cells.depth());
   const Vector3 smallest = frame.cells(cells.depth());
