@@ -3,6 +3,7 @@
 // Contours without folds.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "prefilter/base/geometry.h"
