@@ -216,7 +216,6 @@ Flags may_intersect(const LayeredMesh& layered, const Crossings& crossings, Flag
 }
 
 // Of the triangles that are suspect, the pairs that intersect, of those that may, and that fold.
-// Among all triangles: those far from edges stay, and are in the way of what leaves its lines.
 struct MetPairs {
   Pairs intersecting;
   Pairs folded;
@@ -226,16 +225,18 @@ MetPairs met_pairs(const LayeredMesh& layered, const Crossings& crossings, const
                    double cell, const Progress& progress, int threads) {
   // From so few of all on, what is near them is looked for first.
   constexpr std::ptrdiff_t kFew = 8;
+  // Among all triangles: those far from edges stay, and are in the way of what leaves its lines.
+  const std::size_t first = 0;
   const MeshView<std::int32_t> view{layered.mesh.positions, layered.mesh.triangles};
   const double side = kCubeCells * cell;
   const Flags may_meet = where_rough(view, layered.near,
                                      may_intersect(layered, crossings, is_suspect), side, progress);
   const auto suspects = std::count(is_suspect.begin(), is_suspect.end(), std::uint8_t{1});
   if (kFew * suspects > std::ssize(is_suspect)) {
-    return {near_intersections(view, 0, may_meet, side, progress, threads),
-            folded_pairs(view, 0, is_suspect, progress)};
+    return {near_intersections(view, first, may_meet, side, progress, threads),
+            folded_pairs(view, first, is_suspect, progress)};
   }
-  const NearTriangles near = near_triangles(view, 0, is_suspect, side, progress);
+  const NearTriangles near = near_triangles(view, first, is_suspect, side, progress);
   Flags near_may_meet(near.numbers.size());
   for (std::size_t i = 0; i < near.numbers.size(); ++i) {
     near_may_meet[i] = may_meet[near.numbers[i]];
