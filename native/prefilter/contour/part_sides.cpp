@@ -23,7 +23,7 @@ constexpr std::int64_t kLeavesPerTask = 64;
 // Of wedges between two parts. They end where they are thinner than a share of what cells reach
 // over across them, if their tip is within reach of features.
 constexpr double kAcute = -0.6;  // 53 degrees
-constexpr double kThinnest = 0.55;
+constexpr double kThinnest = 0.5;
 constexpr double kTipCells = 4.0;
 constexpr double kThickestCells = 2.0;
 
