@@ -76,8 +76,9 @@ class BilinearSystem {
   /// for `add`.
   void add_finer_means(const MomentBlock<C>& block);
   /// Adds those of the means of the next finer level, by its coupling with this one.
-  void add_finer_means(const LevelCoupling& coupling, const Image& means, int threads) {
-    coupling.add_fine(means, system_, threads, &finer_means_);
+  void add_finer_means(const LevelCoupling& coupling, const Image& means, const Progress& progress,
+                       int threads) {
+    coupling.add_fine(means, system_, progress, threads, &finer_means_);
   }
 
   struct Solution {
@@ -148,9 +149,9 @@ class BilinearSystem {
 template <int C>
 void add_coupled_means(const std::vector<LevelCoupling>& couplings,
                        const std::vector<std::unique_ptr<BilinearSystem<C>>>& systems,
-                       int threads) {
+                       const Progress& progress, int threads) {
   for (std::size_t k = 0; k + 1 < systems.size(); ++k) {
-    systems[k + 1]->add_finer_means(couplings[k], systems[k]->means(), threads);
+    systems[k + 1]->add_finer_means(couplings[k], systems[k]->means(), progress, threads);
   }
 }
 

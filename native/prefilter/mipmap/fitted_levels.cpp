@@ -53,7 +53,7 @@ TargetSquares sum_up(const FilteredImage& image, const TexelSource& swept,
         systems->add(block);
         if (block.means != nullptr) systems->add_finer_means(block);
       });
-  if (has_footprint) systems->add_coupled_means(threads);
+  if (has_footprint) systems->add_coupled_means(progress.part(1.0, 1.0), threads);
   return squares;
 }
 

@@ -130,9 +130,10 @@ void LevelCoupling::subtract_coarse(const NinePointSystem<float>& fine,
 
 template <typename Texel>
 void LevelCoupling::add_fine_texels(const Texel& texel, const NinePointSystem<float>& coarse,
-                                    int threads, std::vector<LaneValues>* sums) const {
+                                    const Progress& progress, int threads,
+                                    std::vector<LaneValues>* sums) const {
   // Each band of the next level's rows collects what comes to it, in the order of the finer rows.
-  parallel_ranges(y_.next_size, kRowsAtOnce, threads, Progress(), [&](int begin, int end) {
+  parallel_ranges(y_.next_size, kRowsAtOnce, threads, progress, [&](int begin, int end) {
     for (int y = 0; y < y_.size; ++y) {
       for (int slot = 0; slot < 3; ++slot) {
         const int row = rows_[y][slot];
@@ -155,10 +156,11 @@ void LevelCoupling::subtract_fine(const NinePointSystem<float>& fine,
                                   const NinePointSystem<float>& coarse, float scale, int threads,
                                   std::vector<LaneValues>* sums) const {
   const auto texel = [&](int x, int y) { return -scale * fine.texel(fine.at(x, y)).v; };
-  add_fine_texels(texel, coarse, threads, sums);
+  add_fine_texels(texel, coarse, Progress(), threads, sums);
 }
 
-void LevelCoupling::add_fine(const Image& image, const NinePointSystem<float>& coarse, int threads,
+void LevelCoupling::add_fine(const Image& image, const NinePointSystem<float>& coarse,
+                             const Progress& progress, int threads,
                              std::vector<LaneValues>* sums) const {
   const auto texel = [&](int x, int y) {
     const float* values = image.view().texel(x, y);
@@ -166,7 +168,7 @@ void LevelCoupling::add_fine(const Image& image, const NinePointSystem<float>& c
     for (int c = 0; c < image.channels; ++c) lanes[c] = values[c];
     return lanes;
   };
-  add_fine_texels(texel, coarse, threads, sums);
+  add_fine_texels(texel, coarse, progress, threads, sums);
 }
 
 template void LevelCoupling::add<1>(const MomentBlock<1>&);

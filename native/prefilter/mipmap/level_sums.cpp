@@ -38,8 +38,8 @@ void LevelSystems<C>::expect_finer_means() {
 }
 
 template <int C>
-void LevelSystems<C>::add_coupled_means(int threads) {
-  prefilter::add_coupled_means(couplings, linear, threads);
+void LevelSystems<C>::add_coupled_means(const Progress& progress, int threads) {
+  prefilter::add_coupled_means(couplings, linear, progress, threads);
   std::vector<LevelCoupling>().swap(couplings);
 }
 

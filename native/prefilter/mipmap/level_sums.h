@@ -31,7 +31,7 @@ struct LevelSystems {
   /// As those of TrilinearSystem; the first is to be called before blocks are added.
   void expect_finer_means();
   void add_finer_means(const MomentBlock<C>& block) { linear.front()->add_finer_means(block); }
-  void add_coupled_means(int threads);
+  void add_coupled_means(const Progress& progress, int threads);
 
  private:
   int width_;

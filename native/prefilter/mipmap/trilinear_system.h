@@ -34,8 +34,8 @@ class TrilinearSystem {
   void expect_finer_means();
   void add_finer_means(const MomentBlock<C>& block) { systems_.front()->add_finer_means(block); }
   /// To be called once all blocks are there.
-  void add_coupled_means(int threads) {
-    prefilter::add_coupled_means(couplings_, systems_, threads);
+  void add_coupled_means(const Progress& progress, int threads) {
+    prefilter::add_coupled_means(couplings_, systems_, progress, threads);
   }
 
   /// As BilinearSystem::add_links, for a level.

@@ -142,7 +142,7 @@ TEST(LevelSums, CouplingsCarryMeansToTheNextLevel) {
   const NinePointSystem<float> coarse(kSize / 4, kSize / 4, kClamped);
   std::vector<LaneValues> sums(coarse.size());
   sums[0].v[0] = 10.0F;
-  coupling.add_fine(finer, coarse, 1, &sums);
+  coupling.add_fine(finer, coarse, Progress(), 1, &sums);
   for (const auto& [i, j] : {std::pair(0, 0), std::pair(1, 0), std::pair(0, 1), std::pair(1, 1)}) {
     const double before = i + j == 0 ? 10.0 : 0.0;
     EXPECT_NEAR(sums[coarse.at(i, j)].v[0], before + tent_integral(finer.view(), 2, i, j), 5e-3);
