@@ -37,12 +37,12 @@ def add_table(
 ) -> None:
     """Adds a table of times; pairs are runs of the same round."""
     rows = []
-    for name, runs in results.items():
+    for peer, runs in results.items():
         seconds = [run.seconds for run in runs]
         pairs = [a.seconds / b.seconds for a, b in zip(runs, results[reference], strict=True)]
         peak, start = max(run.peak_mib for run in runs), max(run.start_mib for run in runs)
         cells = [
-            name,
+            peer,
             f"{statistics.median(seconds):.3f}",
             f"{min(seconds):.3f} - {max(seconds):.3f}",
             f"{medians_ratio(runs, results[reference]):.2f}",

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import bpy
-from prefilter._work.files import textures
+from prefilter._work.files import target_files
 
 from ..bridge import images
 from . import udim
@@ -60,7 +60,7 @@ class Pattern:
 
 def is_texture(path: str) -> bool:
     """Tells whether a path has the extension of a texture file."""
-    return os.path.splitext(path)[1].lower() in textures.EXTENSIONS
+    return os.path.splitext(path)[1].lower() in target_files.EXTENSIONS
 
 
 def format_of(path: str) -> str:
@@ -119,7 +119,7 @@ def paths(
 def _written(path: str, tiles: Sequence[int]) -> Iterator[Path]:
     """Yields the files that a bake to a path writes, or may write."""
     for one in udim.paths(path, tiles):
-        yield from textures.written(Path(os.path.realpath(one)))
+        yield from target_files.written(Path(os.path.realpath(one)))
 
 
 def source_files() -> Iterator[Path]:

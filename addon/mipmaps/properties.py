@@ -189,16 +189,16 @@ def _draw_result(settings: Any, layout: bpy.types.UILayout) -> None:
 
 def _draw_compression(settings: Any, layout: bpy.types.UILayout) -> None:
     """Draws what some formats of files have a choice of."""
-    from prefilter._work.files import engines
+    from prefilter._work.files import target_files
 
     ending = f".{settings.file_format}"
-    if engines.has_formats(ending):
+    if target_files.has_formats(ending):
         layout.prop(settings, "texture_format")
         layout.prop(settings, "effort")
         row = layout.row()
         row.active = not settings.texture_format.startswith(_OF_ANY_SIDES)
         row.prop(settings, "use_multiples_of_4")
-    if engines.has_supercompression(ending):
+    if target_files.has_supercompression(ending):
         # ETC1S has a compression of its own.
         is_etc1s = settings.texture_format == "etc1s"
         layout.prop(settings, "quality" if is_etc1s else "supercompression")

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import bpy
-from prefilter._work.files import engines, textures
+from prefilter._work.files import engines, target_files
 from prefilter._work.mipmaps import checks, contents
 from prefilter._work.mipmaps.checks import Rough
 from prefilter._work.mipmaps.outputs import Outputs
@@ -134,7 +134,7 @@ def read_level_0(request: Request) -> Level0:
     """Copies the image, and checks what its settings say of it."""
     image, settings = request.image, request.settings
     numbers = images.tile_numbers(image)
-    targets = [textures.check_target(path) for path in udim.paths(settings.filepath, numbers)]
+    targets = [target_files.check_target(path) for path in udim.paths(settings.filepath, numbers)]
     if not targets and not settings.use_images and request.writes_image:
         raise ValueError(Sentence("nothing to write: choose level images or a file"))
     pictures = [images.read_tile(image, number) for number in numbers]

@@ -6,8 +6,8 @@ Usage: scripts/run python3 bench/voxels/facets.py [--size N] [--interpolants NAM
 
 The columns: the share of the area more than 2 and 10 degrees off the shape where it is nearest; the
 edges that turn by more than 120 degrees where the shape's do not; pairs of triangles that cut each
-other; triangles; seconds. The truth of booleans is manifold3d's (PyPI); without it they are left
-out. Cuts are counted as by edges.py.
+other; triangles. The truth of booleans is manifold3d's (PyPI); without it they are left out. Cuts
+are counted as by edges.py.
 """
 
 import argparse
@@ -24,7 +24,7 @@ from bench.report import Report, add_json_option
 from bench.voxels import booleans, edges, measures
 from bench.voxels.sharp_shapes import Shape, Solid, at_height, circle, cube, cylinder, rotation
 
-HEAD = ("subject", "contour", "off 2&deg; %", "off 10&deg; %", "folds", "cuts", "triangles", "s")
+HEAD = ("subject", "contour", "off 2&deg; %", "off 10&deg; %", "folds", "cuts", "triangles")
 AREA = 0.001
 Parts = tuple[Shape, ...]
 
@@ -109,7 +109,7 @@ def main() -> None:
         truth = subject.truth
         for text in options.interpolants:
             how = edges.Contour.named(text)
-            positions, triangles, seconds = edges.contour(subject, options.size, how)
+            positions, triangles, _ = edges.contour(subject, options.size, how)
             off = measures.degrees_off(positions, triangles, truth.positions, truth.triangles, cell)
             wrong = float((off > 10).mean())
             folds = measures.folds(positions, triangles, 120, subject.edges, cell)
@@ -123,7 +123,6 @@ def main() -> None:
                     str(folds),
                     str(cuts),
                     str(len(triangles)),
-                    f"{seconds:.2f}",
                 ]
             )
             if how.interpolant == "sharp":

@@ -61,7 +61,7 @@ def main() -> None:
             rows.append([name, f"{thickness:g}", *map(str, found), f"{own:.1f}", f"{volume:.1f}"])
     report.table(
         f"Of {options.poses} poses, those with other parts or holes than the shape",
-        ["shape", "cells", "as it is", "thickened", "folds", "volume", "thickened"],
+        ["shape", "cells", "as it is", "thickened", "folds", "volume", "volume, thickened"],
         rows,
         "poses",
     )

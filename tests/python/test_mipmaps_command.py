@@ -3,6 +3,8 @@
 """The command `mipmaps`: files of levels as the package's functions make them."""
 
 import os
+import subprocess
+import sys
 
 import numpy as np
 import prefilter
@@ -293,6 +295,19 @@ def test_what_is_up_to_date_is_skipped(texture, quad, tmp_path, capsys):
     made, _ = prefilter.read_ktx2(out)
     for one, other in zip(found, made, strict=True):
         np.testing.assert_array_equal(one, other)
+
+
+def test_finding_all_up_to_date_loads_nothing_slow(texture, tmp_path):
+    arguments = ["mipmaps", str(texture), "-o", str(tmp_path / "l.ktx2"), "--skip-up-to-date"]
+    assert run(*arguments) == 0
+    program = (
+        f"import sys; from prefilter._command import program; program.main({arguments})\n"
+        "print(*sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    said, loaded = done.stdout.splitlines()
+    assert said.startswith("Up to date")
+    assert not {"numpy", "OpenImageIO", "trimesh"} & set(loaded.split())
 
 
 def test_roughness_counts_where_a_set_is_up_to_date(quad, tmp_path, capsys):

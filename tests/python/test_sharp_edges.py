@@ -183,6 +183,41 @@ def test_acute_rims_have_no_teeth(degrees, seed):
     check_sound(f"{degrees} {seed}", positions, triangles)
 
 
+def block_with_a_lip(wide):
+    """A block that a plane at 45 degrees to its top leaves a wedge of, and what covers the rest.
+
+    At y = 4 the block is cut off but for a lip behind the wedge's edge, x = 0: as wide there as is
+    given, it comes to a point 16 / 3 times as far on.
+    """
+    end = 4 + 16 * (wide + 1) / 3
+    outline = [(-3, -12), (12, -12), (12, 4), (wide, 4), (-1, end), (-3, end)]
+    block = sharp_shapes.Solid()
+    block.prism(np.array(outline, float), -12, 0)
+    cover = bench_solids.box((-30, -30, -30), (30, 30, 0))
+    cosine = np.sqrt(0.5)
+    tilt = np.array([[cosine, 0, cosine], [0, 1, 0], [-cosine, 0, cosine]])
+    return (np.array(block.points), np.array(block.triangles)), (
+        cover.positions @ tilt.T,
+        cover.triangles,
+    )
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_lips_are_not_cut_where_the_shape_ends_behind_them(seed):
+    """A wedge's tip is cut off where it is too thin for cells: a lip of two cells has but a tip."""
+    wide = 2.0
+    turn = bench_solids.random_rotation(seed)
+    offset = 32 + np.random.default_rng(seed).uniform(-0.5, 0.5, 3)
+    meshes = [(p @ turn.T + offset, t) for p, t in block_with_a_lip(wide)]
+    bounds = ((0, 0, 0), (64, 64, 64))
+    block, cover = (prefilter.voxelize(*mesh, depth=6, bounds=bounds) for mesh in meshes)
+    positions, triangles = block.difference(cover).contour(interpolant="sharp", sources=meshes)
+    along = ((positions - offset) @ turn)[np.unique(triangles), 1]
+    # There it is 1.34 cells wide.
+    assert along.max() > 7.5
+    check_sound(f"lip {seed}", positions, triangles.astype(np.int64))
+
+
 @pytest.mark.parametrize("seed", range(1, 7))
 def test_slits_between_slabs_do_not_fold(seed):
     """A slit of half a cell is bridged here and there; slabs turn by 90 degrees at their edges."""

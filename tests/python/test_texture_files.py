@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import prefilter
 import pytest
-from prefilter.textures.ktx2_reader import read_metadata
+from prefilter.textures.ktx2_metadata import read_metadata
 from texture_readers import FORMATS, read_dds, read_ktx2
 
 WRITERS = {"dds": (prefilter.write_dds, read_dds), "ktx2": (prefilter.write_ktx2, read_ktx2)}

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import bpy
-from prefilter._work.files import engines, textures
+from prefilter._work.files import target_files
 
 from ...bridge import images
 from ...bridge.files import scenes, staging
@@ -120,16 +120,18 @@ def _bake_some(options: argparse.Namespace, settings: Settings) -> None:
         options.usage_error("nothing to write: give --output FILE or --save")
     paths = (settings.filepath, settings.roughness_filepath)
     settings = source.fitted(options, settings, paths)
-    if settings.texture_format != "auto" and not any(map(engines.has_formats, paths)):
+    if settings.texture_format != "auto" and not any(map(target_files.has_formats, paths)):
         options.usage_error(
             f"--texture-format: found '{settings.texture_format}', which is for .dds and .ktx2 "
             f"files"
         )
-    if settings.effort != "normal" and not any(map(engines.has_formats, paths)):
+    if settings.effort != "normal" and not any(map(target_files.has_formats, paths)):
         options.usage_error(
             f"--effort: found '{settings.effort}', which is for .dds and .ktx2 files"
         )
-    if settings.supercompression != "none" and not any(map(engines.has_supercompression, paths)):
+    if settings.supercompression != "none" and not any(
+        map(target_files.has_supercompression, paths)
+    ):
         options.usage_error(
             f"--supercompression: found '{settings.supercompression}', which is for .ktx2 files"
         )
@@ -145,7 +147,7 @@ def _bake_some(options: argparse.Namespace, settings: Settings) -> None:
     targets = unnamed.output_paths(settings.filepath, chosen)
     for image, target in zip(chosen, targets, strict=True):
         for file in udim.paths(target, images.tile_numbers(image)):
-            textures.check_target(file)
+            target_files.check_target(file)
     settings = replace(settings, roughness=_roughness_name(settings.roughness))
     failed: list[str] = []
     for image, target in zip(chosen, targets, strict=True):

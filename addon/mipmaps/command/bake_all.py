@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import bpy
-from prefilter._work.files import engines
+from prefilter._work.files import target_files
 
 from ...bridge import meshes
 from ...bridge.files import scenes, staging
@@ -85,16 +85,16 @@ def _check(options: argparse.Namespace, settings: Settings, pattern: file_names.
         options.usage_error("--manifest: needs --output FOLDER, and no --list")
     if pattern.text and not file_names.is_texture(pattern.text):
         options.usage_error(f"--output: '{pattern.text}' has no extension of a texture file")
-    if settings.texture_format != "auto" and not engines.has_formats(pattern.text):
+    if settings.texture_format != "auto" and not target_files.has_formats(pattern.text):
         options.usage_error(
             f"--texture-format: found '{settings.texture_format}', which is for .dds and .ktx2 "
             f"files"
         )
-    if settings.effort != "normal" and not engines.has_formats(pattern.text):
+    if settings.effort != "normal" and not target_files.has_formats(pattern.text):
         options.usage_error(
             f"--effort: found '{settings.effort}', which is for .dds and .ktx2 files"
         )
-    if settings.supercompression != "none" and not engines.has_supercompression(pattern.text):
+    if settings.supercompression != "none" and not target_files.has_supercompression(pattern.text):
         options.usage_error(
             f"--supercompression: found '{settings.supercompression}', which is for .ktx2 files"
         )

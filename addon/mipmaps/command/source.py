@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import bpy
-from prefilter._work.files import engines
+from prefilter._work.files import target_files
 
 from ...bridge import images, meshes
 from ...bridge.files import scenes
@@ -63,11 +63,11 @@ def fitted(options: argparse.Namespace, settings: Settings, paths: Iterable[str]
     What a user has given stays, and is to be refused.
     """
     found = given(options, Settings)
-    if "texture_format" not in found and not any(map(engines.has_formats, paths)):
+    if "texture_format" not in found and not any(map(target_files.has_formats, paths)):
         settings = replace(settings, texture_format="auto")
-    if "effort" not in found and not any(map(engines.has_formats, paths)):
+    if "effort" not in found and not any(map(target_files.has_formats, paths)):
         settings = replace(settings, effort="normal")
-    if "supercompression" not in found and not any(map(engines.has_supercompression, paths)):
+    if "supercompression" not in found and not any(map(target_files.has_supercompression, paths)):
         settings = replace(settings, supercompression="none")
     return settings
 

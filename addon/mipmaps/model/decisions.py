@@ -5,7 +5,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from prefilter._work.files import engines
+from prefilter._work.files import target_files
 from prefilter._work.mipmaps import blocks
 from prefilter._work.mipmaps.blocks import is_gray
 
@@ -60,7 +60,7 @@ def texture_format(item: Item, picture: Picture, content: str, target: Path | No
     Returns:
         A key of `choices.TEXTURE_FORMATS`; "auto" for a file that has no choice of formats.
     """
-    if target is None or not engines.has_formats(target.name):
+    if target is None or not target_files.has_formats(target.name):
         return "auto"
     return blocks.suiting(
         picture,
@@ -76,7 +76,7 @@ def shown_format(picture: Picture, target: Path | None, chosen: str) -> str:
     if target is None:
         return ""
     extension = target.suffix.lower()
-    if engines.has_formats(target.name):
+    if target_files.has_formats(target.name):
         if chosen == "auto":
             chosen = "rgba16f" if picture.is_float else "rgba8"
         return TEXTURE_FORMATS[chosen].label

@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from prefilter._work.files import textures
+from prefilter._work.files import target_files
 
 from ...bridge.files import staging
 from ...bridge.files.staging import StagedFile
@@ -71,7 +71,7 @@ def _entries(rows: Sequence[Row], written: set[Path], folder: Path) -> Iterator[
         files = [
             Path(os.path.relpath(file, folder)).as_posix()
             for path in udim.paths(row.file, row.tiles)
-            for file in textures.written(Path(os.path.realpath(path)))
+            for file in target_files.written(Path(os.path.realpath(path)))
             if file in written
         ]
         if files:

@@ -100,7 +100,7 @@ class PREFILTER_OT_bake_model(
         return self._model.discard if self._model is not None else super().releaser()
 
     def _planned(self, context: bpy.types.Context) -> "ModelBake":
-        from prefilter._work.files import engines
+        from prefilter._work.files import target_files
 
         from .. import file_names
         from ..model.bake import ModelBake
@@ -125,7 +125,7 @@ class PREFILTER_OT_bake_model(
             raise ValueError("\n".join(Results(planned.left_out).nothing()))
         images = [image_of(item.full_name) for item in planned.items]
         pattern = file_names.Pattern.in_folder(folder, f".{own.file_format}")
-        if not engines.has_formats(pattern.text):
+        if not target_files.has_formats(pattern.text):
             shared = replace(shared, texture_format="auto")
         paths = file_names.paths(pattern, images)
         files = {image.name_full: file for image, file in zip(images, paths, strict=True)}

@@ -6,28 +6,61 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "prefilter/base/geometry.h"
 
 namespace prefilter {
 
-/// Where vertices between cells go back to, in this order.
-struct Crossings {
-  std::vector<Vector3> fitted;  // before they were sampled
-  std::vector<Vector3> plain;   // of two cells alone
-  std::vector<Vector3> middle;  // halfway between the centers of cells: never folded
+/// Where vertices between cells go back to: to where they were before they were sampled, then to
+/// the place that two cells alone say, then halfway between the centers of their cells, where loops
+/// never fold. All three are on one line along an axis.
+class Crossings {
+ public:
+  Crossings() = default;
+  /// Of vertices where they are before they are sampled; `set` says the rest of each.
+  explicit Crossings(std::vector<Vector3> fitted)
+      : middles_(std::move(fitted)), others_(middles_.size()), axes_(middles_.size(), 0) {}
+
+  void set(std::size_t v, std::size_t axis, double middle, double plain) {
+    axes_[v] = static_cast<std::uint8_t>(axis);
+    others_[v] = {std::exchange(middles_[v][axis], middle), plain};
+  }
+
+  std::size_t size() const { return middles_.size(); }
+  const Vector3& middle(std::size_t v) const { return middles_[v]; }
+  Vector3 fitted(std::size_t v) const { return along(v, others_[v].fitted); }
+  /// Along its line.
+  void move_middle(std::size_t v, const Vector3& position) { middles_[v] = position; }
 
   /// Moves a vertex to the next of them; returns whether there is one.
   bool put_back(std::size_t v, Vector3* position) const {
-    if (*position == middle[v]) return false;
-    if (*position == plain[v]) {
-      *position = middle[v];
+    if (*position == middle(v)) return false;
+    const Vector3 plain = along(v, others_[v].plain);
+    if (*position == plain) {
+      *position = middle(v);
     } else {
-      *position = *position == fitted[v] ? plain[v] : fitted[v];
+      *position = *position == fitted(v) ? plain : fitted(v);
     }
     return true;
   }
+
+ private:
+  struct Others {
+    double fitted;
+    double plain;
+  };
+
+  Vector3 along(std::size_t v, double place) const {
+    Vector3 position = middles_[v];
+    position[axes_[v]] = place;
+    return position;
+  }
+
+  std::vector<Vector3> middles_;
+  std::vector<Others> others_;  // along the axis
+  std::vector<std::uint8_t> axes_;
 };
 
 /// A loop of a contour whose vertices are on different sides of an edge.

@@ -23,9 +23,10 @@ constexpr std::int64_t kLeavesPerTask = 64;
 // Of wedges between two parts. They end where they are thinner than a share of what cells reach
 // over across them, if their tip is within reach of features.
 constexpr double kAcute = -0.6;  // 53 degrees
-constexpr double kThinnest = 0.55;
+constexpr double kThinnest = 0.5;
 constexpr double kTipCells = 4.0;
 constexpr double kThickestCells = 2.0;
+constexpr double kBodyCells = 1.0;  // that a wedge has to go on behind where it ends
 
 float value_at(const ContourTree& tree, const RootFrame& frame, const Vector3& point) {
   CellNode cell = tree.root();
@@ -119,6 +120,12 @@ std::optional<std::array<Vector3, 2>> PartSides::wedge_normals(const Parts& part
   return outward;
 }
 
+bool PartSides::is_between(const Parts& parts, const Vector3& point) const {
+  const std::optional<Parts> there = parts_near(point);
+  return there && there->numbers == parts.numbers &&
+         is_inside(*there, there->inside_at(point)).value_or(false);
+}
+
 std::optional<bool> PartSides::side_in_wedge(const Parts& parts, const Vector3& center,
                                              const Vector3& size) const {
   const std::optional<std::array<Vector3, 2>> outward = wedge_normals(parts);
@@ -142,6 +149,13 @@ std::optional<bool> PartSides::side_in_wedge(const Parts& parts, const Vector3& 
   const double cosine_of_tip = std::min(1.0, -cosine);
   const double slope = 2.0 * std::sqrt((1.0 - cosine_of_tip) / (1.0 + cosine_of_tip));
   if (thickness > slope * kTipCells * surface_.cell()) return std::nullopt;
+  // It has to go on behind that, or nothing of it would be left.
+  const Vector3 middle = center + ((below_first - below_second) / dot(across, across)) * across;
+  const Vector3 outer = first + second;
+  const double width = length(outer);
+  if (!(width > 0.0)) return std::nullopt;
+  const double way = (kThinnest * reach - thickness) / width + kBodyCells * surface_.cell();
+  if (!is_between(parts, middle - (way / width) * outer)) return std::nullopt;
   return false;
 }
 

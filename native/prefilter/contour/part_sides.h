@@ -55,6 +55,8 @@ class PartSides {
   // The normals, outward, of the planes of two parts between which the shape is; none where it is
   // elsewhere, too.
   std::optional<std::array<Vector3, 2>> wedge_normals(const Parts& parts) const;
+  // Whether the shape is at a point, and both parts are near.
+  bool is_between(const Parts& parts, const Vector3& point) const;
   // The side of a leaf in the tip of a wedge, where the occupancies of single cells would leave
   // teeth. All leaves are inside that its middle runs through, so that it has no holes, up to where
   // it is too thin for that: from there on, the loops at its end reach to its tip.

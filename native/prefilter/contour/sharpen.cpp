@@ -23,6 +23,7 @@
 #include "prefilter/contour/relaxed_features.h"
 #include "prefilter/contour/second_try.h"
 #include "prefilter/remesh/folds.h"
+#include "prefilter/remesh/intersections.h"
 #include "prefilter/remesh/near_intersections.h"
 
 namespace prefilter {
@@ -161,7 +162,7 @@ std::vector<BlamedLoop> blame(const Pairs& pairs, const LoopTriangles& made, con
     for (const std::uint32_t t : pairs[p]) {
       for (const std::int32_t corner : mesh.triangles[t]) {
         const auto v = static_cast<std::size_t>(corner);
-        if (v >= crossings.fitted.size()) continue;
+        if (v >= crossings.size()) continue;
         if (!crossings.put_back(v, &mesh.positions[v])) continue;
         (*is_moved)[v] = 1;
       }
@@ -201,9 +202,9 @@ void draw_back(std::size_t i, const LinkedLoops& loops, LoopStates* states, Flag
 Flags may_intersect(const LayeredMesh& layered, const Crossings& crossings, Flags is_suspect) {
   const auto is_on_line = [&](std::int32_t corner) {
     const auto v = static_cast<std::size_t>(corner);
-    if (v >= crossings.fitted.size()) return true;  // inside of its cell
+    if (v >= crossings.size()) return true;  // inside of its cell
     const Vector3& at = layered.mesh.positions[v];
-    const Vector3& fitted = crossings.fitted[v];
+    const Vector3 fitted = crossings.fitted(v);
     return (at[0] != fitted[0]) + (at[1] != fitted[1]) + (at[2] != fitted[2]) <= 1;
   };
   for (std::size_t t = layered.near; t < layered.loops; ++t) {
@@ -214,6 +215,44 @@ Flags may_intersect(const LayeredMesh& layered, const Crossings& crossings, Flag
   return is_suspect;
 }
 
+// Of the triangles that are suspect, the pairs that intersect, of those that may, and that fold.
+struct MetPairs {
+  Pairs intersecting;
+  Pairs folded;
+};
+
+MetPairs met_pairs(const LayeredMesh& layered, const Crossings& crossings, const Flags& is_suspect,
+                   double cell, const Progress& progress, int threads) {
+  // From so few of all on, what is near them is looked for first.
+  constexpr std::ptrdiff_t kFew = 8;
+  // Among all triangles: those far from edges stay, and are in the way of what leaves its lines.
+  const std::size_t first = 0;
+  const MeshView<std::int32_t> view{layered.mesh.positions, layered.mesh.triangles};
+  const double side = kCubeCells * cell;
+  const Flags may_meet = where_rough(view, layered.near,
+                                     may_intersect(layered, crossings, is_suspect), side, progress);
+  const auto suspects = std::count(is_suspect.begin(), is_suspect.end(), std::uint8_t{1});
+  if (kFew * suspects > std::ssize(is_suspect)) {
+    return {near_intersections(view, first, may_meet, side, progress, threads),
+            folded_pairs(view, first, is_suspect, progress)};
+  }
+  const NearTriangles near = near_triangles(view, first, is_suspect, side, progress);
+  Flags near_may_meet(near.numbers.size());
+  for (std::size_t i = 0; i < near.numbers.size(); ++i) {
+    near_may_meet[i] = may_meet[near.numbers[i]];
+  }
+  const MeshView<std::int32_t> near_view{layered.mesh.positions, near.triangles};
+  MetPairs met{intersecting_triangles(near_view, near_may_meet, progress, threads),
+               folded_pairs(near_view, 0, near.is_suspect, progress)};
+  for (Pairs* pairs : {&met.intersecting, &met.folded}) {
+    for (auto& [t, u] : *pairs) {
+      t = near.numbers[t];
+      u = near.numbers[u];
+    }
+  }
+  return met;
+}
+
 // Of the triangles that are suspect: those that intersect any, that fold, and that are upside down.
 // Triangles of a plane that overlap need not intersect, by rounding: then one is upside down.
 Pairs faulty_pairs(const LayeredMesh& layered, const Crossings& crossings, const Flags& is_suspect,
@@ -222,12 +261,9 @@ Pairs faulty_pairs(const LayeredMesh& layered, const Crossings& crossings, const
                    int threads) {
   const double cell = surface.cell();
   const MeshView<std::int32_t> view{layered.mesh.positions, layered.mesh.triangles};
-  const double side = kCubeCells * cell;
-  const Flags may_meet = where_rough(view, layered.near,
-                                     may_intersect(layered, crossings, is_suspect), side, progress);
-  // Among all triangles: those far from edges stay, and are in the way of what leaves its lines.
-  Pairs pairs = near_intersections(view, 0, may_meet, side, progress, threads);
-  for (const auto& fold : folded_pairs(view, 0, is_suspect, progress)) {
+  MetPairs met = met_pairs(layered, crossings, is_suspect, cell, progress, threads);
+  Pairs pairs = std::move(met.intersecting);
+  for (const auto& fold : met.folded) {
     if (are_at_edge(view, layered.mesh.labels, fold, surface, samples, turned)) continue;
     pairs.push_back(fold);
   }
@@ -279,12 +315,12 @@ class Mending {
   FacetedMesh mend(const FeaturePlaces& places) {
     const std::vector<Feature> wanted = states_.features;
     std::vector<Vector3>& positions = layered_.mesh.positions;
-    const std::vector<Vector3>& fitted = crossings_.fitted;
+    const std::size_t fitted = crossings_.size();
     const std::vector<Vector3> wanted_places(
-        positions.begin(), positions.begin() + static_cast<std::ptrdiff_t>(fitted.size()));
-    changes_ = {Flags(loops_.size(), 1), Flags(fitted.size(), 0)};
-    for (std::size_t v = 0; v < fitted.size(); ++v) {
-      if (positions[v] != fitted[v]) changes_.vertices[v] = 1;
+        positions.begin(), positions.begin() + static_cast<std::ptrdiff_t>(fitted));
+    changes_ = {Flags(loops_.size(), 1), Flags(fitted, 0)};
+    for (std::size_t v = 0; v < fitted; ++v) {
+      if (positions[v] != crossings_.fitted(v)) changes_.vertices[v] = 1;
     }
     do {
       visit_changed([&](Place place) { give_way(places, &place); });

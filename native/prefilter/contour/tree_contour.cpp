@@ -47,17 +47,25 @@ struct TaskTriangles {
 };
 
 // What tells whether there is an edge of the shape between two vertices.
-struct Division {
-  const FeatureSurface& surface;
-  const VertexSamples& samples;
+class Division {
+ public:
+  Division(const FeatureSurface& surface, const VertexSamples& samples)
+      : surface_(surface), samples_(samples), tips_(samples.tips) {
+    std::sort(tips_.begin(), tips_.end());
+  }
 
   bool operator()(std::int32_t a, std::int32_t b) const {
-    return are_divided(surface, samples, a, b);
+    return are_divided(surface_, samples_, a, b);
   }
   // Loops are fans around these.
   bool is_tip(std::int32_t vertex) const {
-    return std::find(samples.tips.begin(), samples.tips.end(), vertex) != samples.tips.end();
+    return samples_.of(vertex) != nullptr && std::binary_search(tips_.begin(), tips_.end(), vertex);
   }
+
+ private:
+  const FeatureSurface& surface_;
+  const VertexSamples& samples_;
+  std::vector<std::int32_t> tips_;  // in order
 };
 
 constexpr std::array<unsigned, 12> kFacesOfEdges = [] {
@@ -360,10 +368,9 @@ FacetedMesh cut_tree(const RootFrame& frame, const ContourOptions& options,
                                      progress.part(0.35, 0.45), threads);
   SurfaceVertices& vertices = *cut;
   if (fits) {
-    edges.crossings.plain = vertices.positions();
+    const std::vector<Vector3> plain = vertices.positions();
     fit_vertices(tree, frame, progress.part(0.45, 0.5), threads, &vertices);
-    edges.crossings.fitted = vertices.positions();
-    edges.crossings.middle = halfway(tree, frame, vertices);
+    edges.crossings = crossings_of(tree, frame, plain, vertices);
   }
   const double cell = least_cell(frame, cells.depth());
   const Vector3 smallest = frame.cells(cells.depth());
@@ -379,7 +386,7 @@ FacetedMesh cut_tree(const RootFrame& frame, const ContourOptions& options,
     return mesh;
   }
   sample_edges(tree, frame, options.thickened, progress.part(0.5, 0.6), threads, &vertices, &edges);
-  const Division division = {*edges.surface(), edges.samples};
+  const Division division(*edges.surface(), edges.samples);
   LoopedMesh looped = make_loops(tree, &division, progress.part(0.6, 0.85), threads, &vertices);
   cut.reset();
   if (!edges.smooth_parts) {

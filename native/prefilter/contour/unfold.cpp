@@ -19,27 +19,51 @@
 
 namespace prefilter {
 
-std::vector<Vector3> halfway(const ContourTree& tree, const RootFrame& frame,
-                             const SurfaceVertices& vertices) {
-  std::vector<Vector3> positions = vertices.positions();
-  const auto visit = [&](const auto& self, const CellNode& cell,
-                         const CellCoordinates& at) -> void {
+namespace {
+
+// Calls visit(vertex, axis, place) for each vertex: the axis of its line, and where on that it is
+// halfway between the centers of its cells.
+template <typename Visit>
+void for_vertices(const ContourTree& tree, const RootFrame& frame, const SurfaceVertices& vertices,
+                  const Visit& visit) {
+  const auto descend = [&](const auto& self, const CellNode& cell,
+                           const CellCoordinates& at) -> void {
     const auto level = static_cast<std::size_t>(cell.depth);
     std::size_t vertex = vertices.first(level, cell.octants);
     for (std::uint64_t cuts = vertices.cuts(level, cell.octants); cuts != 0; cuts &= cuts - 1) {
       const int bit = std::countr_zero(cuts);
       const CellCoordinates leaf = octant_at(at, bit / 6);
       const auto axis = static_cast<std::size_t>(bit % 6 / 2);
-      positions[vertex++][axis] = frame.position(
-          static_cast<int>(axis), leaf[axis] + ((bit & 1) != 0 ? 1.0 : 0.0), cell.depth + 1);
+      visit(vertex++, axis,
+            frame.position(static_cast<int>(axis), leaf[axis] + ((bit & 1) != 0 ? 1.0 : 0.0),
+                           cell.depth + 1));
     }
     for (int o = 0; o < 8; ++o) {
       const CellNode octant = tree.octant(cell, o);
       if (octant.is_split) self(self, octant, octant_at(at, o));
     }
   };
-  if (tree.root().is_split) visit(visit, tree.root(), {0, 0, 0});
+  if (tree.root().is_split) descend(descend, tree.root(), {0, 0, 0});
+}
+
+}  // namespace
+
+std::vector<Vector3> halfway(const ContourTree& tree, const RootFrame& frame,
+                             const SurfaceVertices& vertices) {
+  std::vector<Vector3> positions = vertices.positions();
+  for_vertices(tree, frame, vertices, [&](std::size_t vertex, std::size_t axis, double place) {
+    positions[vertex][axis] = place;
+  });
   return positions;
+}
+
+Crossings crossings_of(const ContourTree& tree, const RootFrame& frame,
+                       std::span<const Vector3> plain, const SurfaceVertices& vertices) {
+  Crossings crossings(vertices.positions());
+  for_vertices(tree, frame, vertices, [&](std::size_t vertex, std::size_t axis, double place) {
+    crossings.set(vertex, axis, place, plain[vertex][axis]);
+  });
+  return crossings;
 }
 
 namespace {
@@ -161,8 +185,8 @@ std::vector<GridPlace> places_of(const Region& region, const Vector3& cell,
                                  const Crossings& crossings) {
   std::vector<GridPlace> places(region.vertices.size(), kNoPlace);
   for (std::size_t v = 0; v < places.size(); ++v) {
-    if (region.vertices[v] >= crossings.middle.size()) continue;
-    const Vector3& middle = crossings.middle[region.vertices[v]];
+    if (region.vertices[v] >= crossings.size()) continue;
+    const Vector3& middle = crossings.middle(region.vertices[v]);
     for (std::size_t a = 0; a < 3; ++a) {
       places[v][a] = static_cast<std::int32_t>(std::lround(2.0 * middle[a] / cell[a]));
     }
@@ -228,7 +252,7 @@ std::optional<Slide> best_slide(const std::array<std::uint32_t, 2>& pair,
       const Vector3 from = region->positions[v];
       for (const double share : kSlides) {
         Vector3& position = region->positions[v];
-        position = crossings.middle[region->vertices[v]];
+        position = crossings.middle(region->vertices[v]);
         for (std::size_t a = 0; a < 3; ++a) {
           if (places[v][a] % 2 == 0) position[a] = (0.5 * places[v][a] + share) * cell[a];
         }
@@ -274,7 +298,7 @@ void slide(std::span<const GridPlace> places, const Vector3& cell, const Folds& 
         continue;
       }
       sum = left;
-      crossings->middle[region->vertices[best->vertex]] = best->position;
+      crossings->move_middle(region->vertices[best->vertex], best->position);
       has_slid = true;
     }
   }
@@ -286,7 +310,7 @@ Flags movable_vertices(const VertexSamples& samples, const Crossings& crossings,
   Flags is_movable(region.vertices.size(), 0);
   for (std::size_t v = 0; v < is_movable.size(); ++v) {
     const std::size_t vertex = region.vertices[v];
-    if (vertex >= crossings.fitted.size()) continue;
+    if (vertex >= crossings.size()) continue;
     is_movable[v] = samples.index.empty() || samples.index[vertex] < 0 ? 1 : 0;
   }
   return is_movable;
@@ -330,8 +354,8 @@ void write_back(const Region& region, std::vector<Vector3>* positions,
 
 // Whether a vertex is on the line between its two cells.
 bool is_on_line(std::size_t vertex, const Vector3& position, const Crossings& crossings) {
-  if (vertex >= crossings.middle.size()) return false;
-  const Vector3& middle = crossings.middle[vertex];
+  if (vertex >= crossings.size()) return false;
+  const Vector3& middle = crossings.middle(vertex);
   return (position[0] != middle[0]) + (position[1] != middle[1]) + (position[2] != middle[2]) <= 1;
 }
 
@@ -339,8 +363,8 @@ bool is_on_line(std::size_t vertex, const Vector3& position, const Crossings& cr
 // folds at which others are have been mended.
 Pairs plain_folds(const MeshView<std::int32_t>& mesh, const Crossings& crossings) {
   Flags is_halfway(mesh.positions.size(), 0);
-  for (std::size_t v = 0; v < crossings.middle.size(); ++v) {
-    is_halfway[v] = mesh.positions[v] == crossings.middle[v] ? 1 : 0;
+  for (std::size_t v = 0; v < crossings.size(); ++v) {
+    is_halfway[v] = mesh.positions[v] == crossings.middle(v) ? 1 : 0;
   }
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> numbers;
@@ -404,7 +428,7 @@ void unfold_plain_loops(const VertexSamples& samples, const Vector3& cell, Cross
     const std::size_t vertex = before.vertices[v];
     if (!is_on_line(vertex, before.positions[v], *crossings)) {
       places[v] = kNoPlace;
-    } else if (before.positions[v] == crossings->middle[vertex]) {
+    } else if (before.positions[v] == crossings->middle(vertex)) {
       is_movable[v] = 1;
     }
   }

@@ -3,6 +3,7 @@
 // Contours without folds.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "prefilter/base/geometry.h"
@@ -19,6 +20,10 @@ namespace prefilter {
 /// Where vertices are halfway between the centers of their cells.
 std::vector<Vector3> halfway(const ContourTree& tree, const RootFrame& frame,
                              const SurfaceVertices& vertices);
+
+/// Where vertices go back to that are fitted now; `plain` is where they were before that.
+Crossings crossings_of(const ContourTree& tree, const RootFrame& frame,
+                       std::span<const Vector3> plain, const SurfaceVertices& vertices);
 
 /// Triangulates loops that fold anew; where that does not do, puts their vertices back, but for
 /// those that were sampled, or moves them toward those around them. `cell` has the sides of the

@@ -30,12 +30,12 @@ float tent_integral(const Moments& m, int row_stride, int i, int j) {
 }
 
 // Integrals of the image over a cell times the tents there.
-template <int C>
-NinePointSystem<float>::TentIntegrals tent_integrals(const CellMoments<C>& moments) {
+template <std::size_t C>
+NinePointSystem<float>::TentIntegrals tent_integrals(const std::array<ImageMoments, C>& moments) {
   NinePointSystem<float>::TentIntegrals integrals{};
   for (int k = 0; k < 4; ++k) {
-    for (int c = 0; c < C; ++c) {
-      integrals[k].v[c] = tent_integral(moments.image[c], 2, k % 2, k / 2);
+    for (std::size_t c = 0; c < C; ++c) {
+      integrals[k].v[static_cast<int>(c)] = tent_integral(moments[c], 2, k % 2, k / 2);
     }
   }
   return integrals;
@@ -75,7 +75,7 @@ void BilinearSystem<C>::add_dual_cell(const CellMoments<C>& moments, int column,
     const std::ptrdiff_t texel = corner(column, row, k);
     if (texel >= 0) weights_[texel] += tent_integral(moments.weight, 3, k % 2, k / 2);
   }
-  system_.add_cell(column, row, products, tent_integrals(moments));
+  system_.add_cell(column, row, products, tent_integrals(moments.image));
 }
 
 template <int C>
@@ -87,7 +87,7 @@ std::ptrdiff_t BilinearSystem<C>::corner(int column, int row, int k) const {
 
 template <int C>
 void BilinearSystem<C>::add_finer_means(const MomentBlock<C>& block) {
-  for_each_dual_cell(block, [this](const CellMoments<C>& moments, int column, int row) {
+  for_each_dual_cell_of_means(block, [this](const auto& moments, int column, int row) {
     const NinePointSystem<float>::TentIntegrals integrals = tent_integrals(moments);
     for (int k = 0; k < 4; ++k) {
       const std::ptrdiff_t texel = corner(column, row, k);

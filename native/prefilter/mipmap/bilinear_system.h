@@ -4,12 +4,14 @@
 // image over the surface (section 7.3 with the bilinear basis).
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "prefilter/base/image.h"
 #include "prefilter/base/lanes.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/base/wrap.h"
+#include "prefilter/mipmap/level_coupling.h"
 #include "prefilter/mipmap/seam_links.h"
 #include "prefilter/mipmap/seam_search.h"
 #include "prefilter/solve/nine_point_system.h"
@@ -68,10 +70,16 @@ class BilinearSystem {
   /// The means p_j, 0 for texels that nothing reads; to be called once all blocks are there.
   Image means() const;
 
-  /// Makes room for `add_finer_means`, which adds the integrals over the cells of one block whose
-  /// image is the means of the next finer level. Blocks as for `add`.
+  /// Makes room for `add_finer_means`.
   void expect_finer_means() { finer_means_.resize(system_.size()); }
+  /// Adds the integrals over the cells of one block of the means of level 0, for level 1. Blocks as
+  /// for `add`.
   void add_finer_means(const MomentBlock<C>& block);
+  /// Adds those of the means of the next finer level, by its coupling with this one.
+  void add_finer_means(const LevelCoupling& coupling, const Image& means, const Progress& progress,
+                       int threads) {
+    coupling.add_fine(means, system_, progress, threads, &finer_means_);
+  }
 
   struct Solution {
     Image image;                      // texels that nothing reads are 0
@@ -135,5 +143,16 @@ class BilinearSystem {
   std::vector<LaneValues> target_;  // integrals of b_j times the target
   float pull_ = 0.0F;
 };
+
+/// Adds the means of each level to what the next one needs of them: couplings[k] is that of
+/// systems[k] and systems[k + 1].
+template <int C>
+void add_coupled_means(const std::vector<LevelCoupling>& couplings,
+                       const std::vector<std::unique_ptr<BilinearSystem<C>>>& systems,
+                       const Progress& progress, int threads) {
+  for (std::size_t k = 0; k + 1 < systems.size(); ++k) {
+    systems[k + 1]->add_finer_means(couplings[k], systems[k]->means(), progress, threads);
+  }
+}
 
 }  // namespace prefilter

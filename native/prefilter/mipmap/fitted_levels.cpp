@@ -35,27 +35,25 @@ TargetSquares sum_up(const FilteredImage& image, const TexelSource& swept,
                      const std::vector<const Surface*>& surfaces, bool has_squares, int last_level,
                      const MipmapOptions& options, const Progress& progress, Systems* systems) {
   const WrapModes wrap = options.wrap;
+  const int threads = options.threads;
   const bool has_footprint = options.footprint != 0.0;
-  TargetSquares squares;
-  const Progress first = has_footprint ? progress.part(0.0, 0.55) : progress;
-  squares.image = sum_image<C>(mapped(surfaces, swept, wrap, first.part(0.0, 0.1), options.threads),
-                               swept, image.floats(), wrap, options.reader, has_squares, last_level,
-                               first.part(0.1, 1.0), options.threads,
-                               [&](const MomentBlock<C>& block) { systems->add(block); });
-  if (!has_footprint) return squares;
-
-  const Progress second = progress.part(0.55, 1.0);
-  const std::vector<Image> level_means = systems->means();
-  systems->expect_finer_means();
-  const std::vector<unsigned char> read =
-      needs_surface(options.filter) ? looked_up_texels(surfaces, swept.width, swept.height, wrap,
-                                                       second.part(0.0, 0.1), options.threads)
-                                    : std::vector<unsigned char>();
-  const Image image_means = tent_means(image.floats(), read, wrap, options.threads);
-  sum_means<C>(
-      mapped(surfaces, swept, wrap, second.part(0.1, 0.2), options.threads), image_means.view(),
-      level_means, image.floats(), wrap, has_squares, second.part(0.2, 1.0), options.threads,
-      [&](const MomentBlock<C>& block) { systems->add_finer_means(block); }, &squares);
+  Image means;
+  if (has_footprint) {
+    systems->expect_finer_means();
+    const std::vector<unsigned char> read =
+        needs_surface(options.filter) ? looked_up_texels(surfaces, swept.width, swept.height, wrap,
+                                                         progress.part(0.0, 0.1), threads)
+                                      : std::vector<unsigned char>();
+    means = tent_means(image.floats(), read, wrap, threads);
+  }
+  const TexelTriangles triangles = mapped(surfaces, swept, wrap, progress.part(0.1, 0.2), threads);
+  const TargetSquares squares = sum_image<C>(
+      triangles, {swept, image.floats(), has_footprint ? &means : nullptr}, wrap, options.reader,
+      has_squares, last_level, progress.part(0.2, 1.0), threads, [&](const MomentBlock<C>& block) {
+        systems->add(block);
+        if (block.means != nullptr) systems->add_finer_means(block);
+      });
+  if (has_footprint) systems->add_coupled_means(progress.part(1.0, 1.0), threads);
   return squares;
 }
 

@@ -17,6 +17,11 @@ namespace prefilter {
 template <int C>
 ChannelSums integral_with(const MomentBlock<C>& block, const ImageView& image, WrapModes wrap);
 
+/// The same of the means in place of the block's image.
+template <int C>
+ChannelSums integral_of_means_with(const MomentBlock<C>& block, const ImageView& image,
+                                   WrapModes wrap);
+
 /// The integral over a block of level 0 of the square of an image that is decoded after the lookup.
 template <int C>
 ChannelSums integral_of_decoded_square(const MomentBlock<C>& block);

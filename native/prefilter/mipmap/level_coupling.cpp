@@ -57,41 +57,55 @@ LevelCoupling::LevelCoupling(int width, int height, int next_width, int next_hei
       rows_(y_.next_texels()),
       products_(static_cast<std::size_t>(width) * height) {}
 
+std::vector<LevelCoupling::Overlap> LevelCoupling::overlaps(const Axis& axis,
+                                                            const CellPlace* places,
+                                                            const CellPlace* next_places,
+                                                            int count) {
+  std::vector<Overlap> found(static_cast<std::size_t>(count));
+  for (int at = 0; at < count; ++at) {
+    const auto fine = tents(places[at].placement);
+    const auto coarse = tents(next_places[at].placement);
+    auto& [texels, slots, products] = found[at];
+    for (int i = 0; i < 4; ++i) {
+      slots[i] = axis.slot(places[at].texel, i % 2, next_places[at].texel + i / 2, &texels[i % 2]);
+      products[i] = product(fine[i % 2], coarse[i / 2]);
+      assert(texels[i % 2] < 0 || (slots[i] >= 0 && slots[i] < 3));
+    }
+  }
+  return found;
+}
+
 template <int C>
 void LevelCoupling::add(const MomentBlock<C>& block) {
-  const CellPlace* x_places = block.x_places(block.level);
-  const CellPlace* y_places = block.y_places(block.level);
-  const CellPlace* next_x_places = block.x_places(block.level + 1);
-  const CellPlace* next_y_places = block.y_places(block.level + 1);
+  const int next = block.level + 1;
+  const std::vector<Overlap> columns =
+      overlaps(x_, block.x_places(block.level), block.x_places(next), block.width);
+  const std::vector<Overlap> rows =
+      overlaps(y_, block.y_places(block.level), block.y_places(next), block.height);
   for (int y = 0; y < block.height; ++y) {
-    const auto fine_y = tents(y_places[y].placement);
-    const auto coarse_y = tents(next_y_places[y].placement);
+    const Overlap& in_y = rows[y];
     for (int x = 0; x < block.width; ++x) {
       const CellMoments<C>& cell = block.at(x, y);
       if (cell.empty()) continue;
-      const auto fine_x = tents(x_places[x].placement);
-      const auto coarse_x = tents(next_x_places[x].placement);
+      const Overlap& in_x = columns[x];
       for (int k = 0; k < 4; ++k) {
+        const int row = in_y.texels[k % 2];
+        if (row < 0) continue;
         // Rows of moments, summed over y for this pair of tents along y.
-        const std::array<double, 3> along_y = product(fine_y[k % 2], coarse_y[k / 2]);
+        const std::array<double, 3>& along_y = in_y.products[k];
         double line[3];
         for (int a = 0; a < 3; ++a) {
           line[a] = along_y[0] * cell.weight[a] + along_y[1] * cell.weight[3 + a] +
                     along_y[2] * cell.weight[6 + a];
         }
-        int row = 0;
-        const int slot_y = y_.slot(y_places[y].texel, k % 2, next_y_places[y].texel + k / 2, &row);
-        if (row < 0) continue;
+        std::array<float, 9>* texels =
+            products_.data() + static_cast<std::ptrdiff_t>(row) * x_.size;
         for (int i = 0; i < 4; ++i) {
-          int column = 0;
-          const int slot_x =
-              x_.slot(x_places[x].texel, i % 2, next_x_places[x].texel + i / 2, &column);
+          const int column = in_x.texels[i % 2];
           if (column < 0) continue;
-          assert(slot_x >= 0 && slot_x < 3 && slot_y >= 0 && slot_y < 3);
-          const std::array<double, 3> along_x = product(fine_x[i % 2], coarse_x[i / 2]);
+          const std::array<double, 3>& along_x = in_x.products[i];
           const double value = along_x[0] * line[0] + along_x[1] * line[1] + along_x[2] * line[2];
-          products_[static_cast<std::size_t>(row) * x_.size + column][3 * slot_y + slot_x] +=
-              static_cast<float>(value);
+          texels[column][3 * in_y.slots[k] + in_x.slots[i]] += static_cast<float>(value);
         }
       }
     }
@@ -114,28 +128,47 @@ void LevelCoupling::subtract_coarse(const NinePointSystem<float>& fine,
   });
 }
 
-void LevelCoupling::subtract_fine(const NinePointSystem<float>& fine,
-                                  const NinePointSystem<float>& coarse, float scale, int threads,
-                                  std::vector<LaneValues>* sums) const {
+template <typename Texel>
+void LevelCoupling::add_fine_texels(const Texel& texel, const NinePointSystem<float>& coarse,
+                                    const Progress& progress, int threads,
+                                    std::vector<LaneValues>* sums) const {
   // Each band of the next level's rows collects what comes to it, in the order of the finer rows.
-  parallel_ranges(y_.next_size, kRowsAtOnce, threads, Progress(), [&](int begin, int end) {
+  parallel_ranges(y_.next_size, kRowsAtOnce, threads, progress, [&](int begin, int end) {
     for (int y = 0; y < y_.size; ++y) {
       for (int slot = 0; slot < 3; ++slot) {
         const int row = rows_[y][slot];
         if (row < begin || row >= end) continue;
         const std::array<float, 9>* products =
             products_.data() + static_cast<std::ptrdiff_t>(y) * x_.size;
-        const LaneValues* texels = &fine.texel(fine.at(0, y));
         LaneValues* row_sums = sums->data() + coarse.at(0, row);
         for (int x = 0; x < x_.size; ++x) {
-          const Lanes scaled = scale * texels[x].v;
+          const Lanes value = texel(x, y);
           for (int k = 0; k < 3; ++k) {
-            row_sums[columns_[x][k]].v -= products[x][3 * slot + k] * scaled;
+            row_sums[columns_[x][k]].v += products[x][3 * slot + k] * value;
           }
         }
       }
     }
   });
+}
+
+void LevelCoupling::subtract_fine(const NinePointSystem<float>& fine,
+                                  const NinePointSystem<float>& coarse, float scale, int threads,
+                                  std::vector<LaneValues>* sums) const {
+  const auto texel = [&](int x, int y) { return -scale * fine.texel(fine.at(x, y)).v; };
+  add_fine_texels(texel, coarse, Progress(), threads, sums);
+}
+
+void LevelCoupling::add_fine(const Image& image, const NinePointSystem<float>& coarse,
+                             const Progress& progress, int threads,
+                             std::vector<LaneValues>* sums) const {
+  const auto texel = [&](int x, int y) {
+    const float* values = image.view().texel(x, y);
+    Lanes lanes{};
+    for (int c = 0; c < image.channels; ++c) lanes[c] = values[c];
+    return lanes;
+  };
+  add_fine_texels(texel, coarse, progress, threads, sums);
 }
 
 template void LevelCoupling::add<1>(const MomentBlock<1>&);

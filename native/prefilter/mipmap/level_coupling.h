@@ -6,6 +6,7 @@
 #include <array>
 #include <vector>
 
+#include "prefilter/base/image.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/solve/nine_point_system.h"
@@ -31,6 +32,9 @@ class LevelCoupling {
   /// sums_k -= scale * sum_j <b_j B_k> fine_j.
   void subtract_fine(const NinePointSystem<float>& fine, const NinePointSystem<float>& coarse,
                      float scale, int threads, std::vector<LaneValues>* sums) const;
+  /// sums_k += sum_j <b_j B_k> image_j, for an image of the finer level's size.
+  void add_fine(const Image& image, const NinePointSystem<float>& coarse, const Progress& progress,
+                int threads, std::vector<LaneValues>* sums) const;
 
  private:
   using Triple = std::array<int, 3>;
@@ -50,6 +54,22 @@ class LevelCoupling {
     // The three of every texel, after wrapping; `next_size` for the border.
     std::vector<Triple> next_texels() const;
   };
+
+  // Along one axis: the tents that a cell lies under.
+  struct Overlap {
+    std::array<int, 2> texels{};  // of the level, after wrapping; -1 for the border
+    // Of tent i % 2 of the level and tent i / 2 of the next: Axis::slot, and their product, by its
+    // coefficients of 1, x and x^2 in the cell's own coordinate x.
+    std::array<int, 4> slots{};
+    std::array<std::array<double, 3>, 4> products{};
+  };
+  static std::vector<Overlap> overlaps(const Axis& axis, const CellPlace* places,
+                                       const CellPlace* next_places, int count);
+
+  // sums_k += sum_j <b_j B_k> texel(x, y), for the texels j of the level.
+  template <typename Texel>
+  void add_fine_texels(const Texel& texel, const NinePointSystem<float>& coarse,
+                       const Progress& progress, int threads, std::vector<LaneValues>* sums) const;
 
   Axis x_;
   Axis y_;

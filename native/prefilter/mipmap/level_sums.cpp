@@ -8,8 +8,8 @@
 namespace prefilter {
 
 template <int C>
-LevelSystems<C>::LevelSystems(int width, int height, int level_count, WrapModes wrap,
-                              Reader reader) {
+LevelSystems<C>::LevelSystems(int width, int height, int level_count, WrapModes wrap, Reader reader)
+    : width_(width), height_(height), wrap_(wrap) {
   for (int level = 1; level < level_count; ++level) {
     const int own_width = level_size(width, level);
     const int own_height = level_size(height, level);
@@ -21,76 +21,60 @@ LevelSystems<C>::LevelSystems(int width, int height, int level_count, WrapModes 
 
 template <int C>
 void LevelSystems<C>::add(const MomentBlock<C>& block) {
-  linear[block.level - 1]->add(block);
-  if (!encoded.empty()) encoded[block.level - 1]->add(block);
-}
-
-template <int C>
-std::vector<Image> LevelSystems<C>::means() const {
-  std::vector<Image> means(1);
-  for (std::size_t k = 0; k + 1 < linear.size(); ++k) means.push_back(linear[k]->means());
-  return means;
+  const auto k = static_cast<std::size_t>(block.level - 1);
+  linear[k]->add(block);
+  if (!encoded.empty()) encoded[k]->add(block);
+  if (k < couplings.size()) couplings[k].add(block);
 }
 
 template <int C>
 void LevelSystems<C>::expect_finer_means() {
+  const auto last_level = static_cast<int>(linear.size());
   for (const auto& system : linear) system->expect_finer_means();
+  for (int level = 1; level < last_level; ++level) {
+    couplings.emplace_back(level_size(width_, level), level_size(height_, level),
+                           level_size(width_, level + 1), level_size(height_, level + 1), wrap_);
+  }
 }
 
 template <int C>
-void LevelSystems<C>::add_finer_means(const MomentBlock<C>& block) {
-  linear[block.level - 1]->add_finer_means(block);
+void LevelSystems<C>::add_coupled_means(const Progress& progress, int threads) {
+  prefilter::add_coupled_means(couplings, linear, progress, threads);
+  std::vector<LevelCoupling>().swap(couplings);
 }
 
 template <int C>
-ChannelSums sum_image(const TexelTriangles& triangles, const TexelSource& swept,
-                      const ImageView& floats, WrapModes wrap, Reader reader, bool has_squares,
-                      int last_level, const Progress& progress, int threads,
-                      const AddBlock<C>& add) {
-  BlockSums squares(swept.width, swept.height);
+TargetSquares sum_image(const TexelTriangles& triangles, const SweptImage& image, WrapModes wrap,
+                        Reader reader, bool has_squares, int last_level, const Progress& progress,
+                        int threads, const AddBlock<C>& add) {
+  const TexelSource& swept = image.swept;
+  BlockSums of_image(swept.width, swept.height);
+  BlockSums of_means(swept.width, swept.height);
+  BlockSums of_both(swept.width, swept.height);
+  const auto add_squares = [&](const MomentBlock<C>& block) {
+    of_image.add(block.index, reader == Reader::kSrgbAfter
+                                  ? integral_of_decoded_square(block)
+                                  : integral_with(block, image.floats, wrap));
+    if (image.means == nullptr) return;
+    of_means.add(block.index, integral_of_means_with(block, image.means->view(), wrap));
+    of_both.add(block.index, integral_of_means_with(block, image.floats, wrap));
+  };
   sweep_moments<C>(triangles, swept, wrap,
                    {.first_level = has_squares ? 0 : 1,
                     .last_level = last_level,
                     .reader = reader,
+                    .means = image.means,
                     .threads = threads},
                    progress, [&](const MomentBlock<C>& block) {
-                     if (block.level > 0) return add(block);
-                     squares.add(block.index, reader == Reader::kSrgbAfter
-                                                  ? integral_of_decoded_square(block)
-                                                  : integral_with(block, floats, wrap));
+                     block.level > 0 ? add(block) : add_squares(block);
                    });
-  return squares.total();
+  return {of_image.total(), of_means.total(), of_both.total()};
 }
 
-template <int C>
-void sum_means(const TexelTriangles& triangles, const ImageView& image_means,
-               const std::vector<Image>& level_means, const ImageView& floats, WrapModes wrap,
-               bool has_squares, const Progress& progress, int threads, const AddBlock<C>& add,
-               TargetSquares* squares) {
-  BlockSums of_means(floats.width, floats.height);
-  BlockSums of_both(floats.width, floats.height);
-  sweep_moments<C>(triangles, TexelSource(image_means), wrap,
-                   {.first_level = has_squares ? 0 : 1,
-                    .last_level = static_cast<int>(level_means.size()),
-                    .level_images = &level_means,
-                    .threads = threads},
-                   progress, [&](const MomentBlock<C>& block) {
-                     if (block.level > 0) return add(block);
-                     of_means.add(block.index, integral_with(block, image_means, wrap));
-                     of_both.add(block.index, integral_with(block, floats, wrap));
-                   });
-  squares->means = of_means.total();
-  squares->image_means = of_both.total();
-}
-
-#define PREFILTER_INSTANTIATE(C)                                                                 \
-  template struct LevelSystems<C>;                                                               \
-  template ChannelSums sum_image<C>(const TexelTriangles&, const TexelSource&, const ImageView&, \
-                                    WrapModes, Reader, bool, int, const Progress&, int,          \
-                                    const AddBlock<C>&);                                         \
-  template void sum_means<C>(const TexelTriangles&, const ImageView&, const std::vector<Image>&, \
-                             const ImageView&, WrapModes, bool, const Progress&, int,            \
-                             const AddBlock<C>&, TargetSquares*)
+#define PREFILTER_INSTANTIATE(C)                                                                   \
+  template struct LevelSystems<C>;                                                                 \
+  template TargetSquares sum_image<C>(const TexelTriangles&, const SweptImage&, WrapModes, Reader, \
+                                      bool, int, const Progress&, int, const AddBlock<C>&)
 PREFILTER_INSTANTIATE(1);
 PREFILTER_INSTANTIATE(2);
 PREFILTER_INSTANTIATE(3);

@@ -22,37 +22,38 @@ template <int C>
 struct LevelSystems {
   std::vector<std::unique_ptr<BilinearSystem<C>>> linear;  // of level l at [l - 1]
   std::vector<std::unique_ptr<EncodedFit<C>>> encoded;     // likewise; none for the linear reader
+  std::vector<LevelCoupling> couplings;  // of levels l and l + 1 at [l - 1], for means alone
 
   /// For levels 1 to level_count - 1 of an image.
   LevelSystems(int width, int height, int level_count, WrapModes wrap, Reader reader);
 
   void add(const MomentBlock<C>& block);
-  /// Of levels 0 (none) to the last but one.
-  std::vector<Image> means() const;
+  /// As those of TrilinearSystem; the first is to be called before blocks are added.
   void expect_finer_means();
-  void add_finer_means(const MomentBlock<C>& block);
+  void add_finer_means(const MomentBlock<C>& block) { linear.front()->add_finer_means(block); }
+  void add_coupled_means(const Progress& progress, int threads);
+
+ private:
+  int width_;
+  int height_;
+  WrapModes wrap_;
 };
 
 template <int C>
 using AddBlock = std::function<void(const MomentBlock<C>&)>;
 
-/// Calls add(block) for the blocks of levels 1 to `last_level`. Where `has_squares` it returns the
-/// integrals of the square of what the reader shows of the image; `floats` is the image, and
-/// `swept` the same as it is swept over: encoded, for a reader that decodes.
-template <int C>
-ChannelSums sum_image(const TexelTriangles& triangles, const TexelSource& swept,
-                      const ImageView& floats, WrapModes wrap, Reader reader, bool has_squares,
-                      int last_level, const Progress& progress, int threads,
-                      const AddBlock<C>& add);
+/// What is swept over.
+struct SweptImage {
+  const TexelSource& swept;      // the image as its reader looks it up: encoded, if that decodes
+  const ImageView& floats;       // the image
+  const Image* means = nullptr;  // its means under the tents of its texels, where they count
+};
 
-/// The means of every level's texels are what the next sees: calls add(block) for the blocks of
-/// levels 1 to the number of `level_means`, those of levels 0 (not looked at) to the last but one.
-/// For level 0 the image is its own means, `image_means`. Where `has_squares` the integrals of the
-/// square of these, and of their product with the image, go into `squares`.
+/// Calls add(block) for the blocks of levels 1 to `last_level`. Where `has_squares` it returns the
+/// integrals of the square of what the reader shows of the image, and those of the means.
 template <int C>
-void sum_means(const TexelTriangles& triangles, const ImageView& image_means,
-               const std::vector<Image>& level_means, const ImageView& floats, WrapModes wrap,
-               bool has_squares, const Progress& progress, int threads, const AddBlock<C>& add,
-               TargetSquares* squares);
+TargetSquares sum_image(const TexelTriangles& triangles, const SweptImage& image, WrapModes wrap,
+                        Reader reader, bool has_squares, int last_level, const Progress& progress,
+                        int threads, const AddBlock<C>& add);
 
 }  // namespace prefilter

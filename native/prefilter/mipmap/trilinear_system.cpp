@@ -58,13 +58,6 @@ void TrilinearSystem<C>::add(const MomentBlock<C>& block) {
 }
 
 template <int C>
-std::vector<Image> TrilinearSystem<C>::means() const {
-  std::vector<Image> means(1);
-  for (int level = 1; level < last_level_; ++level) means.push_back(systems_[level - 1]->means());
-  return means;
-}
-
-template <int C>
 void TrilinearSystem<C>::expect_finer_means() {
   for (const std::unique_ptr<BilinearSystem<C>>& system : systems_) system->expect_finer_means();
 }

@@ -30,12 +30,12 @@ class TrilinearSystem {
   /// at the same time.
   void add(const MomentBlock<C>& block);
 
-  /// As for BilinearSystem, for all levels; the means are those of levels 0 (none) to the last but
-  /// one.
-  std::vector<Image> means() const;
+  /// As for BilinearSystem, for all levels; the blocks are those of level 1.
   void expect_finer_means();
-  void add_finer_means(const MomentBlock<C>& block) {
-    systems_[block.level - 1]->add_finer_means(block);
+  void add_finer_means(const MomentBlock<C>& block) { systems_.front()->add_finer_means(block); }
+  /// To be called once all blocks are there.
+  void add_coupled_means(const Progress& progress, int threads) {
+    prefilter::add_coupled_means(couplings_, systems_, progress, threads);
   }
 
   /// As BilinearSystem::add_links, for a level.

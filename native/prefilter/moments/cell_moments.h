@@ -9,6 +9,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 namespace prefilter {
 
@@ -22,11 +23,15 @@ using ImageMoments = std::array<double, 4>;
 inline constexpr WeightMoments kUniformMoments = {
     1.0, 1.0 / 2.0, 1.0 / 3.0, 1.0 / 2.0, 1.0 / 4.0, 1.0 / 6.0, 1.0 / 3.0, 1.0 / 6.0, 1.0 / 9.0};
 
+/// Image moments of C channels.
+template <int C>
+using ChannelMoments = std::array<ImageMoments, C>;
+
 /// Weight moments, and image moments of C channels.
 template <int C>
 struct CellMoments {
   WeightMoments weight{};
-  std::array<ImageMoments, C> image{};
+  ChannelMoments<C> image{};
 
   bool empty() const { return weight[0] == 0.0; }
 };
@@ -54,6 +59,21 @@ inline void lift(const double* child, int stride, const Placement& place, double
 
 }  // namespace internal
 
+/// Adds the image moments of a child cell to its parent's.
+template <std::size_t C>
+void add_image_child(const std::array<ImageMoments, C>& child, const Placement& in_x,
+                     const Placement& in_y, std::array<ImageMoments, C>* parent) {
+  for (std::size_t c = 0; c < C; ++c) {
+    double lines[4];
+    for (int b = 0; b < 2; ++b) internal::lift<2>(&child[c][2 * b], 1, in_x, lines + 2 * b);
+    for (int a = 0; a < 2; ++a) {
+      double column[2];
+      internal::lift<2>(lines + a, 2, in_y, column);
+      for (int b = 0; b < 2; ++b) (*parent)[c][2 * b + a] += column[b];
+    }
+  }
+}
+
 /// Adds the moments of a child cell to its parent's.
 template <int C>
 void add_child(const CellMoments<C>& child, const Placement& in_x, const Placement& in_y,
@@ -65,15 +85,7 @@ void add_child(const CellMoments<C>& child, const Placement& in_x, const Placeme
     internal::lift<3>(rows + a, 3, in_y, column);
     for (int b = 0; b < 3; ++b) parent->weight[3 * b + a] += column[b];
   }
-  for (int c = 0; c < C; ++c) {
-    double lines[4];
-    for (int b = 0; b < 2; ++b) internal::lift<2>(&child.image[c][2 * b], 1, in_x, lines + 2 * b);
-    for (int a = 0; a < 2; ++a) {
-      double column[2];
-      internal::lift<2>(lines + a, 2, in_y, column);
-      for (int b = 0; b < 2; ++b) parent->image[c][2 * b + a] += column[b];
-    }
-  }
+  add_image_child(child.image, in_x, in_y, &parent->image);
 }
 
 }  // namespace prefilter

@@ -24,6 +24,9 @@ constexpr int kMostTries = 4;
 // made.
 constexpr double kLargestCost = 2.0;
 constexpr double kLengthWeight = 1e-6;
+// A vertex whose turn has come waits for others only where its cost has grown by more.
+constexpr double kGrowth = 1.5;
+constexpr double kLeastGrowth = 0.01;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::vector<Quadric> sum_quadrics(const Patch& patch) {
@@ -149,7 +152,7 @@ void try_to_remove(const RemovalQueue::Entry& entry, Patch* patch, PatchLinks* l
   if (candidates.empty()) return;
   // Its surroundings have changed; others may come before it now.
   const double cost = candidates.front().cost;
-  if (!queue->empty() && cost > 1.5 * static_cast<double>(entry.cost) + 1e-12 &&
+  if (!queue->empty() && cost > kGrowth * static_cast<double>(entry.cost) + kLeastGrowth &&
       cost > static_cast<double>(queue->least_cost())) {
     queue->push(cost, u);
     return;

@@ -182,8 +182,7 @@ constexpr double kTexelStencil[2][3] = {{6.0 / 48.0, 36.0 / 48.0, 6.0 / 48.0},
 
 template <int C>
 void add_uniform_texel(const Patch<C>& patch, int x, int y, double density,
-                       CellMoments<C>* moments) {
-  for (int i = 0; i < 9; ++i) moments->weight[i] += density * kUniformMoments[i];
+                       ChannelMoments<C>* moments) {
   for (int c = 0; c < C; ++c) {
     double lines[2][3];
     for (int k = 0; k < 3; ++k) {
@@ -199,7 +198,7 @@ void add_uniform_texel(const Patch<C>& patch, int x, int y, double density,
       for (int a = 0; a < 2; ++a) {
         double sum = 0.0;
         for (int k = 0; k < 3; ++k) sum += kTexelStencil[b][k] * lines[a][k];
-        moments->image[c][2 * b + a] += density * sum;
+        (*moments)[c][2 * b + a] += density * sum;
       }
     }
   }
@@ -209,12 +208,11 @@ void add_uniform_texel(const Patch<C>& patch, int x, int y, double density,
 template <int C>
 using Corners = std::array<std::array<double, C>, 4>;
 
-// Moments of a cell between four texel centers of an image; `in_x`, `in_y` say where.
+// Image moments of a cell between four texel centers; `in_x`, `in_y` say where.
 template <int C>
-CellMoments<C> moments_between(const WeightMoments& w, const Corners<C>& corners,
-                               const Placement& in_x, const Placement& in_y) {
-  CellMoments<C> moments;
-  moments.weight = w;
+ChannelMoments<C> moments_between(const WeightMoments& w, const Corners<C>& corners,
+                                  const Placement& in_x, const Placement& in_y) {
+  ChannelMoments<C> moments;
   const double x = in_x.offset;
   const double y = in_y.offset;
   for (int c = 0; c < C; ++c) {
@@ -233,17 +231,18 @@ CellMoments<C> moments_between(const WeightMoments& w, const Corners<C>& corners
     for (int b = 0; b < 2; ++b) {
       for (int a = 0; a < 2; ++a) {
         const int i = 3 * b + a;
-        moments.image[c][2 * b + a] = p00 * w[i] + p10 * w[i + 1] + p01 * w[i + 3] + p11 * w[i + 4];
+        moments[c][2 * b + a] = p00 * w[i] + p10 * w[i + 1] + p01 * w[i + 3] + p11 * w[i + 4];
       }
     }
   }
   return moments;
 }
 
-// Moments of a cell of level 0 that lies at `in_x`, `in_y` among the texels of the image.
+// Image moments of a cell of level 0 that lies at `in_x`, `in_y` among the texels of the image.
 template <int C>
-CellMoments<C> cell_moments(const WeightMoments& w, const Patch<C>& patch, const CellWindow& texels,
-                            const CellPlace& in_x, const CellPlace& in_y) {
+ChannelMoments<C> cell_moments(const WeightMoments& w, const Patch<C>& patch,
+                               const CellWindow& texels, const CellPlace& in_x,
+                               const CellPlace& in_y) {
   const int column = in_x.texel - texels.x0;
   const int row = in_y.texel - texels.y0;
   return moments_between<C>(w,
@@ -254,12 +253,11 @@ CellMoments<C> cell_moments(const WeightMoments& w, const Patch<C>& patch, const
 
 // The same of an image whose colors are encoded, and decoded after the lookup.
 template <int C>
-CellMoments<C> decoded_cell_moments(const WeightMoments& w, const Patch<C>& patch,
-                                    const CellWindow& texels, const CellPlace& in_x,
-                                    const CellPlace& in_y) {
+ChannelMoments<C> decoded_cell_moments(const WeightMoments& w, const Patch<C>& patch,
+                                       const CellWindow& texels, const CellPlace& in_x,
+                                       const CellPlace& in_y) {
   const SrgbDecoder& decode = SrgbDecoder::instance();
-  CellMoments<C> moments;
-  moments.weight = w;
+  ChannelMoments<C> moments{};
   const FourPointRule rule(w);
   const int column = in_x.texel - texels.x0;
   const int row = in_y.texel - texels.y0;
@@ -275,10 +273,10 @@ CellMoments<C> decoded_cell_moments(const WeightMoments& w, const Patch<C>& patc
       double value = (1.0 - y) * low + y * high;
       if (c < encoded_channels(C)) value = decode(static_cast<float>(value)).value;
       value *= rule.weight(k);
-      moments.image[c][0] += value;
-      moments.image[c][1] += cell_x * value;
-      moments.image[c][2] += cell_y * value;
-      moments.image[c][3] += cell_x * cell_y * value;
+      moments[c][0] += value;
+      moments[c][1] += cell_x * value;
+      moments[c][2] += cell_y * value;
+      moments[c][3] += cell_x * cell_y * value;
     }
   }
   return moments;
@@ -290,6 +288,8 @@ struct Workspace {
   TileMeasure measure;
   Patch<C> patch;
   std::vector<CellMoments<C>> cells[2];
+  Patch<C> patch_of_means;
+  std::vector<ChannelMoments<C>> means[2];  // likewise; none where there are no means
 };
 
 template <int C>
@@ -355,7 +355,7 @@ class Sweep {
   }
 
   void visit(int level, const CellRange& range, const CellMoments<C>* cells,
-             std::int64_t index) const {
+             const ChannelMoments<C>* means, std::int64_t index) const {
     if (level < options_.first_level || level > options_.last_level) return;
     MomentBlock<C> block;
     block.level = level;
@@ -364,102 +364,118 @@ class Sweep {
     block.width = range.width;
     block.height = range.height;
     block.cells = cells;
+    block.means = means;
     block.x_cells = &x_cells_;
     block.y_cells = &y_cells_;
     block.index = index;
     visit_(block);
   }
 
-  // Moments of a cell whose image is that of its level.
-  CellMoments<C> with_level_image(int level, const WeightMoments& weight, const CellPlace& in_x,
-                                  const CellPlace& in_y) const {
-    const Image& image = (*options_.level_images)[level];
-    Corners<C> corners{};
-    for (int k = 0; k < 4; ++k) {
-      const int column = wrap_index(in_x.texel + k % 2, image.width, wrap_.u);
-      const int row = wrap_index(in_y.texel + k / 2, image.height, wrap_.v);
-      if (column < 0 || row < 0) continue;
-      const float* texel = image.view().texel(column, row);
-      for (int c = 0; c < C; ++c) corners[k][c] = texel[c];
-    }
-    return moments_between<C>(weight, corners, in_x.placement, in_y.placement);
-  }
-
-  // Adds the cells of a level to those of the next, which are `coarse_cells`.
+  // Adds the cells of a level to those of the next, which are `coarse_cells`; and `means` to
+  // `coarse_means`, unless that is null.
   void nest(int level, const CellRange& range, const CellMoments<C>* cells,
-            const CellRange& coarse_range, CellMoments<C>* coarse_cells) const {
+            const CellRange& coarse_range, CellMoments<C>* coarse_cells,
+            const ChannelMoments<C>* means = nullptr,
+            ChannelMoments<C>* coarse_means = nullptr) const {
     const CellParent* x_parents = x_cells_.parents(level).data() + range.x0;
     const CellParent* y_parents = y_cells_.parents(level).data() + range.y0;
-    const bool has_image = options_.level_images != nullptr && level > 0;
-    const CellPlace* x_places = x_cells_.places(level, level).data() + range.x0;
-    const CellPlace* y_places = y_cells_.places(level, level).data() + range.y0;
     for (int y = 0; y < range.height; ++y) {
-      CellMoments<C>* row =
-          coarse_cells +
+      const std::ptrdiff_t row =
           static_cast<std::ptrdiff_t>(y_parents[y].cell - coarse_range.y0) * coarse_range.width -
           coarse_range.x0;
       for (int x = 0; x < range.width; ++x, ++cells) {
         if (cells->empty()) continue;
-        CellMoments<C>* parent = row + x_parents[x].cell;
+        const std::ptrdiff_t parent = row + x_parents[x].cell;
         const Placement& in_x = x_parents[x].placement;
         const Placement& in_y = y_parents[y].placement;
-        if (has_image) {
-          add_child(with_level_image(level, cells->weight, x_places[x], y_places[y]), in_x, in_y,
-                    parent);
-        } else {
-          add_child(*cells, in_x, in_y, parent);
-        }
+        add_child(*cells, in_x, in_y, coarse_cells + parent);
+        if (coarse_means == nullptr) continue;
+        const std::ptrdiff_t own = static_cast<std::ptrdiff_t>(y) * range.width + x;
+        add_image_child(means[own], in_x, in_y, coarse_means + parent);
       }
     }
   }
 
-  // The finest level that is visited, in cells[0]; returns which level that is.
+  bool has_means() const { return options_.means != nullptr; }
+
+  // The image moments of a cell of level 0 in a tile.
+  ChannelMoments<C> moments_in(const Patch<C>& patch, const WeightMoments& weight,
+                               const CellWindow& texels, const CellRange& range, int x,
+                               int y) const {
+    const CellPlace& in_x = x_cells_.places(0, 0)[range.x0 + x];
+    const CellPlace& in_y = y_cells_.places(0, 0)[range.y0 + y];
+    return options_.reader == Reader::kSrgbAfter
+               ? decoded_cell_moments(weight, patch, texels, in_x, in_y)
+               : cell_moments(weight, patch, texels, in_x, in_y);
+  }
+
+  // The finest level that is visited, in cells[0] and means[0]; returns which level that is.
   int start_tile(const CellWindow& texels, Workspace<C>* work) const {
+    const bool has_level_0 =
+        options_.first_level == 0 || !x_cells_.halves_evenly() || !y_cells_.halves_evenly();
+    const CellRange quarters = within(texels, 0);
+    const CellRange range = has_level_0 ? quarters : within(texels, 1);
+    work->cells[0].assign(range.count(), {});
+    if (has_means()) work->means[0].assign(range.count(), {});
+    for (int y = 0; y < range.height; ++y) {
+      for (int x = 0; x < range.width; ++x) {
+        if (has_level_0) {
+          start_cell(texels, quarters, x, y, work);
+        } else {
+          start_texel(texels, quarters, x, y, work);
+        }
+      }
+    }
+    return has_level_0 ? 0 : 1;
+  }
+
+  // A cell of level 0.
+  void start_cell(const CellWindow& texels, const CellRange& range, int x, int y,
+                  Workspace<C>* work) const {
+    const WeightMoments weight = work->measure.moments(x, y);
+    if (weight[0] == 0.0) return;
+    const int at = work->measure.cell(x, y);
+    work->cells[0][at] = {weight, moments_in(work->patch, weight, texels, range, x, y)};
+    if (!has_means()) return;
+    work->means[0][at] = moments_in(work->patch_of_means, weight, texels, range, x, y);
+  }
+
+  // A texel, which is a cell of level 1; `range` are the cells of level 0.
+  void start_texel(const CellWindow& texels, const CellRange& range, int x, int y,
+                   Workspace<C>* work) const {
     const TileMeasure& measure = work->measure;
-    std::vector<CellMoments<C>>& cells = work->cells[0];
-    const CellRange range = within(texels, 0);
-    const CellPlace* x_places = x_cells_.places(0, 0).data() + range.x0;
-    const CellPlace* y_places = y_cells_.places(0, 0).data() + range.y0;
-    const bool decoded = options_.reader == Reader::kSrgbAfter;
-    const auto moments = [&](int x, int y) {
-      const WeightMoments weight = measure.moments(x, y);
-      if (weight[0] == 0.0) return CellMoments<C>();
-      return decoded ? decoded_cell_moments(weight, work->patch, texels, x_places[x], y_places[y])
-                     : cell_moments(weight, work->patch, texels, x_places[x], y_places[y]);
-    };
-    if (options_.first_level == 0 || !x_cells_.halves_evenly() || !y_cells_.halves_evenly()) {
-      cells.resize(range.count());
-      for (int y = 0; y < range.height; ++y) {
-        for (int x = 0; x < range.width; ++x) cells[measure.cell(x, y)] = moments(x, y);
-      }
-      return 0;
+    const auto at = static_cast<std::size_t>(y) * (texels.x1 - texels.x0) + x;
+    CellMoments<C>& texel = work->cells[0][at];
+    const int quarters[4] = {measure.cell(2 * x, 2 * y), measure.cell(2 * x + 1, 2 * y),
+                             measure.cell(2 * x, 2 * y + 1), measure.cell(2 * x + 1, 2 * y + 1)};
+    const double density = measure.uniform(quarters[0]);
+    bool even = options_.reader == Reader::kLinear;
+    for (const int quarter : quarters) {
+      even = even && !measure.has_pieces(quarter) && measure.uniform(quarter) == density;
     }
-    const int width = texels.x1 - texels.x0;
-    const int height = texels.y1 - texels.y0;
-    cells.assign(static_cast<std::size_t>(width) * height, {});
+    if (even) {
+      if (!(density > 0.0)) return;
+      for (int i = 0; i < 9; ++i) texel.weight[i] += 4.0 * density * kUniformMoments[i];
+      add_uniform_texel<C>(work->patch, x, y, 4.0 * density, &texel.image);
+      if (!has_means()) return;
+      add_uniform_texel<C>(work->patch_of_means, x, y, 4.0 * density, &work->means[0][at]);
+      return;
+    }
     const Placement halves[2] = {{0.0, 0.5}, {0.5, 0.5}};
-    for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) {
-        CellMoments<C>& texel = cells[static_cast<std::size_t>(y) * width + x];
-        const int quarters[4] = {measure.cell(2 * x, 2 * y), measure.cell(2 * x + 1, 2 * y),
-                                 measure.cell(2 * x, 2 * y + 1),
-                                 measure.cell(2 * x + 1, 2 * y + 1)};
-        const double density = measure.uniform(quarters[0]);
-        bool even = !decoded;
-        for (const int quarter : quarters) {
-          even = even && !measure.has_pieces(quarter) && measure.uniform(quarter) == density;
-        }
-        if (even) {
-          if (density > 0.0) add_uniform_texel(work->patch, x, y, 4.0 * density, &texel);
-          continue;
-        }
-        for (int k = 0; k < 4; ++k) {
-          const CellMoments<C> quarter = moments(2 * x + k % 2, 2 * y + k / 2);
-          if (!quarter.empty()) add_child(quarter, halves[k % 2], halves[k / 2], &texel);
-        }
-      }
+    for (int k = 0; k < 4; ++k) {
+      const int column = 2 * x + k % 2;
+      const int row = 2 * y + k / 2;
+      const WeightMoments weight = measure.moments(column, row);
+      if (weight[0] == 0.0) continue;
+      const auto moments_of = [&](const Patch<C>& patch) {
+        return moments_in(patch, weight, texels, range, column, row);
+      };
+      const Placement& in_x = halves[k % 2];
+      const Placement& in_y = halves[k / 2];
+      add_child(CellMoments<C>{weight, moments_of(work->patch)}, in_x, in_y, &texel);
+      if (!has_means()) continue;
+      add_image_child(moments_of(work->patch_of_means), in_x, in_y, &work->means[0][at]);
     }
-    return 1;
   }
 
   void sweep_tile(std::int64_t tile, Workspace<C>* work) {
@@ -467,19 +483,26 @@ class Sweep {
     if (tiles_.begin(tile) == tiles_.end(tile) && triangles_.uniform_density == 0.0) return;
     work->measure.collect(triangles_, tiles_, tile, x_cells_, y_cells_, within(texels, 0));
     work->patch.load(image_, wrap_, texels);
+    if (has_means()) work->patch_of_means.load(options_.means->view(), wrap_, texels);
 
     int level = start_tile(texels, work);
     int current = 0;
     const int last = std::min(options_.last_level, tile_levels_);
-    visit(level, within(texels, level), work->cells[current].data(), tile);
+    const auto means_of = [&](int of, int at) {
+      return has_means() && of <= 1 ? work->means[at].data() : nullptr;
+    };
+    visit(level, within(texels, level), work->cells[current].data(), means_of(level, current),
+          tile);
     while (level < last) {
       const CellRange next = within(texels, level + 1);
       std::vector<CellMoments<C>>& coarse = work->cells[1 - current];
       coarse.assign(next.count(), {});
-      nest(level, within(texels, level), work->cells[current].data(), next, coarse.data());
+      if (has_means() && level == 0) work->means[1 - current].assign(next.count(), {});
+      nest(level, within(texels, level), work->cells[current].data(), next, coarse.data(),
+           means_of(level, current), means_of(level + 1, 1 - current));
       ++level;
       current = 1 - current;
-      visit(level, next, work->cells[current].data(), tile);
+      visit(level, next, work->cells[current].data(), means_of(level, current), tile);
     }
     // Each cell of the coarse grid lies in one tile.
     if (!coarse_.empty()) {
@@ -490,7 +513,7 @@ class Sweep {
 
   void sweep_coarse() {
     for (int level = tile_levels_ + 1; level <= options_.last_level; ++level) {
-      visit(level, whole(level), coarse_.data(), tiles_.count());
+      visit(level, whole(level), coarse_.data(), nullptr, tiles_.count());
       if (level == options_.last_level) break;
       std::vector<CellMoments<C>> nested(whole(level + 1).count());
       nest(level, whole(level), coarse_.data(), whole(level + 1), nested.data());

@@ -31,25 +31,24 @@ struct MomentBlock {
   int width = 0;
   int height = 0;
   const CellMoments<C>* cells = nullptr;  // row by row
+  // The image moments of SweepOptions::means, likewise; of levels 0 and 1 alone.
+  const ChannelMoments<C>* means = nullptr;
   const AxisCells* x_cells = nullptr;
   const AxisCells* y_cells = nullptr;
   std::int64_t index = 0;  // which tile; the whole grid of a coarse level comes last
 
-  const CellMoments<C>& at(int x, int y) const {
-    return cells[static_cast<std::ptrdiff_t>(y) * width + x];
-  }
+  const CellMoments<C>& at(int x, int y) const { return cells[index_of(x, y)]; }
+  const ChannelMoments<C>& means_at(int x, int y) const { return means[index_of(x, y)]; }
+  std::ptrdiff_t index_of(int x, int y) const { return static_cast<std::ptrdiff_t>(y) * width + x; }
   /// Where the block's columns and rows of cells lie among the texels of a level, this one or the
   /// next.
   const CellPlace* x_places(int of) const { return x_cells->places(level, of).data() + x0; }
   const CellPlace* y_places(int of) const { return y_cells->places(level, of).data() + y0; }
 };
 
-/// Calls use(moments, column, row) for each cell between the texel centers (column, row) and
-/// (column
-/// + 1, row + 1) of a block's level that some of the surface in the block lies in, with the moments
-/// of that part in the coordinates of this cell.
+/// Calls use(x, x_end, y, y_end) for the cells of a block between four texel centers of its level.
 template <int C, typename Use>
-void for_each_dual_cell(const MomentBlock<C>& block, const Use& use) {
+void for_each_dual_range(const MomentBlock<C>& block, const Use& use) {
   const CellPlace* x_places = block.x_places(block.level);
   const CellPlace* y_places = block.y_places(block.level);
   const auto run_end = [](const CellPlace* places, int begin, int end) {
@@ -61,19 +60,51 @@ void for_each_dual_cell(const MomentBlock<C>& block, const Use& use) {
     const int y_end = run_end(y_places, y_begin, block.height);
     for (int x_begin = 0; x_begin < block.width;) {
       const int x_end = run_end(x_places, x_begin, block.width);
-      CellMoments<C> moments;
-      for (int y = y_begin; y < y_end; ++y) {
-        for (int x = x_begin; x < x_end; ++x) {
-          const CellMoments<C>& cell = block.at(x, y);
-          if (cell.empty()) continue;
-          add_child(cell, x_places[x].placement, y_places[y].placement, &moments);
-        }
-      }
-      if (!moments.empty()) use(moments, x_places[x_begin].texel, y_places[y_begin].texel);
+      use(x_begin, x_end, y_begin, y_end);
       x_begin = x_end;
     }
     y_begin = y_end;
   }
+}
+
+/// Calls use(moments, column, row) for each cell between the texel centers (column, row) and
+/// (column + 1, row + 1) of a block's level that some of the surface in the block lies in, with the
+/// moments of that part in the coordinates of this cell.
+template <int C, typename Use>
+void for_each_dual_cell(const MomentBlock<C>& block, const Use& use) {
+  const CellPlace* x_places = block.x_places(block.level);
+  const CellPlace* y_places = block.y_places(block.level);
+  for_each_dual_range(block, [&](int x_begin, int x_end, int y_begin, int y_end) {
+    CellMoments<C> moments;
+    for (int y = y_begin; y < y_end; ++y) {
+      for (int x = x_begin; x < x_end; ++x) {
+        const CellMoments<C>& cell = block.at(x, y);
+        if (cell.empty()) continue;
+        add_child(cell, x_places[x].placement, y_places[y].placement, &moments);
+      }
+    }
+    if (!moments.empty()) use(moments, x_places[x_begin].texel, y_places[y_begin].texel);
+  });
+}
+
+/// The same of the image moments of the means, for a block that has them.
+template <int C, typename Use>
+void for_each_dual_cell_of_means(const MomentBlock<C>& block, const Use& use) {
+  const CellPlace* x_places = block.x_places(block.level);
+  const CellPlace* y_places = block.y_places(block.level);
+  for_each_dual_range(block, [&](int x_begin, int x_end, int y_begin, int y_end) {
+    ChannelMoments<C> moments{};
+    bool is_empty = true;
+    for (int y = y_begin; y < y_end; ++y) {
+      for (int x = x_begin; x < x_end; ++x) {
+        if (block.at(x, y).empty()) continue;
+        is_empty = false;
+        add_image_child(block.means_at(x, y), x_places[x].placement, y_places[y].placement,
+                        &moments);
+      }
+    }
+    if (!is_empty) use(moments, x_places[x_begin].texel, y_places[y_begin].texel);
+  });
 }
 
 struct SweepOptions {
@@ -82,9 +113,9 @@ struct SweepOptions {
   // With kSrgbAfter the colors of the image are encoded, and its moments are those of the decoded
   // lookup: by FourPointRule in each of the finest cells.
   Reader reader = Reader::kLinear;
-  // [k] is an image of level k's size, which is what all coarser levels see in place of the one
-  // that is swept over. None: every level sees the same. The first is not looked at.
-  const std::vector<Image>* level_images = nullptr;
+  // Another image of the same size and channels, whose moments come along in MomentBlock::means;
+  // not with kSrgbAfter.
+  const Image* means = nullptr;
   int threads = 0;
 };
 

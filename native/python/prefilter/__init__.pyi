@@ -6,8 +6,8 @@ from ._native import available_memory as available_memory
 from .images.color import to_linear as to_linear
 from .images.color import to_srgb as to_srgb
 from .images.cutouts import keep_coverage as keep_coverage
-from .images.mipmaps import MIPMAP_FILTERS as MIPMAP_FILTERS
-from .images.mipmaps import MipmapFilter as MipmapFilter
+from .images.mipmap_filters import MIPMAP_FILTERS as MIPMAP_FILTERS
+from .images.mipmap_filters import MipmapFilter as MipmapFilter
 from .images.mipmaps import coarser_levels as coarser_levels
 from .images.mipmaps import mipmap_error as mipmap_error
 from .images.mipmaps import mipmaps as mipmaps

@@ -14,6 +14,7 @@
 #include "prefilter/base/error.h"
 #include "prefilter/blocks/compress_blocks.h"
 #include "prefilter/blocks/decode_blocks.h"
+#include "prefilter/blocks/encoders.h"
 
 namespace prefilter {
 namespace {
@@ -95,6 +96,49 @@ TEST(BlockEffort, FastIsAnotherSearch) {
               compressed(texels, kSide, kSide, format, BlockEffort::kBest))
         << layout_of(format).name;
   }
+}
+
+Bytes encoded(ByteEncoder* encoder, const Bytes& block) {
+  Bytes found(16);
+  encoder->encode({block.data(), 1, 4, 4}, found.data());
+  return found;
+}
+
+TEST(BlockEffort, NormalBc7StopsWhereItIsClose) {
+  const auto one = make_bc7f_encoder(BlockEffort::kNormal);
+  const auto other = make_bc7enc_encoder(BlockEffort::kNormal);
+  const auto chosen = make_bc7_encoder(BlockEffort::kNormal);
+  const auto error_of = [](const Bytes& block, const Bytes& texels) {
+    return error(decoded(block, 4, 4, BlockFormat::kBc7), texels, 4);
+  };
+  std::mt19937 random(7);
+  int close = 0, left = 0, improved = 0;
+  for (int i = 0; i < 400; ++i) {
+    // A slope in a direction of its own, with noise of up to 7 steps.
+    Bytes texels;
+    const int noise = static_cast<int>(random() % 8);
+    for (int k = 0; k < 64; ++k) {
+      const int slope = (i % 7) * (k / 4 % 4) + (i % 5) * (k / 16) * (k % 4);
+      const int value = 90 + slope + static_cast<int>(random() % (noise + 1));
+      texels.push_back(static_cast<std::uint8_t>(k % 4 == 3 ? 255 : value));
+    }
+    const Bytes first = encoded(one.get(), texels);
+    const Bytes second = encoded(other.get(), texels);
+    const Bytes found = encoded(chosen.get(), texels);
+    const double before = error_of(first, texels);
+    if (before <= 32.0) {
+      EXPECT_EQ(found, first);
+      ++close;
+      if (error_of(second, texels) < before) ++left;
+    } else {
+      EXPECT_EQ(error_of(found, texels), std::min(before, error_of(second, texels)));
+      if (error_of(second, texels) < before) ++improved;
+    }
+  }
+  // All that can happen does.
+  EXPECT_GT(close, left);
+  EXPECT_GT(left, 0);
+  EXPECT_GT(improved, 0);
 }
 
 TEST(BlockEffort, OpaqueTexelsOfBc7StayOpaque) {

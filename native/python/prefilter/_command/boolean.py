@@ -15,7 +15,7 @@ import prefilter
 from .._border import staging
 from .._options.flags import add_flags, tables
 from .._options.voxels import BooleanSettings
-from .._work import mesh_files
+from .._work import mesh_endings, mesh_files
 from .._work.mesh_files import Part
 from .._work.outcome import Outcome
 from .._work.progress import Progress, go_on, parts, share
@@ -44,14 +44,14 @@ def add(commands: Any, purpose: str) -> None:
     notes = (*tables(BooleanSettings, *FLAGS), _NOTES)
     parser = telling.add_command(commands, "boolean", purpose, *notes)
     parser.add_argument(
-        "files", metavar="FILE", nargs="+", help=f"the operands: {either(mesh_files.ENDINGS)}"
+        "files", metavar="FILE", nargs="+", help=f"the operands: {either(mesh_endings.ENDINGS)}"
     )
     parser.add_argument(
         "--output",
         "-o",
         metavar="FILE",
         required=True,
-        help=f"the file to write: {either(mesh_files.TARGETS)}",
+        help=f"the file to write: {either(mesh_endings.TARGETS)}",
     )
     parser.add_argument(
         "--object",
@@ -154,8 +154,8 @@ def _boolean(options: argparse.Namespace) -> None:
     if len(options.files) < 2 and len(options.object) < 2:
         options.usage_error("FILE: give two files or more, or --object for two meshes or more")
     for path in options.files:
-        telling.check_ending(options, "FILE", path, mesh_files.ENDINGS)
-    telling.check_ending(options, "--output", options.output, mesh_files.TARGETS)
+        telling.check_ending(options, "FILE", path, mesh_endings.ENDINGS)
+    telling.check_ending(options, "--output", options.output, mesh_endings.TARGETS)
     target = Path(os.path.realpath(options.output))
     staging.check_target(target)
     settings = voxelize.settings_of(options, PLAIN, BooleanSettings)

@@ -12,7 +12,7 @@ import numpy as np
 from .._border.staging import check_target
 from .._options.flags import add_flags, given, tables
 from .._options.shapes import RasterizeSettings
-from .._work import mesh_files
+from .._work import mesh_endings, mesh_files
 from .._work.files import pictures
 from .._work.shapes.layers import Source, svg_drawing, uv_layers
 from .._work.shapes.layouts import borders
@@ -22,7 +22,7 @@ from . import telling
 from .host import PLAIN, Host
 
 _SVG = ".svg"
-_SOURCES = (_SVG, *mesh_files.ENDINGS)
+_SOURCES = (_SVG, *mesh_endings.ENDINGS)
 FLAGS = (
     *("filter", "side", "width", "height", "density", "margin", "tile", "color"),
     *("background_color", "overlap", "pixel_type", "alpha", "use_bleed", "threads"),

@@ -10,7 +10,7 @@ from typing import Any
 from .._border import staging
 from .._options.flags import add_flags, given, tables
 from .._options.voxels import VoxelizeSettings, VoxelSettings
-from .._work import mesh_files
+from .._work import mesh_endings, mesh_files
 from .._work.mesh_files import Part
 from .._work.outcome import Outcome
 from .._work.progress import Progress, go_on, parts, share
@@ -42,9 +42,9 @@ def add(commands: Any, purpose: str) -> None:
     """Adds the command."""
     notes = (*tables(VoxelizeSettings, *FLAGS), _NOTES)
     parser = telling.add_command(commands, "voxelize", purpose, *notes)
-    parser.add_argument("file", metavar="FILE", help=f"a file: {either(mesh_files.ENDINGS)}")
+    parser.add_argument("file", metavar="FILE", help=f"a file: {either(mesh_endings.ENDINGS)}")
     parser.add_argument(
-        "output", metavar="OUTPUT", help=f"the file to write: {either(mesh_files.TARGETS)}"
+        "output", metavar="OUTPUT", help=f"the file to write: {either(mesh_endings.TARGETS)}"
     )
     parser.add_argument(
         "--object",
@@ -147,8 +147,8 @@ class VoxelFile:
 
 
 def _voxelize(options: argparse.Namespace) -> None:
-    telling.check_ending(options, "FILE", options.file, mesh_files.ENDINGS)
-    telling.check_ending(options, "OUTPUT", options.output, mesh_files.TARGETS)
+    telling.check_ending(options, "FILE", options.file, mesh_endings.ENDINGS)
+    telling.check_ending(options, "OUTPUT", options.output, mesh_endings.TARGETS)
     target = Path(os.path.realpath(options.output))
     staging.check_target(target)
     settings = settings_of(options, PLAIN, VoxelizeSettings)

@@ -5,10 +5,6 @@
 import re
 from collections.abc import Sequence
 
-import numpy as np
-
-import prefilter
-
 Color = tuple[float, float, float, float]
 """Scene-linear red, green and blue, and alpha; colors are not multiplied by alpha."""
 
@@ -20,6 +16,10 @@ def from_hex(text: str) -> Color | None:
     found = _HEX.fullmatch(text.strip())
     if found is None:
         return None
+    import numpy as np  # Most commands start without it, or end without it.
+
+    import prefilter
+
     numbers = bytes.fromhex(found[1] + (found[2] or "ff"))
     values = prefilter.to_linear(np.array([[list(numbers)]], np.float32) / 255)[0, 0]
     red, green, blue, alpha = (float(value) for value in values)
@@ -28,6 +28,10 @@ def from_hex(text: str) -> Color | None:
 
 def to_hex(color: Sequence[float]) -> str:
     """Returns a color as #RRGGBB, or with its alpha where it is not opaque."""
+    import numpy as np
+
+    import prefilter
+
     encoded = prefilter.to_srgb(np.array([[tuple(color)]], np.float32))[0, 0]
     numbers = bytes(np.rint(np.clip(np.nan_to_num(encoded), 0.0, 1.0) * 255).astype(np.uint8))
     return f"#{(numbers[:3] if numbers[3] == 255 else numbers).hex()}"

@@ -17,9 +17,6 @@ import prefilter
 from .matrices import product
 from .wording import listed
 
-TARGETS = (".obj", ".ply", ".stl", ".glb")
-ENDINGS = (".obj", ".ply", ".stl", ".glb", ".gltf", ".off")
-
 
 @dataclass(frozen=True)
 class Part:

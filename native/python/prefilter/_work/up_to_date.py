@@ -41,7 +41,7 @@ def fingerprint(sources: Iterable[str | os.PathLike[str]], settings: Mapping[str
 
 def is_up_to_date(targets: Sequence[Path], number: str) -> bool:
     """Tells whether files are all there, and have been made of what has this fingerprint."""
-    from ..textures.ktx2_reader import read_metadata
+    from ..textures.ktx2_metadata import read_metadata
 
     try:
         return all(read_metadata(target).get(KEY) == number for target in targets)

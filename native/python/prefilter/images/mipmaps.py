@@ -4,7 +4,7 @@
 
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import Any, Concatenate, NamedTuple, ParamSpec, Protocol, cast, overload
+from typing import Any, Concatenate, ParamSpec, Protocol, cast, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -30,25 +30,6 @@ from ..sampling.levels import FilteredLevels
 from .color import to_linear, to_srgb
 
 _Arguments = ParamSpec("_Arguments")
-
-
-class MipmapFilter(NamedTuple):
-    """A filter that `mipmaps` has.
-
-    Attributes:
-        name: What it is called: "tent", "tent-covered" or "pam-bilinear".
-        needs_surface: Whether it is made over the surface, or the texels that the surface touches.
-        is_fit: Whether it is a least-squares fit: the only ones that `seam_budget` changes.
-    """
-
-    name: str
-    needs_surface: bool
-    is_fit: bool
-
-
-MIPMAP_FILTERS = tuple(MipmapFilter(*found) for found in _native.mipmap_filters())
-"""All filters: each kernel, each with "-covered" behind, least squares, and those over the surface.
-"""
 
 
 _CHECKS: dict[str, Check] = {

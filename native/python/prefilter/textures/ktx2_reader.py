@@ -15,17 +15,15 @@ from .. import _native
 from .._border.arguments import ProgressCallback, as_progress, progress_part
 from .._border.arrays import as_threads
 from .._border.input import as_path, open_file
+from .ktx2_metadata import HEADER, IDENTIFIER, RefusedError, metadata_of, part_of
 from .texel_formats import TEXEL_FORMATS
 
-_IDENTIFIER = b"\xabKTX 20\xbb\r\n\x1a\n"
-_HEADER = struct.Struct("<9I4I2Q")
 _LEVEL = struct.Struct("<3Q")
 _NONE, _BASIS_LZ, _ZSTD = 0, 1, 2
 _SCHEMES = {_NONE: "none", _BASIS_LZ: "basislz", _ZSTD: "zstd"}
 _MOST_SIDE = 1 << 16
 _MOST_ETC1S_TEXELS = 1 << 28
 """1 GiB when decoded: a few bytes of it can stand for any number of texels."""
-_MOST_METADATA = 1 << 20
 _ETC1S, _UASTC = 163, 166
 _TRANSFER_SRGB = 2
 _FLAG_PREMULTIPLIED = 1
@@ -96,10 +94,6 @@ class Ktx2Info:
     metadata: Mapping[str, str]
 
 
-class _RefusedError(ValueError):
-    """The message goes on from the name of the file."""
-
-
 def read_ktx2(
     path: str | os.PathLike[str] | BinaryIO,
     *,
@@ -133,30 +127,10 @@ def read_ktx2(
     who, data = _read(path)
     try:
         return _decoded(data, report, count)
-    except _RefusedError as error:
+    except RefusedError as error:
         raise ValueError(f"path: {who}: {error}") from None
     except (ValueError, struct.error) as error:
         raise ValueError(f"path: {who} is damaged: {error}") from error
-
-
-def read_metadata(path: str | os.PathLike[str]) -> dict[str, str]:
-    """Reads the texts that a KTX 2.0 file keeps by keys, and nothing else of it.
-
-    Raises:
-        ValueError: The file is no KTX 2 file, or damaged.
-        OSError: The file cannot be read.
-    """
-    source = as_path(path)
-    with open_file(source) as file:
-        head = file.read(len(_IDENTIFIER) + _HEADER.size)
-        try:
-            if not head.startswith(_IDENTIFIER):
-                raise ValueError("no KTX 2 file")
-            at, size = _HEADER.unpack_from(head, len(_IDENTIFIER))[11:13]
-            file.seek(at)
-            return _metadata(file.read(min(size, _MOST_METADATA)))
-        except (ValueError, struct.error) as error:
-            raise ValueError(f"path: '{source}' is damaged: {error}") from error
 
 
 def _read(path: Any) -> tuple[str, bytes]:
@@ -210,45 +184,45 @@ def _decoded(
 
 
 def _parsed(data: bytes) -> _File:
-    if not data.startswith(_IDENTIFIER):
-        raise _RefusedError("no KTX 2 file")
-    header = _HEADER.unpack_from(data, len(_IDENTIFIER))
+    if not data.startswith(IDENTIFIER):
+        raise RefusedError("no KTX 2 file")
+    header = HEADER.unpack_from(data, len(IDENTIFIER))
     code, _, width, height, depth, layers, faces, count, scheme = header[:9]
     descriptor_at, descriptor_bytes, metadata_at, metadata_bytes, global_at, global_bytes = header[
         9:
     ]
     if depth or layers or faces != 1:
-        raise _RefusedError(
+        raise RefusedError(
             f"has a depth of {depth}, {layers} layers and {faces} faces; textures of one image a "
             f"level, with a depth and layers of 0 and one face, are read"
         )
     if not (0 < width <= _MOST_SIDE and 0 < height <= _MOST_SIDE):
-        raise _RefusedError(
+        raise RefusedError(
             f"is {width} x {height} texels large; sides of 1 to {_MOST_SIDE} are read"
         )
     count = max(1, count)
     if count > max(width, height).bit_length():
-        raise _RefusedError(f"has {count} levels, too many for {width} x {height} texels")
+        raise RefusedError(f"has {count} levels, too many for {width} x {height} texels")
     if scheme not in _SCHEMES:
-        raise _RefusedError(
+        raise RefusedError(
             f"has the supercompression {scheme}; 0 to 2 (none, BasisLZ, zstd) are read"
         )
     model, channel_names, is_srgb, is_premultiplied = _descriptor(
-        _part(data, descriptor_at, descriptor_bytes)
+        part_of(data, descriptor_at, descriptor_bytes)
     )
     stored = _STORED.get(code)
     is_basis = code == 0 and model == (_ETC1S if scheme == _BASIS_LZ else _UASTC)
     if is_basis and (model, channel_names) not in _CHANNELS:
-        raise _RefusedError(f"has the channels {channel_names}, which its format does not know")
+        raise RefusedError(f"has the channels {channel_names}, which its format does not know")
     if not is_basis and (stored is None or scheme == _BASIS_LZ):
-        raise _RefusedError(
+        raise RefusedError(
             f"has the VkFormat {code} and the color model {model}, which are not read"
         )
-    starts = len(_IDENTIFIER) + _HEADER.size
+    starts = len(IDENTIFIER) + HEADER.size
     levels = []
     for number in range(count):
         offset, size, whole = _LEVEL.unpack_from(data, starts + number * _LEVEL.size)
-        level = _part(data, offset, size)
+        level = part_of(data, offset, size)
         levels.append(_native.decompress(level, whole) if scheme == _ZSTD else level)
     if is_basis:
         channels = len(_CHANNELS[model, channel_names])
@@ -264,7 +238,7 @@ def _parsed(data: bytes) -> _File:
         encoding="srgb" if is_srgb else "linear",
         alpha=alpha,
         supercompression=_SCHEMES[scheme],
-        metadata=_metadata(_part(data, metadata_at, metadata_bytes)),
+        metadata=metadata_of(part_of(data, metadata_at, metadata_bytes)),
     )
     return _File(
         None if is_basis else stored,
@@ -273,17 +247,9 @@ def _parsed(data: bytes) -> _File:
         width,
         height,
         levels,
-        _part(data, global_at, global_bytes),
+        part_of(data, global_at, global_bytes),
         info,
     )
-
-
-def _part(data: bytes, start: int, size: int) -> bytes:
-    if start + size > len(data):
-        raise _RefusedError(
-            f"ends after {len(data)} bytes; what it refers to ends after {start + size}"
-        )
-    return data[start : start + size]
 
 
 def _descriptor(data: bytes) -> tuple[int, tuple[int, ...], bool, bool]:
@@ -293,17 +259,6 @@ def _descriptor(data: bytes) -> tuple[int, tuple[int, ...], bool, bool]:
     samples = max(0, min(size - 24, len(data) - 28)) // 16
     names = tuple(data[28 + 16 * number + 3] & 0xF for number in range(samples))
     return model, names, transfer == _TRANSFER_SRGB, bool(flags & _FLAG_PREMULTIPLIED)
-
-
-def _metadata(data: bytes) -> dict[str, str]:
-    found: dict[str, str] = {}
-    at = 0
-    while at + 4 <= min(len(data), _MOST_METADATA):
-        (size,) = struct.unpack_from("<I", data, at)
-        key, _, value = _part(data, at + 4, size).partition(b"\0")
-        found[key.decode("utf-8", "replace")] = value.rstrip(b"\0").decode("utf-8", "replace")
-        at += 4 + size + -size % 4
-    return found
 
 
 def _of_level(
@@ -320,7 +275,7 @@ def _of_level(
         dtype = np.dtype(stored.dtype).newbyteorder("<")
         needed = width * height * stored.channels * dtype.itemsize
         if len(data) != needed:
-            raise _RefusedError(
+            raise RefusedError(
                 f"has {len(data)} bytes for {width} x {height} texels in '{stored.name}', which "
                 f"take {needed}"
             )
@@ -341,7 +296,7 @@ def _of_etc1s(
 ) -> list[np.ndarray]:
     """All levels of a file in ETC1S, as stored."""
     if math.prod(sizes[0]) > _MOST_ETC1S_TEXELS:
-        raise _RefusedError(
+        raise RefusedError(
             f"is {file.width} x {file.height} texels large; {_MOST_ETC1S_TEXELS} texels of ETC1S "
             f"are read at most"
         )
@@ -353,10 +308,10 @@ def _of_etc1s(
     at = 20 + 20 * len(images)
     books = []
     for length in counts[2:5]:
-        books.append(_part(file.global_data, at, length))
+        books.append(part_of(file.global_data, at, length))
         at += length
     parts = [
-        (*size, _part(level, image[1], image[2]), _part(level, image[3], image[4]))
+        (*size, part_of(level, image[1], image[2]), part_of(level, image[3], image[4]))
         for size, level, image in zip(sizes, file.levels, images, strict=True)
     ]
     endpoints, selectors, tables = books

@@ -8,7 +8,7 @@ import stat
 import numpy as np
 import pytest
 import scenes
-from prefilter._work.files import textures
+from prefilter._work.files import target_files
 
 
 def make_pipe(path):
@@ -27,8 +27,8 @@ def make_device(path):
 @pytest.mark.parametrize(
     ("module", "check", "name"),
     [
-        (textures, "check_target", "out.exr"),
-        (textures, "check_target", "out.dds"),
+        (target_files, "check_target", "out.exr"),
+        (target_files, "check_target", "out.dds"),
         (None, "check_output", "out.blend"),
         (None, "check_plain_target", "out.csv"),
     ],

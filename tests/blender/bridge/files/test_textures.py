@@ -9,7 +9,7 @@ import OpenImageIO as oiio
 import pytest
 import scenes
 from prefilter._work import openimageio
-from prefilter._work.files import textures
+from prefilter._work.files import target_files
 
 
 def written(bake, tmp_path, file_name, values, **options):
@@ -171,7 +171,7 @@ def test_missing_module_says_what_to_install(bake, tmp_path, monkeypatch):
 
 
 def test_targets_that_cannot_be_written(addon, tmp_path):
-    check = textures.check_target
+    check = target_files.check_target
     with pytest.raises(ValueError, match=r"'\.jpg'.*\.exr"):
         check(str(tmp_path / "out.jpg"))
     with pytest.raises(OSError, match="no folder"):

@@ -26,7 +26,7 @@ from ..alpha import unassociated
 from ..openimageio import Check
 from ..picture import Encoding, FloatArray, Picture
 from . import png
-from .textures import numbered
+from .target_files import has_formats, has_supercompression, numbered
 
 _WRITERS: dict[str, Callable[..., None]] = {
     ".dds": prefilter.write_dds,
@@ -39,16 +39,6 @@ _CUT_OUT_ALPHA = 0.5
 def is_for_engines(target: Path) -> bool:
     """Tells whether `stage` of this module writes such a file."""
     return target.suffix.lower() in (*_WRITERS, ".png")
-
-
-def has_formats(path: str) -> bool:
-    """Tells whether there is a choice of formats for such a file."""
-    return path.lower().endswith(tuple(_WRITERS))
-
-
-def has_supercompression(path: str) -> bool:
-    """Tells whether such a file may be supercompressed."""
-    return path.lower().endswith(".ktx2")
 
 
 def checked(
@@ -163,7 +153,7 @@ def stage(
     """Writes a DDS or KTX 2 file, or a PNG for each level, beside the target.
 
     Args:
-        target: A path from `textures.check_target`.
+        target: A path from `target_files.check_target`.
         picture: Where the levels come from.
         linear_levels: Every level, scene-linear, row 0 at the bottom.
         stored_levels: The same levels in the encoding of the picture.

@@ -10,7 +10,6 @@ A file always holds every level down to 1 x 1, in tiles of 64 x 64. OpenEXR file
 the library, TIFF files by OpenImageIO, and those for engines by `engines`.
 """
 
-import os
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
@@ -19,58 +18,21 @@ import numpy as np
 
 import prefilter
 
-from ..._border import staging
 from ..._border.staging import StagedFile, stage_bytes, stage_with
 from .. import alpha, openimageio
 from .. import picture as images
 from ..picture import FloatArray, Picture
 from ..wording import Sentence
-
-_OF_RENDERERS = (".exr", ".tif", ".tiff", ".tx")
-# Those that `engines` writes; the last one gets a file a level.
-_OTHER_EXTENSIONS = (".dds", ".ktx2", ".png")
-_MOST_LEVELS = 31
-EXTENSIONS = (*_OF_RENDERERS, *_OTHER_EXTENSIONS)
-"""Those that a texture file may have."""
+from . import target_files
 
 _WRAP_MODES = {"repeat": "periodic", "clamp": "clamp", "border": "black"}
-
-
-def check_target(path: str) -> Path:
-    """Returns the absolute path of a texture file that can be written, symbolic links resolved.
-
-    Raises:
-        ValueError: The name does not end in a known extension.
-        OSError: The folder is missing, or the file or its folder is read-only.
-    """
-    target = Path(os.path.realpath(path))
-    extension = target.suffix.lower()
-    if extension not in EXTENSIONS:
-        raise ValueError(
-            f"file '{path}': unsupported extension '{target.suffix}'; use {', '.join(EXTENSIONS)}"
-        )
-    for file in written(target):
-        staging.check_target(file)
-    return target
-
-
-def written(target: Path) -> list[Path]:
-    """Returns the files that may be written for a target: one, or one a level."""
-    if target.suffix.lower() != ".png":
-        return [target]
-    return [numbered(target, number) for number in range(_MOST_LEVELS)]
-
-
-def numbered(target: Path, number: int) -> Path:
-    """Returns the file of a level where each has its own, symbolic links resolved."""
-    return Path(os.path.realpath(target.with_suffix(f".{number:02d}{target.suffix}")))
 
 
 def shown(target: Path) -> str:
     """Returns how to call a file, or the files of all levels."""
     if target.suffix.lower() != ".png":
         return f"'{target}'"
-    return Sentence("'{}' and so on", numbered(target, 0))
+    return Sentence("'{}' and so on", target_files.numbered(target, 0))
 
 
 def is_stored(target: Path) -> bool:

@@ -9,7 +9,7 @@ from pathlib import Path
 import prefilter
 
 from ..._options.mipmaps import Settings
-from ..files import textures
+from ..files import target_files
 from ..picture import Picture, scene_linear
 from ..wording import Sentence
 from . import blocks, contents
@@ -67,7 +67,7 @@ def roughness_of(
         )
     target = None
     if settings.roughness_filepath:
-        target = textures.check_target(settings.roughness_filepath)
+        target = target_files.check_target(settings.roughness_filepath)
         if target in targets:
             raise ValueError(f"Roughness File: '{target}' is the file of the normal map")
     picture = read()

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from ..._options.mipmaps import FITTED_FILTERS, Settings
-from ..files import engines
+from ..files import target_files
 from ..wording import Sentence
 
 _FOOTPRINTS = {"supersampled": 0.0, "one-lookup": 1.0, "anisotropic": 1.5, "views": 1.0}
@@ -24,7 +24,7 @@ def resolved(settings: Settings) -> Settings:
     """Returns settings whose lookups no longer depend on the file."""
     if settings.lookups != "auto":
         return settings
-    is_for_games = engines.has_formats(settings.filepath)
+    is_for_games = target_files.has_formats(settings.filepath)
     return replace(settings, lookups="one-lookup" if is_for_games else "supersampled")
 
 

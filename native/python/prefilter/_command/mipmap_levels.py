@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""What the command `mipmaps` does: the levels of one texture, from files to files."""
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+from .._border.staging import StagedFile, commit_all
+from .._options.mipmaps import Settings
+from .._work import mesh_files, picture_files
+from .._work.files import engines, target_files
+from .._work.mipmaps import checks, contents, levels, stretching
+from .._work.mipmaps.checks import Rough
+from .._work.mipmaps.outputs import Outputs, staged, summary
+from .._work.mipmaps.source import Source
+from .._work.outcome import Outcome
+from .._work.picture import Encoding, Picture
+from .._work.progress import Progress, go_on, share
+
+_FILTERED = 0.9  # What the progress is once the levels are filtered.
+
+
+class Levels:
+    """The levels of one texture, to a file."""
+
+    def __init__(
+        self,
+        source: Source,
+        outputs: Outputs,
+        warnings: list[str],
+        metadata: Mapping[str, str] | None = None,
+    ) -> None:
+        """Takes what was read, and what KTX 2 files are to keep, by keys."""
+        self._metadata = metadata
+        self._source = source
+        self._outputs = outputs
+        self._warnings = warnings
+        self._notes: list[str] = []
+        self._staged: list[StagedFile] = []
+
+    def compute(self, progress: Progress) -> None:
+        """Filters, encodes and stages the files.
+
+        Raises:
+            prefilter.Cancelled: `progress` returned False.
+            ValueError: The library refuses the image or the surfaces.
+            OSError: A file cannot be written.
+        """
+        source = self._source
+        go_on(progress, 0.0)
+        outputs, told = stretching.stretch(source, self._outputs, progress)
+        rough = outputs.roughness
+        self._notes += told
+        made, made_rough, note = levels.filtered(
+            source, rough, share(progress, 0.0, _FILTERED), all_levels=True
+        )
+        self._notes += [note] if note else []
+        check = partial(go_on, progress, _FILTERED)
+        stage = partial(
+            staged,
+            settings=source.settings,
+            wrap=source.wrap,
+            check=check,
+            metadata=self._metadata,
+        )
+        files, _ = stage(source.picture, made, outputs.target, source.settings.texture_format)
+        self._staged += files
+        if rough is not None:
+            target = outputs.roughness_target
+            files, _ = stage(rough.picture, made_rough, target, rough.texture_format)
+            self._staged += files
+        go_on(progress, 1.0)
+
+    def write(self) -> Outcome:
+        """Puts the files into place: all, or none."""
+        commit_all(self._staged)
+        return Outcome(
+            summary(self._source, self._outputs),
+            files=[str(path) for path in self._outputs.targets],
+            warnings=self._warnings,
+            notes=self._notes,
+        )
+
+    def discard(self) -> None:
+        """Removes what was staged, if it was not put into place."""
+        for file in self._staged:
+            file.discard()
+
+
+def read(
+    texture: str,
+    meshes: Sequence[str],
+    objects: Sequence[str],
+    settings: Settings,
+    metadata: Mapping[str, str] | None,
+) -> Levels:
+    """Reads the files, and checks what the settings say of them.
+
+    Args:
+        texture: The picture.
+        meshes: Those that wear it.
+        objects: The names of those in these files that count; all where there are none.
+        settings: What to make.
+        metadata: What KTX 2 files are to keep, by keys.
+
+    Raises:
+        OSError: A file cannot be read, or not be written.
+        ValueError: A file does not go with the settings.
+    """
+    target = target_files.check_target(settings.filepath)
+    is_data = settings.content in {"normal", "data"}
+    picture = picture_files.read("TEXTURE", texture, is_data=is_data)
+    _check_sources([texture, settings.roughness, *meshes], settings)
+    content = settings.content
+    if content == "auto":
+        content = "data" if picture.is_data else "color"
+    is_encoded = picture.encoding is not Encoding.NONE
+    picture = contents.as_content(picture, content)
+    if content == "cutout":
+        contents.check_cutout(picture)
+    blocks = settings.texture_format == "blocks"
+    if blocks:
+        chosen = checks.suiting_blocks([picture], content)
+        settings = replace(settings, texture_format=chosen)
+    threshold = settings.threshold if content == "cutout" else None
+    told = engines.checked(
+        picture,
+        target,
+        settings.texture_format,
+        threshold,
+        may_lose_channels=blocks,
+        is_stretched=settings.use_multiples_of_4,
+    )
+    rough = checks.roughness_of(settings, picture, content, [target], partial(_rough, settings))
+    if rough.roughness is not None:
+        told += engines.checked(
+            rough.roughness.picture,
+            rough.target,
+            rough.roughness.texture_format,
+            may_lose_channels=blocks,
+            is_stretched=settings.use_multiples_of_4,
+        )
+    told += checks.odd_uses(settings, picture, content, [target], rough, is_encoded=is_encoded)
+    outputs = Outputs(target, *_of(rough))
+    parts = mesh_files.chosen(mesh_files.read("MESH", meshes), objects)
+    return Levels(_on_meshes(parts, settings, picture, content, told), outputs, told, metadata)
+
+
+def _on_meshes(
+    parts: Sequence[mesh_files.Part],
+    settings: Settings,
+    picture: Picture,
+    content: str,
+    told: list[str],
+) -> Source:
+    """Returns the picture on its surfaces; `told` gets what is to be known of these, first."""
+    surfaces, names, without = mesh_files.surfaces(parts)
+    wrap = "repeat" if settings.wrap == "auto" else settings.wrap
+    wraps = (wrap, wrap if settings.wrap_v == "same" else settings.wrap_v)
+    told[:0] = without
+    return Source(picture, surfaces, names, settings, content, wraps)
+
+
+def _rough(settings: Settings) -> Picture:
+    return picture_files.read("--roughness", settings.roughness, is_data=True)
+
+
+def _of(rough: Rough) -> tuple[contents.Roughness | None, Path | None]:
+    return rough.roughness, rough.target
+
+
+def _check_sources(sources: list[str], settings: Settings) -> None:
+    """Raises ValueError where a file that is read would be replaced."""
+    read = {os.path.realpath(path) for path in sources if path}
+    for path in (settings.filepath, settings.roughness_filepath):
+        if path and os.path.realpath(path) in read:
+            raise ValueError(f"'{path}' is read; choose another file to write")
