@@ -24,7 +24,10 @@ __all__ = (
     "ScanSettings",
 )
 
-EXTENSIONS = (".las", ".laz", ".e57", ".pcd", ".ply", ".xyz", ".xyzn", ".pts", ".asc", ".txt")
+EXTENSIONS = (
+    *(".las", ".laz", ".e57", ".pcd", ".ply"),
+    *(".xyz", ".xyzn", ".pts", ".asc", ".txt", ".csv"),
+)
 """Of files of points: `prefilter.POINT_EXTENSIONS`, which takes long to import."""
 
 

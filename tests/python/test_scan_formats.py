@@ -66,13 +66,77 @@ def test_other_columns_are_attributes(tmp_path):
 
 
 @pytest.mark.parametrize("separator", [" ", "\t", ",", ", ", ";", "  "])
-@pytest.mark.parametrize("name", ["a.xyz", "a.XYZ", "a.xyzn", "a.pts", "a.txt", "a.asc"])
+@pytest.mark.parametrize("name", ["a.xyz", "a.XYZ", "a.xyzn", "a.pts", "a.txt", "a.asc", "a.csv"])
 def test_separators_and_comments(tmp_path, separator, name):
     text = "# x y z\n\n" + lines(POINTS, separator=separator)
     text = text.replace("5.5\n", f"5.5{separator}# the last\n// the end")
     np.testing.assert_array_equal(read(tmp_path, text, name).positions, POINTS)
     windows = text.replace("\n", "\r\n")
     np.testing.assert_array_equal(read(tmp_path, windows, name).positions, POINTS)
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+@pytest.mark.parametrize("mark", [b"", b"\xef\xbb\xbf"])
+@pytest.mark.parametrize("name", ["a.txt", "a.csv"])
+def test_line_ends_and_byte_order_marks(tmp_path, end, mark, name):
+    text = "3\n# z y x\n" + lines(POINTS, COLORS)
+    path = write(tmp_path, name, mark + text.replace("\n", end).encode())
+    points = prefilter.read_points(path)
+    np.testing.assert_array_equal(points.positions, POINTS)
+    np.testing.assert_array_equal(points.colors, COLORS)
+    damaged = mark + (text + "1 2\n").replace("\n", end).encode()
+    with pytest.raises(ValueError, match="line 6: more points"):
+        prefilter.read_points(write(tmp_path, name, damaged))
+
+
+def test_utf_16_is_named(tmp_path):
+    for encoding in ("utf-16-le", "utf-16-be"):
+        path = write(tmp_path, "a.txt", ("\ufeff" + lines(POINTS)).encode(encoding))
+        with pytest.raises(ValueError, match=r"a.txt': text in UTF-16; save it as UTF-8"):
+            prefilter.read_points(path)
+
+
+@pytest.mark.parametrize(
+    "header",
+    [
+        "classification,Y,X,Z,B,G,R",
+        '"Classification";"Y";"X";"Z";"b";"g";"r"',
+        "classification\tNorthing (m)\tEasting (m)\tElevation (m)\tBlue\tGreen\tRed",
+        "// Classification Y X Z blue green red",
+        "#classification y x z b g r",
+    ],
+)
+def test_names_of_columns(tmp_path, header):
+    values = np.arange(3.0)[:, None] + 2
+    x, y, z = POINTS[:, :1], POINTS[:, 1:2], POINTS[:, 2:]
+    text = f"{header}\n" + lines(values, y, x, z, COLORS[:, ::-1])
+    points = read(tmp_path, text, "a.csv")
+    np.testing.assert_array_equal(points.positions, POINTS)
+    np.testing.assert_array_equal(points.colors, COLORS)
+    assert points.colors.dtype == np.uint8
+    np.testing.assert_array_equal(points.attributes["classification"], values[:, 0])
+
+
+def test_names_that_do_not_fit(tmp_path):
+    # Of columns that have no name, or one of others, there are numbers.
+    points = read(tmp_path, "x,y,z,,x,a\n" + lines(POINTS, POINTS, separator=","), "a.csv")
+    assert list(points.attributes) == ["value4", "value5", "a"]
+    # More names than numbers: those of values.
+    points = read(tmp_path, "x,y,z,nx,ny,nz,more\n" + lines(POINTS, COLORS), "a.csv")
+    np.testing.assert_array_equal(points.colors, COLORS)
+    assert len(read(tmp_path, "x y z\n").positions) == 0
+
+
+@pytest.mark.parametrize("separator", [";", "\t", " ", "; "])
+def test_decimal_commas(tmp_path, separator):
+    rows = POINTS + 0.25
+    text = "x;y;z\n3\n" + lines(rows, [1, 2, 3], separator=separator).replace(".", ",")
+    np.testing.assert_array_equal(read(tmp_path, text, "a.csv").positions, rows)
+    # Not where they separate, or some have a point.
+    for text in ("1,2,3\n4,5,6\n", "1, 2, 3\n4, 5, 6\n", "1 , 2 , 3\n4,5,6\n"):
+        np.testing.assert_array_equal(read(tmp_path, text).positions, [[1, 2, 3], [4, 5, 6]])
+    with pytest.raises(ValueError, match="line 2: found 6 numbers; 3 are needed"):
+        read(tmp_path, "1.5 2 3\n1,5 2,5 3,5\n")
 
 
 def test_counts_are_checked(tmp_path):
@@ -100,7 +164,9 @@ def test_large_coordinates_are_doubles(tmp_path):
         ("1 2 3\n4 5 6 7\n", "line 2: found 4 numbers; 3 are needed, as before"),
         ("1 2 3\n4\n", "line 2: found 1 number; 3 are needed, as before"),
         ("1 2\n", "line 1: found 2 numbers; x, y and z are needed"),
-        ("x y z\n", "line 1: found 'x'; a number is needed"),
+        ("x y\n", "line 1: found 'x'; a number is needed"),
+        ("x y z\n1 2 3\nx y z\n", "line 3: found 'x'; a number is needed"),
+        ("a b c\n1 2 3\n", "line 1: found 'a'; a number is needed"),
         ("1 2 3\n1 2 3e\n", "line 2: found '3e'; a number is needed"),
         ("\0\1\2\3", r"line 1: found '\?\?\?\?'; a number is needed"),
         ("3\n1 2 3\n", "line 2: ends after 1 of the 3 points that were announced"),

@@ -33,7 +33,7 @@ bool TextReader::next_line(std::string_view* line) {
   if (found.empty()) return false;
   ++line_;
   while (true) {
-    const void* const end = std::memchr(found.data() + searched, '\n', found.size() - searched);
+    const void* const end = std::memchr(found.data() + searched, end_, found.size() - searched);
     const char* const text = reinterpret_cast<const char*>(found.data());
     if (end != nullptr) {
       *line = {text, static_cast<std::size_t>(static_cast<const char*>(end) - text)};

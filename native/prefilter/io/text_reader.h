@@ -26,7 +26,12 @@ class TextReader {
   ByteReader& bytes() { return bytes_; }
   const std::string& name() const { return bytes_.name(); }
 
-  /// The next line without its end, "\n" or "\r\n"; false where there are no more. It stays where
+  /// What ends lines: "\n", with or without "\r" before it, unless this says otherwise.
+  void set_line_end(char end) { end_ = end; }
+  /// Of the line that was read last, from 1 on.
+  std::uint64_t line() const { return line_; }
+
+  /// The next line without its end; false where there are no more. It stays where
   /// it is until the next call. Throws Error for a line that is no text: longer than 16 MiB.
   bool next_line(std::string_view* line);
   /// Passes a line.
@@ -46,6 +51,7 @@ class TextReader {
 
  private:
   ByteReader bytes_;
+  char end_ = '\n';
   std::uint64_t line_ = 0;
 };
 

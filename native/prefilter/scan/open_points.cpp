@@ -20,7 +20,7 @@ struct Format {
 constexpr Format kFormats[] = {
     {".ply", open_ply_points},  {".pcd", open_pcd_points},   {".pts", open_text_points},
     {".xyz", open_text_points}, {".xyzn", open_text_points}, {".asc", open_text_points},
-    {".txt", open_text_points},
+    {".txt", open_text_points}, {".csv", open_text_points},
 };
 
 }  // namespace

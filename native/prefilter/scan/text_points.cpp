@@ -3,125 +3,52 @@
 #include "prefilter/scan/text_points.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
-#include "prefilter/base/elementary.h"
 #include "prefilter/base/error.h"
 #include "prefilter/io/text_reader.h"
 #include "prefilter/scan/point_fields.h"
+#include "prefilter/scan/text_columns.h"
 
 namespace prefilter {
 namespace {
 
 constexpr std::string_view kSeparators = " \t\r\v\f,;";
+constexpr std::string_view kOtherSeparators = " \t\r\v\f;";  // than commas
 constexpr std::size_t kLinesLookedAt = 4096;
+constexpr std::size_t kBytesLookedAt = 1 << 16;
 
-// What is known of a column from the lines that were looked at.
-struct Column {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -std::numeric_limits<double>::infinity();
-  bool is_whole = true;
-  bool is_double = false;
-  bool begins_unit = true;  // whether it and the next two hold vectors of length 1
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-  void include(double value) {
-    low = std::min(low, value);
-    high = std::max(high, value);
-    is_whole = is_whole && std::floor(value) == value;
-    is_double = is_double || needs_double(value);
+// Whether commas in a line are decimal ones: three words or more, where they do not separate, each
+// with one at most, between digits, and no point anywhere. Nothing is told by a line without any.
+bool has_decimal_commas(std::string_view line) {
+  if (line.find('.') != std::string_view::npos) return false;
+  int words = 0;
+  for (std::string_view word = take_word(&line, kOtherSeparators); !word.empty();
+       word = take_word(&line, kOtherSeparators)) {
+    ++words;
+    const std::size_t comma = word.find(',');
+    if (comma == std::string_view::npos) continue;
+    if (comma == 0 || comma + 1 == word.size() || !is_digit(word[comma - 1]) ||
+        !is_digit(word[comma + 1]) || word.find(',', comma + 1) != std::string_view::npos) {
+      return false;
+    }
   }
-
- private:
-  // Whether the decimals that tell the number from others of double precision tell more than
-  // those of the nearest float.
-  static bool needs_double(double value) {
-    char as_double[32];
-    char as_float[32];
-    const auto end = std::to_chars(as_double, as_double + sizeof as_double, value).ptr;
-    const auto float_end =
-        std::to_chars(as_float, as_float + sizeof as_float, static_cast<float>(value)).ptr;
-    return std::isfinite(value) && !std::equal(as_double, end, as_float, float_end);
-  }
-};
-
-bool is_color(std::span<const Column> columns) {
-  return std::all_of(columns.begin(), columns.end(),
-                     [](const Column& each) { return each.is_whole && each.low >= 0.0; }) &&
-         std::any_of(columns.begin(), columns.end(),
-                     [](const Column& each) { return each.high > 1.0; });
+  return words >= 3;
 }
-
-// Normals are written with few digits.
-bool is_unit(const double* vector) {
-  return std::abs(elementary::hypot(vector[0], vector[1], vector[2]) - 1.0) < 0.01;
-}
-
-// Names and types of columns, from what was seen in them.
-class ColumnNames {
- public:
-  explicit ColumnNames(std::span<const Column> columns) : columns_(columns) {
-    name({"x", "y", "z"}, columns[0].is_double || columns[1].is_double || columns[2].is_double
-                              ? ScalarType::kDouble
-                              : ScalarType::kFloat);
-    const std::size_t left = columns.size() - 3;
-    if (left % 3 == 1 && (left == 1 || is_three_after(columns))) {
-      name({"intensity"}, ScalarType::kFloat);
-    }
-    while (columns.size() - fields_.size() >= 3) name_three();
-    if (columns.size() - fields_.size() == 1 && !has_intensity()) {
-      name({"intensity"}, ScalarType::kFloat);
-    }
-    while (fields_.size() < columns.size()) name_any();
-  }
-
-  const std::vector<ScanField>& fields() const { return fields_; }
-
- private:
-  // Whether the fourth column is one by itself, before three that belong together.
-  static bool is_three_after(std::span<const Column> columns) {
-    return is_color(columns.subspan(4, 3)) || (columns[4].begins_unit && !columns[3].begins_unit);
-  }
-  void name(std::initializer_list<const char*> names, ScalarType type) {
-    for (const char* each : names) fields_.push_back({each, type, fields_.size(), 0});
-  }
-  void name_any() {
-    fields_.push_back(
-        {"value" + std::to_string(fields_.size() + 1), ScalarType::kFloat, fields_.size(), 0});
-  }
-  bool has_intensity() const {
-    return std::any_of(fields_.begin(), fields_.end(),
-                       [](const ScanField& each) { return each.name == "intensity"; });
-  }
-
-  void name_three() {
-    const auto three = columns_.subspan(fields_.size(), 3);
-    if (is_color(three)) {
-      const bool is_byte = std::all_of(three.begin(), three.end(),
-                                       [](const Column& each) { return each.high <= 255.0; });
-      if (!has_color_) {
-        name({"red", "green", "blue"}, is_byte ? ScalarType::kUint8 : ScalarType::kFloat);
-        has_color_ = true;
-        return;
-      }
-    } else if (!has_normal_) {
-      name({"nx", "ny", "nz"}, ScalarType::kFloat);
-      has_normal_ = true;
-      return;
-    }
-    for (int k = 0; k < 3; ++k) name_any();
-  }
-
-  std::span<const Column> columns_;
-  std::vector<ScanField> fields_;
-  bool has_color_ = false;
-  bool has_normal_ = false;
-};
 
 class TextPoints final : public PointSource {
  public:
   explicit TextPoints(const std::string& path) : text_(path) {
+    look_at_bytes();
     look_at_lines();
     rewind();
   }
@@ -133,7 +60,7 @@ class TextPoints final : public PointSource {
   bool is_double() const override { return fields_.is_double(); }
 
   void rewind() override {
-    text_.go_to({});
+    text_.go_to({begin_, 0});
     counted_ = 0;
     found_ = 0;
     has_count_ = false;
@@ -159,8 +86,8 @@ class TextPoints final : public PointSource {
   bool next_values() {
     std::string_view line;
     while (text_.next_line(&line)) {
-      line = line.substr(0, std::min(line.find('#'), line.find("//")));
-      text_.parse(line, kSeparators, &values_);
+      if (text_.line() == names_line_) continue;
+      take_numbers(without_comment(line));
       if (values_.size() == 1) {
         take_count();
       } else if (!values_.empty()) {
@@ -174,6 +101,17 @@ class TextPoints final : public PointSource {
     }
     check_count();
     return false;
+  }
+
+  static std::string_view without_comment(std::string_view line) {
+    return line.substr(0, std::min(line.find('#'), line.find("//")));
+  }
+
+  void take_numbers(std::string_view line) {
+    if (!has_decimal_commas_) return text_.parse(line, kSeparators, &values_);
+    with_points_ = line;
+    std::replace(with_points_.begin(), with_points_.end(), ',', '.');
+    text_.parse(with_points_, kOtherSeparators, &values_);
   }
 
   void take_count() {
@@ -198,8 +136,61 @@ class TextPoints final : public PointSource {
     }
   }
 
+  // Finds how lines end, and what the first ones say of the rest.
+  void look_at_bytes() {
+    const std::span<const std::byte> bytes = text_.bytes().peek(kBytesLookedAt);
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
+      throw_invalid(text_.name() + ": text in UTF-16; save it as UTF-8");
+    }
+    if (text.starts_with("\xEF\xBB\xBF")) begin_ = 3;
+    if (text.find('\n') == std::string_view::npos && text.find('\r') != std::string_view::npos) {
+      text_.set_line_end('\r');
+    }
+    rewind();
+    look_at_names();
+    look_at_commas();
+    rewind();
+  }
+
+  // The first line may have the names of the columns, or a comment may.
+  void look_at_names() {
+    std::string_view line;
+    if (!text_.next_line(&line)) return;
+    const std::size_t name = line.find_first_not_of("#/ \t");
+    const bool is_comment = without_comment(line).empty() && name != std::string_view::npos;
+    std::string_view rest = line;
+    const std::string_view first = take_word(&rest, kSeparators);
+    double number = 0.0;
+    if (!is_comment && (first.empty() || to_number(first, &number))) return;
+    std::vector<std::string> names = names_in(is_comment ? line.substr(name) : line);
+    const auto has = [&](const char* axis) {
+      return std::find(names.begin(), names.end(), axis) != names.end();
+    };
+    if (!has("x") || !has("y") || !has("z")) return;
+    names_ = std::move(names);
+    if (!is_comment) names_line_ = text_.line();
+  }
+
+  void look_at_commas() {
+    constexpr int kLines = 64;
+    bool has_commas = false;
+    rewind();
+    std::string_view line;
+    for (int k = 0; k < kLines && text_.next_line(&line); ++k) {
+      line = without_comment(line);
+      std::string_view rest = line;
+      take_word(&rest, kSeparators);
+      // Nothing, or the number of points.
+      if (text_.line() == names_line_ || take_word(&rest, kSeparators).empty()) continue;
+      has_commas = has_commas || line.find(',') != std::string_view::npos;
+      if (!has_decimal_commas(line)) return;
+    }
+    has_decimal_commas_ = has_commas;
+  }
+
   void look_at_lines() {
-    std::vector<Column> columns;
+    std::vector<TextColumn> columns;
     // The rest of what is wrong is found when it is read.
     for (std::size_t k = 0; k < kLinesLookedAt && next_values(); ++k) {
       if (k == 0) {
@@ -218,10 +209,17 @@ class TextPoints final : public PointSource {
     }
     // A file without points may have none.
     columns.resize(std::max<std::size_t>(columns.size(), 3));
-    fields_ = PointFields(ColumnNames(columns).fields(), text_.name());
+    std::vector<ScanField> fields = named_fields(columns, names_);
+    if (fields.empty()) fields = guessed_fields(columns);
+    fields_ = PointFields(fields, text_.name());
   }
 
   TextReader text_;
+  std::uint64_t begin_ = 0;       // behind a byte order mark
+  std::uint64_t names_line_ = 0;  // that has names; 0 for none
+  std::vector<std::string> names_;
+  bool has_decimal_commas_ = false;
+  std::string with_points_;  // a line whose commas are points
   PointFields fields_;
   std::size_t width_ = 0;
   std::vector<double> values_;

@@ -73,8 +73,9 @@ def read_points(
     .ply, .pcd: nx, ny, nz (or normal_x and so on) are normals, confidence is the weight; all other
     numbers are attributes. VIEWPOINT of a .pcd file is the viewpoint, except for the origin in a
     cloud that is no image: it stands there, too, where nothing is known.
-    .xyz, .xyzn, .pts, .asc, .txt: lines of x y z, and then a normal, a color, an intensity; which
-    of these the columns are is told from the first thousands of lines.
+    .xyz, .xyzn, .pts, .asc, .txt, .csv: lines of x y z, and then a normal, a color, an intensity;
+    which of these the columns are is told from the first thousands of lines, or by names in the
+    first.
     .las, .laz: need the Python package laspy; .laz also lazrs or laszip.
     .e57: needs the Python package pye57. All scans are read, in the file's coordinates; the places
     of their poses are the viewpoint.
