@@ -26,7 +26,7 @@ __all__ = (
 
 EXTENSIONS = (
     *(".las", ".laz", ".e57", ".pcd", ".ply"),
-    *(".xyz", ".xyzn", ".pts", ".asc", ".txt", ".csv"),
+    *(".xyz", ".xyzn", ".pts", ".ptx", ".asc", ".txt", ".csv"),
 )
 """Of files of points: `prefilter.POINT_EXTENSIONS`, which takes long to import."""
 

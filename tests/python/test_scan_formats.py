@@ -185,6 +185,88 @@ def test_damaged_lines(tmp_path, text, message):
         prefilter.read_points(path)
 
 
+def ptx(scans, end="\n"):
+    """Scans of (columns, matrix, rows of numbers)."""
+    rows = []
+    for columns, matrix, values in scans:
+        rows += [[columns], [len(values) // columns], matrix[3][:3], *np.eye(3).tolist()]
+        rows += [*matrix, *values]
+    return "".join(" ".join(map(repr, row)) + end for row in rows)
+
+
+def placed_points():
+    """Two scans, their points that saw something where they are, and their scanners."""
+    turned = [[0.0, 1.0, 0.0, 0], [-1.0, 0.0, 0.0, 0], [0.0, 0.0, 1.0, 0], [4e5, 5e6, 7.5, 1]]
+    moved = [[1.0, 0.0, 0.0, 0], [0.0, 1.0, 0.0, 0], [0.0, 0.0, 2.0, 0], [1.0, 2.0, 3.0, 1]]
+    nothing = [0, 0, 0, 0.5, 0, 0, 0]
+    first = [[1.5, 2.0, 3.0, 0.25, 255, 0, 7], nothing, [4.0, 5.0, 6.0, 1.0, 1, 2, 3], nothing]
+    second = [nothing, [0.5, 0.0, 0.0, 0.75, 9, 8, 7]]
+    positions = [[4e5 - 2, 5e6 + 1.5, 10.5], [4e5 - 5, 5e6 + 4, 13.5], [1.5, 2.0, 3.0]]
+    viewpoints = [turned[3][:3]] * 2 + [moved[3][:3]]
+    return [(2, turned, first), (1, moved, second)], positions, viewpoints
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\n\n"])
+def test_ptx_files(tmp_path, end):
+    scans, positions, viewpoints = placed_points()
+    text = ptx(scans, end.replace("\n\n", "\n")) + end
+    points = read(tmp_path, text, "a.PTX")
+    np.testing.assert_array_equal(points.positions, positions)
+    np.testing.assert_array_equal(points.viewpoint, viewpoints)
+    assert points.normals is None
+    np.testing.assert_array_equal(points.colors, [(255, 0, 7), (1, 2, 3), (9, 8, 7)])
+    np.testing.assert_array_equal(points.attributes["intensity"], np.float32([0.25, 1, 0.75]))
+    plain = [(columns, matrix, [row[:4] for row in rows]) for columns, matrix, rows in scans]
+    points = read(tmp_path, ptx(plain), "a.ptx")
+    np.testing.assert_array_equal(points.positions, positions)
+    assert list(points.attributes) == ["intensity"]
+    assert len(read(tmp_path, "", "a.ptx").positions) == 0
+    assert len(read(tmp_path, ptx([(1, scans[0][1], [])]), "a.ptx").positions) == 0
+
+
+def test_normals_of_ptx_files_face_their_scanners(tmp_path):
+    random = np.random.default_rng(3)
+    directions = random.normal(size=(4000, 3))
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    inside = np.eye(4).tolist()
+    rows = np.column_stack([2 * directions, np.full(4000, 0.5)]).tolist()
+    path = write(tmp_path, "room.ptx", ptx([(1, inside, rows)]).encode())
+    positions, triangles = prefilter.reconstruct(path, depth=5)
+    corners = positions[triangles]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    middles = corners.mean(axis=1)
+    # The room is in a solid, which ends behind its walls.
+    walls = np.linalg.norm(middles, axis=1) < 2.001
+    assert np.count_nonzero(walls) > 2000
+    assert (np.einsum("tk,tk->t", normals, middles)[walls] < 0).all()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("2\n2\n", "2\n2 2\n", "line 2: found 2 numbers; the number of rows of a scan is needed"),
+        ("2\n2\n", "-2\n2\n", "line 1: no whole number from 0 to 1e9; the number of columns"),
+        ("2\n2\n", "2.5\n2\n", "line 1: no whole number"),
+        ("2\n2\n", "x\n2\n", "line 1: found 'x'; a number is needed"),
+        ("7.5\n1.0", "7.5 1\n1.0", "line 3: found 4 numbers; the scanner's place and its axes"),
+        ("7.5 1\n", "7.5\n", "line 10: found 3 numbers; a row of the scan's matrix is needed"),
+        (" 0.25 255 0 7\n", " 0.25 255\n", "line 11: found 5 numbers; x, y, z, an intensity"),
+        (" 1 2 3\n", "\n", "line 13: found 4 numbers; 7 are needed, as before"),
+        (" 0.75 9 8 7\n", " 0.75 9 8 q\n", "line 26: found 'q'; a number is needed"),
+    ],
+)
+def test_damaged_ptx_files(tmp_path, old, new, message):
+    text = ptx(placed_points()[0])
+    assert old in text
+    path = write(tmp_path, "a.ptx", text.replace(old, new, 1).encode())
+    with pytest.raises(ValueError, match=f"^'{re.escape(str(path))}': {re.escape(message)}"):
+        prefilter.read_points(path)
+    for length in range(1, len(text) - 10, 7):
+        path.write_text(text[:length])
+        with pytest.raises(ValueError, match=r"a\.ptx': line \d+"):
+            prefilter.read_points(path)
+
+
 FIELDS = [("x", "<f4", 1), ("y", "<f4", 1), ("z", "<f4", 1)]
 DATA = ["ascii", "binary", "binary_compressed"]
 

@@ -8,6 +8,7 @@
 #include "prefilter/io/path_text.h"
 #include "prefilter/scan/pcd_points.h"
 #include "prefilter/scan/ply_points.h"
+#include "prefilter/scan/ptx_points.h"
 #include "prefilter/scan/text_points.h"
 
 namespace prefilter {
@@ -20,7 +21,7 @@ struct Format {
 constexpr Format kFormats[] = {
     {".ply", open_ply_points},  {".pcd", open_pcd_points},   {".pts", open_text_points},
     {".xyz", open_text_points}, {".xyzn", open_text_points}, {".asc", open_text_points},
-    {".txt", open_text_points}, {".csv", open_text_points},
+    {".txt", open_text_points}, {".csv", open_text_points},  {".ptx", open_ptx_points},
 };
 
 }  // namespace

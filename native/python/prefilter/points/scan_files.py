@@ -76,6 +76,8 @@ def read_points(
     .xyz, .xyzn, .pts, .asc, .txt, .csv: lines of x y z, and then a normal, a color, an intensity;
     which of these the columns are is told from the first thousands of lines, or by names in the
     first.
+    .ptx: scans one after the other, with intensities and perhaps colors, placed by their matrices;
+    the viewpoint of each point is that of its scan.
     .las, .laz: need the Python package laspy; .laz also lazrs or laszip.
     .e57: needs the Python package pye57. All scans are read, in the file's coordinates; the places
     of their poses are the viewpoint.
