@@ -77,4 +77,10 @@ def damage_of(path: str, kind: str) -> Iterator[None]:
     except BaseException as error:
         if isinstance(error, ValueError) and str(error).startswith(f"'{path}'"):
             raise
-        raise ValueError(f"'{path}' cannot be read as {kind}: {error}") from error
+        raise ValueError(f"'{path}' cannot be read as {kind}: {_first_line(error)}") from error
+
+
+def _first_line(error: BaseException) -> str:
+    """What an error says, without the dump that libE57 puts behind it."""
+    lines = [line.strip() for line in str(error).splitlines()]
+    return next((line for line in lines if line), type(error).__name__)
