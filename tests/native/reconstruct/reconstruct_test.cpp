@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <string>
 
 #include "contour/mesh_checks.h"
 #include "prefilter/base/error.h"
@@ -273,7 +274,12 @@ TEST(Reconstruct, OfPointsThatBoundNothingIsClosed) {
         for (const double x : p) ASSERT_TRUE(std::isfinite(x));
       }
       options.trim = 2.0;
-      EXPECT_LE(surface_of(cloud, options).mesh.triangles.size(), result.mesh.triangles.size());
+      try {
+        EXPECT_LE(surface_of(cloud, options).mesh.triangles.size(), result.mesh.triangles.size());
+      } catch (const Error& error) {
+        // Nothing may be left.
+        EXPECT_EQ(std::string(error.what()).find("trim: 2 cells"), 0U) << error.what();
+      }
     }
   }
 }
