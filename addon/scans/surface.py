@@ -19,7 +19,7 @@ from ..bridge.place import Place
 from ..bridge.solids import MaterialKey
 from ..bridge.units import length
 from ..core.jobs import Progress
-from ..core.wording import Sentence, amount
+from ..core.wording import amount
 from .choices import ScanSettings
 
 __all__ = (
@@ -89,10 +89,6 @@ def reconstructed(
             list(sources), attributes=True, report=report, progress=progress, **options(settings)
         )
     positions, triangles, attributes = cast("_MeshWithAttributes", found)
-    if len(triangles) == 0:
-        if settings.trim:
-            raise ValueError(Sentence("the result is empty: Trim has left nothing of it"))
-        raise ValueError(Sentence("the result is empty: the points enclose nothing"))
     return Surface(positions, triangles, attributes, report)
 
 
