@@ -117,6 +117,10 @@ TEST(Reconstruct, StraysAreFewAndFar) {
   EXPECT_EQ(strays_with(900, 100.0, 1), 0U);
   EXPECT_EQ(strays_with(500'000, 8.0, 5), 5U);
   EXPECT_EQ(strays_with(500'000, 8.0, 6), 0U);
+  // A tail of points, each less than twice as far away as the one before, is none.
+  Cloud cloud = ball(5000);
+  for (double distance = 1.5; distance < 10.0; distance *= 1.5) add({0.0, distance, 0.0}, &cloud);
+  EXPECT_EQ(surface_of(cloud, options).report.strays, 0U);
 }
 
 TEST(Reconstruct, OfABallIsClosedAndNear) {
