@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <vector>
 
 #include "prefilter/contour/marching_table.h"
 
@@ -77,9 +78,9 @@ class LoopPart {
     return false;
   }
 
-  // Calls add(triangle) for those that lie best; the fan is always among what may be.
-  template <typename Add>
-  void triangulate(const Add& add) const {
+  // The triangles that lie best; none where one of these is upside down, too: then the fan stays,
+  // which mending finds. The fan is always among what may be.
+  std::vector<Triangle> upright_triangles() const {
     const auto is_allowed = [&](int i, int j) {
       if (i == 0 || j == 0) return true;
       const std::size_t a = corners_[static_cast<std::size_t>(i)];
@@ -91,9 +92,14 @@ class LoopPart {
       const double cosine = cosine_of(i, j, k);
       return cosine < kLeastCosine ? kFolded - cosine : 1.0 - cosine;
     };
+    std::vector<Triangle> triangles;
+    bool is_upright = true;
     triangulate_loop(static_cast<int>(size_), is_allowed, cost, [&](int i, int j, int k) {
-      add(Triangle{vertex(i), vertex(j), vertex(k)});
+      is_upright = is_upright && cosine_of(i, j, k) >= kLeastCosine;
+      triangles.push_back({vertex(i), vertex(j), vertex(k)});
     });
+    if (!is_upright) triangles.clear();
+    return triangles;
   }
 
  private:
@@ -172,7 +178,9 @@ LoopTriangles add_loops(const LinkedLoops& loops, std::span<const Triangle> plai
       if (!loops.is_joined(i, k, is_sharp)) continue;
       const LoopPart part(loops, i, (k + 1) % count, made.places[i], is_sharp, samples, *mesh);
       if (!part.is_folded()) continue;
-      part.triangulate([&](const Triangle& triangle) { add(triangle, part.label(), i, -1); });
+      const std::vector<Triangle> triangles = part.upright_triangles();
+      for (const Triangle& triangle : triangles) add(triangle, part.label(), i, -1);
+      if (triangles.empty()) continue;
       for (std::size_t n = 1; n < part.count(); ++n) is_made[(k + n) % count] = 1;
     }
     return is_made;
