@@ -313,6 +313,21 @@ TEST(LoopTriangles, BendWithTheirLoop) {
   EXPECT_NEAR(sum, expected, 1e-12);
 }
 
+// What crosses itself has no triangles that are all upright.
+TEST(LoopTriangles, StayAFanWhereNoneAreUpright) {
+  BentLoop bent;
+  std::swap(bent.positions[1], bent.positions[2]);
+  const std::vector<Triangle> found =
+      bent.triangles({loop_of({0, 1, 2, 3, 4, 5}), loop_of({5, 6, 0}), loop_of({4, 3, 7})});
+  ASSERT_EQ(found.size(), 3U);
+  bool is_folded = false;
+  for (const Triangle& triangle : found) {
+    EXPECT_EQ(std::count(triangle.begin(), triangle.end(), 8), 1);
+    is_folded = is_folded || bent.area(triangle) < 0.0;
+  }
+  EXPECT_TRUE(is_folded);
+}
+
 TEST(LoopTriangles, LeaveDiagonalsToTheFirstLoopThatHasBothEnds) {
   const BentLoop bent;
   const auto has_diagonal = [&](const std::vector<SharpLoop>& sharp) {
