@@ -54,7 +54,7 @@ struct ReconstructReport {
   // Not finite or above 1e300, without a normal, or of a weight that is not in (0, 1e30].
   std::size_t dropped = 0;
   std::size_t strays = 0;  // left out as they are twice as far from the middle as all others
-  double outliers = 0.0;  // the weight of those left out as outliers, of that of all
+  double outliers = 0.0;   // the weight of those left out as outliers, of that of all
   std::size_t vertices = 0;
   std::size_t triangles = 0;
   bool is_flipped = false;  // normals point inward, most of them: taken as the opposite
