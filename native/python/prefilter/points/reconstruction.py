@@ -46,7 +46,8 @@ class ReconstructionReport:
         points: That there were.
         dropped: Of these, how many were left out: not finite, without a normal, or of no weight.
         strays: How many of the others were left out, because they are at least about twice as far
-            from the middle as the rest: one point in 100 000 at most, and of 1000 or more up to 3.
+            from the middle as the rest, and more than six standard deviations: one point in 100 000
+            at most, and of 1000 or more up to 3.
         outliers: The share of the others, by weight, that was left out because it lies much thinner
             than most: from 0 to 1.
         vertices: Of the mesh.
