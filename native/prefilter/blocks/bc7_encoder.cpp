@@ -21,8 +21,8 @@ constexpr std::ptrdiff_t kBlockBytes = 16;
 /// An opaque texel that becomes less is worse than any error of colors.
 constexpr std::int64_t kOpaqueWeight = std::int64_t{1} << 32;
 /// Of BC7F's blocks that are not searched further but for the best: half of the values of red,
-/// green and blue are off by a 255th at most. Photographs lose up to 0.2 dB by that, and half of the
-/// time.
+/// green and blue are off by a 255th at most. Photographs lose up to 0.2 dB by that, and half of
+/// the time.
 constexpr std::int64_t kCloseEnough = 32;
 
 class ClosestBc7Encoder final : public ByteEncoder {
