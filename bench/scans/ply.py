@@ -53,7 +53,8 @@ def read_mesh(path: Path) -> Triangles:
         return read_any(path)
     with path.open("rb") as stream:
         head = stream.read(4096).partition(b"end_header\n")[0].decode()
-    properties = re.findall(r"^property (?!list)(\w+) (\w+)$", head, re.MULTILINE)
+    first = head.partition("element face")[0]
+    properties = re.findall(r"^property (?!list)(\w+) (\w+)$", first, re.MULTILINE)
     lists = re.findall(r"^property list (\w+) (\w+) vertex_ind(?:ex|ices)$", head, re.MULTILINE)
     simple = re.search(
         r"element vertex (\d+)\n(?:property .*\n)+element face (\d+)\nproperty list", head
@@ -73,6 +74,24 @@ def read_mesh(path: Path) -> Triangles:
         return read_any(path)
     positions = np.stack([body[axis] for axis in "xyz"], axis=1).astype(np.float64)
     return Triangles(positions, corners["corners"].astype(np.int64))
+
+
+def vertex_values(path: Path, name: str) -> NDArray[np.floating]:
+    """Reads one property of the vertices of a binary PLY; those have to come first.
+
+    Raises:
+        ValueError: The file is no such one, or has no such property.
+    """
+    with path.open("rb") as stream:
+        head = stream.read(4096).partition(b"end_header\n")[0].decode()
+    count = re.search(r"element vertex (\d+)\n((?:property (?!list).*\n)+)", head)
+    if "binary_little_endian" not in head or not count:
+        raise ValueError(f"{path}: no binary PLY of vertices")
+    properties = re.findall(r"property (\w+) (\w+)\n", count[2])
+    vertex = np.dtype([(key, "<" + PLY_TYPES[kind]) for kind, key in properties])
+    if name not in vertex.names:
+        raise ValueError(f"{path}: vertices have no {name!r}")
+    return np.fromfile(path, vertex, int(count[1]), offset=len(head) + len("end_header\n"))[name]
 
 
 def write_mesh(path: Path, positions: Points, triangles: NDArray[np.integer]) -> None:

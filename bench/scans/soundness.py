@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Measures what a surface of a scan has too much and too little, and whether it is sound.
+
+Usage: python3 -m bench.scans.soundness MESH.ply TRUTH|- CELL POINTS.ply [--samples N]
+
+TRUTH is the surface that the points were taken from; for real scans, -, the points themselves stand
+for it. Prints one line of JSON. Distances are in cells. Self-intersections are counted by the
+program of bench/voxels/self_intersections.cpp, which PREFILTER_SELF_INTERSECTIONS may name.
+"""
+
+import argparse
+import dataclasses
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import prefilter
+from numpy.typing import NDArray
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from bench.scans import ply
+from bench.scans.measure import HIGH, manifold_kind
+from bench.scans.sets import Model
+from bench.voxels.measures import edges, self_intersections
+from bench.voxels.meshes import Triangles
+
+SAMPLES = 200_000
+FAR = 3.0  # Cells: what is farther is lost, or invented.
+SPARSE = 3.0  # Spacings: as far may a surface be from the points of a real scan.
+NEIGHBOR = 4  # Whose distance is the spacing.
+FOLD = 90.0  # Degrees.
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Soundness:
+    """What a surface is like.
+
+    Attributes:
+        triangles: How many there are.
+        folded: The share of edges that turn by more than 90 degrees [%].
+        cut: Triangles that cut others.
+        parts: Pieces that hang together.
+        genus: Of all pieces together; -1 where the surface is not closed.
+        lost: What is farther than `FAR` from the surface, of the truth or of the points [%].
+        invented: What is as far from the truth, or from points, of the surface [%].
+        mean: Distance of surface and truth, or of the points from the surface [cells].
+        high: Its 99.9th percentile.
+        degrees: The mean angle of normals of the surface, where it is near, to the true ones.
+    """
+
+    triangles: int
+    folded: float
+    cut: int
+    parts: int
+    genus: int
+    lost: float
+    invented: float
+    mean: float
+    high: float
+    degrees: float
+
+
+def soundness(
+    made: Path, truth: Path | None, cell: float, points: Path, samples: int = SAMPLES
+) -> Soundness:
+    """Measures a surface."""
+    surface = ply.read_mesh(made)
+    _, _, turns = edges(surface.positions, surface.triangles)
+    _, cut, _, _ = self_intersections(surface.positions, surface.triangles)
+    parts, genus = topology(surface)
+    if truth is None:
+        there, back, angles = beside_points(surface, ply.read_points(points), samples)
+        distances = back / cell
+    else:
+        there, back, angles = beside_truth(surface, Model.read(truth), samples, FAR * cell)
+        distances = np.concatenate([there, back]) / cell
+    return Soundness(
+        len(surface.triangles),
+        100 * float((turns > FOLD).mean()),
+        cut,
+        parts,
+        genus,
+        100 * float((back > FAR * cell).mean()),
+        100 * float((there > FAR * cell).mean()),
+        float(distances.mean()),
+        float(np.percentile(distances, HIGH)),
+        float(angles.mean()) if len(angles) else 90.0,
+    )
+
+
+def topology(surface: Triangles) -> tuple[int, int]:
+    """Returns the number of pieces, and their genus together; -1 where they are not closed."""
+    used, corners = np.unique(surface.triangles, return_inverse=True)
+    corners = corners.reshape(-1, 3)
+    pairs = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
+    graph = coo_matrix((np.ones(len(pairs[0]), bool), pairs), shape=(len(used),) * 2)
+    parts, _ = connected_components(graph, directed=False)
+    if not manifold_kind(surface)[0]:
+        return parts, -1
+    euler = len(used) - len(corners) // 2
+    return parts, (2 * parts - euler) // 2
+
+
+def beside_truth(
+    surface: Triangles, truth: Model, samples: int, near: float
+) -> tuple[Floats, Floats, Floats]:
+    """Returns distances from the surface to the truth and back, and angles where it is near."""
+    drawn, normals = Model.of(surface).draw(samples, np.random.default_rng(3))
+    found, _, there = prefilter.nearest_points(drawn, truth.mesh.positions, truth.mesh.triangles)
+    aims, _ = truth.draw(samples, np.random.default_rng(4))
+    _, _, back = prefilter.nearest_points(aims, surface.positions, surface.triangles)
+    angles = between(normals, truth.normals[found])
+    return there, back, angles[there <= near]
+
+
+def beside_points(
+    surface: Triangles, cloud: tuple[Floats, Floats], samples: int
+) -> tuple[Floats, Floats, Floats]:
+    """The same, for points and their normals.
+
+    What is nearer to the points than `SPARSE` of their spacings there counts as on them.
+    """
+    points, normals = (np.asarray(part, np.float64) for part in cloud)
+    model = Model.of(surface)
+    drawn, _ = model.draw(samples, np.random.default_rng(3))
+    tree = cKDTree(points)
+    there, nearest = tree.query(drawn)
+    spacing = tree.query(points[nearest], k=[NEIGHBOR + 1])[0][:, 0]
+    there[there < SPARSE * spacing] = 0
+    chosen = np.random.default_rng(4).permutation(len(points))[:samples]
+    found, _, back = prefilter.nearest_points(points[chosen], surface.positions, surface.triangles)
+    lengths = np.linalg.norm(normals[chosen], axis=1)
+    angles = between(model.normals[found], normals[chosen] / np.maximum(lengths, 1e-30)[:, None])
+    return there, back, angles
+
+
+def between(first: Floats, second: Floats) -> Floats:
+    """The angles between unit vectors [degrees]."""
+    return np.degrees(np.arccos(np.clip((first * second).sum(axis=1), -1, 1)))
+
+
+def main() -> None:
+    """Measures and prints."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("mesh", type=Path)
+    parser.add_argument("truth", help="a mesh, or -")
+    parser.add_argument("cell", type=float)
+    parser.add_argument("points", type=Path)
+    parser.add_argument("--samples", type=int, default=SAMPLES, help="each way")
+    options = parser.parse_args()
+    truth = None if options.truth == "-" else Path(options.truth)
+    found = soundness(options.mesh, truth, options.cell, options.points, options.samples)
+    print(json.dumps(dataclasses.asdict(found)))
+
+
+if __name__ == "__main__":
+    main()
