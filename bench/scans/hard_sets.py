@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from bench.scans import ply, sets
+from bench.scans import fetched, ply, sets
 from bench.scans.scans import grid_normals
 from bench.scans.sets import Cloud, Floats, Model
 from bench.voxels.meshes import Triangles
@@ -246,12 +246,12 @@ MADE: dict[str, Callable[[Path], HardSet]] = {
     **CLEAN,
 }
 DEPTHS = {"ball500": 12}  # Where it is not that of all.
-OPEN: tuple[str, ...] = ()  # Which stay open.
+OPEN = tuple(name for name, found in fetched.FETCHED.items() if found.is_open)
 
 
 def names() -> list[str]:
     """Returns the sets there are."""
-    return [*MADE, *sets.SCANS]
+    return [*MADE, *sets.SCANS, *fetched.FETCHED]
 
 
 def prepare(folder: Path, name: str, depth: int, shared: Path) -> dict[str, Any]:
@@ -266,6 +266,8 @@ def prepare(folder: Path, name: str, depth: int, shared: Path) -> dict[str, Any]
     if not points.exists():
         if name in sets.SCANS:
             found = HardSet(sets.SCANS[name](shared, folder), None)
+        elif name in fetched.FETCHED:
+            found = HardSet(fetched.cloud(name), None)
         else:
             found = MADE[name](shared)
         if found.truth:
