@@ -29,7 +29,8 @@ class ScanProperties(PartedSettings):
     def draw_usual(self, layout: bpy.types.UILayout) -> None:
         """Draws the usual settings."""
         layout.prop(self, "resolution")
-        layout.prop(self, "depth" if self.resolution == "depth" else "voxel_size")
+        if self.resolution != "auto":
+            layout.prop(self, "depth" if self.resolution == "depth" else "voxel_size")
         layout.prop(self, "trim", text="Trim (Cells)")
         layout.prop(self, "points")
 

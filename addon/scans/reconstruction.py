@@ -37,6 +37,8 @@ _FITTING = 0.2e-6
 _TRIANGLES_OF_CUBE = 5.5
 """How many triangles there are in unit cells where the points are those of a solid, about."""
 _TRIANGLES_PER_POINT = 5.5
+_TRIANGLES_PER_CARRIED_POINT = 1.6
+"""Where the depth is the one that points carry, about: one to four points a face of a cell."""
 
 
 @dataclass(frozen=True)
@@ -54,11 +56,14 @@ class Load:
     def seconds(self, settings: ScanSettings) -> float:
         """Returns about how long it takes on two cores; settings that are refused take none."""
         depth: float = settings.depth
-        if settings.resolution == "size":
+        per_point = _TRIANGLES_PER_POINT
+        if settings.resolution == "auto":
+            depth, per_point = prefilter.MAX_DEPTH, _TRIANGLES_PER_CARRIED_POINT
+        elif settings.resolution == "size":
             depth = math.log2(max(self.extent / settings.voxel_size, 2.0))
             if depth > prefilter.MAX_DEPTH:
                 return 0.0
-        triangles = min(_TRIANGLES_OF_CUBE * 4.0**depth, _TRIANGLES_PER_POINT * self.points)
+        triangles = min(_TRIANGLES_OF_CUBE * 4.0**depth, per_point * self.points)
         per_triangle = _PER_TRIANGLE[settings.wavelet] + (_FITTING if settings.use_fit else 0.0)
         return _ALWAYS + _PER_POINT[settings.wavelet] * self.points + per_triangle * triangles
 

@@ -88,6 +88,7 @@ py::dict to_dict(const ReconstructReport& report) {
   found["triangles"] = report.triangles;
   found["is_flipped"] = report.is_flipped;
   found["residual"] = report.residual;
+  found["depth"] = report.depth;
   found["cell"] = report.cell;
   found["is_spilled"] = report.is_spilled;
   return found;

@@ -136,6 +136,36 @@ def test_strays_are_left_out() -> None:
     np.testing.assert_array_equal(found[1], expected[1])
 
 
+@pytest.mark.parametrize("wavelet", ["haar", "d4"])
+def test_depth_is_the_one_that_points_carry(wavelet: str, tmp_path: Path) -> None:
+    cloud = CLOUDS["torus"]
+    report = prefilter.ReconstructionReport()
+    found = prefilter.reconstruct(cloud.points, cloud.normals, wavelet=wavelet, report=report)
+    faces = 4 * np.pi**2 * 1.0 * 0.4 / report.cell**2
+    assert 1 <= len(cloud.points) / faces < 4
+    expected = prefilter.reconstruct(
+        cloud.points, cloud.normals, wavelet=wavelet, depth=report.depth
+    )
+    np.testing.assert_array_equal(found[0], expected[0])
+    np.testing.assert_array_equal(found[1], expected[1])
+    scan = prefilter.ScanPoints(cloud.points, cloud.normals)
+    for options in ({"threads": 1}, {"threads": 3, "memory_limit": 1}):
+        streamed = prefilter.reconstruct_file(
+            scan, tmp_path / "torus.ply", wavelet=wavelet, **options
+        )
+        assert (streamed.depth, streamed.cell) == (report.depth, report.cell)
+
+
+def test_a_size_of_cells_says_the_depth() -> None:
+    cloud = CLOUDS["sphere"]
+    report = prefilter.ReconstructionReport()
+    prefilter.reconstruct(cloud.points, cloud.normals, cell_size=0.1, report=report)
+    assert report.cell <= 0.1 < 2 * report.cell
+    assert report.depth < 6
+    prefilter.reconstruct(cloud.points, cloud.normals, depth=4, report=report)
+    assert report.depth == 4
+
+
 def test_normals_are_estimated() -> None:
     cloud = CLOUDS["sphere"]
     report = prefilter.ReconstructionReport()

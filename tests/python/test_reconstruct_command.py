@@ -21,7 +21,7 @@ def test_the_file_is_that_of_the_package(scan, tmp_path, capsys):
     out, expected = tmp_path / "out.ply", tmp_path / "expected.ply"
     assert run("reconstruct", scan, out, "--depth", "5", "--no-fit", "--isovalue", "half") == 0
     told = capsys.readouterr()
-    assert "Reconstructed 'out.ply' from 3000 points in cells of 0." in told.out
+    assert "Reconstructed 'out.ply' from 3000 points at depth 5, in cells of 0." in told.out
     assert "100 %" in told.err
     prefilter.reconstruct_file(scan, expected, depth=5, fit=False, isovalue="half")
     assert out.read_bytes() == expected.read_bytes()

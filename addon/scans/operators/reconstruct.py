@@ -47,6 +47,13 @@ class PREFILTER_OT_reconstruct(ScanProperties, PresetsOperator, WorkOperator, bp
             return False
         return True
 
+    def complete_settings(self) -> None:
+        """Sets what the caller has left; who names a depth, or a size, means it."""
+        named = self.properties.is_property_set
+        if not named("resolution") and (named("depth") or named("voxel_size")):
+            self.resolution = "depth" if named("depth") else "size"
+        super().complete_settings()
+
     def targets(self, context: bpy.types.Context) -> list[bpy.types.Object]:
         """Returns the selected points."""
         return _chosen(context)

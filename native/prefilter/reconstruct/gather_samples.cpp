@@ -137,26 +137,37 @@ void CloudPart::include(const CloudPart& other) {
   }
 }
 
-CloudExtent measure_cloud(PointSource* source, const Progress& progress, int threads) {
+CloudExtent measure_cloud(PointSource* source, const Progress& progress, int threads,
+                          ThinnedPoints* some) {
+  struct Found {
+    CloudExtent extent;
+    std::vector<ThinnedPoints::Entry> entries;
+  };
   CloudExtent extent;
-  for_batches<CloudExtent>(
+  for_batches<Found>(
       source, progress, threads,
-      [](const PointBatch& batch, CloudExtent* found) {
-        *found = CloudExtent();
-        found->points = batch.positions.size();
+      [some](const PointBatch& batch, Found* found) {
+        found->extent = CloudExtent();
+        found->entries.clear();
+        found->extent.points = batch.positions.size();
         for (std::size_t i = 0; i < batch.positions.size(); ++i) {
-          if (does_count(batch, i)) {
-            found->part.include(batch.positions[i], weight_of(batch, i));
-          } else {
-            ++found->dropped;
+          if (!does_count(batch, i)) {
+            ++found->extent.dropped;
+            continue;
           }
+          found->extent.part.include(batch.positions[i], weight_of(batch, i));
+          if (some == nullptr) continue;
+          const ThinnedPoints::Entry entry = ThinnedPoints::entry_of(batch.positions[i]);
+          if (some->keeps(entry)) found->entries.push_back(entry);
         }
       },
-      [&](const CloudExtent& found) {
-        extent.part.include(found.part);
-        extent.points += found.points;
-        extent.dropped += found.dropped;
+      [&](const Found& found) {
+        extent.part.include(found.extent.part);
+        extent.points += found.extent.points;
+        extent.dropped += found.extent.dropped;
+        if (some != nullptr) some->add(found.entries);
       });
+  if (some != nullptr) some->finish();
   return extent;
 }
 

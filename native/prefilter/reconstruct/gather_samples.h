@@ -10,6 +10,7 @@
 
 #include "prefilter/base/geometry.h"
 #include "prefilter/base/progress.h"
+#include "prefilter/reconstruct/carried_depth.h"
 #include "prefilter/reconstruct/sample_grid.h"
 #include "prefilter/reconstruct/sample_store.h"
 #include "prefilter/scan/point_source.h"
@@ -36,8 +37,9 @@ struct CloudExtent {
   std::size_t strays = 0;   // that are far from all others
 };
 
-/// Reads the source once.
-CloudExtent measure_cloud(PointSource* source, const Progress& progress, int threads);
+/// Reads the source once. Where `some` is not null, it gets some of the points that count.
+CloudExtent measure_cloud(PointSource* source, const Progress& progress, int threads,
+                          ThinnedPoints* some = nullptr);
 
 /// Reads the source again, and puts all points that count into cells. The same to rounding for
 /// points in any order, and to the last bit for any number of threads.

@@ -13,6 +13,7 @@
 #include "prefilter/base/error.h"
 #include "prefilter/base/geometry.h"
 #include "prefilter/base/text.h"
+#include "prefilter/reconstruct/carried_depth.h"
 #include "prefilter/reconstruct/coarse_tree.h"
 #include "prefilter/reconstruct/d4_function.h"
 #include "prefilter/reconstruct/gather_samples.h"
@@ -52,8 +53,12 @@ SampleGrid grid_around(const Box& box, int depth) {
 // Of cells that sizes in single precision, and those of messages, are rounded by.
 constexpr double kSizeRounding = 1e-6;
 
-int depth_for(const Box& box, const ReconstructOptions& options) {
-  if (!options.cell_size) return options.depth;
+// How deep the tree is; `some` of the points tell it where nothing else does.
+int depth_for(const Box& box, const ThinnedPoints& some, const ReconstructOptions& options) {
+  if (!options.cell_size) {
+    if (options.depth) return *options.depth;
+    return carried_depth(some, box, options.progress.part(0.1, 0.12), options.threads);
+  }
   const auto cell_at = [&](int depth) {
     return cube_around(box, depth).size(0) / std::ldexp(1.0, depth);
   };
@@ -155,7 +160,7 @@ constexpr double kLargestIsovalue = 1e30;
 constexpr double kLargestTrim = 1e6;
 
 void check_options(const ReconstructOptions& options) {
-  check_depth(options.depth, 1, "depth");
+  if (options.depth) check_depth(*options.depth, 1, "depth");
   if (options.cell_size && !(*options.cell_size > 0.0 && std::isfinite(*options.cell_size))) {
     throw_invalid("cell_size: " + to_text(*options.cell_size) +
                   "; a length above 0 is needed, or none");
@@ -203,7 +208,10 @@ void check_mesh(const ReconstructOptions& options, const ReconstructReport& repo
 ReconstructReport reconstruct(PointSource* source, const ReconstructOptions& options,
                               MeshSink* sink) {
   check_options(options);
-  CloudExtent extent = measure_cloud(source, options.progress.part(0.0, 0.08), options.threads);
+  ThinnedPoints some;
+  const bool is_automatic = !options.depth && !options.cell_size;
+  CloudExtent extent = measure_cloud(source, options.progress.part(0.0, 0.08), options.threads,
+                                     is_automatic ? &some : nullptr);
   check_cloud(extent);
   leave_out_strays(source, options.progress.part(0.08, 0.1), options.threads, &extent);
   PointsWithin near(source, extent.part.box);
@@ -212,11 +220,13 @@ ReconstructReport reconstruct(PointSource* source, const ReconstructOptions& opt
   report.points = extent.points;
   report.dropped = extent.dropped;
   report.strays = extent.strays;
-  const SampleGrid grid = grid_around(extent.part.box, depth_for(extent.part.box, options));
+  const SampleGrid grid = grid_around(extent.part.box, depth_for(extent.part.box, some, options));
+  some = ThinnedPoints();
+  report.depth = grid.depth;
   report.cell = grid.cell;
   SampleStore store(grid.depth, slab_bits(grid.depth), source->attributes().size(),
                     options.memory_limit / 4, options.folder);
-  gather_samples(source, grid, options.progress.part(0.1, 0.4), options.threads, &store);
+  gather_samples(source, grid, options.progress.part(0.12, 0.4), options.threads, &store);
   report.is_spilled = store.is_spilled();
   const double mean_weight = extent.part.weight / static_cast<double>(extent.part.points);
   ReconstructOptions rest = options;

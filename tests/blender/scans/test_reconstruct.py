@@ -6,6 +6,7 @@ import bodies
 import bpy
 import clouds
 import numpy as np
+import prefilter
 import pytest
 from mathutils import Matrix
 
@@ -52,9 +53,28 @@ def test_what_it_says(capfd):
     clouds.scan(*clouds.torus(5_000))
     reconstruct()
     out = capfd.readouterr().out
-    assert "Reconstructed 'Scan.surface' from 5000 points in cells of" in out
+    assert "Reconstructed 'Scan.surface' from 5000 points at depth 6, in cells of" in out
     assert f": {len(surface().data.polygons)} triangles" in out
     assert "Warning" not in out
+
+
+def test_depth_follows_from_the_points_unless_it_is_named(capfd):
+    points, normals = clouds.torus(5_000)
+    clouds.scan(points, normals)
+    report = prefilter.ReconstructionReport()
+    prefilter.reconstruct(points, normals, report=report)
+    assert report.depth not in (4, 9)
+    for options, depth in (
+        ({}, report.depth),
+        ({"depth": 4}, 4),
+        ({"resolution": "auto", "depth": 4}, report.depth),
+        ({"resolution": "depth"}, 9),
+    ):
+        assert bpy.ops.prefilter.reconstruct(points="keep", **options) == {"FINISHED"}
+        assert f"from 5000 points at depth {depth}, in cells of" in capfd.readouterr().out
+        bpy.ops.object.select_all(action="DESELECT")
+        bpy.data.objects["Scan"].select_set(True)
+        bpy.context.view_layer.objects.active = bpy.data.objects["Scan"]
 
 
 def test_the_new_object_is_active_and_shaded_smooth():

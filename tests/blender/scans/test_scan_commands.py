@@ -70,7 +70,7 @@ def test_from_file_to_file(scan, tmp_path, addon, monkeypatch):
     target = tmp_path / "out.ply"
     result = run("reconstruct", scan, target, *DEPTH, "--memory-limit", 200)
     assert result.returncode == 0, result.stderr
-    assert "Reconstructed 'out.ply' from 20000 points in cells of" in result.stdout
+    assert "Reconstructed 'out.ply' from 20000 points at depth 6, in cells of" in result.stdout
     assert "100 %" in result.stderr
     assert {path.name for path in tmp_path.iterdir()} == {"scan.ply", "out.ply"}
     assert len(bpy.data.meshes) == 1  # The cube of the startup file.

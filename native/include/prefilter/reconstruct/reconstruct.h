@@ -31,7 +31,9 @@ enum class Isovalue {
 };
 
 struct ReconstructOptions {
-  int depth = 9;  // 1 to kMaxTreeDepth: 2^depth cells along the longest axis
+  // 1 to kMaxTreeDepth: 2^depth cells along the longest axis. None: the greatest at which half of
+  // the surface has a point for each face of a cell.
+  std::optional<int> depth;
   // Instead: the least depth at which cells have no longer sides. Sizes in single precision may be
   // rounded down.
   std::optional<double> cell_size;
@@ -59,6 +61,7 @@ struct ReconstructReport {
   std::size_t triangles = 0;
   bool is_flipped = false;  // normals point inward, most of them: taken as the opposite
   double residual = 0.0;    // the mean distance of samples from the local surface, in cells
+  int depth = 0;            // of the octree
   double cell = 0.0;        // the side of a finest cell
   bool is_spilled = false;  // temporary files were needed
 };

@@ -52,7 +52,10 @@ def add_files(
 def add_settings(parser: argparse.ArgumentParser, host: Host) -> None:
     """Adds the flags of settings."""
     host.add_preset(parser)
-    add_flags(parser, ScanSettings, exclusive=("depth", "voxel_size"), preferred=host.preferred)
+    sizes = ("depth", "voxel_size")
+    add_flags(
+        parser, ScanSettings, exclusive=sizes, without_default=sizes, preferred=host.preferred
+    )
 
 
 def settings_of(options: argparse.Namespace, host: Host) -> ScanSettings:

@@ -10,6 +10,11 @@ from .choices import Choice
 from .options import number, one_of, switch, threads
 
 RESOLUTIONS = {
+    "auto": Choice(
+        "Automatic",
+        "As fine as the points carry: cells about as wide as the points are apart on most of the "
+        "surface",
+    ),
     "depth": Choice("Depth", "Halve the cube around the points this many times"),
     "size": Choice("Voxel Size", "Cells of at most this size, in the units of the world"),
 }
@@ -39,7 +44,7 @@ class ScanSettings:
     """What `prefilter.reconstruct` does."""
 
     resolution: str = one_of(
-        "depth", "Resolution", "How to specify the size of the cells", RESOLUTIONS, flag=""
+        "auto", "Resolution", "How to specify the size of the cells", RESOLUTIONS, flag=""
     )
     depth: int = number(
         9,
@@ -49,6 +54,8 @@ class ScanSettings:
         low=1,
         high=prefilter.MAX_DEPTH,
         display={"soft_max": 11},
+        flag_description="octree depth, instead of one that the points carry: 9 gives 512 cells "
+        "per axis. Each step quadruples the triangles, as far as there are enough points",
         metavar="N",
     )
     voxel_size: float = number(

@@ -75,8 +75,9 @@ def options(settings: ScanSettings) -> dict[str, Any]:
     """Returns the settings that the library has too."""
     custom = settings.isovalue == "custom"
     size = settings.voxel_size if settings.resolution == "size" else None
+    depth = settings.depth if settings.resolution == "depth" else None
     return {
-        "depth": settings.depth,
+        "depth": depth,
         "cell_size": size,
         "wavelet": settings.wavelet,
         "smooth": settings.use_smooth,
@@ -96,7 +97,8 @@ def told(report: "prefilter.ReconstructionReport", length: Callable[[float], str
         length: Returns a length in words.
     """
     points, triangles = amount(report.points, "point"), amount(report.triangles, "triangle")
-    return Sentence("{} in cells of {}: {}", points, length(report.cell), triangles)
+    cell = length(report.cell)
+    return Sentence("{} at depth {}, in cells of {}: {}", points, report.depth, cell, triangles)
 
 
 def oddities(report: "prefilter.ReconstructionReport") -> list[str]:

@@ -54,6 +54,7 @@ class ReconstructionReport:
         triangles: Of the mesh.
         is_flipped: Most normals point inward; the opposite ones were used.
         residual: The mean distance of the samples from the local surface, in finest cells.
+        depth: Of the octree: the one that was given, or that the points carry.
         cell: The side of a finest cell, in the points' units.
         is_spilled: Temporary files were needed.
     """
@@ -66,6 +67,7 @@ class ReconstructionReport:
     triangles: int = 0
     is_flipped: bool = False
     residual: float = 0.0
+    depth: int = 0
     cell: float = 0.0
     is_spilled: bool = False
 
@@ -74,7 +76,7 @@ def reconstruct(
     points: npt.ArrayLike | Source | Sequence[Source],
     normals: npt.ArrayLike | None = None,
     *,
-    depth: int = 9,
+    depth: int | None = None,
     cell_size: float | None = None,
     wavelet: str = "haar",
     smooth: bool = True,
@@ -100,7 +102,8 @@ def reconstruct(
         points: (points, 3). Or a file that `read_points` reads, or `ScanPoints`, or a list of
             these, which are put together as one cloud: see `reconstruct_file`.
         normals: (points, 3), outward, of any length. None: estimated, or those of files and scans.
-        depth: 1 to 12: the longest side of the cloud is 2^depth cells long, less a margin.
+        depth: 1 to 12: the longest side of the cloud is 2^depth cells long, less a margin. None:
+            the greatest at which half of the surface has a point for each face of a cell, or more.
         cell_size: In place of a depth: the least one at which cells have no longer sides.
         wavelet: "haar", or "d4": more points count for each value, so the function is smoother; it
             takes about three times as long.
@@ -157,7 +160,7 @@ def reconstruct_file(
     source: Source | Sequence[Source],
     target: str | os.PathLike[str],
     *,
-    depth: int = 9,
+    depth: int | None = None,
     cell_size: float | None = None,
     wavelet: str = "haar",
     smooth: bool = True,
@@ -223,6 +226,12 @@ def _as_number_or_none(argument: str, number: float | None) -> float | None:
     return None if number is None else as_number(argument, number)
 
 
+def _as_depth(depth: int | None) -> int | None:
+    return (
+        None if depth is None else as_int("depth", depth, "a whole number from 1 to 12 is needed")
+    )
+
+
 def _as_bytes(memory_limit: int | None) -> int:
     if memory_limit is None:
         return _NO_LIMIT
@@ -235,7 +244,7 @@ def _as_bytes(memory_limit: int | None) -> int:
 
 
 _CHECKS: dict[str, Check] = {
-    "depth": partial(as_int, "depth", allowed="a whole number from 1 to 12 is needed"),
+    "depth": _as_depth,
     "cell_size": partial(_as_number_or_none, "cell_size"),
     "wavelet": partial(as_name, "wavelet"),
     "smooth": bool,
