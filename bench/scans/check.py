@@ -7,6 +7,7 @@ Usage: scripts/run python3 -m bench.scans.check
 Distances are compared with brute force over all triangles. Ends with status 1 where a check fails.
 """
 
+import tempfile
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,7 @@ import prefilter
 from numpy.typing import NDArray
 
 from bench.report import Report
-from bench.scans import scans, sets
+from bench.scans import hard_sets, ply, scans, sets, soundness
 from bench.scans.measure import manifold_kind
 from bench.voxels.meshes import DATA, Triangles
 
@@ -29,6 +30,7 @@ def main() -> None:
     report = Report()
     random = np.random.default_rng(7)
     check_manifolds(report)
+    check_soundness(report)
     if MODEL.exists():
         model = sets.Model.read(MODEL)
         check_distances(report, model, random)
@@ -52,6 +54,33 @@ def check_manifolds(report: Report) -> None:
     for name, (triangles, kind) in known.items():
         found = manifold_kind(Triangles(np.zeros((triangles.max() + 1, 3)), triangles))
         report.verdict(found == kind, f"{name}: closed {found[0]}, 2-manifold {found[1]}")
+
+
+def check_soundness(report: Report) -> None:
+    """A box, and one that lacks a side and has a sheet far away instead."""
+    whole = hard_sets.box((0, 0, 0), (1, 1, 1))
+    sheet = Triangles(np.array([(5.0, 0, 0), (5, 1, 0), (5, 0, 1)]), np.array([(0, 1, 2)]))
+    torn = hard_sets.joined([Triangles(whole.positions, whole.triangles[2:]), sheet])
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        points, normals = sets.Model.of(whole).draw(20_000, np.random.default_rng(1))
+        ply.write_points(folder / "points.ply", len(points), [(points, normals)])
+        for file, mesh in (("whole.ply", whole), ("torn.ply", torn)):
+            ply.write_mesh(folder / file, mesh.positions, mesh.triangles)
+        for truth in (folder / "whole.ply", None):
+            beside = "points" if truth is None else "the truth"
+            arguments = (truth, 0.01, folder / "points.ply", 20_000)
+            same = soundness.soundness(folder / "whole.ply", *arguments)
+            kind = (same.parts, same.genus, same.folded, same.lost, same.invented)
+            report.verdict(kind == (1, 0, 0, 0, 0), f"a box beside {beside}: {kind}")
+            report.verdict(same.degrees < 0.01, f"its normals are {same.degrees:.3f} degrees off")
+            other = soundness.soundness(folder / "torn.ply", *arguments)
+            report.verdict(
+                (other.parts, other.genus) == (2, -1)
+                and abs(other.lost - 100 / 6 * 0.94**2) < 1
+                and abs(other.invented - 100 / 11) < 1,
+                f"torn, beside {beside}: {other.lost:.1f} % lost, {other.invented:.1f} % invented",
+            )
 
 
 def check_distances(report: Report, model: sets.Model, random: np.random.Generator) -> None:

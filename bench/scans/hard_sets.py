@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import prefilter
 
 from bench.scans import fetched, ply, sets
 from bench.scans.scans import grid_normals
@@ -273,7 +274,7 @@ def prepare(folder: Path, name: str, depth: int, shared: Path) -> dict[str, Any]
         if found.truth:
             ply.write_mesh(truth, found.truth.positions, found.truth.triangles)
         ply.write_points(points, len(found.cloud[0]), [found.cloud])
-    depth = DEPTHS.get(name, depth)
+    depth = DEPTHS.get(name, depth) if depth else carried_depth(points)
     return {
         "points": str(points),
         "truth": str(truth) if truth.exists() else None,
@@ -284,12 +285,20 @@ def prepare(folder: Path, name: str, depth: int, shared: Path) -> dict[str, Any]
     }
 
 
+def carried_depth(points: Path) -> int:
+    """Returns the depth that prefilter takes where none is given."""
+    report = prefilter.ReconstructionReport()
+    cloud = (np.ascontiguousarray(part) for part in ply.read_points(points))
+    prefilter.reconstruct(*cloud, report=report)
+    return report.depth
+
+
 def main() -> None:
     """Makes a set, or names all."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=Path, nargs="?")
     parser.add_argument("name", nargs="?")
-    parser.add_argument("--depth", type=int, default=sets.DEPTH, help="default: %(default)s")
+    parser.add_argument("--depth", type=int, default=sets.DEPTH, help="0: automatic")
     parser.add_argument("--shared", type=Path, default=sets.SHARED, help="default: %(default)s")
     options = parser.parse_args()
     if options.name is None:

@@ -9,7 +9,8 @@ Usage: scripts/run python3 bench/scans/real.py FOLDER [SET...] [--depth N] [--ro
 FOLDER keeps the sets (see hard_sets.py), and what Poisson made of them with its measures, so that
 it runs again with --again alone. PREFILTER_POISSONRECON and PREFILTER_SURFACETRIMMER are the paths
 of built programs, PREFILTER_SELF_INTERSECTIONS that of the one of bench/voxels. --options are
-keywords of `prefilter.reconstruct`, values as JSON. Poisson has its defaults; of open scans,
+keywords of `prefilter.reconstruct`, values as JSON. At depth 0 both have the one that prefilter
+takes for the set. Poisson has its defaults; of open scans,
 SurfaceTrimmer cuts off what is sampled two levels more coarsely than half of its vertices. Each has
 one thread and one processor, from a file of points to a file of triangles. Ends with status 1 where
 a criterion does not hold.
@@ -74,7 +75,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=Path)
     parser.add_argument("sets", nargs="*")
-    parser.add_argument("--depth", type=int, default=9, help="default: %(default)s")
+    parser.add_argument("--depth", type=int, default=9, help="0: automatic; default: %(default)s")
     parser.add_argument("--rounds", type=int, default=1, help="default: %(default)s")
     parser.add_argument("--programs", nargs="+", default=[OURS, POISSON], choices=[OURS, POISSON])
     parser.add_argument("--options", nargs="+", default=[], metavar="KEY=VALUE")
