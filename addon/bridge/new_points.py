@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from .color_materials import show_attribute
 from .layers import COLOR, NewLayer, write_layer
-from .points import NORMAL
+from .points import FROM_ABOVE, NORMAL, VIEWPOINT
 
 OFFSET = "scan_offset"
 """The property of an object that says by how much its points were moved to be near the origin."""
@@ -19,7 +19,7 @@ _FAR = 1e3
 """Points so many times their extent away from an origin have no digits left for detail."""
 _MARK = "prefilter_draws_points"
 _RADIUS = "radius"
-_BUILT_IN = frozenset({"position", "id", NORMAL, _RADIUS})
+_BUILT_IN = frozenset({"position", "id", NORMAL, VIEWPOINT, _RADIUS})
 
 
 @dataclass(frozen=True)
@@ -31,12 +31,17 @@ class Cloud:
         positions: (n, 3) float64, finite.
         normals: (n, 3); None where there are none.
         layers: Its attributes, of the domain POINT.
+        viewpoint: Where the scanner stood, (3,), or for each point, (n, 3); None where that is not
+            known.
+        is_from_above: A scanner looked down at them.
     """
 
     name: str
     positions: NDArray[np.float64]
     normals: NDArray[np.floating] | None
     layers: Sequence[NewLayer]
+    viewpoint: NDArray[np.float64] | None = None
+    is_from_above: bool = False
 
     @property
     def color(self) -> str:
@@ -82,9 +87,9 @@ def new_points(cloud: Cloud, offset: NDArray[np.float64]) -> bpy.types.Object:
         data.vertices.add(len(local))
     data.attributes["position"].data.foreach_set("vector", local.ravel())
     if cloud.normals is not None:
-        normals = np.ascontiguousarray(cloud.normals, np.float32)
-        made = data.attributes.new(NORMAL, "FLOAT_VECTOR", "POINT")
-        made.data.foreach_set("vector", normals.ravel())
+        _write_vectors(data, NORMAL, cloud.normals)
+    if cloud.viewpoint is not None and cloud.viewpoint.ndim == 2:
+        _write_vectors(data, VIEWPOINT, cloud.viewpoint - offset)
     for layer in cloud.layers:
         write_layer(data, layer)
     data.update_tag()
@@ -96,8 +101,17 @@ def new_points(cloud: Cloud, offset: NDArray[np.float64]) -> bpy.types.Object:
         _draw_points(obj, spacing(local) / 2)
     if offset.any():
         obj[OFFSET] = offset.tolist()
+    if cloud.viewpoint is not None and cloud.viewpoint.ndim == 1:
+        obj[VIEWPOINT] = (cloud.viewpoint - offset).tolist()
+    if cloud.is_from_above:
+        obj[FROM_ABOVE] = True
     bpy.context.collection.objects.link(obj)
     return obj
+
+
+def _write_vectors(data: bpy.types.ID, name: str, vectors: NDArray[np.floating]) -> None:
+    made = data.attributes.new(name, "FLOAT_VECTOR", "POINT")
+    made.data.foreach_set("vector", np.ascontiguousarray(vectors, np.float32).ravel())
 
 
 def layer_name(name: str) -> str:

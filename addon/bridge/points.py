@@ -19,6 +19,11 @@ FloatArray = NDArray[np.float64]
 
 NORMAL = "normal"
 """The attribute that imports of scans put normals into."""
+VIEWPOINT = "scan_viewpoint"
+"""Where the scanner stood, in an object's own space: its property, or an attribute of its points
+where that differs among them."""
+FROM_ABOVE = "scan_from_above"
+"""The property of an object whose points a scanner saw from above."""
 _COLORS = frozenset({"FLOAT_COLOR", "BYTE_COLOR"})
 # How large points are drawn is nothing for their surface.
 _NOT_CARRIED = frozenset({"radius"})
@@ -49,6 +54,9 @@ class Points:
         materials: Those of the object's slots.
         active_color: The name of the active color attribute; empty for none.
         render_color: The name of the one that renders use.
+        viewpoint: Where the scanner stood, (3,), or for each point, (n, 3); None where nothing says.
+        scan_origin: The origin of the object, where it stood if nothing says.
+        is_from_above: A scanner looked down at them.
     """
 
     positions: FloatArray
@@ -58,6 +66,9 @@ class Points:
     materials: tuple[MaterialKey | None, ...] = ()
     active_color: str = ""
     render_color: str = ""
+    viewpoint: FloatArray | None = None
+    scan_origin: FloatArray = field(default_factory=lambda: np.zeros(3))
+    is_from_above: bool = False
 
 
 def may_be_points(obj: bpy.types.Object) -> bool:
@@ -124,6 +135,7 @@ def _copied(shown: bpy.types.Object, matrix: object, name: str, origin: FloatArr
         # Normals are covectors: they go with the inverse transpose, mirrored or not.
         with np.errstate(invalid="ignore"):
             normals = _vectors(normal) @ np.linalg.inv(linear)
+    viewpoint = _viewpoint(shown)
     return Points(
         positions,
         normals,
@@ -131,7 +143,23 @@ def _copied(shown: bpy.types.Object, matrix: object, name: str, origin: FloatArr
         name,
         tuple(MaterialKey.of(slot.material) for slot in shown.material_slots),
         *_shown_colors(data, carried),
+        None if viewpoint is None else viewpoint @ linear.T + (placed[:3, 3] - origin),
+        placed[:3, 3] - origin,
+        bool(shown.get(FROM_ABOVE)),
     )
+
+
+def _viewpoint(shown: bpy.types.Object) -> FloatArray | None:
+    """Returns where the scanner stood, in the object's own space."""
+    each = shown.data.attributes.get(VIEWPOINT)
+    if each is not None and (each.domain, each.data_type) == ("POINT", "FLOAT_VECTOR"):
+        return _vectors(each)
+    own = shown.get(VIEWPOINT)
+    try:
+        found = np.array(own, np.float64)
+    except (TypeError, ValueError):
+        return None  # a user may set the property to anything
+    return found if found.shape == (3,) and np.isfinite(found).all() else None
 
 
 def _shown_colors(data: bpy.types.ID, carried: dict[str, Carried]) -> tuple[str, str]:

@@ -5,6 +5,7 @@
 from dataclasses import dataclass
 
 from prefilter._options.scans import (
+    DIRECTIONS,
     ISOVALUES,
     POINTS,
     RESOLUTIONS,
@@ -15,6 +16,7 @@ from prefilter._options.scans import (
 from ..core.options import number, switch
 
 __all__ = (
+    "DIRECTIONS",
     "EXTENSIONS",
     "ISOVALUES",
     "POINTS",

@@ -61,6 +61,8 @@ def _reconstruct(options: argparse.Namespace) -> None:
         options.usage_error("SOURCE: .blend files cannot be combined with others")
     if options.object and not has_blend:
         options.usage_error("--object: only .blend files have objects")
+    if options.viewpoint and has_blend:
+        options.usage_error("--viewpoint: objects of .blend files have their own")
     target = staging.check_output(options.target)
     settings = reconstruct.settings_of(options, presets.host(RECONSTRUCT))
     if has_blend:
@@ -68,9 +70,9 @@ def _reconstruct(options: argparse.Namespace) -> None:
         return
     sources = [Path(path) for path in options.sources]
     if ending == STREAMED_TARGET:
-        command.tell(command.done(Streaming(sources, target, settings, length)))
+        command.tell(command.done(Streaming(sources, target, settings, length, options.viewpoint)))
         return
-    command.tell(command.done(FilesReconstruction(sources, target, settings)))
+    command.tell(command.done(FilesReconstruction(sources, target, settings, options.viewpoint)))
 
 
 def _from_objects(options: argparse.Namespace, target: Path, settings: ScanSettings) -> None:

@@ -35,8 +35,18 @@ _ALPHA = "alpha"
 class FilesReconstruction:
     """Files of points as one cloud, and its surface as an object in an empty scene, then a file."""
 
-    def __init__(self, sources: Sequence[Path], target: Path, settings: ScanSettings) -> None:
-        """Takes what to read, what to write, and how."""
+    def __init__(
+        self,
+        sources: Sequence[Path],
+        target: Path,
+        settings: ScanSettings,
+        viewpoint: Sequence[Sequence[float]] | None = None,
+    ) -> None:
+        """Takes what to read, what to write, and how.
+
+        `viewpoint`: see `prefilter.reconstruct`.
+        """
+        self._viewpoint = viewpoint
         self._sources = sources
         self._target = target
         self._settings = settings
@@ -52,7 +62,7 @@ class FilesReconstruction:
             OSError: A source cannot be read.
             MemoryError: The points or the surface do not fit into memory.
         """
-        surface = reconstructed(self._sources, self._settings, progress)
+        surface = reconstructed(self._sources, self._settings, progress, self._viewpoint)
         self._origin = far_offset(surface.positions)
         surface.positions[:] -= self._origin
         place = Place(self._sources[0].stem, self._origin, np.eye(3))

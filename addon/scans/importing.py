@@ -100,11 +100,14 @@ class PointsImport:
         if found.weights is not None:
             weights = np.asarray(found.weights, np.float32)[:, None]
             layers.append(NewLayer(ATTRIBUTE, _CONFIDENCE, "FLOAT", "POINT", weights))
+        viewpoint = found.viewpoint
         return Cloud(
             path.stem,
             found.positions[is_finite],
             None if found.normals is None else found.normals[is_finite],
             [replace(one, values=one.values[is_finite]) for one in layers],
+            viewpoint[is_finite] if viewpoint is not None and viewpoint.ndim == 2 else viewpoint,
+            found.is_from_above,
         )
 
     def _points(self, path: Path, progress: Progress) -> "prefilter.ScanPoints":

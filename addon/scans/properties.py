@@ -32,6 +32,7 @@ class ScanProperties(PartedSettings):
         if self.resolution != "auto":
             layout.prop(self, "depth" if self.resolution == "depth" else "voxel_size")
         layout.prop(self, "trim", text="Trim (Cells)")
+        layout.prop(self, "direction")
         layout.prop(self, "points")
 
     def draw_parts(self, layout: bpy.types.UILayout) -> None:

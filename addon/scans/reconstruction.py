@@ -23,7 +23,7 @@ from ..core.options import check
 from ..core.outcome import Outcome
 from ..core.wording import Sentence, listed
 from .choices import ScanSettings
-from .surface import Look, Surface, contour, oddities, reconstructed, told
+from .surface import Look, Surface, contour, directions, oddities, reconstructed, told
 
 _CHANNELS = ("red", "green", "blue", "alpha")
 _CONFIDENCE = "confidence"
@@ -142,9 +142,10 @@ class Reconstruction:
         if without:
             self._notes.append(Sentence("normals were estimated for {}", listed(without)))
         carried = _carried(self._read)
-        scans = [_scan(one, carried) for one in self._read]
+        scans = [_scan(one, carried, self._settings) for one in self._read]
         surface = reconstructed(scans, self._settings, progress)
         self._warnings.extend(oddities(surface.report))
+        self._notes.extend(directions(surface.report))
         self._surface = surface
         look = self._look(surface, carried)
         self._contour = contour(surface, self._place, look, self._settings)
@@ -226,7 +227,9 @@ def _columns(name: str, width: int) -> list[str]:
     return [name] if width == 1 else [f"{name}.{channel}" for channel in _CHANNELS]
 
 
-def _scan(points: Points, carried: dict[str, Carried]) -> "prefilter.ScanPoints":
+def _scan(
+    points: Points, carried: dict[str, Carried], settings: ScanSettings
+) -> "prefilter.ScanPoints":
     attributes: dict[str, NDArray[np.uint8 | np.float32]] = {}
     for name, like in carried.items():
         width = like.values.shape[1]
@@ -237,7 +240,17 @@ def _scan(points: Points, carried: dict[str, Carried]) -> "prefilter.ScanPoints"
             attributes[name] = np.ones(len(points.positions), np.float32)
     weighs = _CONFIDENCE in carried and carried[_CONFIDENCE].data_type == "FLOAT"
     weights = attributes[_CONFIDENCE].astype(np.float32, copy=False) if weighs else None
-    return prefilter.ScanPoints(points.positions, points.normals, weights, attributes)
+    viewpoint = points.viewpoint
+    if viewpoint is None and settings.direction == "viewpoint":
+        viewpoint = points.scan_origin
+    return prefilter.ScanPoints(
+        points.positions,
+        points.normals,
+        weights,
+        attributes,
+        viewpoint,
+        is_from_above=points.is_from_above,
+    )
 
 
 def _layer(name: str, data_type: str, surface: Surface) -> NewLayer:

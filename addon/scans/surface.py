@@ -11,7 +11,7 @@ import numpy as np
 import prefilter
 from numpy.typing import NDArray
 from prefilter._work import scans
-from prefilter._work.scans import labeled, oddities, options
+from prefilter._work.scans import directions, labeled, oddities, options
 
 from ..bridge.layers import COLOR, NewLayer
 from ..bridge.new_meshes import Contour
@@ -26,6 +26,7 @@ __all__ = (
     "Look",
     "Surface",
     "contour",
+    "directions",
     "labeled",
     "oddities",
     "options",
@@ -73,9 +74,14 @@ class Look(NamedTuple):
 
 
 def reconstructed(
-    sources: Sequence["Path | prefilter.ScanPoints"], settings: ScanSettings, progress: Progress
+    sources: Sequence["Path | prefilter.ScanPoints"],
+    settings: ScanSettings,
+    progress: Progress,
+    viewpoint: Sequence[Sequence[float]] | None = None,
 ) -> Surface:
     """Returns the surface of files or scans that are put together.
+
+    `viewpoint`: see `prefilter.reconstruct`.
 
     Raises:
         ValueError: There is no surface, cells are too small, or a file is damaged.
@@ -86,7 +92,12 @@ def reconstructed(
     report = prefilter.ReconstructionReport()
     with labeled():
         found = prefilter.reconstruct(
-            list(sources), attributes=True, report=report, progress=progress, **options(settings)
+            list(sources),
+            attributes=True,
+            viewpoint=viewpoint,
+            report=report,
+            progress=progress,
+            **options(settings),
         )
     positions, triangles, attributes = cast("_MeshWithAttributes", found)
     return Surface(positions, triangles, attributes, report)

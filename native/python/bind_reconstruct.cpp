@@ -22,6 +22,7 @@
 #include "prefilter/reconstruct/reconstruct.h"
 #include "prefilter/scan/array_source.h"
 #include "prefilter/scan/joined_points.h"
+#include "prefilter/scan/turned_points.h"
 
 namespace py = pybind11;
 
@@ -87,6 +88,7 @@ py::dict to_dict(const ReconstructReport& report) {
   found["vertices"] = report.vertices;
   found["triangles"] = report.triangles;
   found["is_flipped"] = report.is_flipped;
+  found["is_room"] = report.is_room;
   found["residual"] = report.residual;
   found["depth"] = report.depth;
   found["cell"] = report.cell;
@@ -140,6 +142,14 @@ void bind_reconstruct(py::module_& m) {
              return std::make_unique<JoinedPoints>(sources.cast<std::vector<PointSource*>>());
            }),
            py::arg("sources"), py::keep_alive<1, 2>());
+  py::class_<TurnedPoints, PointSource>(m, "TurnedPoints")
+      .def(py::init([](PointSource* source, bool is_up, const Array<double>& viewpoints) {
+             const std::span<const Vector3> rows = rows_of(viewpoints);
+             return std::make_unique<TurnedPoints>(
+                 source, is_up ? TurnedPoints::Side::kUp : TurnedPoints::Side::kViewpoint,
+                 std::vector<Vector3>(rows.begin(), rows.end()));
+           }),
+           py::arg("source"), py::arg("is_up"), py::arg("viewpoints"), py::keep_alive<1, 2>());
   m.def("reconstruct", &bound_reconstruct, py::arg("source"), py::arg("options"),
         py::arg("progress"));
   m.def("reconstruct_file", &bound_reconstruct_file, py::arg("source"), py::arg("target"),

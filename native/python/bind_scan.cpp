@@ -13,6 +13,7 @@
 #include "instances.h"
 #include "prefilter/base/memory.h"
 #include "prefilter/normals/face_normals.h"
+#include "prefilter/normals/height_field.h"
 #include "prefilter/normals/normals.h"
 #include "prefilter/scan/open_points.h"
 #include "prefilter/scan/ply_faces.h"
@@ -204,13 +205,15 @@ Array<std::int64_t> bound_read_faces(const std::string& path, const py::object& 
 }
 
 Array<double> bound_estimate_normals(const Array<double>& points, int neighbours,
-                                     const Array<double>& viewpoints, const py::object& callback,
-                                     int threads) {
+                                     const Array<double>& viewpoints, const std::string& direction,
+                                     const py::object& callback, int threads) {
   const Progress progress = to_progress(callback);
+  const NormalSide side = value_named("direction", direction, kNormalSides);
   std::vector<Vector3> normals;
   {
     const py::gil_scoped_release unlocked;
-    normals = estimate_normals(rows_of(points), neighbours, rows_of(viewpoints), progress, threads);
+    normals =
+        estimate_normals(rows_of(points), neighbours, rows_of(viewpoints), side, progress, threads);
   }
   return to_array<double>(std::move(normals), {points.shape(0), 3});
 }
@@ -272,7 +275,15 @@ void bind_scan(py::module_& m) {
   m.def("grid_normals", &bound_grid_normals, py::arg("points"), py::arg("grid"),
         py::arg("viewpoint"), py::arg("progress"));
   m.def("estimate_normals", &bound_estimate_normals, py::arg("points"), py::arg("neighbours"),
-        py::arg("viewpoints"), py::arg("progress"), py::arg("threads"));
+        py::arg("viewpoints"), py::arg("direction"), py::arg("progress"), py::arg("threads"));
+  m.def(
+      "is_height_field",
+      [](const Array<double>& points, const py::object& callback) {
+        const Progress progress = to_progress(callback);
+        const py::gil_scoped_release unlocked;
+        return is_height_field(rows_of(points), progress);
+      },
+      py::arg("points"), py::arg("progress"));
 }
 
 }  // namespace prefilter::python

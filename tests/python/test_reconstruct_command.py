@@ -44,6 +44,27 @@ def test_an_isovalue_of_ones_own(scan, tmp_path):
     assert out.read_bytes() == expected.read_bytes()
 
 
+def test_normals_face_a_viewpoint(tmp_path, capsys):
+    """Of each file, and from within: the balls are hollows."""
+    scans = []
+    for k, x in enumerate((0.0, 4.0)):
+        scans.append(tmp_path / f"{k}.xyz")
+        np.savetxt(scans[k], clouds.sphere(3000, center=(x, 0, 0)).points, fmt="%.9g")
+    out, expected = tmp_path / "out.ply", tmp_path / "expected.ply"
+    places = [[0.1, 0.0, 0.0], [4.1, 0.0, 0.0]]
+    flags = [part for place in places for part in ("--viewpoint", *map(str, place))]
+    assert run("reconstruct", *scans, out, "--depth", "6", *flags) == 0
+    assert "normals point to the scanner" in capsys.readouterr().out
+    prefilter.reconstruct_file(scans, expected, depth=6, viewpoint=places)
+    assert out.read_bytes() == expected.read_bytes()
+    assert prefilter.reconstruct_file(scans, expected, depth=6, direction="outward")
+    assert out.read_bytes() != expected.read_bytes()
+    told = fails(capsys, 1, "reconstruct", *scans, out, "--direction", "given")
+    assert "Normals: 'given', but there are points without normals" in told
+    told = fails(capsys, 1, "reconstruct", *scans, out, *flags, *flags)
+    assert "viewpoint: found 4 for 2 sources" in told
+
+
 def test_what_is_refused(scan, tmp_path, capsys):
     out = tmp_path / "out.ply"
     for words, arguments in {

@@ -41,9 +41,10 @@ def _is_closed(triangles):
 
 @BASES
 def test_flipped_normals_give_the_same_surface(wavelet):
-    positions, triangles, report = _rebuilt(CLOUD.points, wavelet=wavelet)
+    options = {"wavelet": wavelet, "direction": "outward"}
+    positions, triangles, report = _rebuilt(CLOUD.points, **options)
     assert not report.is_flipped
-    found = _rebuilt(CLOUD.points, -CLOUD.normals, wavelet=wavelet)
+    found = _rebuilt(CLOUD.points, -CLOUD.normals, **options)
     assert found[2].is_flipped
     np.testing.assert_array_equal(found[1], triangles)
     np.testing.assert_allclose(found[0], positions, atol=1e-5)

@@ -78,6 +78,7 @@ def test_las_files(laspy, tmp_path, ending):
     np.testing.assert_array_equal(points.attributes["classification"], np.arange(COUNT) % 19)
     np.testing.assert_array_equal(points.attributes["amplitude"], normals[:, 0] * np.float32(7))
     assert points.viewpoint is None
+    assert points.is_from_above
 
 
 def test_las_files_without_more(laspy, tmp_path):

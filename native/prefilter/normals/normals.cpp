@@ -109,8 +109,8 @@ LocalPlanes fit_planes(const NeighborSearch& search, std::size_t neighbors, std:
 }  // namespace
 
 std::vector<Vector3> estimate_normals(std::span<const Vector3> points, int neighbours,
-                                      std::span<const Vector3> viewpoints, const Progress& progress,
-                                      int threads) {
+                                      std::span<const Vector3> viewpoints, NormalSide side,
+                                      const Progress& progress, int threads) {
   check_arguments(points, neighbours, viewpoints);
   std::vector<Vector3> result(points.size());
   const NeighborSearch search(points, progress.part(0.0, 0.2), threads);
@@ -120,8 +120,8 @@ std::vector<Vector3> estimate_normals(std::span<const Vector3> points, int neigh
   const std::size_t degree = viewpoints.empty() ? std::min(wanted - 1, kMostLinks) : 0;
   LocalPlanes planes = fit_planes(search, wanted, degree, progress.part(0.2, 0.8), threads);
   if (viewpoints.empty()) {
-    orient_normals({positions, planes.areas, planes.degree, planes.links}, progress.part(0.8, 0.95),
-                   threads, &planes.normals);
+    orient_normals({positions, planes.areas, planes.degree, planes.links}, side,
+                   progress.part(0.8, 0.95), threads, &planes.normals);
   }
   const auto give_back = [&](std::int64_t begin, std::int64_t end) {
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {

@@ -99,15 +99,23 @@ struct Patches {
   std::size_t count = 0;
 };
 
+// `is_known`: which points have the directions of each other from the start, and are one patch;
+// none where it is empty.
 Patches grow_patches(const LinkedPoints& points, std::span<const std::int16_t> agreements,
-                     const Progress& progress) {
+                     const std::vector<bool>& is_known, const Progress& progress) {
   const std::size_t count = points.positions.size();
   SignedSets sets(count);
   Pulse pulse(progress);
+  const auto known = [&](std::size_t i) { return !is_known.empty() && is_known[i]; };
+  std::uint32_t first_known = kNone;
   for (std::size_t i = 0, e = 0; i < count; ++i) {
     pulse.step();
+    if (known(i)) {
+      first_known = std::min(first_known, static_cast<std::uint32_t>(i));
+      sets.join(first_known, static_cast<std::uint32_t>(i), false);
+    }
     for (std::size_t end = e + points.degree; e < end; ++e) {
-      if (std::abs(agreements[e]) < kNoDoubt) continue;
+      if (std::abs(agreements[e]) < kNoDoubt || known(i) || known(points.links[e])) continue;
       sets.join(static_cast<std::uint32_t>(i), points.links[e], agreements[e] < 0);
     }
   }
@@ -304,13 +312,55 @@ std::vector<bool> sets_inside_out(const LinkedPoints& points, std::span<const Ve
   return result;
 }
 
+// Of the normals that point up or down for sure, those that point down are reversed. Returns which
+// these are; the others are nearly level.
+std::vector<bool> turn_up(std::vector<Vector3>* normals) {
+  // Sine of ten degrees: estimates are off by that.
+  constexpr double kSure = 0.17;
+  std::vector<bool> is_known(normals->size());
+  for (std::size_t i = 0; i < normals->size(); ++i) {
+    Vector3& normal = (*normals)[i];
+    is_known[i] = std::abs(normal[2]) >= kSure;
+    if (is_known[i] && normal[2] < 0.0) normal = Vector3{} - normal;
+  }
+  return is_known;
+}
+
+// Whether the normals of each set point down: those that are known to point up tell, or else their
+// mean.
+std::vector<bool> sets_upside_down(const LinkedPoints& points, std::span<const Vector3> normals,
+                                   const Patches& patches, const std::vector<bool>& is_known,
+                                   const Progress& progress) {
+  const double largest = *std::max_element(points.areas.begin(), points.areas.end());
+  std::vector<double> sums(patches.count);
+  std::vector<bool> has_known(patches.count);
+  std::vector<bool> result(patches.count);
+  Pulse pulse(progress);
+  for (std::size_t i = 0; i < points.positions.size(); ++i) {
+    pulse.step();
+    const SignedSets::Member& own = patches.members[i];
+    if (is_known[i]) {
+      has_known[own.set] = true;
+      result[own.set] = own.is_reversed != 0;
+    }
+    const double up = points.areas[i] / largest * normals[i][2];
+    sums[own.set] += own.is_reversed != 0 ? -up : up;
+  }
+  for (std::size_t k = 0; k < patches.count; ++k) {
+    if (!has_known[k]) result[k] = sums[k] < 0.0;
+  }
+  return result;
+}
+
 }  // namespace
 
-void orient_normals(const LinkedPoints& points, const Progress& progress, int threads,
-                    std::vector<Vector3>* normals) {
+void orient_normals(const LinkedPoints& points, NormalSide side, const Progress& progress,
+                    int threads, std::vector<Vector3>* normals) {
+  std::vector<bool> is_known;
+  if (side == NormalSide::kUp) is_known = turn_up(normals);
   const std::vector<std::int16_t> near =
       agreements(points, *normals, progress.part(0.0, 0.3), threads);
-  Patches patches = grow_patches(points, near, progress.part(0.3, 0.6));
+  Patches patches = grow_patches(points, near, is_known, progress.part(0.3, 0.6));
   std::vector<Border> borders = find_borders(points, near, patches, progress.part(0.6, 0.7));
   SignedSets sets =
       join_patches(patches.count, std::move(borders), progress.part(0.7, 0.9), threads);
@@ -318,13 +368,15 @@ void orient_normals(const LinkedPoints& points, const Progress& progress, int th
     const SignedSets::Member patch = sets.find(own.set);
     own = {patch.set, own.is_reversed ^ patch.is_reversed};
   }
-  const std::vector<bool> is_inside_out =
-      sets_inside_out(points, *normals, patches, progress.part(0.9, 1.0));
+  const Progress last = progress.part(0.9, 1.0);
+  const std::vector<bool> is_wrong =
+      side == NormalSide::kUp ? sets_upside_down(points, *normals, patches, is_known, last)
+                              : sets_inside_out(points, *normals, patches, last);
   const auto reverse = [&](std::int64_t begin, std::int64_t end) {
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
       const SignedSets::Member& own = patches.members[i];
       Vector3& normal = (*normals)[i];
-      if ((own.is_reversed != 0) != is_inside_out[own.set]) normal = Vector3{} - normal;
+      if ((own.is_reversed != 0) != is_wrong[own.set]) normal = Vector3{} - normal;
     }
   };
   parallel_ranges(static_cast<std::int64_t>(normals->size()), kPointsPerTask, threads,

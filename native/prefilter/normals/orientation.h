@@ -10,6 +10,7 @@
 
 #include "prefilter/base/geometry.h"
 #include "prefilter/base/progress.h"
+#include "prefilter/normals/normals.h"
 
 namespace prefilter {
 
@@ -23,8 +24,9 @@ struct LinkedPoints {
 };
 
 /// Reverses normals, 1 long or zero, so that those of near points agree, and those of each
-/// connected part point outward as a whole. Throws Error(kCancelled).
-void orient_normals(const LinkedPoints& points, const Progress& progress, int threads,
-                    std::vector<Vector3>* normals);
+/// connected part point outward as a whole; or so that each points up that is not nearly level, and
+/// those that are agree with near points. Throws Error(kCancelled).
+void orient_normals(const LinkedPoints& points, NormalSide side, const Progress& progress,
+                    int threads, std::vector<Vector3>* normals);
 
 }  // namespace prefilter

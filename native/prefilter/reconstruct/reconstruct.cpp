@@ -122,7 +122,11 @@ void find_mesh(const SurfaceSamples& surface, const ReconstructOptions& options,
                const SurfaceLevel& level, Slabs* slabs, MeshJoiner* joiner) {
   std::vector<SlabMesh> parts(static_cast<std::size_t>(slabs->count()));
   const auto make = [&](int s) {
-    parts[static_cast<std::size_t>(s)] = mesh_of_slab(surface, options, level, s);
+    SlabMesh part = mesh_of_slab(surface, options, level, s);
+    if (level.is_reversed) {
+      for (auto& [a, b, c] : part.contour.mesh.triangles) std::swap(b, c);
+    }
+    parts[static_cast<std::size_t>(s)] = std::move(part);
   };
   const auto join = [&](int s) {
     const bool is_last = s + 1 == slabs->count();
@@ -147,7 +151,8 @@ void find_surface(PointSource* source, const SampleGrid& grid, const Reconstruct
   report->outliers = found.left_out;
   report->is_flipped = found.is_inward && !options.are_sides_known;
   const SurfaceLevel level =
-      find_surface_level(options, report->is_flipped, options.progress.part(0.35, 0.6), &slabs);
+      find_surface_level(options, found.is_inward, options.progress.part(0.35, 0.6), &slabs);
+  report->is_room = level.is_reversed;
   const SurfaceSamples surface = {slabs, width, find_noise(largest, &slabs)};
   report->residual = surface.noise.distance;
   MeshJoiner joiner(grid, width, sink);

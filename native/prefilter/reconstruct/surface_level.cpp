@@ -12,14 +12,14 @@
 namespace prefilter {
 namespace {
 
-double mean_at_samples(float sign, const ReconstructOptions& options, const Progress& progress,
-                       Slabs* slabs) {
+MeanSample mean_at_samples(float sign, const ReconstructOptions& options, const Progress& progress,
+                           Slabs* slabs) {
   const int depth = slabs->depth();
   const auto cells_of = [&](int s) -> const std::vector<SampleCell>& {
     return slabs->samples(s)->at(depth).samples.cells;
   };
   std::vector<double> sums(static_cast<std::size_t>(slabs->count()));
-  double sum = 0.0;
+  MeanSample sum;
   double weight = 0.0;
   const auto add_up = [&](int s) {
     const CellTree tree = tree_around(*slabs, s, sign, options.smooth);
@@ -30,24 +30,46 @@ double mean_at_samples(float sign, const ReconstructOptions& options, const Prog
     }
   };
   const auto join = [&](int s) {
-    sum += sums[static_cast<std::size_t>(s)];
-    for (const SampleCell& cell : cells_of(s)) weight += static_cast<double>(cell.weight);
+    sum.value += sums[static_cast<std::size_t>(s)];
+    for (const SampleCell& cell : cells_of(s)) {
+      weight += static_cast<double>(cell.weight);
+      for (std::size_t a = 0; a < 3; ++a) sum.normal[a] += static_cast<double>(cell.normal[a]);
+    }
   };
   for_slabs({SlabStage::kValues, 1}, progress, options.threads, slabs, add_up, join);
-  return sum / weight;
+  return {sum.value / weight, (1.0 / weight) * sum.normal};
 }
 
 }  // namespace
 
-SurfaceLevel find_surface_level(const ReconstructOptions& options, bool is_flipped,
+SurfaceLevel find_surface_level(const ReconstructOptions& options, bool is_inward,
                                 const Progress& progress, Slabs* slabs) {
-  const float sign = is_flipped ? -1.0F : 1.0F;
-  if (options.isovalue == Isovalue::kHalf) return {sign, 0.5F};
-  if (options.isovalue == Isovalue::kGiven) {
-    return {sign, static_cast<float>(options.given_isovalue)};
+  const bool is_flipped = is_inward && !options.are_sides_known;
+  const bool may_be_room = is_inward && options.are_sides_known;
+  MeanSample mean;
+  if (options.isovalue == Isovalue::kMean || may_be_room) {
+    mean = mean_at_samples(is_flipped ? -1.0F : 1.0F, options, progress, slabs);
   }
-  return level_of_mean(mean_at_samples(sign, options, progress, slabs), is_flipped,
-                       options.are_sides_known);
+  // Room is then what is inside, as it is what normals point to: there is no end to what is not.
+  const bool is_reversed = may_be_room && is_room(mean);
+  if (is_reversed) mean.value = -mean.value;
+  const float sign = is_flipped || is_reversed ? -1.0F : 1.0F;
+  SurfaceLevel level;
+  if (options.isovalue == Isovalue::kMean) {
+    level = level_of_mean(mean.value, sign < 0.0F, options.are_sides_known);
+  } else {
+    level = {sign, options.isovalue == Isovalue::kHalf
+                       ? 0.5F
+                       : static_cast<float>(options.given_isovalue)};
+  }
+  level.is_reversed = is_reversed;
+  return level;
+}
+
+bool is_room(const MeanSample& mean) {
+  constexpr double kMostOfRoom = -0.15;
+  constexpr double kLeastOfSheet = 0.4;
+  return mean.value < kMostOfRoom && length(mean.normal) < kLeastOfSheet;
 }
 
 SurfaceLevel level_of_mean(double mean, bool is_flipped, bool are_sides_known) {

@@ -3,6 +3,7 @@
 // At which value of the function the surface is.
 #pragma once
 
+#include "prefilter/base/geometry.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/reconstruct/reconstruct.h"
 #include "prefilter/reconstruct/sample_cell.h"
@@ -15,12 +16,24 @@ namespace prefilter {
 struct SurfaceLevel {
   float scale = 1.0F;
   float isovalue = 0.5F;
+  bool is_reversed = false;  // the outside is where the function is larger: a room, from within
 };
 
-/// As the options say, from the mean at the samples where that counts; `is_flipped`: the function
-/// is 0 inside. Slabs have got all but their values. Throws Error(kCancelled).
-SurfaceLevel find_surface_level(const ReconstructOptions& options, bool is_flipped,
+/// As the options say, from the mean at the samples where that counts; `is_inward`: most normals
+/// point inward. Slabs have got all but their values. Throws Error(kCancelled).
+SurfaceLevel find_surface_level(const ReconstructOptions& options, bool is_inward,
                                 const Progress& progress, Slabs* slabs);
+
+/// What the samples of a cloud have in the mean, by their weight.
+struct MeanSample {
+  double value = 0.0;  // of the function
+  Vector3 normal{};
+};
+
+/// Whether samples are of a room, seen from within: the function, which jumps by 1 at its walls, is
+/// about -1/2 there, and walls that face each other leave nothing of the mean normal. Of one sheet,
+/// as a terrain, much of that is left.
+bool is_room(const MeanSample& mean);
 
 /// The level that follows from the mean of the function, times -1 where it is flipped, at the
 /// samples. Of a closed surface the mean is off from 1/2 as the areas are; of an open one, as the

@@ -546,9 +546,13 @@ def estimate_normals(
     points: npt.NDArray[np.float64],
     neighbours: int,
     viewpoints: npt.NDArray[np.float64],
+    direction: str,
     progress: ProgressCallback | None,
     threads: int,
 ) -> npt.NDArray[np.float64]: ...
+def is_height_field(
+    points: npt.NDArray[np.float64], progress: ProgressCallback | None
+) -> bool: ...
 
 MAX_DEPTH: Final[int]
 
@@ -716,6 +720,11 @@ class ArrayPoints(PointSource):
 
 class JoinedPoints(PointSource):
     def __init__(self, sources: tuple[PointSource, ...]) -> None: ...
+
+class TurnedPoints(PointSource):
+    def __init__(
+        self, source: PointSource, is_up: bool, viewpoints: npt.NDArray[np.float64]
+    ) -> None: ...
 
 def reconstruct(
     source: PointSource, options: ReconstructOptions, progress: ProgressCallback | None

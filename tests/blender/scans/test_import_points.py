@@ -187,6 +187,38 @@ def test_near_the_origin_nothing_moves(torus):
     assert "scan_offset" not in read(torus.path)
 
 
+PTX = """2
+1
+{0} 0 0
+1 0 0
+0 1 0
+0 0 1
+1 0 0 0
+0 1 0 0
+0 0 1 0
+{0} 0 0 1
+1 0 0 0.5
+0 1 0 0.5
+"""
+
+
+def test_where_the_scanner_stood(tmp_path):
+    """One place is a property of the object, several are an attribute of the points."""
+    one, several = tmp_path / "one.ptx", tmp_path / "several.ptx"
+    one.write_text(PTX.format(5) * 2)
+    several.write_text(PTX.format(5) + PTX.format(900_007))
+    obj = read(one)
+    assert attribute(obj, "scan_viewpoint", "vector", 3).tolist() == 4 * [[5, 0, 0]]
+    pcd = tmp_path / "seen.pcd"
+    head = "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 2\nHEIGHT 1\n"
+    pcd.write_text(f"{head}VIEWPOINT 1 2 3 1 0 0 0\nPOINTS 2\nDATA ascii\n0 0 0\n0 1 0\n")
+    assert list(read(pcd)["scan_viewpoint"]) == [1, 2, 3]
+    obj = read(several)
+    offset = np.array(obj.get("scan_offset", (0, 0, 0)))
+    places = attribute(obj, "scan_viewpoint", "vector", 3) + offset
+    assert places.tolist() == 2 * [[5, 0, 0]] + 2 * [[900_007, 0, 0]]
+
+
 def test_thinned(torus, capfd):
     obj = read(torus.path, most_points=COUNT // 3)
     assert len(clouds.points(obj)) == COUNT // 4

@@ -299,10 +299,45 @@ def test_modifiers_that_move_points():
 
 def test_inward_normals(capfd):
     points, normals = clouds.torus()
-    clouds.scan(points, -normals)
-    reconstruct()
+    scan = clouds.scan(points, -normals)
+    reconstruct(points="keep")
+    out = capfd.readouterr().out
+    assert "Warning: most normals point inward, as in a room, and were kept; the setting" in out
+    assert "Info: normals are as given" in out
+    made = surface()
+    assert bodies.volume(made) < 0
+    bpy.data.objects.remove(made)
+    scan.select_set(True)
+    reconstruct(direction="outward")
     assert "Warning: most normals point inward; all were flipped" in capfd.readouterr().out
     assert_torus(surface())
+
+
+def test_normals_face_the_scanner():
+    """Where it is known, or at the origin of the scan."""
+    points, _ = clouds.torus()
+    scan = clouds.scan(points)
+    reconstruct(points="keep", direction="viewpoint")
+    origin = bodies.volume(surface())
+    for value in ("nonsense", [1.0, 2.0], [0.0, 0.0, float("nan")]):
+        scan["scan_viewpoint"] = value
+        bpy.data.objects.remove(surface())
+        scan.select_set(True)
+        reconstruct(points="keep", direction="viewpoint")
+        assert bodies.volume(surface()) == origin
+    scan["scan_viewpoint"] = [0.0, 0.0, 90.0]
+    bpy.data.objects.remove(surface())
+    scan.select_set(True)
+    reconstruct()
+    assert bodies.volume(surface()) != origin
+
+
+def test_heights_point_up(capfd):
+    points, _ = clouds.torus()
+    points[:, 2] = 0.2 * np.sin(3 * points[:, 0])
+    clouds.scan(points)
+    reconstruct()
+    assert "Info: normals point up" in capfd.readouterr().out
 
 
 def test_points_that_do_not_count(capfd):

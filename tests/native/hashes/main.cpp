@@ -233,8 +233,8 @@ void reconstructions(const Run& run) {
     reconstruct(&points, options, &mesh);
     run.print(basis == WaveletBasis::kHaar ? "points haar" : "points d4", mesh.hash());
   }
-  run.print("points normals",
-            Hash().add(estimate_normals(points.positions(), 12, {}, {}, run.threads)));
+  run.print("points normals", Hash().add(estimate_normals(points.positions(), 12, {},
+                                                          NormalSide::kOutward, {}, run.threads)));
 }
 
 std::vector<Shape> shapes(double size) {

@@ -9,6 +9,7 @@
 
 #include "prefilter/base/error.h"
 #include "prefilter/normals/face_normals.h"
+#include "prefilter/normals/height_field.h"
 
 namespace prefilter {
 namespace {
@@ -27,16 +28,39 @@ std::vector<Vector3> sphere(unsigned seed, std::size_t count) {
 
 TEST(EstimateNormals, OfASpherePointOutward) {
   const std::vector<Vector3> points = sphere(1, 5000);
-  const std::vector<Vector3> normals = estimate_normals(points, 16, {}, Progress(), 2);
+  const std::vector<Vector3> normals =
+      estimate_normals(points, 16, {}, NormalSide::kOutward, Progress(), 2);
   for (std::size_t i = 0; i < points.size(); ++i) EXPECT_GT(dot(points[i], normals[i]), 0.98);
-  EXPECT_EQ(estimate_normals(points, 16, {}, Progress(), 1), normals);
+  EXPECT_EQ(estimate_normals(points, 16, {}, NormalSide::kOutward, Progress(), 1), normals);
 }
 
 TEST(EstimateNormals, PointToTheViewpoint) {
   const std::vector<Vector3> points = sphere(2, 2000);
   const std::vector<Vector3> inside = {{0.2, 0.1, -0.1}};
-  const std::vector<Vector3> normals = estimate_normals(points, 16, inside, Progress(), 2);
+  const std::vector<Vector3> normals =
+      estimate_normals(points, 16, inside, NormalSide::kOutward, Progress(), 2);
   for (std::size_t i = 0; i < points.size(); ++i) EXPECT_LT(dot(points[i], normals[i]), -0.95);
+}
+
+TEST(EstimateNormals, PointUp) {
+  const std::vector<Vector3> points = sphere(4, 5000);
+  const std::vector<Vector3> normals = estimate_normals(points, 16, {}, NormalSide::kUp, {}, 2);
+  std::size_t level = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const bool is_level = std::abs(normals[i][2]) < 0.17;
+    level += is_level ? 1 : 0;
+    EXPECT_TRUE(is_level || normals[i][2] > 0.0);
+  }
+  EXPECT_GT(level, 100U);
+}
+
+TEST(HeightField, IsASheetAndNoSolid) {
+  std::vector<Vector3> points = sphere(5, 4000);
+  EXPECT_FALSE(is_height_field(points, Progress()));
+  for (Vector3& p : points) p[2] = 0.3 * p[0] * p[1];
+  EXPECT_TRUE(is_height_field(points, Progress()));
+  points.resize(99);
+  EXPECT_FALSE(is_height_field(points, Progress()));
 }
 
 TEST(EstimateNormals, TakeAnyPoints) {
@@ -46,7 +70,8 @@ TEST(EstimateNormals, TakeAnyPoints) {
   points.push_back({1e150, -1e150, 1e150});
   points.push_back({1e-300, 0.0, 0.0});
   for (int i = 0; i < 100; ++i) points.push_back({5.0 + i, 0.0, 0.0});
-  const std::vector<Vector3> normals = estimate_normals(points, 1000, {}, Progress(), 2);
+  const std::vector<Vector3> normals =
+      estimate_normals(points, 1000, {}, NormalSide::kOutward, Progress(), 2);
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_NEAR(length(normals[i]), i == 600 ? 0.0 : 1.0, 1e-12);
   }

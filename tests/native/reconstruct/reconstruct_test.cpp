@@ -174,8 +174,13 @@ TEST(Reconstruct, FlipsNormalsThatMayPointInward) {
     options.are_sides_known = false;
     EXPECT_TRUE(surface_of(cloud, options).report.is_flipped);
     options.are_sides_known = true;
-    EXPECT_FALSE(surface_of(cloud, options).report.is_flipped);
-    EXPECT_FALSE(surface_of(ball(5000), options).report.is_flipped);
+    const Result kept = surface_of(cloud, options);
+    EXPECT_FALSE(kept.report.is_flipped);
+    EXPECT_TRUE(kept.report.is_room);
+    EXPECT_NEAR(testing::volume_of(kept.mesh), -4.0 / 3.0 * 3.14159265, 0.15);
+    const Result outside = surface_of(ball(5000), options);
+    EXPECT_FALSE(outside.report.is_flipped);
+    EXPECT_FALSE(outside.report.is_room);
   }
 }
 

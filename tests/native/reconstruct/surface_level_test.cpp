@@ -35,6 +35,13 @@ TEST(SurfaceLevel, OfAMeanMakesItOneHalfWhereTheSurfaceIsClosed) {
   }
 }
 
+TEST(SurfaceLevel, OfARoomHasWallsOnAllSides) {
+  EXPECT_TRUE(is_room({-0.5, {0.0, 0.1, -0.3}}));
+  EXPECT_FALSE(is_room({-0.5, {0.0, 0.1, 0.6}}));
+  EXPECT_FALSE(is_room({-0.1, {0.0, 0.0, 0.0}}));
+  EXPECT_FALSE(is_room({0.5, {0.0, 0.0, 0.0}}));
+}
+
 TEST(SurfaceLevel, IsThatOfTheOptions) {
   testing::CloudStore store(testing::sphere_cloud(2000), kDepth, kDepth - kTop);
   Slabs slabs(&store, kDepth, kTop, 0, true, 1);

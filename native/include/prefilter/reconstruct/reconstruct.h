@@ -40,9 +40,12 @@ struct ReconstructOptions {
   WaveletBasis basis = WaveletBasis::kHaar;
   bool smooth = true;  // the indicator function, over the neighboring cells
   Isovalue isovalue = Isovalue::kMean;
-  double given_isovalue = 0.5;   // of a function that is 0 outside and 1 inside
-  bool are_sides_known = false;  // normals point outward for sure: toward the scanner
-  bool fit = true;               // move vertices onto the surface of the points around them
+  double given_isovalue = 0.5;  // of a function that is 0 outside and 1 inside
+  // Normals point for sure to where there is nothing: given, or toward the scanner. Those that
+  // point into what they enclose, as in a room, do so then, and so do those of the mesh. Otherwise
+  // most of them are taken to point outward.
+  bool are_sides_known = false;
+  bool fit = true;  // move vertices onto the surface of the points around them
   // Leave out what is farther from all points than so many cells, above 0 and up to 1e6.
   std::optional<double> trim;
   std::uint64_t memory_limit = std::numeric_limits<std::uint64_t>::max();  // in bytes
@@ -60,6 +63,7 @@ struct ReconstructReport {
   std::size_t vertices = 0;
   std::size_t triangles = 0;
   bool is_flipped = false;  // normals point inward, most of them: taken as the opposite
+  bool is_room = false;     // normals point inward, most of them, and were kept
   double residual = 0.0;    // the mean distance of samples from the local surface, in cells
   int depth = 0;            // of the octree
   double cell = 0.0;        // the side of a finest cell
@@ -70,9 +74,9 @@ struct ReconstructReport {
 /// iso-value. Wavelet coefficients of the function are sums over the points (equation 4.2), each of
 /// the area that follows from its neighbors; the octree they make is contoured on its dual grid.
 ///
-/// Untrimmed, the mesh is closed and two-manifold; the outside is where triangles are
-/// counter-clockwise. It is the same for any number of threads and any limit of memory, and to
-/// rounding for any order of the points.
+/// Untrimmed, the mesh is closed and two-manifold; the side that normals point to is where
+/// triangles are counter-clockwise. It is the same for any number of threads and any limit of
+/// memory, and to rounding for any order of the points.
 ///
 /// Throws Error for options out of range, cells that are too small, fewer than 3 points that count,
 /// or points that all coincide, normals that cancel each other everywhere, a mesh of no triangle;

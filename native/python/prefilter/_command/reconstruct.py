@@ -25,7 +25,8 @@ neither has to fit into memory; with --memory-limit, the rest goes to temporary 
 
 examples:
   prefilter reconstruct scan.ply surface.ply
-  prefilter reconstruct city.laz city.ply --depth 11 --memory-limit 600"""
+  prefilter reconstruct city.laz city.ply --depth 11 --memory-limit 600
+  prefilter reconstruct left.ply right.ply hall.ply --viewpoint 0 0 1.5 --viewpoint 8 0 1.5"""
 
 
 def add(commands: Any, purpose: str) -> None:
@@ -47,6 +48,15 @@ def add_files(
         help=f"a file of points: {either(sources)}; repeat for several",
     )
     parser.add_argument("target", metavar="TARGET", help=f"the file to write: {either(targets)}")
+    parser.add_argument(
+        "--viewpoint",
+        nargs=3,
+        type=float,
+        action="append",
+        metavar=("X", "Y", "Z"),
+        help="where the scanner stood: normals point there; repeat for each SOURCE where that "
+        "differs (default: what the files say)",
+    )
 
 
 def add_settings(parser: argparse.ArgumentParser, host: Host) -> None:
@@ -78,4 +88,5 @@ def _reconstruct(host: Host, options: argparse.Namespace) -> None:
     check_target(target)
     sources = [Path(path) for path in options.sources]
     settings = settings_of(options, host)
-    telling.tell(telling.done(Streaming(sources, target, settings, "{:.4g}".format)))
+    work = Streaming(sources, target, settings, "{:.4g}".format, options.viewpoint)
+    telling.tell(telling.done(work))

@@ -32,6 +32,22 @@ ISOVALUES = {
     "mean": Choice("Mean at Points", "The mean of the values at the points"),
     "custom": Choice("Custom", "A value of your own"),
 }
+DIRECTIONS = {
+    "auto": Choice(
+        "Automatic",
+        "As Given where points have normals, Viewpoint where the scanner's position is known, Up "
+        "for .las and .laz files and for heights such as a terrain, else Outward",
+    ),
+    "up": Choice("Up", "Toward the sky, as for a terrain scanned from the air"),
+    "viewpoint": Choice(
+        "Viewpoint", "Toward the scanner. Where its position is not known, it is the scan's origin"
+    ),
+    "outward": Choice(
+        "Outward",
+        "Out of a closed shape: all are flipped if most of them point inward",
+    ),
+    "given": Choice("As Given", "As the points have them; points without normals are refused"),
+}
 POINTS = {
     "keep": Choice("Keep", "The points stay visible"),
     "hide": Choice("Hide", "The points are hidden, in renders too"),
@@ -91,6 +107,13 @@ class ScanSettings:
         low=0.0,
         display={"soft_max": 20.0, "precision": 1, "step": 50},
         metavar="CELLS",
+    )
+    direction: str = one_of(
+        "auto",
+        "Normals",
+        "Where the normals of the points point: the side of the surface that is seen",
+        DIRECTIONS,
+        metavar="NAME",
     )
     isovalue: str = one_of(
         "auto",

@@ -16,7 +16,18 @@ from .wording import Sentence, amount, listed
 
 STREAMED_TARGET = ".ply"
 
-_LABELS = {"cell_size": "Voxel Size", "trim": "Trim", "isovalue": "Iso-Value"}
+_LABELS = {
+    "cell_size": "Voxel Size",
+    "trim": "Trim",
+    "isovalue": "Iso-Value",
+    "direction": "Normals",
+}
+_DIRECTIONS = {
+    "given": Sentence("normals are as given"),
+    "up": Sentence("normals point up"),
+    "viewpoint": Sentence("normals point to the scanner"),
+    "outward": Sentence("normals point outward"),
+}
 _FEW = 1e-3
 """The share of outliers that every scan may have."""
 
@@ -30,8 +41,13 @@ class Streaming:
         target: Path,
         settings: ScanSettings,
         length: Callable[[float], str],
+        viewpoint: Sequence[Sequence[float]] | None = None,
     ) -> None:
-        """Takes what to read, what to write, and how; and what tells a length in words."""
+        """Takes what to read, what to write, and how; and what tells a length in words.
+
+        `viewpoint`: see `prefilter.reconstruct`.
+        """
+        self._viewpoint = viewpoint
         self._sources = sources
         self._target = target
         self._settings = settings
@@ -47,7 +63,11 @@ class Streaming:
         """
         with labeled():
             self._report = prefilter.reconstruct_file(
-                list(self._sources), self._target, progress=progress, **options(self._settings)
+                list(self._sources),
+                self._target,
+                viewpoint=self._viewpoint,
+                progress=progress,
+                **options(self._settings),
             )
 
     def write(self) -> Outcome:
@@ -83,6 +103,7 @@ def options(settings: ScanSettings) -> dict[str, Any]:
         "smooth": settings.use_smooth,
         "isovalue": settings.custom_isovalue if custom else settings.isovalue,
         "fit": settings.use_fit,
+        "direction": settings.direction,
         "trim": settings.trim if settings.trim > 0.0 else None,
         "memory_limit": settings.memory_limit or None,
         "threads": settings.threads,
@@ -120,7 +141,19 @@ def oddities(report: "prefilter.ReconstructionReport") -> list[str]:
         found.append(Sentence(text, outliers))
     if report.is_flipped:
         found.append(Sentence("most normals point inward; all were flipped"))
+    if report.is_room and "given" in report.directions:
+        found.append(
+            Sentence(
+                "most normals point inward, as in a room, and were kept; the setting Normals, "
+                "Outward flips them"
+            )
+        )
     return found
+
+
+def directions(report: "prefilter.ReconstructionReport") -> list[str]:
+    """Returns where normals point, as notes."""
+    return [_DIRECTIONS[direction] for direction in report.directions]
 
 
 def outcome(
@@ -137,5 +170,8 @@ def outcome(
         objects=list(objects),
         files=[str(target)],
         warnings=oddities(report),
-        notes=[f"read {listed(path.name for path in sources)}"] if several else [],
+        notes=[
+            *([f"read {listed(path.name for path in sources)}"] if several else []),
+            *directions(report),
+        ],
     )

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _native
-from .._border.arguments import ProgressCallback, as_int, as_progress
+from .._border.arguments import ProgressCallback, as_int, as_name, as_progress, progress_part
 from .._border.arrays import as_array, as_floats, as_indices, as_threads
 
 
@@ -15,6 +15,7 @@ def estimate_normals(
     *,
     neighbours: int = 16,
     viewpoint: npt.ArrayLike | None = None,
+    direction: str = "auto",
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> npt.NDArray[np.float64]:
@@ -26,8 +27,12 @@ def estimate_normals(
             More are better for noisy points, fewer for fine detail: the neighborhood should be
             several times as wide as the noise. Copies of a point count once.
         viewpoint: Where the scanner stood, (3,), or one place for each point, (points, 3): normals
-            point to it. Without, they agree with those around them, and those of each connected
-            part point outward as a whole, as those of a closed surface do.
+            point to it. Without, `direction` says where.
+        direction: "outward": normals agree with those around them, and those of each connected part
+            point outward as a whole, as those of a closed surface do. "up": they point to where z
+            is larger; those that are nearly level, as of walls, agree with those around them.
+            "auto": up where the points are a height field, as of a terrain: where few of them have
+            another sheet of the surface above or below them, or are on a wall. Else outward.
         progress: Called with the fraction done; returning False stops the work.
         threads: 0 means all processors. The result does not depend on it.
 
@@ -37,16 +42,28 @@ def estimate_normals(
 
     Raises:
         ValueError: A shape or type is wrong, there are no points, `neighbours` is out of range, or
-            a viewpoint is not finite.
+            a viewpoint is not finite; there is no such direction.
         Cancelled: `progress` returned False.
     """
+    rows = as_floats("points", points, ("points", 3), np.float64)
+    viewpoints = as_viewpoints(viewpoint)
+    side = as_name("direction", direction)
+    if side == "auto":
+        side = "outward" if len(viewpoints) else side_of(rows, progress_part(progress, 0.0, 0.05))
+        progress = progress_part(progress, 0.05, 1.0)
     return _native.estimate_normals(
-        as_floats("points", points, ("points", 3), np.float64),
+        rows,
         as_int("neighbours", neighbours, "a whole number from 3 to 1000 is needed"),
-        _as_viewpoints(viewpoint),
+        viewpoints,
+        side,
         as_progress(progress),
         as_threads(threads),
     )
+
+
+def side_of(points: npt.NDArray[np.float64], progress: ProgressCallback | None) -> str:
+    """Where the normals of points point of which nothing else is known: "up" or "outward"."""
+    return "up" if _native.is_height_field(points, as_progress(progress)) else "outward"
 
 
 def mesh_normals(
@@ -113,7 +130,7 @@ def grid_normals(
     )
 
 
-def _as_viewpoints(viewpoint: npt.ArrayLike | None) -> npt.NDArray[np.float64]:
+def as_viewpoints(viewpoint: npt.ArrayLike | None) -> npt.NDArray[np.float64]:
     if viewpoint is None:
         return np.empty((0, 3))
     found = as_array("viewpoint", viewpoint)

@@ -23,8 +23,9 @@ from .._border.arguments import (
 )
 from .._border.arrays import as_threads
 from .._border.staging import as_target
+from .directions import as_wanted
 from .scan_files import AttributeArray
-from .sources import Source, array_cloud, joined_cloud, sources_in
+from .sources import Cloud, Source, array_cloud, joined_cloud, sources_in
 
 Mesh: TypeAlias = tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]
 MeshWithAttributes: TypeAlias = tuple[
@@ -52,7 +53,11 @@ class ReconstructionReport:
             than most: from 0 to 1.
         vertices: Of the mesh.
         triangles: Of the mesh.
-        is_flipped: Most normals point inward; the opposite ones were used.
+        directions: Where normals point, each once, in the order of the sources: "given": as points
+            have them; "up", "viewpoint", "outward": see `reconstruct`.
+        is_flipped: Most normals pointed inward, and were to point outward; the opposite ones were
+            used.
+        is_room: Most normals point inward, and were kept: as where a scanner stood in a room.
         residual: The mean distance of the samples from the local surface, in finest cells.
         depth: Of the octree: the one that was given, or that the points carry.
         cell: The side of a finest cell, in the points' units.
@@ -65,7 +70,9 @@ class ReconstructionReport:
     outliers: float = 0.0
     vertices: int = 0
     triangles: int = 0
+    directions: tuple[str, ...] = ()
     is_flipped: bool = False
+    is_room: bool = False
     residual: float = 0.0
     depth: int = 0
     cell: float = 0.0
@@ -83,6 +90,8 @@ def reconstruct(
     isovalue: str | float = "auto",
     fit: bool = True,
     trim: float | None = None,
+    direction: str = "auto",
+    viewpoint: npt.ArrayLike | None = None,
     weights: npt.ArrayLike | None = None,
     attributes: npt.ArrayLike | bool | None = None,
     memory_limit: int | None = None,
@@ -101,7 +110,8 @@ def reconstruct(
     Args:
         points: (points, 3). Or a file that `read_points` reads, or `ScanPoints`, or a list of
             these, which are put together as one cloud: see `reconstruct_file`.
-        normals: (points, 3), outward, of any length. None: estimated, or those of files and scans.
+        normals: (points, 3), of any length: to where there is nothing. None: estimated, or those of
+            files and scans.
         depth: 1 to 12: the longest side of the cloud is 2^depth cells long, less a margin. None:
             the greatest at which half of the surface has a point for each face of a cell, or more.
         cell_size: In place of a depth: the least one at which cells have no longer sides.
@@ -112,6 +122,15 @@ def reconstruct(
         fit: Vertices are moved onto the surface of the points around them.
         trim: Leaves out what is farther from all points than so many finest cells, above 0 and up
             to 1e6, so that the surface may end where the points do. None: the surface is closed.
+        direction: Where normals point. "given": as points have them, whatever that encloses. "up":
+            to where z is larger. "viewpoint": to where the scanner stood, as `viewpoint` or the
+            file says, or else to the origin. "outward": as those of a closed surface: those that
+            are estimated agree with those around them, and all are reversed if most point inward.
+            "auto": as given where points have normals; else to the viewpoint where that is known;
+            else up for .las and .laz files, and for height fields (see `estimate_normals`); else
+            outward. A scanner's grid in a PLY file faces the scanner.
+        viewpoint: Where the scanner stood, (3,); or one place for each point, (points, 3), or for
+            each of several sources, (sources, 3). Normals then point there.
         weights: (points,), how much each counts; 0 to 1e30. None: all count the same, or as files
             and scans say.
         attributes: (points, n), carried over to the vertices: colors, for example. Up to 1e30.
@@ -137,19 +156,20 @@ def reconstruct(
     """
     options = set_options(_native.ReconstructOptions(), _CHECKS, locals())
     _check_report(report)
+    wanted = as_wanted(direction, viewpoint)
     sources = sources_in(points)
     if sources is None:
         cloud = array_cloud(
-            cast("npt.ArrayLike", points), normals, weights, attributes, progress, threads
+            cast("npt.ArrayLike", points), normals, weights, attributes, wanted, progress, threads
         )
     else:
         _check_sources(normals, weights, attributes)
-        cloud = joined_cloud(sources, progress, threads)
-        options.are_sides_known = cloud.are_sides_known
+        cloud = joined_cloud(sources, wanted, progress, threads)
+    options.are_sides_known = cloud.are_sides_known
     positions, triangles, carried, found = _native.reconstruct(
         cloud.points, options, as_progress(cloud.rest(progress))
     )
-    _fill_in(report, found)
+    _fill_in(report, found, cloud)
     if attributes is None or attributes is False:
         return positions, triangles
     by_name = None if sources is None else _columns(carried, cloud.points.attributes)
@@ -167,6 +187,8 @@ def reconstruct_file(
     isovalue: str | float = "auto",
     fit: bool = True,
     trim: float | None = None,
+    direction: str = "auto",
+    viewpoint: npt.ArrayLike | None = None,
     memory_limit: int | None = None,
     progress: ProgressCallback | None = None,
     threads: int = 0,
@@ -191,6 +213,8 @@ def reconstruct_file(
         isovalue: See there.
         fit: See there.
         trim: See there.
+        direction: See there.
+        viewpoint: See there.
         memory_limit: See there.
         progress: Called with the fraction done; returning False stops the work, and leaves a file
             that was there before as it was.
@@ -208,11 +232,13 @@ def reconstruct_file(
         raise ValueError(f"target: '{os.fspath(target)}'; a name that ends in .ply is needed")
     options.folder = os.fsencode(place.parent)
     # What is no list of sources is refused as a path.
-    cloud = joined_cloud(sources_in(source) or [cast("Source", source)], progress, threads)
+    wanted = as_wanted(direction, viewpoint)
+    cloud = joined_cloud(sources_in(source) or [cast("Source", source)], wanted, progress, threads)
     options.are_sides_known = cloud.are_sides_known
     report = ReconstructionReport()
     rest = as_progress(cloud.rest(progress))
-    _fill_in(report, _native.reconstruct_file(cloud.points, os.fsencode(place), options, rest))
+    found = _native.reconstruct_file(cloud.points, os.fsencode(place), options, rest)
+    _fill_in(report, found, cloud)
     return report
 
 
@@ -284,6 +310,9 @@ def _check_report(report: ReconstructionReport | None) -> None:
         raise ValueError(f"report: {report!r}; a ReconstructionReport is needed, or None")
 
 
-def _fill_in(report: ReconstructionReport | None, found: dict[str, float]) -> None:
-    for name, value in found.items() if report is not None else ():
+def _fill_in(report: ReconstructionReport | None, found: dict[str, float], cloud: Cloud) -> None:
+    if report is None:
+        return
+    report.directions = cloud.directions
+    for name, value in found.items():
         setattr(report, name, value)

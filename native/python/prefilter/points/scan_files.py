@@ -22,6 +22,7 @@ _READERS: dict[str, Callable[[str], PointReader]] = {
     ".laz": LasReader,
     ".e57": E57Reader,
 }
+_FROM_ABOVE = frozenset({".las", ".laz"})
 POINT_EXTENSIONS = (*_native.POINT_EXTENSIONS, *_READERS)
 """What the names of files of points end in."""
 
@@ -44,6 +45,7 @@ class ScanPoints:
             point, (n, 3), where these were seen from several places; None where the file does not
             say.
         stride: Of how many points of the file, in their order, one is here.
+        is_from_above: A scanner looked down at them, as at those of .las and .laz files.
     """
 
     positions: npt.NDArray[np.float64]
@@ -52,6 +54,7 @@ class ScanPoints:
     attributes: dict[str, AttributeArray] = field(default_factory=dict)
     viewpoint: npt.NDArray[np.float64] | None = None
     stride: int = 1
+    is_from_above: bool = False
 
     @property
     def colors(self) -> AttributeArray | None:
@@ -106,7 +109,13 @@ def read_points(
     )
     if viewpoint is None and source.viewpoint is not None:
         viewpoint = np.array(source.viewpoint)
-    return ScanPoints(positions, normals, weights, attributes, viewpoint, stride)
+    above = is_from_above(path)
+    return ScanPoints(positions, normals, weights, attributes, viewpoint, stride, above)
+
+
+def is_from_above(path: str | os.PathLike[str]) -> bool:
+    """Whether a file is of a format in which mostly points are that were seen from the air."""
+    return os.path.splitext(as_path(path))[1].lower() in _FROM_ABOVE
 
 
 def open_points(path: str | os.PathLike[str]) -> _native.PointSource:

@@ -14,8 +14,16 @@ import numpy.typing as npt
 from .. import _native
 from .._border.arguments import ProgressCallback, progress_part
 from .._border.arrays import as_array, as_floats
-from .normals import estimate_normals, grid_normals, mesh_normals
-from .scan_files import ScanPoints, open_points, read_faces, read_points, read_range_grid
+from .directions import OUTWARD, VIEWPOINT, Viewpoints, Wanted, estimated, parts, turned
+from .normals import as_viewpoints, grid_normals, mesh_normals
+from .scan_files import (
+    ScanPoints,
+    is_from_above,
+    open_points,
+    read_faces,
+    read_points,
+    read_range_grid,
+)
 
 Source: TypeAlias = str | os.PathLike[str] | ScanPoints
 """A file that `read_points` reads, or what it returns."""
@@ -30,13 +38,18 @@ class Cloud:
 
     Attributes:
         points: For the native module.
-        are_sides_known: Normals point outward for sure: to the scanner.
+        directions: Of normals: each once, in the order of the sources.
         is_read: Points had to be read into memory, or normals estimated, which is half of the work.
     """
 
     points: _native.PointSource
-    are_sides_known: bool = False
+    directions: tuple[str, ...]
     is_read: bool = False
+
+    @property
+    def are_sides_known(self) -> bool:
+        """Whether some normals point for sure to where there is nothing."""
+        return any(direction != OUTWARD for direction in self.directions)
 
     def rest(self, progress: ProgressCallback | None) -> ProgressCallback | None:
         """What is told of the work that is left, of all that `progress` is told of."""
@@ -61,6 +74,7 @@ def array_cloud(
     normals: npt.ArrayLike | None,
     weights: npt.ArrayLike | None,
     attributes: npt.ArrayLike | None,
+    wanted: Wanted,
     progress: ProgressCallback | None,
     threads: int,
 ) -> Cloud:
@@ -68,9 +82,12 @@ def array_cloud(
     rows = _as_rows("points", points)
     given: npt.NDArray[np.floating]
     if normals is None:
-        given = estimate_normals(rows, progress=progress_part(progress, 0.0, 0.5), threads=threads)
+        first, rest = parts(progress_part(progress, 0.0, 0.5))
+        direction = wanted.of_missing(rows, False, False, first)
+        given = estimated(rows, direction, wanted.viewpoints, rest, threads)
     else:
         given = _as_rows("normals", normals)
+        direction = wanted.of_given()
     if len(given) != len(rows):
         raise ValueError(f"normals: {len(given)} rows; {len(rows)} are needed, one for each point")
     values = None
@@ -82,12 +99,15 @@ def array_cloud(
         counts = as_floats("weights", weights, (len(rows),), np.float32)
         _check_values("weights", counts, 0.0)
     names = [] if values is None else [("", False)] * values.shape[1]
+    points_of: _native.PointSource
     points_of = _native.ArrayPoints(rows, given, counts, values, names, False)
-    return Cloud(points_of, is_read=normals is None)
+    if normals is not None:
+        points_of = turned(points_of, direction, wanted.viewpoints)
+    return Cloud(points_of, (direction,), is_read=normals is None)
 
 
 def joined_cloud(
-    sources: Sequence[Source], progress: ProgressCallback | None, threads: int
+    sources: Sequence[Source], wanted: Wanted, progress: ProgressCallback | None, threads: int
 ) -> Cloud:
     """Several sources as one, with normals.
 
@@ -96,19 +116,21 @@ def joined_cloud(
     from one place by themselves, and those seen from nobody knows where together.
     """
     scans = [_opened(source) for source in sources]
+    _place_scanners(scans, wanted.viewpoints)
     missing = [scan for scan in scans if not scan.has_normals]
     progress = progress_part(progress, 0.0, 0.5)
+    for scan in scans:
+        if scan.has_normals:
+            scan.direction = wanted.of_given()
     for k, scan in enumerate(missing):
-        _look_up_normals(scan, _step(progress_part(progress, 0.0, 0.6), k, len(missing)))
-    unseen = [scan for scan in missing if not scan.has_normals and scan.viewpoint is None]
-    groups = [[scan] for scan in missing if not scan.has_normals and scan.viewpoint is not None]
-    groups += [unseen] if unseen else []
+        _look_up_normals(scan, wanted, _step(progress_part(progress, 0.0, 0.6), k, len(missing)))
+    groups = _estimated_together([scan for scan in missing if not scan.has_normals])
     for k, group in enumerate(groups):
-        _estimate(group, _step(progress_part(progress, 0.6, 1.0), k, len(groups)), threads)
+        _estimate(group, wanted, _step(progress_part(progress, 0.6, 1.0), k, len(groups)), threads)
     native = tuple(scan.native() for scan in scans)
     return Cloud(
         native[0] if len(native) == 1 else _native.JoinedPoints(native),
-        are_sides_known=all(scan.is_side_known for scan in scans),
+        tuple(dict.fromkeys(scan.direction for scan in scans)),
         is_read=bool(missing),
     )
 
@@ -121,13 +143,19 @@ class _Scan:
         path: Of its file, if it is one.
         points: The file, opened.
         read: What is in memory.
-        is_side_known: Its normals point outward for sure.
+        is_from_above: See `ScanPoints`.
+        seen_from: Where the user says that the scanner stood; see `Wanted`.
+        direction: Of its normals, once that is known.
+        is_to_be_turned: Its normals may have another one yet.
     """
 
     path: str | os.PathLike[str] | None
     points: _native.PointSource | None
     read: ScanPoints | None
-    is_side_known: bool = False
+    is_from_above: bool = False
+    seen_from: Viewpoints | None = None
+    direction: str = ""
+    is_to_be_turned: bool = True
 
     @property
     def has_normals(self) -> bool:
@@ -136,11 +164,18 @@ class _Scan:
         return self.points is not None and self.points.has_normals
 
     @property
-    def viewpoint(self) -> npt.NDArray[np.float64] | None:
-        return None if self.read is None else self.read.viewpoint
+    def viewpoints(self) -> Viewpoints:
+        """Where the scanner stood, as the user or else what was read says; (0, 3) for nothing."""
+        if self.seen_from is not None:
+            return self.seen_from
+        return as_viewpoints(None if self.read is None else self.read.viewpoint)
 
     def native(self) -> _native.PointSource:
         """The points for the native module."""
+        own = self._native()
+        return turned(own, self.direction, self.viewpoints) if self.is_to_be_turned else own
+
+    def _native(self) -> _native.PointSource:
         if self.read is None:
             assert self.points is not None
             return self.points
@@ -161,7 +196,7 @@ class _Scan:
 
 def _opened(source: Source) -> _Scan:
     if not isinstance(source, ScanPoints):
-        return _Scan(source, open_points(source), None)
+        return _Scan(source, open_points(source), None, is_from_above(source))
     rows = as_floats("positions", source.positions, ("points", 3), np.float64)
     normals = None if source.normals is None else _as_rows("normals", source.normals)
     if normals is not None and len(normals) != len(rows):
@@ -176,37 +211,65 @@ def _opened(source: Source) -> _Scan:
         None,
         None,
         replace(source, positions=rows, normals=normals, weights=weights, attributes=checked),
+        source.is_from_above,
     )
 
 
-def _look_up_normals(scan: _Scan, progress: ProgressCallback | None) -> None:
+def _place_scanners(scans: Sequence[_Scan], viewpoints: Viewpoints) -> None:
+    """Says of scans where the user says that scanners stood: one place for all, or one for each."""
+    if len(viewpoints) not in (0, 1, len(scans)):
+        raise ValueError(
+            f"viewpoint: found {len(viewpoints)} for {len(scans)} sources; one for all or one for "
+            "each is needed"
+        )
+    for k, scan in enumerate(scans if len(viewpoints) else ()):
+        scan.seen_from = viewpoints[k : k + 1] if len(viewpoints) > 1 else viewpoints
+
+
+def _estimated_together(scans: Sequence[_Scan]) -> list[list[_Scan]]:
+    """Scans whose normals are estimated together: those that may be parts of one surface."""
+    groups = [[scan] for scan in scans if len(scan.viewpoints)]
+    for is_above in (True, False):
+        unseen = [
+            scan for scan in scans if not len(scan.viewpoints) and scan.is_from_above is is_above
+        ]
+        groups += [unseen] if unseen else []
+    return groups
+
+
+def _look_up_normals(scan: _Scan, wanted: Wanted, progress: ProgressCallback | None) -> None:
     """Reads a file that has no normals, and what else in it may tell them."""
     if scan.path is None:
         return
     read = read_points(scan.path, progress=progress_part(progress, 0.0, 0.3))
+    if scan.seen_from is not None:
+        read = replace(read, viewpoint=scan.seen_from[0])
     seen = _grid_normals(scan.path, read, progress_part(progress, 0.3, 0.6))
     told = seen or _face_normals(scan.path, read, progress_part(progress, 0.6, 1.0))
     if told is not None:
         normals, weights = told
         read = replace(read, normals=normals, weights=weights)
+        # A scanner sees outsides. Faces may be inside out.
+        scan.direction = wanted.told(VIEWPOINT if seen is not None else OUTWARD)
+        scan.is_to_be_turned = seen is None or scan.direction != VIEWPOINT
     scan.read = read
-    # A scanner sees outsides. Faces may be inside out.
-    scan.is_side_known = seen is not None
 
 
-def _estimate(group: Sequence[_Scan], progress: ProgressCallback | None, threads: int) -> None:
+def _estimate(
+    group: Sequence[_Scan], wanted: Wanted, progress: ProgressCallback | None, threads: int
+) -> None:
     """Estimates the normals of one scan, or of several that no viewpoint is known of."""
     scans = [scan.read for scan in group if scan.read is not None]
-    normals = estimate_normals(
-        np.concatenate([read.positions for read in scans]),
-        viewpoint=scans[0].viewpoint,
-        progress=progress,
-        threads=threads,
-    )
+    rows = np.concatenate([read.positions for read in scans])
+    viewpoints = group[0].viewpoints
+    first, rest = parts(progress)
+    direction = wanted.of_missing(rows, bool(len(viewpoints)), group[0].is_from_above, first)
+    normals = estimated(rows, direction, viewpoints, rest, threads)
     ends = np.cumsum([len(read.positions) for read in scans])[:-1]
     for scan, read, own in zip(group, scans, np.split(normals, ends), strict=True):
         scan.read = replace(read, normals=own)
-        scan.is_side_known = read.viewpoint is not None
+        scan.direction = direction
+        scan.is_to_be_turned = False
 
 
 def file_normals(
