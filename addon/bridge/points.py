@@ -54,7 +54,8 @@ class Points:
         materials: Those of the object's slots.
         active_color: The name of the active color attribute; empty for none.
         render_color: The name of the one that renders use.
-        viewpoint: Where the scanner stood, (3,), or for each point, (n, 3); None where nothing says.
+        viewpoint: Where the scanner stood, (3,), or for each point, (n, 3); None where nothing says
+            that.
         scan_origin: The origin of the object, where it stood if nothing says.
         is_from_above: A scanner looked down at them.
     """

@@ -10,6 +10,7 @@ from prefilter import _native
 from scan_writers import ply, write
 
 RANDOM = np.random.default_rng(71)
+AWAY = np.array([5e5, 5e6, 300])
 ROOM = np.array([4.013, 3.027, 1.529])
 
 
@@ -55,7 +56,7 @@ def town(count=60_000):
             for side in (-1.0, 1.0):
                 wall = random.uniform(-1, 1, (int(count * 0.03), 3))
                 wall[:, axis], wall[:, 2] = side, 0.75 * (wall[:, 2] + 1)
-                points.append(wall + [*center, 0.0])
+                points.append(wall + np.array([*center, 0.0]))
                 out = np.zeros((len(wall), 3))
                 out[:, axis] = side
                 normals.append(out)
@@ -130,9 +131,9 @@ def test_sheets_are_height_fields(name):
     points = SHEETS[name]
     assert is_field(points)
     assert is_field(1e-3 * points)
-    assert is_field(points + [5e5, 5e6, 300])
+    assert is_field(points + AWAY)
     strays = np.array([[0.0, 0.0, 0.0], [np.nan, 1.0, 2.0], [3e7, -1e9, 5.0]])
-    assert is_field(np.concatenate([points + [5e5, 5e6, 300], strays]))
+    assert is_field(np.concatenate([points + AWAY, strays]))
 
 
 @pytest.mark.parametrize("name", SOLIDS)
@@ -277,7 +278,7 @@ def test_a_viewpoint_for_each_point():
 
 def test_a_viewpoint_for_each_source():
     """Two balls, of which one is seen from within."""
-    scans = [prefilter.ScanPoints(ball() + [x, 0, 0]) for x in (0.0, 6.0)]
+    scans = [prefilter.ScanPoints(ball() + np.array([x, 0, 0])) for x in (0.0, 6.0)]
     mesh = rebuilt(scans, viewpoint=[[0.0, 0.1, 0.0], [0.0, 0.1, 0.0]])
     assert mesh[2].directions == ("viewpoint",)
     both = rebuilt(scans, viewpoint=[[0.0, 0.1, 0.0], [6.0, 0.1, 0.0]])

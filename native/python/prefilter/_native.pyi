@@ -550,9 +550,7 @@ def estimate_normals(
     progress: ProgressCallback | None,
     threads: int,
 ) -> npt.NDArray[np.float64]: ...
-def is_height_field(
-    points: npt.NDArray[np.float64], progress: ProgressCallback | None
-) -> bool: ...
+def is_height_field(points: npt.NDArray[np.float64], progress: ProgressCallback | None) -> bool: ...
 
 MAX_DEPTH: Final[int]
 

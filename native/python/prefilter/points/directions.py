@@ -68,8 +68,8 @@ def as_wanted(direction: str, viewpoint: npt.ArrayLike | None) -> Wanted:
     """Checks what a user asks for.
 
     Raises:
-        ValueError: There is no such direction, or a viewpoint is of a wrong shape or type, or beside
-            a direction that has no use for one.
+        ValueError: There is no such direction, or a viewpoint is of a wrong shape or type, or
+            beside a direction that has no use for one.
     """
     chosen = as_one_of("direction", direction, DIRECTIONS)
     viewpoints = as_viewpoints(viewpoint)
