@@ -17,6 +17,7 @@
 #include "prefilter/reconstruct/coarse_tree.h"
 #include "prefilter/reconstruct/d4_function.h"
 #include "prefilter/reconstruct/gather_samples.h"
+#include "prefilter/reconstruct/memory_plan.h"
 #include "prefilter/reconstruct/mesh_joiner.h"
 #include "prefilter/reconstruct/sample_grid.h"
 #include "prefilter/reconstruct/sample_store.h"
@@ -68,17 +69,6 @@ int depth_for(const Box& box, const ThinnedPoints& some, const ReconstructOption
   throw_invalid("cell_size: " + to_text(*options.cell_size) + " would need more than " +
                 std::to_string(1 << kMaxTreeDepth) + " cells per axis; use " +
                 to_text(cell_at(kMaxTreeDepth) * (1.0 + 1e-5)) + " or more");  // not rounded down
-}
-
-// What is kept of a cell of the samples, in all stages, at most.
-constexpr double kBytesPerCell = 130.0;
-
-// Whether the slabs of all samples may stay in memory.
-bool keeps_all(const SampleStore& store, const ReconstructOptions& options) {
-  // The D4 basis needs all slabs at once.
-  if (options.basis == WaveletBasis::kD4) return true;
-  return !store.is_spilled() && kBytesPerCell * static_cast<double>(store.size()) <=
-                                    static_cast<double>(options.memory_limit) / 2.0;
 }
 
 // What the function is like.
@@ -140,11 +130,11 @@ void find_mesh(const SurfaceSamples& surface, const ReconstructOptions& options,
 
 // From samples in cells to the mesh.
 void find_surface(PointSource* source, const SampleGrid& grid, const ReconstructOptions& options,
-                  double mean_weight, SampleStore* store, MeshSink* sink,
+                  double mean_weight, bool keeps_all, SampleStore* store, MeshSink* sink,
                   ReconstructReport* report) {
   const std::size_t width = source->attributes().size();
-  Slabs slabs(store, grid.depth, grid.depth - slab_bits(grid.depth), width,
-              keeps_all(*store, options), options.threads);
+  Slabs slabs(store, grid.depth, grid.depth - slab_bits(grid.depth), width, keeps_all,
+              options.threads);
   slabs.mean_weight = mean_weight;
   const int largest = find_whole(width, options.progress.part(0.0, 0.15), options.threads, &slabs);
   const FunctionFindings found = find_function(source, grid, options, &slabs);
@@ -215,10 +205,14 @@ ReconstructReport reconstruct(PointSource* source, const ReconstructOptions& opt
   check_options(options);
   ThinnedPoints some;
   const bool is_automatic = !options.depth && !options.cell_size;
-  CloudExtent extent = measure_cloud(source, options.progress.part(0.0, 0.08), options.threads,
+  CloudLoad load = {source->count().value_or(PointOrder::kMostPoints), source->attributes().size(),
+                    options.basis};
+  const int width = batches_at_once(load, options);
+  CloudExtent extent = measure_cloud(source, options.progress.part(0.0, 0.08), width,
                                      is_automatic ? &some : nullptr);
   check_cloud(extent);
-  leave_out_strays(source, options.progress.part(0.08, 0.1), options.threads, &extent);
+  load.points = extent.part.points;
+  leave_out_strays(source, options.progress.part(0.08, 0.1), width, &extent);
   PointsWithin near(source, extent.part.box);
   if (extent.strays > 0) source = &near;
   ReconstructReport report;
@@ -231,12 +225,15 @@ ReconstructReport reconstruct(PointSource* source, const ReconstructOptions& opt
   report.cell = grid.cell;
   SampleStore store(grid.depth, slab_bits(grid.depth), source->attributes().size(),
                     options.memory_limit / 4, options.folder);
-  gather_samples(source, grid, options.progress.part(0.12, 0.4), options.threads, &store);
+  gather_samples(source, grid, options.progress.part(0.12, 0.4), width, &store);
+  const MemoryPlan plan = plan_memory(store, load, options);
+  if (!plan.is_held) store.spill();
   report.is_spilled = store.is_spilled();
   const double mean_weight = extent.part.weight / static_cast<double>(extent.part.points);
   ReconstructOptions rest = options;
   rest.progress = options.progress.part(0.4, 1.0);
-  find_surface(source, grid, rest, mean_weight, &store, sink, &report);
+  rest.threads = plan.threads;
+  find_surface(source, grid, rest, mean_weight, plan.keeps_all, &store, sink, &report);
   report.outliers /= extent.part.weight;
   check_mesh(options, report);
   return report;

@@ -141,9 +141,13 @@ void SampleStore::finish(int threads) {
 
 std::size_t SampleStore::size() const {
   std::size_t cells = 0;
-  for (const Runs& runs : slabs_) {
-    for (const Run& run : runs) cells += run.count;
-  }
+  for (int i = 0; i < slab_count(); ++i) cells += size(i);
+  return cells;
+}
+
+std::size_t SampleStore::size(int index) const {
+  std::size_t cells = 0;
+  for (const Run& run : slabs_[static_cast<std::size_t>(index)]) cells += run.count;
   return cells;
 }
 

@@ -30,8 +30,13 @@ class SampleStore {
 
   int slab_count() const { return static_cast<int>(slabs_.size()); }
   bool is_spilled() const { return file_ != nullptr; }
-  /// Cells of all slabs.
+  /// Cells of all slabs, and of one.
   std::size_t size() const;
+  std::size_t size(int index) const;
+  /// What is held in memory.
+  std::size_t held_bytes() const { return held_ * bytes_per_cell(); }
+  /// Writes all that is held to the file.
+  void spill();
   /// The cells of a slab.
   SampleCells slab(int index) const;
   /// The same, for the last time.
@@ -48,7 +53,6 @@ class SampleStore {
   // Each run but the last is at least twice as long as the next, when an `add` ends.
   using Runs = std::vector<Run>;
 
-  void spill();
   void merge_last(Runs* runs);
   SampleCells read(const Run& run) const;
   std::size_t bytes_per_cell() const {

@@ -48,7 +48,8 @@ struct ReconstructOptions {
   bool fit = true;  // move vertices onto the surface of the points around them
   // Leave out what is farther from all points than so many cells, above 0 and up to 1e6.
   std::optional<double> trim;
-  std::uint64_t memory_limit = std::numeric_limits<std::uint64_t>::max();  // in bytes
+  // In bytes, beside what the source and the sink keep; 0: as little as can be.
+  std::uint64_t memory_limit = std::numeric_limits<std::uint64_t>::max();
   std::string folder;  // for temporary files; "": the system's
   int threads = 0;     // 0: all processors
   Progress progress;
@@ -79,7 +80,8 @@ struct ReconstructReport {
 /// memory, and to rounding for any order of the points.
 ///
 /// Throws Error for options out of range, cells that are too small, fewer than 3 points that count,
-/// or points that all coincide, normals that cancel each other everywhere, a mesh of no triangle;
+/// or points that all coincide, normals that cancel each other everywhere, a mesh of no triangle, a
+/// limit of memory that is above 0 and too low;
 /// what the source and the sink throw; Error(kOutOfMemory); Error(kCancelled).
 ReconstructReport reconstruct(PointSource* source, const ReconstructOptions& options,
                               MeshSink* sink);

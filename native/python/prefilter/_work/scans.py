@@ -21,6 +21,7 @@ _LABELS = {
     "trim": "Trim",
     "isovalue": "Iso-Value",
     "direction": "Normals",
+    "memory_limit": "Memory Limit",
 }
 _DIRECTIONS = {
     "given": Sentence("normals are as given"),

@@ -135,8 +135,10 @@ def reconstruct(
             and scans say.
         attributes: (points, n), carried over to the vertices: colors, for example. Up to 1e30.
             True: those of files and scans.
-        memory_limit: In MiB, above what is passed in and returned; beyond it temporary files are
-            used. None: no limit. With "d4" the cells of the surface stay in memory all the same.
+        memory_limit: In MiB, above what is passed in and returned, points without normals among
+            that; beyond it temporary files are used. It holds within a tenth and 8 MiB. What is
+            less than needed is refused, with the least that would do: the cells of a few layers of
+            the octree, with "d4" all cells of the surface. 0: that least. None: no limit.
         report: Is filled in.
         progress: Called with the fraction done; returning False stops the work.
         threads: 0 means all processors. The result does not depend on it.
@@ -149,7 +151,7 @@ def reconstruct(
 
     Raises:
         ValueError: A shape, type or value is wrong; fewer than 3 points count; all coincide; an
-            iso-value or a trim leaves nothing.
+            iso-value or a trim leaves nothing; the memory limit is too low.
         MemoryError: The result would not fit into memory.
         OSError: A file cannot be read, or a temporary one not written.
         Cancelled: `progress` returned False.
