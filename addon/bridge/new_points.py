@@ -2,6 +2,7 @@
 
 """Points to Blender: objects that show them, as a point cloud or a mesh without faces."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -15,8 +16,9 @@ from .points import FROM_ABOVE, NORMAL, VIEWPOINT
 
 OFFSET = "scan_offset"
 """The property of an object that says by how much its points were moved to be near the origin."""
-_FAR = 1e3
-"""Points so many times their extent away from an origin have no digits left for detail."""
+_FAR = 100.0
+"""Points so many times their extent away from an origin have few digits left for detail: single
+precision then has steps of a fortieth of the smallest cells."""
 _MARK = "prefilter_draws_points"
 _RADIUS = "radius"
 _BUILT_IN = frozenset({"position", "id", NORMAL, VIEWPOINT, _RADIUS})
@@ -50,11 +52,31 @@ class Cloud:
 
 
 def far_offset(positions: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Returns the rounded middle of points that are far from the origin; else zero."""
+    """Returns the middle of points that are far from the origin, as round numbers; else zero.
+
+    These have as few digits as the extent of the points allows.
+    """
     low, high = positions.min(axis=0), positions.max(axis=0)
     middle = (low + high) / 2
-    is_far = float(np.abs(middle).max()) > _FAR * float((high - low).max())
-    return np.asarray(np.round(middle) if is_far else np.zeros(3))
+    extent = float((high - low).max())
+    if not float(np.abs(middle).max()) > _FAR * extent:
+        return np.zeros(3)
+    step = 10.0 ** max(math.floor(math.log10(extent)), 0) if extent > 0.0 else 1.0
+    return np.asarray(np.round(middle / step) * step)
+
+
+def kept_offset(obj: bpy.types.Object) -> NDArray[np.float64]:
+    """Returns by how much an object's points were moved to be near the origin; zero if not."""
+    try:
+        found = np.array(obj.get(OFFSET, (0.0, 0.0, 0.0)), np.float64)
+    except (TypeError, ValueError):
+        return np.zeros(3)  # a user may set the property to anything
+    return found if found.shape == (3,) and np.isfinite(found).all() else np.zeros(3)
+
+
+def shown_offset(offset: NDArray[np.float64]) -> str:
+    """Returns an offset, as users read it."""
+    return ", ".join(f"{value:.0f}" for value in offset)
 
 
 def scene_offset(positions: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -62,9 +84,9 @@ def scene_offset(positions: NDArray[np.float64]) -> NDArray[np.float64]:
     offset = far_offset(positions)
     if offset.any():
         for obj in bpy.context.scene.objects:
-            other = obj.get(OFFSET)
-            if other is not None and not far_offset(positions - np.array(other)).any():
-                return np.array(other, np.float64)
+            other = kept_offset(obj)
+            if other.any() and not far_offset(positions - other).any():
+                return other
     return offset
 
 
@@ -120,7 +142,7 @@ def layer_name(name: str) -> str:
     return f"{name}_value" if name in _BUILT_IN else name
 
 
-def spacing(positions: NDArray[np.float32]) -> float:
+def spacing(positions: NDArray[np.floating]) -> float:
     """Returns about how far points of a surface are apart: of half the box around most of them."""
     low, high = np.quantile(positions[:: len(positions) // 100_000 + 1], (0.02, 0.98), axis=0)
     a, b, c = (float(side) for side in high - low)

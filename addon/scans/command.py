@@ -3,6 +3,7 @@
 """The command `reconstruct`."""
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,9 +18,9 @@ from ..bridge.units import length
 from ..core import command, presets
 from ..core.flags import tables
 from .choices import ScanSettings
-from .files import SOURCES, FilesReconstruction
+from .files import SOURCES, FilesReconstruction, place_back
 from .properties import RECONSTRUCT
-from .reconstruction import Reconstruction
+from .reconstruction import ObjectsStreaming, Reconstruction
 
 _BLEND = ".blend"
 _SOURCES = (*SOURCES, _BLEND)
@@ -79,9 +80,15 @@ def _from_objects(options: argparse.Namespace, target: Path, settings: ScanSetti
     groups = scenes.load(options.sources, _is_wanted, _WANTED)
     objects = scenes.chosen([obj for group in groups for obj in group], options.object, _WANTED)
     work = Reconstruction.read(objects, objects[0], settings, bpy.context.evaluated_depsgraph_get())
+    if target.suffix.lower() == STREAMED_TARGET and work.offset.any():
+        command.tell(command.done(ObjectsStreaming(work, target)))
+        return
     outcome = command.done(work)
+    warnings = []
+    for name in outcome.objects:
+        warnings += place_back(bpy.data.objects[name], work.offset, target)
     scenes.save(target, outcome.objects)
-    command.tell(outcome)
+    command.tell(replace(outcome, warnings=[*outcome.warnings, *warnings]))
 
 
 def _is_wanted(obj: bpy.types.Object) -> bool:

@@ -3,6 +3,7 @@
 """The surface of points in files, without objects of them: to a file of it, or of a scene."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import bpy
@@ -16,15 +17,18 @@ from ..bridge.color_materials import show_attribute
 from ..bridge.files import scenes
 from ..bridge.layers import ATTRIBUTE, COLOR, NewLayer
 from ..bridge.new_meshes import Contour, new_mesh
-from ..bridge.new_points import far_offset, layer_name
+from ..bridge.new_points import OFFSET, far_offset, layer_name, shown_offset
 from ..bridge.place import Place
 from ..bridge.units import length
 from ..core.jobs import Progress
 from ..core.outcome import Outcome
+from ..core.wording import Sentence
 from .choices import ScanSettings
 from .surface import Look, Surface, contour, reconstructed
 
 SOURCES = prefilter.POINT_EXTENSIONS
+_WITH_PLACES = frozenset({".glb", ".gltf", ".fbx"})
+"""Files that keep the place of an object by itself: round numbers are exact there."""
 
 _COLOR = "Col"
 """What Blender's imports call the colors of points."""
@@ -82,14 +86,47 @@ class FilesReconstruction:
         mesh = new_mesh(name, self._contour)
         show_attribute(mesh, self._contour.active[COLOR])
         made = bpy.data.objects.new(name, mesh)
-        made.matrix_world = Matrix.Translation(self._origin)
         bpy.context.scene.collection.objects.link(made)
         bpy.context.view_layer.update()
+        warnings = place_back(made, self._origin, self._target)
         scenes.save(self._target, [made.name])
-        return outcome(self._sources, self._target, self._surface.report, length, [made.name])
+        found = outcome(self._sources, self._target, self._surface.report, length, [made.name])
+        return replace(found, warnings=[*found.warnings, *warnings])
 
     def discard(self) -> None:
         """Does nothing: nothing is staged."""
+
+
+def moved(offset: NDArray[np.float64]) -> str:
+    """Returns that points were moved to be near the origin, as a warning."""
+    text = (
+        "far from the origin: moved by the negative of ({}), which is kept as the custom "
+        "property 'scan_offset'"
+    )
+    return Sentence(text, shown_offset(offset))
+
+
+def place_back(made: bpy.types.Object, offset: NDArray[np.float64], target: Path) -> list[str]:
+    """Puts an object that was moved near the origin where it was, as far as a file can hold that.
+
+    Returns:
+        Warnings.
+    """
+    if not offset.any():
+        return []
+    ending = target.suffix.lower()
+    if ending in _WITH_PLACES:
+        made.matrix_world = Matrix.Translation(offset) @ made.matrix_world
+        bpy.context.view_layer.update()  # exporters read what was evaluated
+        return []
+    made[OFFSET] = offset.tolist()
+    if ending == ".blend":
+        return [moved(offset)]
+    text = (
+        "'{}': far from the origin, where its format has too few digits; ({}) is to be added to "
+        "its coordinates. A .ply file has enough"
+    )
+    return [Sentence(text, target.name, shown_offset(offset))]
 
 
 def _look(surface: Surface) -> Look:

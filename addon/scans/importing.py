@@ -9,17 +9,21 @@ from pathlib import Path
 import bpy
 import numpy as np
 import prefilter
+from prefilter._work.scans import merged
 
 from ..bridge.layers import ATTRIBUTE, NewLayer
-from ..bridge.new_points import Cloud, new_points, scene_offset
+from ..bridge.new_points import Cloud, new_points, scene_offset, spacing
+from ..bridge.units import length
 from ..core.jobs import Progress, share
 from ..core.options import check
 from ..core.outcome import Outcome
 from ..core.wording import Sentence, amount, counted
 from .choices import ImportSettings
-from .files import attribute_layers
+from .files import attribute_layers, moved
 
 _CONFIDENCE = "confidence"
+_COARSE = 0.25
+"""Of how far points are apart: coordinates of larger steps are those of other points, too."""
 
 
 class PointsImport:
@@ -68,12 +72,12 @@ class PointsImport:
             obj.select_set(True)
         bpy.context.view_layer.objects.active = made[0]
         if offset.any():
-            shown = ", ".join(f"{value:.0f}" for value in offset)
-            text = (
-                "far from the origin: moved by the negative of ({}), which is kept as the custom "
-                "property 'scan_offset'"
-            )
-            self._warnings.append(Sentence(text, shown))
+            self._warnings.append(moved(offset))
+        self._warnings += [
+            merged(length(step))
+            for step in dict.fromkeys(map(_merging_step, self._clouds))
+            if step > 0.0
+        ]
         points = sum(len(cloud.positions) for cloud in self._clouds)
         from_files = f"'{self._sources[0].name}'" if len(made) == 1 else counted(made, "file")
         return Outcome(
@@ -128,3 +132,9 @@ class PointsImport:
             text = "'{}': one of {} points was kept, as Most Points is {}"
             self._warnings.append(Sentence(text, path.name, found.stride, most))
         return found if told is None else replace(found, normals=told[0], weights=told[1])
+
+
+def _merging_step(cloud: Cloud) -> float:
+    """Returns what coordinates were rounded to in the file, if that is much; else 0."""
+    step = float(prefilter.float_step(cloud.positions))
+    return step if step > _COARSE * spacing(cloud.positions) else 0.0

@@ -2,9 +2,11 @@
 
 """The surface of selected points in three steps: read from Blender, compute, write to Blender."""
 
+import dataclasses
 import math
 from collections.abc import Generator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import bpy
 import numpy as np
@@ -15,7 +17,7 @@ from ..bridge import new_meshes
 from ..bridge.color_materials import show_attribute
 from ..bridge.kept_sources import keep
 from ..bridge.layers import ATTRIBUTE, COLOR, NewLayer
-from ..bridge.new_points import OFFSET
+from ..bridge.new_points import OFFSET, kept_offset
 from ..bridge.place import Place, still_there
 from ..bridge.points import Carried, Points, read_points
 from ..core.jobs import Progress, go_on
@@ -23,7 +25,17 @@ from ..core.options import check
 from ..core.outcome import Outcome
 from ..core.wording import Sentence, listed
 from .choices import ScanSettings
-from .surface import Look, Surface, contour, directions, oddities, reconstructed, told
+from .surface import (
+    Look,
+    Surface,
+    contour,
+    directions,
+    labeled,
+    oddities,
+    options,
+    reconstructed,
+    told,
+)
 
 _CHANNELS = ("red", "green", "blue", "alpha")
 _CONFIDENCE = "confidence"
@@ -83,10 +95,12 @@ class Reconstruction:
             sum(len(points.positions) for points in read),
             max((_extent(points.positions) for points in read), default=0.0),
         )
+        self.offset: NDArray[np.float64] = np.zeros(3)
+        """By how much the points were moved to be near the origin."""
         self._place = place
         self._names = names
         self._read = read
-        self._settings = settings
+        self.settings = settings
         self._warnings: list[str] = []
         self._notes: list[str] = []
         self._surface: Surface | None = None
@@ -122,13 +136,33 @@ class Reconstruction:
         if settings.points == "delete":
             for obj in objects:
                 new_meshes.check_editable(obj)
-        place = Place.beside(active if active in objects else objects[0], depsgraph)
+        beside = active if active in objects else objects[0]
+        place = Place.beside(beside, depsgraph)
         read = read_points(objects, depsgraph, place.origin)
         names = [obj.name for obj in objects]
         if not read:
             text = "object {}: no points" if len(names) == 1 else "objects {}: no points"
             raise ValueError(Sentence(text, listed(names)))
-        return cls(place, names, read, settings)
+        made = cls(place, names, read, settings)
+        made.offset = kept_offset(beside)
+        return made
+
+    def scans(self) -> list["prefilter.ScanPoints"]:
+        """Returns the points, relative to the place of the surface, along the axes of the world."""
+        carried = _carried(self._read)
+        return [_scan(one, carried, self.settings) for one in self._read]
+
+    def scans_in_place(self) -> list["prefilter.ScanPoints"]:
+        """Returns the points where they were before they were moved near the origin."""
+        place = self._place.origin + self.offset
+        return [
+            dataclasses.replace(
+                scan,
+                positions=scan.positions + place,
+                viewpoint=None if scan.viewpoint is None else scan.viewpoint + place,
+            )
+            for scan in self.scans()
+        ]
 
     def compute(self, progress: Progress) -> None:
         """Reconstructs the surface.
@@ -142,13 +176,12 @@ class Reconstruction:
         if without:
             self._notes.append(Sentence("normals were estimated for {}", listed(without)))
         carried = _carried(self._read)
-        scans = [_scan(one, carried, self._settings) for one in self._read]
-        surface = reconstructed(scans, self._settings, progress)
+        surface = reconstructed(self.scans(), self.settings, progress)
         self._warnings.extend(oddities(surface.report))
         self._notes.extend(directions(surface.report))
         self._surface = surface
         look = self._look(surface, carried)
-        self._contour = contour(surface, self._place, look, self._settings)
+        self._contour = contour(surface, self._place, look, self.settings)
         go_on(progress, 1.0)
         self._read.clear()
 
@@ -176,12 +209,12 @@ class Reconstruction:
         bpy.context.view_layer.objects.active = made
         for obj in objects:
             obj.select_set(False)
-            if self._settings.points == "hide":
+            if self.settings.points == "hide":
                 obj.hide_set(True)
                 obj.hide_render = True
-            elif self._settings.points == "delete":
+            elif self.settings.points == "delete":
                 bpy.data.objects.remove(obj)
-        if self._settings.points != "delete":
+        if self.settings.points != "delete":
             keep(made, objects)
         return Outcome(
             Sentence("Reconstructed '{}' from {}", made.name, told(self._surface.report)),
@@ -205,6 +238,44 @@ class Reconstruction:
             colored.render_color,
             first.materials,
         )
+
+
+class ObjectsStreaming:
+    """The points of objects that were moved near the origin, to a .ply file where they were."""
+
+    def __init__(self, read: Reconstruction, target: Path) -> None:
+        """Takes what was read, and what to write."""
+        self._read = read
+        self._target = target
+        self._report: prefilter.ReconstructionReport | None = None
+
+    def compute(self, progress: Progress) -> None:
+        """Writes the file.
+
+        Raises:
+            ValueError: There is no surface.
+            OSError: The file cannot be written.
+        """
+        with labeled():
+            self._report = prefilter.reconstruct_file(
+                self._read.scans_in_place(),
+                self._target,
+                progress=progress,
+                **options(self._read.settings),
+            )
+
+    def write(self) -> Outcome:
+        """Returns what was done."""
+        assert self._report is not None
+        return Outcome(
+            Sentence("Reconstructed '{}' from {}", self._target.name, told(self._report)),
+            files=[str(self._target)],
+            warnings=oddities(self._report),
+            notes=directions(self._report),
+        )
+
+    def discard(self) -> None:
+        """Does nothing: the library leaves nothing beside the target."""
 
 
 def _extent(positions: NDArray[np.float64]) -> float:

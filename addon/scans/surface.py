@@ -11,7 +11,7 @@ import numpy as np
 import prefilter
 from numpy.typing import NDArray
 from prefilter._work import scans
-from prefilter._work.scans import directions, labeled, oddities, options
+from prefilter._work.scans import directions, labeled, options
 
 from ..bridge.layers import COLOR, NewLayer
 from ..bridge.new_meshes import Contour
@@ -130,3 +130,8 @@ def contour(surface: Surface, place: Place, look: Look, settings: ScanSettings) 
 def told(report: "prefilter.ReconstructionReport") -> str:
     """Returns numbers about a surface, in words, in the units of the scene."""
     return scans.told(report, length)
+
+
+def oddities(report: "prefilter.ReconstructionReport") -> list[str]:
+    """Returns what is odd about the points, as warnings, in the units of the scene."""
+    return scans.oddities(report, length)

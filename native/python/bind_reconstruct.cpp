@@ -92,6 +92,7 @@ py::dict to_dict(const ReconstructReport& report) {
   found["residual"] = report.residual;
   found["depth"] = report.depth;
   found["cell"] = report.cell;
+  found["float_step"] = report.float_step;
   found["is_spilled"] = report.is_spilled;
   return found;
 }

@@ -15,6 +15,7 @@
 #include "prefilter/normals/face_normals.h"
 #include "prefilter/normals/height_field.h"
 #include "prefilter/normals/normals.h"
+#include "prefilter/scan/float_steps.h"
 #include "prefilter/scan/open_points.h"
 #include "prefilter/scan/ply_faces.h"
 #include "prefilter/scan/point_source.h"
@@ -276,6 +277,15 @@ void bind_scan(py::module_& m) {
         py::arg("viewpoint"), py::arg("progress"));
   m.def("estimate_normals", &bound_estimate_normals, py::arg("points"), py::arg("neighbours"),
         py::arg("viewpoints"), py::arg("direction"), py::arg("progress"), py::arg("threads"));
+  m.def(
+      "float_step",
+      [](const Array<double>& points) {
+        const py::gil_scoped_release unlocked;
+        FloatSteps steps;
+        for (const Vector3& point : rows_of(points)) steps.add(point);
+        return steps.step();
+      },
+      py::arg("points"));
   m.def(
       "is_height_field",
       [](const Array<double>& points, const py::object& callback) {

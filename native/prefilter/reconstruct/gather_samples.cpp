@@ -156,6 +156,7 @@ CloudExtent measure_cloud(PointSource* source, const Progress& progress, int thr
             continue;
           }
           found->extent.part.include(batch.positions[i], weight_of(batch, i));
+          found->extent.steps.add(batch.positions[i]);
           if (some == nullptr) continue;
           const ThinnedPoints::Entry entry = ThinnedPoints::entry_of(batch.positions[i]);
           if (some->keeps(entry)) found->entries.push_back(entry);
@@ -163,6 +164,7 @@ CloudExtent measure_cloud(PointSource* source, const Progress& progress, int thr
       },
       [&](const Found& found) {
         extent.part.include(found.extent.part);
+        extent.steps.add(found.extent.steps);
         extent.points += found.extent.points;
         extent.dropped += found.extent.dropped;
         if (some != nullptr) some->add(found.entries);

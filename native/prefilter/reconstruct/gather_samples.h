@@ -13,6 +13,7 @@
 #include "prefilter/reconstruct/carried_depth.h"
 #include "prefilter/reconstruct/sample_grid.h"
 #include "prefilter/reconstruct/sample_store.h"
+#include "prefilter/scan/float_steps.h"
 #include "prefilter/scan/point_source.h"
 
 namespace prefilter {
@@ -35,6 +36,7 @@ struct CloudExtent {
   std::size_t points = 0;   // that there are
   std::size_t dropped = 0;  // that are not finite, have no normal or a weight that is not positive
   std::size_t strays = 0;   // that are far from all others
+  FloatSteps steps;         // of the points that count
 };
 
 /// Reads the source once. Where `some` is not null, it gets some of the points that count.

@@ -151,6 +151,8 @@ void find_surface(PointSource* source, const SampleGrid& grid, const Reconstruct
   report->triangles = joiner.triangles();
 }
 
+// Of a cell: coordinates with larger steps leave stairs in the surface.
+constexpr double kCoarseStep = 0.25;
 constexpr double kLargestIsovalue = 1e30;
 constexpr double kLargestTrim = 1e6;
 
@@ -223,6 +225,8 @@ ReconstructReport reconstruct(PointSource* source, const ReconstructOptions& opt
   some = ThinnedPoints();
   report.depth = grid.depth;
   report.cell = grid.cell;
+  const double step = extent.steps.step();
+  if (step > kCoarseStep * grid.cell) report.float_step = step;
   SampleStore store(grid.depth, slab_bits(grid.depth), source->attributes().size(),
                     options.memory_limit / 4, options.folder);
   gather_samples(source, grid, options.progress.part(0.12, 0.4), width, &store);

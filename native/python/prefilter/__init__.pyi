@@ -45,6 +45,7 @@ from .points.reconstruction import reconstruct as reconstruct
 from .points.reconstruction import reconstruct_file as reconstruct_file
 from .points.scan_files import POINT_EXTENSIONS as POINT_EXTENSIONS
 from .points.scan_files import ScanPoints as ScanPoints
+from .points.scan_files import float_step as float_step
 from .points.scan_files import read_points as read_points
 from .points.sources import file_normals as file_normals
 from .sampling.anisotropic import sample_anisotropic as sample_anisotropic

@@ -176,6 +176,22 @@ def test_far_from_the_origin(torus, tmp_path, capfd):
     assert "scan_offset" in out
 
 
+def test_offsets_are_round(torus, tmp_path):
+    """To as many digits as the extent has; and points a few hundred extents away are far."""
+    wide = clouds.file(tmp_path / "Wide.xyz", 400 * torus.positions + [637_179, 849_497, 431])
+    assert list(read(wide)["scan_offset"]) == [637_000, 849_000, 0]
+    near = clouds.file(tmp_path / "Near.xyz", torus.positions + np.array([200, 0, 0]))
+    assert "scan_offset" not in read(near)
+
+
+def test_merged_coordinates_are_told(torus, tmp_path, capfd):
+    merged = (torus.positions + PLACE).astype(np.float32)
+    read(clouds.file(tmp_path / "Merged.xyz", merged.astype(np.float64)))
+    assert "Warning: coordinates were rounded to 50 cm" in capfd.readouterr().out
+    read(clouds.file(tmp_path / "Whole.xyz", torus.positions + PLACE))
+    assert "rounded" not in capfd.readouterr().out
+
+
 def test_the_surface_keeps_the_offset(torus, tmp_path):
     path = clouds.file(tmp_path / "Far.xyz", torus.positions + PLACE, torus.normals)
     offset = list(read(path)["scan_offset"])

@@ -113,19 +113,65 @@ def test_several_sources(tmp_path):
     assert_torus(target)
 
 
-def test_far_away_points_keep_their_precision(tmp_path):
+AWAY = np.array([500_000.0, 5_000_000.0, 100.0])
+
+
+@pytest.fixture
+def far(tmp_path):
+    """Returns a file of a torus that is far from the origin."""
     points, normals = clouds.torus()
-    offset = np.array([500_000.0, 5_000_000.0, 100.0])
-    path = write_ply(tmp_path / "far.ply", points + offset, normals)
+    return write_ply(tmp_path / "far.ply", points + AWAY, normals)
+
+
+def test_far_away_points_keep_their_precision(far, tmp_path):
     target = tmp_path / "out.blend"
-    result = run("reconstruct", path, target, *DEPTH)
+    result = run("reconstruct", far, target, *DEPTH)
     assert result.returncode == 0, result.stderr
+    assert "kept as the custom property 'scan_offset'" in result.stderr
     (made,) = loaded(target).values()
-    np.testing.assert_allclose(made.location, offset, atol=1)
-    made.location -= made.location.copy()
-    bpy.context.view_layer.update()
+    assert list(made["scan_offset"]) == list(AWAY)
     assert bodies.is_closed(made)
     assert np.abs(clouds.torus_distance(clouds.vertices(made))).mean() < 0.1
+
+
+def test_far_away_points_in_files_of_places(far, tmp_path):
+    """A place of an object holds round numbers."""
+    target = tmp_path / "out.glb"
+    result = run("reconstruct", far, target, *DEPTH)
+    assert result.returncode == 0, result.stderr
+    assert "custom property" not in result.stderr
+    (made,) = loaded(target).values()
+    np.testing.assert_array_equal(made.matrix_world.translation, AWAY)
+    made.matrix_world.translation = (0, 0, 0)
+    bpy.context.view_layer.update()
+    assert np.abs(clouds.torus_distance(clouds.vertices(made))).mean() < 0.1
+
+
+def test_far_away_points_in_files_of_few_digits(far, tmp_path):
+    target = tmp_path / "out.stl"
+    result = run("reconstruct", far, target, *DEPTH)
+    assert result.returncode == 0, result.stderr
+    told = "(500000, 5000000, 100) is to be added to its coordinates"
+    assert told in result.stderr
+    (made,) = loaded(target).values()
+    assert np.abs(clouds.torus_distance(clouds.vertices(made))).mean() < 0.1
+
+
+def test_offsets_of_objects_are_added_back(tmp_path, addon):
+    points, normals = clouds.torus()
+    scan = clouds.scan(points, normals)
+    scan["scan_offset"] = list(AWAY)
+    blend = tmp_path / "scan.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(blend))
+    target = tmp_path / "out.ply"
+    result = run("reconstruct", blend, target, *DEPTH)
+    assert result.returncode == 0, result.stderr
+    made = addon("scans.files").prefilter.read_points(target)
+    assert np.abs(clouds.torus_distance(made.positions - AWAY)).mean() < 0.01
+    result = run("reconstruct", blend, tmp_path / "out.glb", *DEPTH)
+    assert result.returncode == 0, result.stderr
+    (made,) = loaded(tmp_path / "out.glb").values()
+    np.testing.assert_array_equal(made.matrix_world.translation, AWAY)
 
 
 def test_several_files_to_ply_keep_their_doubles(tmp_path, addon):

@@ -68,6 +68,8 @@ struct ReconstructReport {
   double residual = 0.0;    // the mean distance of samples from the local surface, in cells
   int depth = 0;            // of the octree
   double cell = 0.0;        // the side of a finest cell
+  // What coordinates were rounded to by single precision, if more than a quarter of a cell; else 0.
+  double float_step = 0.0;
   bool is_spilled = false;  // temporary files were needed
 };
 

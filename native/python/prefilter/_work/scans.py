@@ -123,8 +123,22 @@ def told(report: "prefilter.ReconstructionReport", length: Callable[[float], str
     return Sentence("{} at depth {}, in cells of {}: {}", points, report.depth, cell, triangles)
 
 
-def oddities(report: "prefilter.ReconstructionReport") -> list[str]:
-    """Returns what is odd about the points, as warnings."""
+def merged(length: str) -> str:
+    """Returns that coordinates have been rounded to a length, as a warning."""
+    return Sentence(
+        "coordinates were rounded to {} before they were read, as single precision does far from "
+        "the origin: points are merged. Export the scan in double precision, or nearer the origin",
+        length,
+    )
+
+
+def oddities(report: "prefilter.ReconstructionReport", length: Callable[[float], str]) -> list[str]:
+    """Returns what is odd about the points, as warnings.
+
+    Args:
+        report: About the surface.
+        length: Returns a length in words.
+    """
     found: list[str] = []
     if report.dropped:
         dropped = amount(report.dropped, "point")
@@ -142,6 +156,8 @@ def oddities(report: "prefilter.ReconstructionReport") -> list[str]:
         found.append(Sentence(text, outliers))
     if report.is_flipped:
         found.append(Sentence("most normals point inward; all were flipped"))
+    if report.float_step:
+        found.append(merged(length(report.float_step)))
     if report.is_room and "given" in report.directions:
         found.append(
             Sentence(
@@ -170,7 +186,7 @@ def outcome(
         Sentence("Reconstructed '{}' from {}", target.name, told(report, length)),
         objects=list(objects),
         files=[str(target)],
-        warnings=oddities(report),
+        warnings=oddities(report, length),
         notes=[
             *([f"read {listed(path.name for path in sources)}"] if several else []),
             *directions(report),

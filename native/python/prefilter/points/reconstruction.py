@@ -61,6 +61,9 @@ class ReconstructionReport:
         residual: The mean distance of the samples from the local surface, in finest cells.
         depth: Of the octree: the one that was given, or that the points carry.
         cell: The side of a finest cell, in the points' units.
+        float_step: What single precision has rounded the coordinates to before they came here, far
+            from the origin, in the points' units: points are merged, and surfaces get stairs. 0
+            where that is less than a quarter of a cell.
         is_spilled: Temporary files were needed.
     """
 
@@ -76,6 +79,7 @@ class ReconstructionReport:
     residual: float = 0.0
     depth: int = 0
     cell: float = 0.0
+    float_step: float = 0.0
     is_spilled: bool = False
 
 

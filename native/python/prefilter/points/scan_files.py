@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from .. import _native
 from .._border.arguments import ProgressCallback, as_int, as_progress
+from .._border.arrays import as_floats
 from .._border.input import as_path
 from .e57 import E57Reader
 from .las import LasReader
@@ -116,6 +117,25 @@ def read_points(
 def is_from_above(path: str | os.PathLike[str]) -> bool:
     """Whether a file is of a format in which mostly points are that were seen from the air."""
     return os.path.splitext(as_path(path))[1].lower() in _FROM_ABOVE
+
+
+def float_step(positions: npt.ArrayLike) -> float:
+    """What single precision has rounded coordinates to before they came here.
+
+    Its numbers are a step apart that grows with their distance from 0: 1/2 for a northing of five
+    million. Points that are nearer to each other than that are merged.
+
+    Args:
+        positions: (points, 3). Values that are not finite do not count.
+
+    Returns:
+        The largest step along an axis whose coordinates have been rounded, in their units; 0 where
+        all have more digits than single precision, or need fewer.
+
+    Raises:
+        ValueError: The shape or type is wrong.
+    """
+    return _native.float_step(as_floats("positions", positions, ("points", 3), np.float64))
 
 
 def open_points(path: str | os.PathLike[str]) -> _native.PointSource:
