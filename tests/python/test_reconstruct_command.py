@@ -79,4 +79,6 @@ def test_what_is_refused(scan, tmp_path, capsys):
     assert "none.xyz" in fails(capsys, 1, "reconstruct", tmp_path / "none.xyz", out)
     told = fails(capsys, 1, "reconstruct", scan, out, "--voxel-size", "1e-5")
     assert "Voxel Size: " in told
+    told = fails(capsys, 1, "reconstruct", scan, out, "--memory-limit", "1")
+    assert "Memory Limit: 1 MiB; at least " in told
     assert not out.exists()
