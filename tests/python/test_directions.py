@@ -261,7 +261,8 @@ def test_given_normals_are_turned(tmp_path, direction, cloud, viewpoint):
 
 
 def test_a_viewpoint_for_each_point():
-    points, normals = box()
+    """Of more points than are read at once."""
+    points, normals = box(count=140_000)
     mixed = signs(len(points)) * normals
     expected = rebuilt(points, normals)
     found = rebuilt(points, mixed, viewpoint=2 * points)

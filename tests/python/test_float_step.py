@@ -33,6 +33,9 @@ def test_the_step_is_that_of_single_precision():
         # As far as single precision holds these, it has not rounded them.
         np.random.default_rng(1).integers(0, 1000, (2000, 3)) * 1.0,
         np.random.default_rng(1).integers(0, 1000, (2000, 3)) * 0.25 + [5e5, 5e5, 0],
+        np.random.default_rng(1).integers(0, 1000, (2000, 3)) * 0.25
+        + [5e5, 5e5, 5e5]
+        + (np.arange(2000) < 50)[:, None] * 2.0**-5,
         np.zeros((5, 3)),
         np.empty((0, 3)),
         np.full((9, 3), np.nan),
