@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Scans: files of points to objects, and points with normals to closed meshes."""
+"""Scans: files of points to objects, and points with normals to meshes."""
 
 from ..core.keys import Key
 from ..core.registration import registration
 from . import menus, operators, panel, properties
 
-MANUAL = {"scans": ("reconstruct", "import_points", "drop_points")}
+MANUAL = {"scans": ("reconstruct", "trim_reconstruction", "import_points", "drop_points")}
 """The pages about its operators and settings; see `manual.Manual`."""
 KEYS = (Key("reconstruct", "R", "Object Mode"),)
 """What its operators have at first; see `keys.Keys`."""

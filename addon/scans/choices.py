@@ -24,6 +24,7 @@ __all__ = (
     "WAVELETS",
     "ImportSettings",
     "ScanSettings",
+    "TrimSettings",
 )
 
 EXTENSIONS = (
@@ -56,4 +57,34 @@ class ImportSettings:
         "Show Colors",
         "Have 3D views in Solid mode show Material Preview if the points have colors: Solid mode "
         "has none for points",
+    )
+
+
+@dataclass(frozen=True)
+class TrimSettings:
+    """How much of a reconstructed surface is cut afterward."""
+
+    limit: float = number(
+        1.5,
+        "Distance",
+        "Cut the surface where it is farther from all points than this many times the distance "
+        "between them there",
+        low=0.0,
+        display={"soft_min": 0.5, "soft_max": 20.0, "precision": 2, "step": 10},
+    )
+    hole: float = number(
+        4.0,
+        "Holes",
+        "Keep what closes a hole if it is nowhere farther from all points than this many times "
+        "the distance between them",
+        low=0.0,
+        display={"soft_max": 50.0, "precision": 1, "step": 50},
+    )
+    island: float = number(
+        64.0,
+        "Islands",
+        "Remove separate parts that are as large as the area of fewer points than this, if "
+        "anything was cut",
+        low=0.0,
+        display={"soft_max": 10000.0, "precision": 0, "step": 1000},
     )

@@ -132,6 +132,7 @@ def place_back(made: bpy.types.Object, offset: NDArray[np.float64], target: Path
 def _look(surface: Surface) -> Look:
     """Returns what the vertices carry, as Blender's imports of files name it."""
     layers = attribute_layers(surface.attributes, len(surface.positions))
+    layers += surface.support_layers([layer.name for layer in layers])
     shown = next((layer.name for layer in layers if layer.kind == COLOR), "")
     return Look(layers, shown, shown)
 

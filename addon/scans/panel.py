@@ -10,6 +10,7 @@ from ..core.registration import classes, entry, registration
 from ..core.sidebar import SidebarPanel
 from .choices import ScanSettings
 from .operators.reconstruct import PREFILTER_OT_reconstruct
+from .operators.trim_reconstruction import PREFILTER_OT_trim_reconstruction
 from .properties import RECONSTRUCT
 
 
@@ -40,6 +41,7 @@ class PREFILTER_PT_reconstruct(_SidebarPanel, SettingsPanel, bpy.types.Panel):
 
 def _draw_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     _RECONSTRUCT.draw(menu.layout, context)
+    menu.layout.operator(PREFILTER_OT_trim_reconstruction.bl_idname, icon="MOD_BOOLEAN")
 
 
 register, unregister = registration(

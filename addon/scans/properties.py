@@ -12,7 +12,7 @@ from ..core import preset_menu, presets
 from ..core.properties import following, properties, values
 from ..core.registration import classes, registration, state
 from ..core.sidebar import PartedSettings, subpanel
-from .choices import ImportSettings, ScanSettings
+from .choices import ImportSettings, ScanSettings, TrimSettings
 
 RECONSTRUCT = presets.Kind("reconstruct", "prefilter_reconstruct", [(ScanSettings, ())])
 
@@ -31,6 +31,7 @@ class ScanProperties(PartedSettings):
         layout.prop(self, "resolution")
         if self.resolution != "auto":
             layout.prop(self, "depth" if self.resolution == "depth" else "voxel_size")
+        layout.prop(self, "use_watertight")
         layout.prop(self, "trim", text="Trim (Cells)")
         layout.prop(self, "direction")
         layout.prop(self, "points")
@@ -81,6 +82,16 @@ class ImportProperties(FilesProperties):
     def to_settings(self) -> ImportSettings:
         """Returns the settings."""
         return values(self, ImportSettings)
+
+
+class TrimProperties:
+    """The properties of `prefilter.trim_reconstruction`."""
+
+    __annotations__ = properties(TrimSettings)
+
+    def to_settings(self) -> TrimSettings:
+        """Returns the settings."""
+        return values(self, TrimSettings)
 
 
 class PREFILTER_PG_reconstruct(ScanProperties, bpy.types.PropertyGroup):

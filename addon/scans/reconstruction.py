@@ -32,6 +32,7 @@ from .surface import (
     directions,
     labeled,
     oddities,
+    openings,
     options,
     reconstructed,
     told,
@@ -179,6 +180,7 @@ class Reconstruction:
         surface = reconstructed(self.scans(), self.settings, progress)
         self._warnings.extend(oddities(surface.report))
         self._notes.extend(directions(surface.report))
+        self._notes.extend(openings(surface.report))
         self._surface = surface
         look = self._look(surface, carried)
         self._contour = contour(surface, self._place, look, self.settings)
@@ -233,7 +235,10 @@ class Reconstruction:
         first = next((one for one in self._read if one.name == self._place.name), self._read[0])
         colored = next((one for one in (first, *self._read) if one.active_color), first)
         return Look(
-            [_layer(name, one.data_type, surface) for name, one in carried.items()],
+            [
+                *(_layer(name, one.data_type, surface) for name, one in carried.items()),
+                *surface.support_layers(carried),
+            ],
             colored.active_color,
             colored.render_color,
             first.materials,

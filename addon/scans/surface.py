@@ -2,7 +2,7 @@
 
 """The surface of scans, and what Blender shows of it."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple, TypeAlias, cast
@@ -11,9 +11,9 @@ import numpy as np
 import prefilter
 from numpy.typing import NDArray
 from prefilter._work import scans
-from prefilter._work.scans import directions, labeled, options
+from prefilter._work.scans import directions, labeled, openings, options
 
-from ..bridge.layers import COLOR, NewLayer
+from ..bridge.layers import ATTRIBUTE, COLOR, NewLayer
 from ..bridge.new_meshes import Contour
 from ..bridge.place import Place
 from ..bridge.solids import MaterialKey
@@ -29,13 +29,15 @@ __all__ = (
     "directions",
     "labeled",
     "oddities",
+    "openings",
     "options",
     "reconstructed",
     "told",
 )
 
 _Attributes: TypeAlias = dict[str, NDArray[np.uint8 | np.float32]]
-_MeshWithAttributes: TypeAlias = tuple[NDArray[np.float64], NDArray[np.int32], _Attributes]
+_Support: TypeAlias = dict[str, NDArray[np.float32]]
+_MeshWithSupport: TypeAlias = tuple[NDArray[np.float64], NDArray[np.int32], _Attributes, _Support]
 
 _MOST_CORNERS = 2**31 - 1
 
@@ -49,12 +51,23 @@ class Surface:
         triangles: (m, 3) int32.
         attributes: Those of the points, for the vertices.
         report: What the library says about it.
+        support: What `prefilter.trim` needs of the vertices, by the names of attributes.
     """
 
     positions: NDArray[np.float64]
     triangles: NDArray[np.int32]
     attributes: _Attributes
     report: "prefilter.ReconstructionReport"
+    support: _Support
+
+    def support_layers(self, taken: Collection[str]) -> list[NewLayer]:
+        """Returns that as attributes; none where points have brought one of the names."""
+        if not self.support.keys().isdisjoint(taken):
+            return []
+        return [
+            NewLayer(ATTRIBUTE, name, "FLOAT", "POINT", values[:, None])
+            for name, values in self.support.items()
+        ]
 
 
 class Look(NamedTuple):
@@ -94,13 +107,14 @@ def reconstructed(
         found = prefilter.reconstruct(
             list(sources),
             attributes=True,
+            support=True,
             viewpoint=viewpoint,
             report=report,
             progress=progress,
             **options(settings),
         )
-    positions, triangles, attributes = cast("_MeshWithAttributes", found)
-    return Surface(positions, triangles, attributes, report)
+    positions, triangles, attributes, support = cast("_MeshWithSupport", found)
+    return Surface(positions, triangles, attributes, report, support)
 
 
 def contour(surface: Surface, place: Place, look: Look, settings: ScanSettings) -> Contour:

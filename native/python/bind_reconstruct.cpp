@@ -53,7 +53,9 @@ void bind_reconstruct_options(py::module_& m) {
       .def_property("isovalue", nullptr, &set_isovalue)
       .def_readwrite("are_sides_known", &Options::are_sides_known)
       .def_readwrite("fit", &Options::fit)
+      .def_readwrite("watertight", &Options::watertight)
       .def_readwrite("trim", &Options::trim)
+      .def_readwrite("support", &Options::support)
       .def_readwrite("memory_limit", &Options::memory_limit)
       .def_readwrite("folder", &Options::folder);
 }
@@ -94,6 +96,9 @@ py::dict to_dict(const ReconstructReport& report) {
   found["cell"] = report.cell;
   found["float_step"] = report.float_step;
   found["is_spilled"] = report.is_spilled;
+  found["cut"] = report.trimmed.cut;
+  found["islands"] = report.trimmed.islands;
+  found["island_share"] = report.trimmed.island;
   return found;
 }
 
@@ -108,10 +113,39 @@ std::tuple<Array<double>, Array<std::int32_t>, Array<float>, py::dict> bound_rec
   }
   const auto vertices = static_cast<py::ssize_t>(report.vertices);
   const auto triangles = static_cast<py::ssize_t>(report.triangles);
-  const auto width = static_cast<py::ssize_t>(source->attributes().size());
+  std::size_t columns = source->attributes().size();
+  if (options.support) columns += support_attributes().size();
+  const auto width = static_cast<py::ssize_t>(columns);
   return {to_array<double>(sink.take_positions(), {vertices, 3}),
           to_array<std::int32_t>(sink.take_triangles(), {triangles, 3}),
           to_array<float>(sink.take_attributes(), {vertices, width}), to_dict(report)};
+}
+
+// The mesh, its attributes, and what was cut.
+std::tuple<Array<double>, Array<std::int32_t>, Array<float>, py::dict> bound_trim(
+    const Array<double>& positions, const Array<std::int32_t>& triangles,
+    const Array<float>& attributes, double distance, double hole, double island,
+    const py::object& callback) {
+  const Progress progress = to_progress(callback);
+  const auto columns = attributes.shape(1);
+  const auto values = std::span(attributes.data(), static_cast<std::size_t>(attributes.size()));
+  TrimmedMesh mesh;
+  TrimReport report;
+  {
+    const py::gil_scoped_release unlocked;
+    report =
+        trim_surface(rows_of(positions), rows_of(triangles), values,
+                     static_cast<std::size_t>(columns), {distance, hole, island}, progress, &mesh);
+  }
+  py::dict found;
+  found["cut"] = report.cut;
+  found["islands"] = report.islands;
+  found["island_share"] = report.island;
+  const auto vertices = static_cast<py::ssize_t>(mesh.positions.size());
+  const auto faces = static_cast<py::ssize_t>(mesh.triangles.size());
+  return {to_array<double>(std::move(mesh.positions), {vertices, 3}),
+          to_array<std::int32_t>(std::move(mesh.triangles), {faces, 3}),
+          to_array<float>(std::move(mesh.attributes), {vertices, columns}), found};
 }
 
 py::dict bound_reconstruct_file(PointSource* source, const std::string& target,
@@ -120,7 +154,11 @@ py::dict bound_reconstruct_file(PointSource* source, const std::string& target,
   ReconstructReport report;
   {
     const py::gil_scoped_release unlocked;
-    PlyMeshWriter writer(target, source->attributes(), source->is_double());
+    std::vector<PointAttribute> attributes = source->attributes();
+    if (options.support) {
+      for (PointAttribute& each : support_attributes()) attributes.push_back(std::move(each));
+    }
+    PlyMeshWriter writer(target, std::move(attributes), source->is_double());
     options.progress = progress.part(0.0, 0.95);
     report = reconstruct(source, options, &writer);
     writer.finish(progress.part(0.95, 1.0));
@@ -153,6 +191,8 @@ void bind_reconstruct(py::module_& m) {
            py::arg("source"), py::arg("is_up"), py::arg("viewpoints"), py::keep_alive<1, 2>());
   m.def("reconstruct", &bound_reconstruct, py::arg("source"), py::arg("options"),
         py::arg("progress"));
+  m.def("trim", &bound_trim, py::arg("positions"), py::arg("triangles"), py::arg("attributes"),
+        py::arg("distance"), py::arg("hole"), py::arg("island"), py::arg("progress"));
   m.def("reconstruct_file", &bound_reconstruct_file, py::arg("source"), py::arg("target"),
         py::arg("options"), py::arg("progress"));
 }

@@ -273,6 +273,14 @@ def test_reconstruct():
     assert bodies.is_closed(bpy.data.objects["Scan.surface"])
 
 
+def test_trim_reconstruction():
+    clouds.scan(*clouds.torus(5_000))
+    assert not bpy.ops.prefilter.trim_reconstruction.poll()
+    bpy.ops.prefilter.reconstruct(depth=5)
+    assert bpy.ops.prefilter.trim_reconstruction() == FINISHED
+    assert bodies.is_closed(bpy.data.objects["Scan.surface"])
+
+
 def test_demonstrate():
     assert bpy.ops.prefilter.demonstrate(kind="mipmaps") == FINISHED
     assert "Stone Prefilter.mip04" in bpy.data.images

@@ -49,7 +49,7 @@ OPTIONS = [
     (reconstruction.reconstruct_file, _native.ReconstructOptions, reconstruction._CHECKS),
 ]
 # Set by the functions themselves.
-INTERNAL = {"are_sides_known", "folder", "grid", "slices"}
+INTERNAL = {"are_sides_known", "folder", "grid", "slices", "support"}
 
 
 def options_of(kind: type) -> set[str]:

@@ -97,7 +97,7 @@ def test_two_scans_that_overlap(wavelet):
 def test_normals_that_mean_nothing_give_a_closed_surface(wavelet, smooth):
     order = np.random.default_rng(1).permutation(len(CLOUD.points))
     positions, triangles, _ = _rebuilt(
-        CLOUD.points, CLOUD.normals[order], wavelet=wavelet, smooth=smooth
+        CLOUD.points, CLOUD.normals[order], wavelet=wavelet, smooth=smooth, watertight=True
     )
     assert np.isfinite(positions).all()
     assert len(triangles) > 0
@@ -118,7 +118,7 @@ FEW = {
 def test_clouds_that_bound_nothing_give_a_closed_surface(wavelet, name, options):
     points = FEW[name]
     normals = np.tile([0.0, 0.0, 1.0], (len(points), 1))
-    positions, triangles, _ = _rebuilt(points, normals, wavelet=wavelet, **options)
+    positions, triangles, _ = _rebuilt(points, normals, wavelet=wavelet, watertight=True, **options)
     assert np.isfinite(positions).all()
     assert _is_closed(triangles)
 
@@ -187,7 +187,7 @@ def test_a_trimmed_surface_ends_where_the_points_do(wavelet, depth, trim):
     cloud = sphere(60_000)
     upper = cloud.points[:, 2] > 0
     points, normals = cloud.points[upper], cloud.normals[upper]
-    closed = _rebuilt(points, normals, depth=depth, wavelet=wavelet)
+    closed = _rebuilt(points, normals, depth=depth, wavelet=wavelet, watertight=True)
     assert _is_closed(closed[1])
     positions, triangles, report = _rebuilt(
         points, normals, depth=depth, wavelet=wavelet, trim=trim

@@ -22,7 +22,7 @@ class PREFILTER_OT_reconstruct(ScanProperties, PresetsOperator, WorkOperator, bp
     bl_idname = "prefilter.reconstruct"
     bl_label = "Reconstruct Surface"
     bl_description = (
-        "Make one closed surface from the points of all selected scans: meshes without "
+        "Make one surface from the points of all selected scans: meshes without "
         "faces and point clouds. Normals are estimated for points without the attribute "
         "'normal'"
     )

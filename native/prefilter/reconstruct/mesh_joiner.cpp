@@ -2,6 +2,7 @@
 
 #include "prefilter/reconstruct/mesh_joiner.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -53,6 +54,19 @@ void MeshJoiner::add(const SlabMesh& slab, int top) {
   if (!positions.empty()) sink_->add_vertices(std::move(positions), std::move(attributes));
   if (!triangles.empty()) sink_->add_triangles(std::move(triangles));
   std::erase_if(known_, [&](const auto& entry) { return entry.second.high < top; });
+  far_places_.clear();
+  for (const auto& [a, b, distance, density] : slab.far_places) {
+    const bool is_edge = b >= 0;
+    far_places_.push_back({is_edge ? numbers[static_cast<std::size_t>(a)] : a,
+                           is_edge ? numbers[static_cast<std::size_t>(b)] : -1, distance, density});
+  }
+}
+
+std::vector<std::int64_t> MeshJoiner::shared() const {
+  std::vector<std::int64_t> numbers;
+  for (const auto& [place, known] : known_) numbers.push_back(known.number);
+  std::sort(numbers.begin(), numbers.end());
+  return numbers;
 }
 
 }  // namespace prefilter

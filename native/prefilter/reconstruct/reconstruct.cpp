@@ -25,6 +25,7 @@
 #include "prefilter/reconstruct/slab_walk.h"
 #include "prefilter/reconstruct/slabs.h"
 #include "prefilter/reconstruct/stray_points.h"
+#include "prefilter/reconstruct/surface_cutter.h"
 #include "prefilter/reconstruct/surface_level.h"
 #include "prefilter/reconstruct/whole_samples.h"
 #include "prefilter/voxel/voxelize.h"
@@ -107,9 +108,9 @@ FunctionFindings find_function(PointSource* source, const SampleGrid& grid,
   return found;
 }
 
-// The mesh, slab by slab.
+// The mesh, slab by slab, to a joiner and then to a cutter, if there is one.
 void find_mesh(const SurfaceSamples& surface, const ReconstructOptions& options,
-               const SurfaceLevel& level, Slabs* slabs, MeshJoiner* joiner) {
+               const SurfaceLevel& level, Slabs* slabs, MeshJoiner* joiner, SurfaceCutter* cutter) {
   std::vector<SlabMesh> parts(static_cast<std::size_t>(slabs->count()));
   const auto make = [&](int s) {
     SlabMesh part = mesh_of_slab(surface, options, level, s);
@@ -123,8 +124,11 @@ void find_mesh(const SurfaceSamples& surface, const ReconstructOptions& options,
     SlabMesh& part = parts[static_cast<std::size_t>(s)];
     joiner->add(part, is_last ? (1 << slabs->depth()) + 1 : (s + 1) * slabs->height());
     part = SlabMesh();
+    if (cutter == nullptr) return;
+    cutter->add_far_places(joiner->far_places());
+    cutter->end_part(joiner->shared());
   };
-  for_slabs({SlabStage::kValues, 1, true}, options.progress.part(0.6, 1.0), options.threads, slabs,
+  for_slabs({SlabStage::kValues, 1, true}, options.progress.part(0.6, 0.95), options.threads, slabs,
             make, join);
 }
 
@@ -143,12 +147,25 @@ void find_surface(PointSource* source, const SampleGrid& grid, const Reconstruct
   const SurfaceLevel level =
       find_surface_level(options, found.is_inward, options.progress.part(0.35, 0.6), &slabs);
   report->is_room = level.is_reversed;
-  const SurfaceSamples surface = {slabs, width, find_noise(largest, &slabs)};
+  const SurfaceSamples surface = {slabs, width, find_noise(largest, &slabs), grid.cell};
   report->residual = surface.noise.distance;
-  MeshJoiner joiner(grid, width, sink);
-  find_mesh(surface, options, level, &slabs, &joiner);
-  report->vertices = joiner.vertices();
-  report->triangles = joiner.triangles();
+  const bool is_open = !options.watertight && !options.trim;
+  const std::size_t all = width + (is_open || options.support ? kSupportAttributes : 0);
+  if (!is_open) {
+    MeshJoiner joiner(grid, all, sink);
+    find_mesh(surface, options, level, &slabs, &joiner, nullptr);
+    report->vertices = joiner.vertices();
+    report->triangles = joiner.triangles();
+    return;
+  }
+  SurfaceCutter cutter(TrimOptions(), all, grid.cell, options.support, options.memory_limit / 4,
+                       options.folder);
+  MeshJoiner joiner(grid, all, &cutter);
+  find_mesh(surface, options, level, &slabs, &joiner, &cutter);
+  report->trimmed = cutter.finish(options.progress.part(0.95, 1.0), sink);
+  report->vertices = cutter.counts().vertices;
+  report->triangles = cutter.counts().triangles;
+  report->is_spilled = report->is_spilled || cutter.is_spilled();
 }
 
 // Of a cell: coordinates with larger steps leave stairs in the surface.
@@ -193,6 +210,9 @@ void check_mesh(const ReconstructOptions& options, const ReconstructReport& repo
     throw_invalid("trim: " + to_text(*options.trim) +
                   " cells leave no triangle; more are needed, or none");
   }
+  if (report.trimmed.cut > 0.0) {
+    throw_invalid("watertight: no point is near the surface; it must be closed");
+  }
   if (options.isovalue == Isovalue::kGiven) {
     throw_invalid("isovalue: " + to_text(options.given_isovalue) +
                   " is nowhere; values are about 0 outside and 1 inside");
@@ -201,6 +221,10 @@ void check_mesh(const ReconstructOptions& options, const ReconstructReport& repo
 }
 
 }  // namespace
+
+std::vector<PointAttribute> support_attributes() {
+  return {{"distance", false}, {"density", false}};
+}
 
 ReconstructReport reconstruct(PointSource* source, const ReconstructOptions& options,
                               MeshSink* sink) {

@@ -11,6 +11,7 @@
 
 #include "prefilter/base/geometry.h"
 #include "prefilter/contour/contour_slab.h"
+#include "prefilter/reconstruct/slab_support.h"
 
 namespace prefilter {
 namespace {
@@ -135,6 +136,9 @@ SlabMesh mesh_of_slab(const SurfaceSamples& surface, const ReconstructOptions& o
   SlabMesh slab;
   slab.contour = contour_of_slab(surface.slabs, options, level, s);
   if (options.fit || surface.attribute_count > 0) follow_samples(surface, options.fit, s, &slab);
+  if (options.support || (!options.watertight && !options.trim)) {
+    add_support(surface, TrimOptions().distance, level.scale < 0.0F ? -1.0 : 1.0, s, &slab);
+  }
   if (options.trim) mark_far_vertices(surface.slabs, s, *options.trim, &slab);
   return slab;
 }

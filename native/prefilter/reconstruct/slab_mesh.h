@@ -19,6 +19,7 @@ struct SurfaceSamples {
   const Slabs& slabs;
   std::size_t attribute_count = 0;
   SampleNoise noise;
+  double cell = 1.0;  // the side of a finest one, in the points' units
 };
 
 /// The samples of depth `k` in slab `s` and up to `margin` cells of that depth away from it, but no

@@ -20,7 +20,8 @@ Slabs::Slabs(SampleStore* store, int depth, int top, std::size_t attribute_count
       attribute_count_(attribute_count),
       keeps_all_(keeps_all),
       threads_(threads),
-      slots_(static_cast<std::size_t>(store->slab_count())) {}
+      slots_(static_cast<std::size_t>(store->slab_count())),
+      sparse_(static_cast<std::size_t>(store->slab_count())) {}
 
 const SampleSlab* Slabs::samples(int s) const {
   return s < 0 || s >= count() ? nullptr : &slots_[static_cast<std::size_t>(s)].samples;
@@ -90,6 +91,12 @@ void Slabs::find_leaves_of(int s) {
                      static_cast<std::ptrdiff_t>(offsets[static_cast<std::size_t>(s)]);
   slab.at(top_).leaf.assign(first, first + static_cast<std::ptrdiff_t>(slab.at(top_).size()));
   find_leaves(mean_weight, depth_, &slab);
+  for (int k = top_; is_sparse(k); ++k) {
+    std::vector<SupportCell>& cells =
+        sparse_[static_cast<std::size_t>(s)][static_cast<std::size_t>(k - top_)];
+    cells.clear();
+    add_support(slab, k, depth_, mean_weight, &cells);
+  }
 }
 
 void Slabs::analyze(int s) {

@@ -3,6 +3,8 @@
 // What is made of a cloud's slabs, stage by stage, and forgotten where memory is scarce.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -12,6 +14,7 @@
 #include "prefilter/reconstruct/flux_tree.h"
 #include "prefilter/reconstruct/sample_slab.h"
 #include "prefilter/reconstruct/sample_store.h"
+#include "prefilter/reconstruct/support_field.h"
 
 namespace prefilter {
 
@@ -59,6 +62,13 @@ class Slabs {
   }
   double left_out(int s) const { return slots_[static_cast<std::size_t>(s)].left_out; }
 
+  /// What counts at depths whose cells are as high as a slab, or half, may be of slabs that are not
+  /// at hand: it is little, and kept of each slab since it had its leaves.
+  bool is_sparse(int k) const { return k >= top_ && k <= std::min(top_ + 1, depth_); }
+  const std::vector<SupportCell>& sparse(int s, int k) const {
+    return sparse_[static_cast<std::size_t>(s)][static_cast<std::size_t>(k - top_)];
+  }
+
   /// For kLeaves: the levels down to `top` of all slabs together, and where a slab's cells begin
   /// in the last of them. For kCoefficients: leaves less deep do not count. For kValues: the levels
   /// above.
@@ -91,6 +101,7 @@ class Slabs {
   int dropped_ = 0;  // slabs below this have nothing
   std::atomic<std::size_t> steps_ = 0;
   std::vector<Slot> slots_;
+  std::vector<std::array<std::vector<SupportCell>, 2>> sparse_;
 };
 
 }  // namespace prefilter

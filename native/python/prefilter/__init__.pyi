@@ -48,6 +48,8 @@ from .points.scan_files import ScanPoints as ScanPoints
 from .points.scan_files import float_step as float_step
 from .points.scan_files import read_points as read_points
 from .points.sources import file_normals as file_normals
+from .points.trimming import TrimmedSurface as TrimmedSurface
+from .points.trimming import trim as trim
 from .sampling.anisotropic import sample_anisotropic as sample_anisotropic
 from .sampling.exact import sample_ewa as sample_ewa
 from .sampling.exact import sample_exact as sample_exact

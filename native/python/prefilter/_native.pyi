@@ -701,7 +701,9 @@ class ReconstructOptions:
     isovalue: float | str
     are_sides_known: bool
     fit: bool
+    watertight: bool
     trim: float | None
+    support: bool
     memory_limit: int
     folder: bytes
     threads: int
@@ -727,6 +729,20 @@ class TurnedPoints(PointSource):
 
 def reconstruct(
     source: PointSource, options: ReconstructOptions, progress: ProgressCallback | None
+) -> tuple[
+    npt.NDArray[np.float64],
+    npt.NDArray[np.int32],
+    npt.NDArray[np.float32],
+    dict[str, float],
+]: ...
+def trim(
+    positions: npt.NDArray[np.float64],
+    triangles: npt.NDArray[np.int32],
+    attributes: npt.NDArray[np.float32],
+    distance: float,
+    hole: float,
+    island: float,
+    progress: ProgressCallback | None,
 ) -> tuple[
     npt.NDArray[np.float64],
     npt.NDArray[np.int32],

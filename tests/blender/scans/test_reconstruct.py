@@ -248,7 +248,7 @@ def test_trim():
         for obj in bpy.context.selected_objects:
             obj.select_set(False)
         clouds.scan(points[kept], normals[kept], name=name)
-        reconstruct(trim=trim)
+        reconstruct(trim=trim, use_watertight=True)
         made = surface(name)
         assert bodies.is_closed(made) == (name == "Closed")
     assert clouds.vertices(made)[:, 2].max() < 0.1 + 4 * CELL
@@ -427,18 +427,43 @@ def test_bad_input(make, options, words):
 
 
 def test_points_of_a_plane():
-    """Closed somewhere below; trimmed, the plane alone is left."""
+    """Watertight, it is closed somewhere below; else the plane alone is left, as if trimmed."""
     random = np.random.default_rng(1)
     points = np.concatenate([random.uniform(-1, 1, (5_000, 2)), np.zeros((5_000, 1))], axis=1)
     scan = clouds.scan(points, np.tile([0.0, 0.0, 1.0], (5_000, 1)))
-    reconstruct(points="keep")
+    reconstruct(points="keep", use_watertight=True)
     assert bodies.is_closed(surface())
-    bpy.data.objects.remove(surface())
-    scan.select_set(True)
-    reconstruct(trim=2.0)
-    made = clouds.vertices(surface())
-    assert not bodies.is_closed(surface())
-    assert np.abs(made).max(axis=0) == pytest.approx((1, 1, 0), abs=0.1)
+    for options in ({}, {"trim": 2.0}):
+        bpy.data.objects.remove(surface())
+        scan.select_set(True)
+        reconstruct(points="keep", **options)
+        made = clouds.vertices(surface())
+        assert not bodies.is_closed(surface())
+        assert np.abs(made).max(axis=0) == pytest.approx((1, 1, 0), abs=0.15)
+        scan.select_set(True)
+
+
+def test_trimming_without_a_new_run():
+    points, normals = clouds.torus()
+    kept = points[:, 2] < 0.1
+    clouds.scan(points[kept], normals[kept])
+    reconstruct(use_watertight=True)
+    made = surface()
+    before = len(made.data.vertices)
+    bpy.context.view_layer.objects.active = made
+    assert bpy.ops.prefilter.trim_reconstruction.poll()
+    assert bpy.ops.prefilter.trim_reconstruction(limit=1e6) == {"FINISHED"}
+    assert len(made.data.vertices) == before
+    assert bpy.ops.prefilter.trim_reconstruction() == {"FINISHED"}
+    assert not bodies.is_closed(made)
+    assert clouds.vertices(made)[:, 2].max() < 0.1 + 4 * CELL
+    left = np.empty(len(made.data.vertices), np.float32)
+    made.data.attributes["distance"].data.foreach_get("value", left)
+    assert left.max() == pytest.approx(1.5)
+    with pytest.raises(RuntimeError, match="would be left"):
+        bpy.ops.prefilter.trim_reconstruction(limit=0.0, hole=0.0)
+    made.data.attributes.remove(made.data.attributes["density"])
+    assert not bpy.ops.prefilter.trim_reconstruction.poll()
 
 
 def test_undo():

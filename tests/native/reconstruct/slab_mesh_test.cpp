@@ -126,6 +126,7 @@ TEST(SlabMesh, IsThePartOfTheSphereInTheSlab) {
   Sphere sphere(testing::sphere_cloud(20000));
   ReconstructOptions options;
   options.depth = kDepth;
+  options.watertight = true;
   const SurfaceSamples surface = {sphere.slabs, 0, find_noise(sphere.largest, &sphere.slabs)};
   const SurfaceLevel level = find_surface_level(options, false, Progress(), &sphere.slabs);
   std::size_t vertices = 0;

@@ -9,5 +9,6 @@ settings.depth = 7
 settings.wavelet = "haar"
 settings.use_smooth = True
 settings.use_fit = True
+settings.use_watertight = False
 settings.trim = 0.0
 settings.points = "keep"

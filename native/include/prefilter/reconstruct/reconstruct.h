@@ -8,10 +8,13 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "prefilter/base/names.h"
+#include "prefilter/base/point_attribute.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/mesh/mesh_sink.h"
+#include "prefilter/reconstruct/trim_surface.h"
 #include "prefilter/scan/point_source.h"
 
 namespace prefilter {
@@ -46,8 +49,13 @@ struct ReconstructOptions {
   // most of them are taken to point outward.
   bool are_sides_known = false;
   bool fit = true;  // move vertices onto the surface of the points around them
-  // Leave out what is farther from all points than so many cells, above 0 and up to 1e6.
+  // The surface is closed. Else it ends where points do, as TrimOptions say: what lies far from
+  // them, measured by how far they are from one another, is cut.
+  bool watertight = false;
+  // Instead, and whatever `watertight` says: leave out triangles with a vertex that is farther from
+  // all points than so many cells, above 0 and up to 1e6.
   std::optional<double> trim;
+  bool support = false;  // vertices get the attributes that support_attributes() names
   // In bytes, beside what the source and the sink keep; 0: as little as can be.
   std::uint64_t memory_limit = std::numeric_limits<std::uint64_t>::max();
   std::string folder;  // for temporary files; "": the system's
@@ -71,15 +79,22 @@ struct ReconstructReport {
   // What coordinates were rounded to by single precision, if more than a quarter of a cell; else 0.
   double float_step = 0.0;
   bool is_spilled = false;  // temporary files were needed
+  TrimReport trimmed;       // what was cut as no points support it; not by `trim`
 };
+
+/// What vertices get besides the attributes of points, after these: the distance from the nearest
+/// points, in spacings of those, or in cells where these are larger; and how many points there are
+/// to an area around.
+std::vector<PointAttribute> support_attributes();
 
 /// The surface of oriented points: where a function that is 1 inside and 0 outside takes the
 /// iso-value. Wavelet coefficients of the function are sums over the points (equation 4.2), each of
 /// the area that follows from its neighbors; the octree they make is contoured on its dual grid.
 ///
-/// Untrimmed, the mesh is closed and two-manifold; the side that normals point to is where
-/// triangles are counter-clockwise. It is the same for any number of threads and any limit of
-/// memory, and to rounding for any order of the points.
+/// The mesh is two-manifold, but where `trim` was given, and closed if it is watertight or points
+/// lie all around; the side that normals point to is where triangles are counter-clockwise. It is
+/// the same for any number of threads and any limit of memory, and to rounding for any order of the
+/// points.
 ///
 /// Throws Error for options out of range, cells that are too small, fewer than 3 points that count,
 /// or points that all coincide, normals that cancel each other everywhere, a mesh of no triangle, a

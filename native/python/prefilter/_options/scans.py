@@ -99,11 +99,17 @@ class ScanSettings:
         "Fit to Points",
         "Move the vertices onto planes through the nearest points: details finer than a cell",
     )
+    use_watertight: bool = switch(
+        False,
+        "Watertight",
+        "Close the surface everywhere. Otherwise it is open where the scan is: what lies far from "
+        "all points, compared with the distance between these, is cut, and small holes are closed",
+    )
     trim: float = number(
         0.0,
         "Trim",
-        "Remove surface that is farther from every point than this many cells, so that borders of "
-        "the scan stay open. 0 keeps a closed surface",
+        "Instead of that, remove surface that is farther from every point than this many cells, "
+        "however far points are from one another. 0 leaves it to Watertight",
         low=0.0,
         display={"soft_max": 20.0, "precision": 1, "step": 50},
         metavar="CELLS",

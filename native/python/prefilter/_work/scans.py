@@ -105,6 +105,7 @@ def options(settings: ScanSettings) -> dict[str, Any]:
         "isovalue": settings.custom_isovalue if custom else settings.isovalue,
         "fit": settings.use_fit,
         "direction": settings.direction,
+        "watertight": settings.use_watertight,
         "trim": settings.trim if settings.trim > 0.0 else None,
         "memory_limit": settings.memory_limit or None,
         "threads": settings.threads,
@@ -173,6 +174,20 @@ def directions(report: "prefilter.ReconstructionReport") -> list[str]:
     return [_DIRECTIONS[direction] for direction in report.directions]
 
 
+def openings(report: "prefilter.ReconstructionReport") -> list[str]:
+    """Returns where the surface is open, as notes."""
+    found: list[str] = []
+    if report.cut:
+        cut = f"{100.0 * report.cut:.2g} %"
+        found.append(Sentence("cut, because no points are near: {} of the surface", cut))
+    if report.islands:
+        share = f"{100.0 * report.island_share:.2g} %"
+        parts = amount(report.islands, "part")
+        text = "left out, because they are small: {}, {} of the surface"
+        found.append(Sentence(text, parts, share))
+    return found
+
+
 def outcome(
     sources: Sequence[Path],
     target: Path,
@@ -190,5 +205,6 @@ def outcome(
         notes=[
             *([f"read {listed(path.name for path in sources)}"] if several else []),
             *directions(report),
+            *openings(report),
         ],
     )

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Scans: oriented points to closed surfaces."""
+"""Scans: oriented points to surfaces."""
 
 import os
 from collections.abc import Sequence
@@ -33,6 +33,16 @@ MeshWithAttributes: TypeAlias = tuple[
     npt.NDArray[np.int32],
     npt.NDArray[np.float32] | dict[str, AttributeArray],
 ]
+Support: TypeAlias = dict[str, npt.NDArray[np.float32]]
+MeshWithSupport: TypeAlias = (
+    tuple[npt.NDArray[np.float64], npt.NDArray[np.int32], Support]
+    | tuple[
+        npt.NDArray[np.float64],
+        npt.NDArray[np.int32],
+        npt.NDArray[np.float32] | dict[str, AttributeArray],
+        Support,
+    ]
+)
 
 _MIB = 1 << 20
 _MOST_MIB = 1 << 40
@@ -65,6 +75,10 @@ class ReconstructionReport:
             from the origin, in the points' units: points are merged, and surfaces get stairs. 0
             where that is less than a quarter of a cell.
         is_spilled: Temporary files were needed.
+        cut: The share of the surface, by area, that was cut because no points support it: from 0
+            to 1.
+        islands: How many small parts were then left out.
+        island_share: Their share of the surface.
     """
 
     points: int = 0
@@ -81,6 +95,9 @@ class ReconstructionReport:
     cell: float = 0.0
     float_step: float = 0.0
     is_spilled: bool = False
+    cut: float = 0.0
+    islands: int = 0
+    island_share: float = 0.0
 
 
 def reconstruct(
@@ -93,23 +110,24 @@ def reconstruct(
     smooth: bool = True,
     isovalue: str | float = "auto",
     fit: bool = True,
+    watertight: bool = False,
     trim: float | None = None,
     direction: str = "auto",
     viewpoint: npt.ArrayLike | None = None,
     weights: npt.ArrayLike | None = None,
     attributes: npt.ArrayLike | bool | None = None,
+    support: bool = False,
     memory_limit: int | None = None,
     report: ReconstructionReport | None = None,
     progress: ProgressCallback | None = None,
     threads: int = 0,
-) -> Mesh | MeshWithAttributes:
-    """The closed surface that points with normals were taken from (chapter 4).
+) -> Mesh | MeshWithAttributes | MeshWithSupport:
+    """The surface that points with normals were taken from (chapter 4).
 
     The surface is where a function that is 1 inside and 0 outside takes an iso-value; its wavelet
     coefficients are sums over the points (equation 4.2). Points that are not finite (or are beyond
     1e300), have no normal or no weight are left out and counted. Points on a plane or a line bound
-    nothing: the mesh is closed all the same, but may be a sheet without volume, whose triangles may
-    have no area; with `trim` it ends where the points do.
+    nothing: a closed mesh may be a sheet without volume, whose triangles may have no area.
 
     Args:
         points: (points, 3). Or a file that `read_points` reads, or `ScanPoints`, or a list of
@@ -124,8 +142,14 @@ def reconstruct(
         smooth: The function is smoothed over neighboring cells (section 4.3.1).
         isovalue: "auto" and "mean": the function's mean at the points. "half": 1/2. Or a number.
         fit: Vertices are moved onto the surface of the points around them.
-        trim: Leaves out what is farther from all points than so many finest cells, above 0 and up
-            to 1e6, so that the surface may end where the points do. None: the surface is closed.
+        watertight: The surface is closed. False: it is open where the points are: what is farther
+            from all of them than 1.5 times their spacing there, or 1.5 cells where that is more, is
+            cut, and then parts that are small beside the spacing go. Holes that are up to 8
+            spacings wide are closed all the same, and a cloud that has points all around has a
+            closed surface.
+        trim: In place of that, whatever `watertight` says: leaves out triangles with a vertex that
+            is farther from all points than so many finest cells, above 0 and up to 1e6, however far
+            points are from one another.
         direction: Where normals point. "given": as points have them, whatever that encloses. "up":
             to where z is larger. "viewpoint": to where the scanner stood, as `viewpoint` or the
             file says, or else to the origin. "outward": as those of a closed surface: those that
@@ -139,6 +163,8 @@ def reconstruct(
             and scans say.
         attributes: (points, n), carried over to the vertices: colors, for example. Up to 1e30.
             True: those of files and scans.
+        support: Tells of each vertex how far it is from the points, and how dense these are there,
+            so that `trim` can cut the mesh elsewhere.
         memory_limit: In MiB, above what is passed in and returned, points without normals among
             that; beyond it temporary files are used. It holds within a tenth and 8 MiB. What is
             less than needed is refused, with the least that would do: the cells of a few layers of
@@ -150,17 +176,21 @@ def reconstruct(
     Returns:
         Positions (vertices, 3) float64 and triangles (triangles, 3) int32, counter-clockwise seen
         from outside. With `attributes` also those of the vertices: (vertices, n) float32, or for
-        files and scans an array for each name, as `ScanPoints` has them. Untrimmed the mesh is
-        closed and two-manifold.
+        files and scans an array for each name, as `ScanPoints` has them. With `support` also a
+        dictionary: "distance" (vertices,) float32, from the nearest points in spacings of those
+        around, or in cells where these are larger; and "density" (vertices,) float32, the points to
+        an area. Unless `trim` was given, the mesh is two-manifold, and closed if it is watertight.
 
     Raises:
         ValueError: A shape, type or value is wrong; fewer than 3 points count; all coincide; an
-            iso-value or a trim leaves nothing; the memory limit is too low.
+            iso-value or a trim leaves nothing; no point is near the surface; the memory limit is
+            too low.
         MemoryError: The result would not fit into memory.
         OSError: A file cannot be read, or a temporary one not written.
         Cancelled: `progress` returned False.
     """
     options = set_options(_native.ReconstructOptions(), _CHECKS, locals())
+    options.support = bool(support)
     _check_report(report)
     wanted = as_wanted(direction, viewpoint)
     sources = sources_in(points)
@@ -176,10 +206,15 @@ def reconstruct(
         cloud.points, options, as_progress(cloud.rest(progress))
     )
     _fill_in(report, found, cloud)
+    told: Support = {}
+    if options.support:
+        told = {"distance": carried[:, -2].copy(), "density": carried[:, -1].copy()}
+        carried = np.ascontiguousarray(carried[:, :-2])
     if attributes is None or attributes is False:
-        return positions, triangles
+        return (positions, triangles, told) if support else (positions, triangles)
     by_name = None if sources is None else _columns(carried, cloud.points.attributes)
-    return positions, triangles, carried if by_name is None else by_name
+    kept = carried if by_name is None else by_name
+    return (positions, triangles, kept, told) if support else (positions, triangles, kept)
 
 
 def reconstruct_file(
@@ -192,6 +227,7 @@ def reconstruct_file(
     smooth: bool = True,
     isovalue: str | float = "auto",
     fit: bool = True,
+    watertight: bool = False,
     trim: float | None = None,
     direction: str = "auto",
     viewpoint: npt.ArrayLike | None = None,
@@ -201,7 +237,8 @@ def reconstruct_file(
 ) -> ReconstructionReport:
     """`reconstruct` from files to a file, of clouds and meshes that may be larger than memory.
 
-    Attributes of the points become properties of the vertices. Several sources make one cloud,
+    Attributes of the points become properties of the vertices; "distance" and "density" follow,
+    as `reconstruct` has them with `support`. Several sources make one cloud,
     which has all attributes that one of them has, by name; points of the others have 0 for it, or
     white for a color.
 
@@ -218,6 +255,7 @@ def reconstruct_file(
         smooth: See there.
         isovalue: See there.
         fit: See there.
+        watertight: See there.
         trim: See there.
         direction: See there.
         viewpoint: See there.
@@ -237,6 +275,7 @@ def reconstruct_file(
     if place.suffix.lower() != ".ply":
         raise ValueError(f"target: '{os.fspath(target)}'; a name that ends in .ply is needed")
     options.folder = os.fsencode(place.parent)
+    options.support = True
     # What is no list of sources is refused as a path.
     wanted = as_wanted(direction, viewpoint)
     cloud = joined_cloud(sources_in(source) or [cast("Source", source)], wanted, progress, threads)
@@ -282,6 +321,7 @@ _CHECKS: dict[str, Check] = {
     "smooth": bool,
     "isovalue": _as_isovalue,
     "fit": bool,
+    "watertight": bool,
     "trim": partial(_as_number_or_none, "trim"),
     "memory_limit": _as_bytes,
     "threads": as_threads,
