@@ -5,20 +5,26 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "convert.h"
 #include "instances.h"
 #include "prefilter/base/memory.h"
+#include "prefilter/normals/directed_normals.h"
 #include "prefilter/normals/face_normals.h"
 #include "prefilter/normals/height_field.h"
 #include "prefilter/normals/normals.h"
+#include "prefilter/scan/chosen_points.h"
 #include "prefilter/scan/float_steps.h"
+#include "prefilter/scan/moved_points.h"
 #include "prefilter/scan/open_points.h"
 #include "prefilter/scan/ply_faces.h"
 #include "prefilter/scan/point_source.h"
+#include "prefilter/scan/unpacked_file.h"
 #include "python_points.h"
 
 namespace py = pybind11;
@@ -183,23 +189,26 @@ py::tuple bound_read_points(PointSource* source, std::size_t most, const py::obj
                         viewpoints, attributes, all.stride);
 }
 
-py::object bound_read_range_grid(const std::string& path, const py::object& callback) {
+// `File` is a path, or a file that was packed.
+template <typename File>
+py::object bound_read_range_grid(const File& file, const py::object& callback) {
   const Progress progress = to_progress(callback);
   std::optional<RangeGrid> grid;
   {
     const py::gil_scoped_release unlocked;
-    grid = read_range_grid(path, progress);
+    grid = read_range_grid(file, progress);
   }
   if (!grid) return py::none();
   return to_array<std::int64_t>(std::move(grid->points), {grid->rows, grid->columns});
 }
 
-Array<std::int64_t> bound_read_faces(const std::string& path, const py::object& callback) {
+template <typename File>
+Array<std::int64_t> bound_read_faces(const File& file, const py::object& callback) {
   const Progress progress = to_progress(callback);
   std::vector<std::array<std::int64_t, 3>> triangles;
   {
     const py::gil_scoped_release unlocked;
-    triangles = read_faces(path, progress);
+    triangles = read_faces(file, progress);
   }
   const auto count = static_cast<py::ssize_t>(triangles.size());
   return to_array<std::int64_t>(std::move(triangles), {count, 3});
@@ -217,6 +226,17 @@ Array<double> bound_estimate_normals(const Array<double>& points, int neighbours
         estimate_normals(rows_of(points), neighbours, rows_of(viewpoints), side, progress, threads);
   }
   return to_array<double>(std::move(normals), {points.shape(0), 3});
+}
+
+Array<double> bound_directed_normals(const Array<double>& points, const Array<double>& normals,
+                                     const py::object& callback, int threads) {
+  const Progress progress = to_progress(callback);
+  std::vector<Vector3> directed;
+  {
+    const py::gil_scoped_release unlocked;
+    directed = directed_normals(rows_of(points), rows_of(normals), progress, threads);
+  }
+  return to_array<double>(std::move(directed), {points.shape(0), 3});
 }
 
 Array<double> bound_mesh_normals(const py::array& points, const py::array& triangles,
@@ -245,6 +265,20 @@ py::tuple bound_grid_normals(const Array<double>& points, const Array<std::int64
                         to_array<float>(std::move(found.weights), {points.shape(0)}));
 }
 
+std::unique_ptr<ChosenPoints> chosen_points(PointSource* source,
+                                            const std::optional<std::pair<Vector3, Vector3>>& box,
+                                            const std::optional<std::vector<std::uint8_t>>& classes,
+                                            const std::string& returns, const std::string& name) {
+  PointChoice choice;
+  if (box) choice.box = Box{box->first, box->second};
+  if (classes) {
+    choice.classes.emplace();
+    for (const std::uint8_t each : *classes) choice.classes->set(each);
+  }
+  choice.returns = value_named("returns", returns, kReturnsNames);
+  return std::make_unique<ChosenPoints>(source, choice, name);
+}
+
 }  // namespace
 
 void bind_scan(py::module_& m) {
@@ -252,6 +286,7 @@ void bind_scan(py::module_& m) {
       .def(py::init(&make_python_points), py::arg("reader"))
       .def_property_readonly("count", &PointSource::count)
       .def_property_readonly("has_normals", &PointSource::has_normals)
+      .def_property_readonly("are_normals_directed", &PointSource::are_normals_directed)
       .def_property_readonly("is_double", &PointSource::is_double)
       .def_property_readonly("attributes",
                              [](const PointSource& source) {
@@ -266,15 +301,51 @@ void bind_scan(py::module_& m) {
         if (!viewpoint) return py::none();
         return py::make_tuple((*viewpoint)[0], (*viewpoint)[1], (*viewpoint)[2]);
       });
+  // The sources are to live as long.
+  py::class_<ChosenPoints, PointSource>(m, "ChosenPoints")
+      .def(py::init(&chosen_points), py::arg("source"), py::arg("box"), py::arg("classes"),
+           py::arg("returns"), py::arg("name"), py::keep_alive<1, 2>());
+  py::class_<MovedPoints, PointSource>(m, "MovedPoints")
+      .def(py::init([](PointSource* source, const Array<double>& matrix) {
+             return std::make_unique<MovedPoints>(source, motion_of(matrix));
+           }),
+           py::arg("source"), py::arg("matrix"), py::keep_alive<1, 2>());
+  m.def(
+      "moved",
+      [](const Array<double>& points, const Array<double>& matrix) {
+        const RigidMotion motion = motion_of(matrix);
+        std::vector<Vector3> found;
+        for (const Vector3& point : rows_of(points)) found.push_back(moved(motion, point));
+        return to_array<double>(std::move(found), {points.shape(0), 3});
+      },
+      py::arg("points"), py::arg("matrix"));
+  m.attr("RETURNS") = names_of(kReturnsNames);
+  py::class_<UnpackedFile>(m, "UnpackedFile")
+      .def(py::init<const std::string&>(), py::arg("packed"))
+      .def(
+          "write",
+          [](UnpackedFile* file, const py::bytes& bytes) {
+            const auto text = static_cast<std::string_view>(bytes);
+            const py::gil_scoped_release unlocked;
+            file->write(std::as_bytes(std::span(text)));
+          },
+          py::arg("bytes"));
   m.attr("POINT_EXTENSIONS") = py::tuple(py::cast(point_extensions()));
   m.def("open_points", &open_points, py::arg("path"), py::call_guard<py::gil_scoped_release>());
-  m.def("read_range_grid", &bound_read_range_grid, py::arg("path"), py::arg("progress"));
-  m.def("read_faces", &bound_read_faces, py::arg("path"), py::arg("progress"));
+  m.def("open_ply", &open_ply, py::arg("file"), py::call_guard<py::gil_scoped_release>());
+  m.def("read_range_grid", &bound_read_range_grid<std::string>, py::arg("path"),
+        py::arg("progress"));
+  m.def("read_range_grid", &bound_read_range_grid<UnpackedFile>, py::arg("file"),
+        py::arg("progress"));
+  m.def("read_faces", &bound_read_faces<std::string>, py::arg("path"), py::arg("progress"));
+  m.def("read_faces", &bound_read_faces<UnpackedFile>, py::arg("file"), py::arg("progress"));
   m.def("read_points", &bound_read_points, py::arg("source"), py::arg("most"), py::arg("progress"));
   m.def("mesh_normals", &bound_mesh_normals, py::arg("points"), py::arg("triangles"),
         py::arg("progress"));
   m.def("grid_normals", &bound_grid_normals, py::arg("points"), py::arg("grid"),
         py::arg("viewpoint"), py::arg("progress"));
+  m.def("directed_normals", &bound_directed_normals, py::arg("points"), py::arg("normals"),
+        py::arg("progress"), py::arg("threads"));
   m.def("estimate_normals", &bound_estimate_normals, py::arg("points"), py::arg("neighbours"),
         py::arg("viewpoints"), py::arg("direction"), py::arg("progress"), py::arg("threads"));
   m.def(

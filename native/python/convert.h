@@ -17,6 +17,7 @@
 #include "prefilter/base/image.h"
 #include "prefilter/base/names.h"
 #include "prefilter/base/progress.h"
+#include "prefilter/base/rigid_motion.h"
 #include "prefilter/base/wrap.h"
 
 namespace prefilter::python {
@@ -58,6 +59,17 @@ std::span<const T> values_of(const Array<T>& array) {
 /// A mesh of C-contiguous arrays: (vertices, 3) of float32 or float64, and (triangles, 3) of int32
 /// or int64. It holds no copy: the arrays have to live as long. Needs the interpreter's lock.
 InputMesh mesh_of(const pybind11::array& positions, const pybind11::array& triangles);
+
+/// The motion of a matrix of shape (4, 4) or (3, 4).
+inline RigidMotion motion_of(const Array<double>& matrix) {
+  RigidMotion motion;
+  for (pybind11::ssize_t r = 0; r < 3; ++r) {
+    const auto row = static_cast<std::size_t>(r);
+    motion.rows[row] = {matrix.at(r, 0), matrix.at(r, 1), matrix.at(r, 2)};
+    motion.shift[row] = matrix.at(r, 3);
+  }
+  return motion;
+}
 
 /// An array of this shape that owns the values, rows of T or T themselves.
 template <typename T, typename Value>

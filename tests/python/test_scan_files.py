@@ -222,8 +222,8 @@ def test_what_the_system_refuses(tmp_path):
 def test_bad_arguments(tmp_path):
     with pytest.raises(ValueError, match="path: 7; the path of a file is needed"):
         prefilter.read_points(7)
-    with pytest.raises(ValueError, match=r"cloud.obj': unsupported extension '.obj'; .*ply"):
-        read(tmp_path, b"", "cloud.obj")
+    with pytest.raises(ValueError, match=r"cloud.stl': unsupported extension '.stl'; .*ply"):
+        read(tmp_path, b"", "cloud.stl")
     with pytest.raises(ValueError, match="cloud': unsupported extension ''"):
         read(tmp_path, b"", "cloud")
 

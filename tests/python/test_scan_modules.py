@@ -49,6 +49,8 @@ def las_file(laspy, path, *, version=2, color=None, normals=None, positions=None
     las.x, las.y, las.z = positions.T
     las.intensity = np.arange(len(positions)) % 65536
     las.classification = np.arange(len(positions)) % 19
+    las.number_of_returns = np.arange(len(positions)) % 7 + 1
+    las.return_number = np.arange(len(positions)) % np.array(las.number_of_returns) + 1
     if color is not None:
         las.red, las.green, las.blue = color.T
     if normals is not None:
@@ -72,10 +74,17 @@ def test_las_files(laspy, tmp_path, ending):
     np.testing.assert_array_equal(points.colors, np.round(color / 257))
     assert points.colors.dtype == np.uint8
     assert list(points.attributes) == [
-        *("intensity", "amplitude", "classification", "red", "green", "blue")
+        *("intensity", "amplitude", "classification", "return_number", "number_of_returns"),
+        *("red", "green", "blue"),
     ]
     np.testing.assert_array_equal(points.attributes["intensity"], np.arange(COUNT) % 65536)
     np.testing.assert_array_equal(points.attributes["classification"], np.arange(COUNT) % 19)
+    of = np.arange(COUNT) % 7 + 1
+    np.testing.assert_array_equal(points.attributes["number_of_returns"], of)
+    np.testing.assert_array_equal(points.attributes["return_number"], np.arange(COUNT) % of + 1)
+    last = prefilter.read_points(path, returns="last", classes=[2, 3]).positions
+    chosen = (np.arange(COUNT) % of + 1 == of) & np.isin(np.arange(COUNT) % 19, [2, 3])
+    np.testing.assert_array_equal(last, points.positions[chosen])
     np.testing.assert_array_equal(points.attributes["amplitude"], normals[:, 0] * np.float32(7))
     assert points.viewpoint is None
     assert points.is_from_above
@@ -96,6 +105,15 @@ def test_las_colors_of_eight_bits(laspy, tmp_path):
     color = np.random.default_rng(4).integers(0, 256, (COUNT, 3))
     las_file(laspy, path, color=color)
     np.testing.assert_array_equal(prefilter.read_points(path).colors, color)
+
+
+@pytest.mark.filterwarnings("error")
+def test_scales_that_overflow_say_nothing_on_the_way(laspy, tmp_path):
+    path = tmp_path / "cloud.las"
+    las_file(laspy, path, positions=random_points(count=50))
+    contents = path.read_bytes()
+    path.write_bytes(contents[:131] + np.float64(1e308).tobytes() + contents[139:])
+    assert not np.isfinite(prefilter.read_points(path).positions[:, 0]).all()
 
 
 def with_long_record(laspy, path):
@@ -288,6 +306,67 @@ def test_one_scan_has_one_viewpoint(pye57, tmp_path):
     assert points.colors is None
     assert list(points.attributes) == ["intensity"]
     np.testing.assert_array_equal(points.viewpoint, [0, 0, 0])
+
+
+def checksum(page):
+    """CRC-32C, bit by bit."""
+    found = 0xFFFFFFFF
+    for byte in page:
+        found ^= byte
+        for _ in range(8):
+            found = (found >> 1) ^ (0x82F63B78 if found & 1 else 0)
+    return (found ^ 0xFFFFFFFF).to_bytes(4, "big")
+
+
+def with_text(contents, replaced):
+    """An E57 file with other text in its description, which stays as long: blanks give way."""
+    pages = b"".join(contents[k : k + 1020] for k in range(0, len(contents), 1024))
+    begin = pages.index(b"<?xml")
+    length = int.from_bytes(pages[32:40], "little")
+    text = pages[begin : begin + length]
+    for old, new in replaced.items():
+        assert old in text
+        text = text.replace(old, new)
+    for _ in range(len(text) - length):
+        text = text.replace(b"\n ", b"\n", 1)
+    pages = pages[:begin] + text + pages[begin + length :]
+    starts = range(0, len(pages), 1020)
+    return b"".join(pages[k : k + 1020] + checksum(pages[k : k + 1020]) for k in starts)
+
+
+def test_returns_in_e57_files_count_from_one(pye57, tmp_path):
+    path = tmp_path / "scan.e57"
+    count = 300
+    returns = np.arange(count) % 3
+    scan = {name: values[:count] for name, values in e57_scan(1).items()}
+    scan |= {"rowIndex": returns, "columnIndex": np.full(count, 3)}
+    with pye57.E57(str(path), mode="w") as file:
+        file.write_scan_raw(scan)
+    # pye57 writes no returns, but numbers as these are.
+    names = {b"rowIndex": b"returnIndex", b"columnIndex": b"returnCount"}
+    path.write_bytes(with_text(path.read_bytes(), names))
+    points = prefilter.read_points(path)
+    np.testing.assert_array_equal(points.attributes["return_number"], returns + 1)
+    np.testing.assert_array_equal(points.attributes["number_of_returns"], 3)
+    first = prefilter.read_points(path, returns="first").positions
+    np.testing.assert_array_equal(first, points.positions[returns == 0])
+
+
+@pytest.mark.parametrize(
+    ("count", "message"),
+    [
+        (b"99", "a scan ends after 50 of the 99 points in its header"),
+        (b"999999999999", "too short for the 999999999999 points of a scan in its header"),
+    ],
+)
+def test_e57_files_of_fewer_points_than_they_say(pye57, tmp_path, count, message):
+    path = tmp_path / "scan.e57"
+    with pye57.E57(str(path), mode="w") as file:
+        file.write_scan_raw({name: values[:50] for name, values in e57_scan(1).items()})
+    announced = {b'recordCount="50"': b'recordCount="' + count + b'"'}
+    path.write_bytes(with_text(path.read_bytes(), announced))
+    with pytest.raises(ValueError, match=rf"scan.e57': {message}"):
+        prefilter.read_points(path)
 
 
 def test_damaged_e57_files(pye57, tmp_path):

@@ -4,13 +4,18 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace prefilter {
 namespace {
 constexpr std::size_t kBufferSize = std::size_t{1} << 20;
 }  // namespace
 
-ByteReader::ByteReader(const std::string& path) : file_(File::open(path)), size_(file_.size()) {}
+ByteReader::ByteReader(const std::string& path)
+    : ByteReader(std::make_shared<const File>(File::open(path))) {}
+
+ByteReader::ByteReader(std::shared_ptr<const File> file)
+    : file_(std::move(file)), size_(file_->size()) {}
 
 void ByteReader::seek(std::uint64_t offset) {
   if (offset >= buffer_offset_ && offset <= buffer_offset_ + end_) {
@@ -32,7 +37,7 @@ std::span<const std::byte> ByteReader::peek(std::size_t least) {
     buffer_offset_ += begin_;
     end_ -= begin_;
     begin_ = 0;
-    end_ += file_.read_at(buffer_offset_ + end_, std::span(buffer_).subspan(end_));
+    end_ += file_->read_at(buffer_offset_ + end_, std::span(buffer_).subspan(end_));
   }
   return {buffer_.data() + begin_, end_ - begin_};
 }

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,9 +18,11 @@ namespace prefilter {
 class ByteReader {
  public:
   explicit ByteReader(const std::string& path);
+  /// From the beginning of a file that nobody writes to any more.
+  explicit ByteReader(std::shared_ptr<const File> file);
 
   /// As messages call the file.
-  const std::string& name() const { return file_.name(); }
+  const std::string& name() const { return file_->name(); }
   /// Of the file, in bytes, when it was opened.
   std::uint64_t size() const { return size_; }
   /// Of the next byte.
@@ -33,7 +36,7 @@ class ByteReader {
   void skip(std::size_t count) { begin_ += count; }
 
  private:
-  File file_;
+  std::shared_ptr<const File> file_;
   std::uint64_t size_;
   std::vector<std::byte> buffer_;
   std::uint64_t buffer_offset_ = 0;  // of the buffer's first byte in the file

@@ -2,13 +2,14 @@
 
 #include "prefilter/io/temporary_file.h"
 
+#include <utility>
+
 #include "prefilter/base/error.h"
 #include "prefilter/io/path_text.h"
 
 namespace prefilter {
-namespace {
 
-File unnamed_file(std::string folder) {
+File unnamed_file(std::string folder, std::string name) {
   if (folder.empty()) {
     std::error_code error;
     folder = to_text(std::filesystem::temp_directory_path(error));
@@ -16,12 +17,11 @@ File unnamed_file(std::string folder) {
       throw Error(ErrorCode::kFile, "there is no folder for temporary files: " + error.message());
     }
   }
-  return File::create_temporary(folder, "temporary file in '" + folder + "'");
+  if (name.empty()) name = "temporary file in '" + folder + "'";
+  return File::create_temporary(folder, std::move(name));
 }
 
-}  // namespace
-
-TemporaryFile::TemporaryFile(const std::string& folder) : file_(unnamed_file(folder)) {}
+TemporaryFile::TemporaryFile(const std::string& folder) : file_(unnamed_file(folder, "")) {}
 
 void TemporaryFile::write(std::span<const std::byte> bytes) {
   file_.write_at(size_, bytes);

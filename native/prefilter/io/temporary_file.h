@@ -12,6 +12,10 @@
 
 namespace prefilter {
 
+/// A file that has no name in a folder, or for "" in the system's folder for temporary files.
+/// `name` is what messages call it; for "" they name the folder. Throws Error(kFile).
+File unnamed_file(std::string folder, std::string name);
+
 /// Written to at its end, read anywhere. It has no name in its folder, so nothing is left of it
 /// when it goes, an exception passes or the process is killed. Several threads may read at once,
 /// while none writes. All functions throw Error(kFile) where the system refuses, as a full disk

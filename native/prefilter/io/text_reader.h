@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "prefilter/io/byte_reader.h"
@@ -21,6 +22,7 @@ struct TextPlace {
 /// A file line by line; of what is not text it reads bytes.
 class TextReader {
  public:
+  explicit TextReader(ByteReader bytes) : bytes_(std::move(bytes)) {}
   explicit TextReader(const std::string& path) : bytes_(path) {}
 
   ByteReader& bytes() { return bytes_; }

@@ -6,6 +6,7 @@
 
 #include "prefilter/base/error.h"
 #include "prefilter/io/path_text.h"
+#include "prefilter/scan/obj_points.h"
 #include "prefilter/scan/pcd_points.h"
 #include "prefilter/scan/ply_points.h"
 #include "prefilter/scan/ptx_points.h"
@@ -22,6 +23,7 @@ constexpr Format kFormats[] = {
     {".ply", open_ply_points},  {".pcd", open_pcd_points},   {".pts", open_text_points},
     {".xyz", open_text_points}, {".xyzn", open_text_points}, {".asc", open_text_points},
     {".txt", open_text_points}, {".csv", open_text_points},  {".ptx", open_ptx_points},
+    {".obj", open_obj_points},
 };
 
 }  // namespace
@@ -38,6 +40,10 @@ std::unique_ptr<PointSource> open_points(const std::string& path) {
   for (const std::string& each : point_extensions())
     endings += (endings.empty() ? "" : ", ") + each;
   throw_invalid("'" + path + "': unsupported extension '" + ending + "'; use " + endings);
+}
+
+std::unique_ptr<PointSource> open_ply(const UnpackedFile& file) {
+  return open_ply_points(ByteReader(file.file()));
 }
 
 std::vector<std::string> point_extensions() {

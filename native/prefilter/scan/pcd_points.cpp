@@ -232,6 +232,7 @@ class PcdPoints final : public PointSource {
     } else {
       unpack();
     }
+    find_color_scale(this, &layout_.fields);
   }
 
   std::optional<std::size_t> count() const override {

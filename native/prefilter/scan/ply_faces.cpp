@@ -51,10 +51,7 @@ void report_rows(const PlyFile& file, std::uint64_t count, const Progress& progr
   progress.report(1.0 - static_cast<double>(file.rows_left()) / static_cast<double>(count));
 }
 
-}  // namespace
-
-std::optional<RangeGrid> read_range_grid(const std::string& path, const Progress& progress) {
-  PlyFile file(path);
+std::optional<RangeGrid> range_grid_of(PlyFile file, const Progress& progress) {
   const std::size_t found = file.find("range_grid");
   if (found == file.elements().size()) return std::nullopt;
   const PlyElement& element = file.elements()[found];
@@ -81,9 +78,7 @@ std::optional<RangeGrid> read_range_grid(const std::string& path, const Progress
   return grid;
 }
 
-std::vector<std::array<std::int64_t, 3>> read_faces(const std::string& path,
-                                                    const Progress& progress) {
-  PlyFile file(path);
+std::vector<std::array<std::int64_t, 3>> faces_of(PlyFile file, const Progress& progress) {
   std::vector<std::array<std::int64_t, 3>> triangles;
   const std::size_t found = file.find("face");
   if (found == file.elements().size()) return triangles;
@@ -104,6 +99,26 @@ std::vector<std::array<std::int64_t, 3>> read_faces(const std::string& path,
   }
   file.check_end();
   return triangles;
+}
+
+}  // namespace
+
+std::optional<RangeGrid> read_range_grid(const std::string& path, const Progress& progress) {
+  return range_grid_of(PlyFile(ByteReader(path)), progress);
+}
+
+std::optional<RangeGrid> read_range_grid(const UnpackedFile& file, const Progress& progress) {
+  return range_grid_of(PlyFile(ByteReader(file.file())), progress);
+}
+
+std::vector<std::array<std::int64_t, 3>> read_faces(const std::string& path,
+                                                    const Progress& progress) {
+  return faces_of(PlyFile(ByteReader(path)), progress);
+}
+
+std::vector<std::array<std::int64_t, 3>> read_faces(const UnpackedFile& file,
+                                                    const Progress& progress) {
+  return faces_of(PlyFile(ByteReader(file.file())), progress);
 }
 
 }  // namespace prefilter

@@ -66,7 +66,7 @@ std::size_t PlyElement::find(const std::string& property) const {
   return find_named(properties, property);
 }
 
-PlyFile::PlyFile(const std::string& path) : text_(path) {
+PlyFile::PlyFile(ByteReader bytes) : text_(std::move(bytes)) {
   read_header();
   places_.push_back(text_.place());
   check_size();
@@ -80,7 +80,8 @@ void PlyFile::read_header() {
   const auto magic = text_.bytes().peek(4);
   const std::string_view first(reinterpret_cast<const char*>(magic.data()),
                                std::min<std::size_t>(magic.size(), 4));
-  if (first != "ply\n" && first != "ply\r") {
+  if (first.size() < 4 || !first.starts_with("ply") ||
+      std::string_view(" \t\r\n").find(first[3]) == std::string_view::npos) {
     throw_invalid(name() + " is not a PLY file: it begins with " + quoted(first));
   }
   std::string_view line;

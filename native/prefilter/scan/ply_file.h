@@ -38,7 +38,7 @@ struct PlyElement {
 class PlyFile {
  public:
   /// Reads the header. Throws where the file is too short for what it announces.
-  explicit PlyFile(const std::string& path);
+  explicit PlyFile(ByteReader bytes);
 
   const std::string& name() const { return text_.name(); }
   bool is_text() const { return is_text_; }

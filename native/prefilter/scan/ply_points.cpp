@@ -3,9 +3,11 @@
 #include "prefilter/scan/ply_points.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "prefilter/base/error.h"
 #include "prefilter/scan/ply_file.h"
+#include "prefilter/scan/splat_points.h"
 
 namespace prefilter {
 namespace {
@@ -31,11 +33,12 @@ PointFields fields_of(const PlyElement& element, const std::string& name) {
 
 class PlyPoints final : public PointSource {
  public:
-  explicit PlyPoints(const std::string& path)
-      : file_(path),
+  explicit PlyPoints(ByteReader bytes)
+      : file_(std::move(bytes)),
         element_(vertex_element(file_)),
         fields_(fields_of(file_.elements()[element_], file_.name())),
         has_records_(!file_.is_text() && !file_.elements()[element_].has_lists()) {
+    find_color_scale(this, &fields_);
     rewind();
   }
 
@@ -78,7 +81,11 @@ class PlyPoints final : public PointSource {
 }  // namespace
 
 std::unique_ptr<PointSource> open_ply_points(const std::string& path) {
-  return std::make_unique<PlyPoints>(path);
+  return open_ply_points(ByteReader(path));
+}
+
+std::unique_ptr<PointSource> open_ply_points(ByteReader bytes) {
+  return as_points_of_splats(std::make_unique<PlyPoints>(std::move(bytes)));
 }
 
 }  // namespace prefilter

@@ -6,13 +6,16 @@
 #include <memory>
 #include <string>
 
+#include "prefilter/io/byte_reader.h"
 #include "prefilter/scan/point_source.h"
 
 namespace prefilter {
 
 /// The rows of "vertex", in text or binary of either endianness; all other elements and lists are
 /// passed over. Throws Error for what is no PLY file, is damaged, or has no points; a point that
-/// is missing, or one too many, is found when it is read.
+/// is missing, or one too many, is found when it is read. Gaussian splats: see
+/// as_points_of_splats.
 std::unique_ptr<PointSource> open_ply_points(const std::string& path);
+std::unique_ptr<PointSource> open_ply_points(ByteReader bytes);
 
 }  // namespace prefilter

@@ -3,12 +3,17 @@
 #include "prefilter/scan/point_fields.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <set>
+#include <string_view>
+#include <utility>
 
 #include "prefilter/base/error.h"
 #include "prefilter/io/text_reader.h"
+#include "prefilter/scan/field_names.h"
 
 namespace prefilter {
 namespace {
@@ -119,39 +124,48 @@ PointFields::PointFields(const std::vector<ScanField>& fields, const std::string
       throw_invalid(name + ": points have two values named " + quoted(field.name));
     }
   }
+  std::vector<ScanField> known = fields;
+  for (ScanField& field : known) {
+    // What has the name itself comes before what only means the same.
+    std::string meaning = field_name(field.name);
+    if (names.insert(meaning).second) field.name = std::move(meaning);
+  }
   const auto has_all = [&](std::array<const char*, 3> wanted) {
     return std::all_of(wanted.begin(), wanted.end(),
                        [&](const char* each) { return names.contains(each); });
   };
-  std::array<std::string, 3> normals = {"nx", "ny", "nz"};
   has_normals_ = has_all({"nx", "ny", "nz"});
-  if (!has_normals_ && has_all({"normal_x", "normal_y", "normal_z"})) {
-    normals = {"normal_x", "normal_y", "normal_z"};
-    has_normals_ = true;
-  }
-  for (const ScanField& field : fields) {
-    const auto axis_in = [&](const std::array<std::string, 3>& axes) {
-      return static_cast<std::size_t>(std::find(axes.begin(), axes.end(), field.name) -
-                                      axes.begin());
-    };
-    if (const std::size_t axis = axis_in({"x", "y", "z"}); axis < 3) {
-      columns_.push_back({field, Role::kPosition, axis});
-      is_double_ = is_double_ || is_precise(field.type);
-    } else if (const std::size_t along = axis_in(normals); has_normals_ && along < 3) {
-      columns_.push_back({field, Role::kNormal, along});
-    } else if (field.name == "confidence") {
-      columns_.push_back({field, Role::kWeight, 0});
-      has_weights_ = true;
-    } else {
-      columns_.push_back({field, Role::kAttribute, attributes_.size()});
-      attributes_.push_back({field.name, field.type == ScalarType::kUint8});
-    }
-  }
+  for (const ScanField& field : known) add(field);
   for (const char* axis : {"x", "y", "z"}) {
     if (!names.contains(axis)) {
       throw_invalid(name + ": points have no coordinate '" + axis + "'; x, y and z are needed");
     }
   }
+}
+
+void PointFields::add(const ScanField& field) {
+  const auto axis_in = [&](const std::array<std::string_view, 3>& axes) {
+    return static_cast<std::size_t>(std::find(axes.begin(), axes.end(), field.name) - axes.begin());
+  };
+  if (const std::size_t axis = axis_in({"x", "y", "z"}); axis < 3) {
+    columns_.push_back({field, Role::kPosition, axis});
+    is_double_ = is_double_ || is_precise(field.type);
+  } else if (const std::size_t along = axis_in({"nx", "ny", "nz"}); has_normals_ && along < 3) {
+    columns_.push_back({field, Role::kNormal, along});
+  } else if (field.name == "confidence") {
+    columns_.push_back({field, Role::kWeight, 0});
+    has_weights_ = true;
+  } else {
+    const bool is_color = axis_in({"red", "green", "blue"}) < 3 || field.name == "alpha";
+    const bool is_deep = is_color && field.type == ScalarType::kUint16;
+    columns_.push_back({field, Role::kAttribute, attributes_.size(), is_deep});
+    attributes_.push_back({field.name, is_deep || field.type == ScalarType::kUint8});
+    has_deep_colors_ = has_deep_colors_ || is_deep;
+  }
+}
+
+float PointFields::to_byte(double value) const {
+  return static_cast<float>(std::round(value * color_scale_));
 }
 
 void PointFields::resize(std::size_t count, PointBatch* batch) const {
@@ -176,7 +190,8 @@ void PointFields::put_values(const double* values, std::size_t point, PointBatch
         batch->weights[point] = static_cast<float>(value);
         break;
       case Role::kAttribute:
-        batch->attributes[point * attributes_.size() + column.place] = static_cast<float>(value);
+        batch->attributes[point * attributes_.size() + column.place] =
+            column.is_deep ? to_byte(value) : static_cast<float>(value);
         break;
     }
   }
@@ -203,12 +218,46 @@ void PointFields::put_records(const std::byte* records, std::size_t stride, bool
           convert(&batch->weights[point], 1);
           break;
         case Role::kAttribute:
-          convert(&batch->attributes[point * attributes_.size() + column.place],
-                  attributes_.size());
+          put_attribute(column, from, stride, is_swapped, point, some, batch);
           break;
       }
     }
   }
+}
+
+void PointFields::put_attribute(const Column& column, const std::byte* from, std::size_t stride,
+                                bool is_swapped, std::size_t point, std::size_t count,
+                                PointBatch* batch) const {
+  const std::size_t width = attributes_.size();
+  float* const to = &batch->attributes[point * width + column.place];
+  convert_column(column.field.type, is_swapped, from, stride, count, to, width);
+  for (std::size_t i = 0; column.is_deep && i < count; ++i) to[i * width] = to_byte(to[i * width]);
+}
+
+void find_color_scale(PointSource* source, PointFields* fields) {
+  if (!fields->has_deep_colors()) return;
+  constexpr std::size_t kLookedAt = 1'000'000;
+  constexpr std::size_t kAtOnce = 1 << 16;
+  const std::vector<PointAttribute>& attributes = source->attributes();
+  fields->set_color_scale(1.0);
+  source->rewind();
+  PointBatch batch;
+  float highest = 0.0F;
+  for (std::size_t colored = 0; colored < kLookedAt && source->read(kAtOnce, &batch);) {
+    for (std::size_t i = 0; i < batch.attributes.size(); i += attributes.size()) {
+      float brightest = 0.0F;
+      for (std::size_t a = 0; a < attributes.size(); ++a) {
+        const std::string& name = attributes[a].name;
+        if (name != "red" && name != "green" && name != "blue") continue;
+        brightest = std::max(brightest, batch.attributes[i + a]);
+      }
+      highest = std::max(highest, brightest);
+      colored += brightest > 0.0F ? 1 : 0;
+    }
+    if (highest > 255.0F) break;
+  }
+  fields->set_color_scale(highest > 255.0F ? kDeepColorScale : 1.0);
+  source->rewind();
 }
 
 }  // namespace prefilter

@@ -30,6 +30,9 @@ std::size_t size_of(ScalarType type);
 /// The number at an address of any alignment; `is_swapped`: of the other endianness.
 double load_scalar(ScalarType type, bool is_swapped, const std::byte* bytes);
 
+/// What makes bytes of colors of 16 bits.
+inline constexpr double kDeepColorScale = 255.0 / 65535.0;
+
 struct ScanField {
   std::string name;
   ScalarType type = ScalarType::kFloat;
@@ -38,8 +41,9 @@ struct ScanField {
   std::size_t offset = 0;
 };
 
-/// Turns points as they lie in a file into batches. Positions are x, y, z; normals are nx, ny, nz,
-/// or normal_x and so on; weights are named confidence. All others are attributes.
+/// Turns points as they lie in a file into batches. Positions are x, y, z; normals are nx, ny, nz;
+/// weights are named confidence, each as field_name has it. All others are attributes. Colors of 16
+/// bits become bytes.
 class PointFields {
  public:
   PointFields() = default;
@@ -50,6 +54,11 @@ class PointFields {
   bool has_normals() const { return has_normals_; }
   bool is_double() const { return is_double_; }
   const std::vector<PointAttribute>& attributes() const { return attributes_; }
+
+  /// Colors of 16 bits of which only the lower 8 are used are bytes already. To be told before
+  /// points are read, where find_color_scale has nothing to read.
+  bool has_deep_colors() const { return has_deep_colors_; }
+  void set_color_scale(double scale) { color_scale_ = scale; }
 
   /// Gives a batch the room for so many points.
   void resize(std::size_t count, PointBatch* batch) const;
@@ -65,13 +74,26 @@ class PointFields {
     ScanField field;
     Role role = Role::kAttribute;
     std::size_t place = 0;  // the axis, or the number of the attribute
+    bool is_deep = false;   // a color of 16 bits
   };
+
+  void add(const ScanField& field);
+  float to_byte(double value) const;
+  void put_attribute(const Column& column, const std::byte* from, std::size_t stride,
+                     bool is_swapped, std::size_t point, std::size_t count,
+                     PointBatch* batch) const;
 
   std::vector<Column> columns_;
   std::vector<PointAttribute> attributes_;
   bool has_normals_ = false;
   bool has_weights_ = false;
   bool is_double_ = false;
+  bool has_deep_colors_ = false;
+  double color_scale_ = kDeepColorScale;
 };
+
+/// Finds out by the first million of points with a color how many bits of 16 these have; `fields`
+/// are those of the source, which then is at its first point.
+void find_color_scale(PointSource* source, PointFields* fields);
 
 }  // namespace prefilter

@@ -118,6 +118,11 @@ class PtxPoints final : public PointSource {
     text_.go_to(begin);
     const std::uint64_t columns = read_count("the number of columns of a scan is needed");
     left_ = columns * read_count("the number of rows of a scan is needed");
+    // A line takes four digits and what separates them; the last may lack its end.
+    if (left_ > (text_.bytes().remaining() + 1) / (2 * kPlain)) {
+      throw_invalid(text_.where() + ": a scan of " + std::to_string(left_) + " lines; " +
+                    std::to_string(text_.bytes().remaining()) + " bytes follow");
+    }
     for (int k = 0; k < 4; ++k) read_head(3, "the scanner's place and its axes are needed");
     for (Vector3& row : matrix_) {
       read_head(4, "a row of the scan's matrix is needed");

@@ -11,6 +11,7 @@
 
 #include "prefilter/base/elementary.h"
 #include "prefilter/io/text_reader.h"
+#include "prefilter/scan/field_names.h"
 
 namespace prefilter {
 namespace {
@@ -32,6 +33,15 @@ bool are_bytes(std::span<const TextColumn> columns) {
   });
 }
 
+// Colors in whole numbers, whose type says how large these can be.
+ScalarType type_of_colors(std::span<const TextColumn> columns) {
+  if (are_bytes(columns)) return ScalarType::kUint8;
+  const bool are_deep = std::all_of(columns.begin(), columns.end(), [](const TextColumn& each) {
+    return each.is_whole && each.low >= 0.0 && each.high <= 65535.0;
+  });
+  return are_deep ? ScalarType::kUint16 : ScalarType::kFloat;
+}
+
 bool is_color(std::span<const TextColumn> columns) {
   return std::all_of(columns.begin(), columns.end(),
                      [](const TextColumn& each) { return each.is_whole && each.low >= 0.0; }) &&
@@ -41,6 +51,17 @@ bool is_color(std::span<const TextColumn> columns) {
 
 ScalarType type_of_positions(const TextColumn& x, const TextColumn& y, const TextColumn& z) {
   return x.is_double || y.is_double || z.is_double ? ScalarType::kDouble : ScalarType::kFloat;
+}
+
+ScalarType type_of_named_colors(std::span<const TextColumn> columns,
+                                std::span<const std::string> names) {
+  std::vector<TextColumn> found;
+  for (const char* name : {"red", "green", "blue"}) {
+    const auto place = std::find(names.begin(), names.end(), name) - names.begin();
+    if (place == std::ssize(names)) return ScalarType::kFloat;
+    found.push_back(columns[static_cast<std::size_t>(place)]);
+  }
+  return type_of_colors(found);
 }
 
 std::string name_of_any(std::size_t column) { return "value" + std::to_string(column + 1); }
@@ -82,7 +103,7 @@ class ColumnNames {
     const auto three = columns_.subspan(fields_.size(), 3);
     if (is_color(three)) {
       if (!has_color_) {
-        name({"red", "green", "blue"}, are_bytes(three) ? ScalarType::kUint8 : ScalarType::kFloat);
+        name({"red", "green", "blue"}, type_of_colors(three));
         has_color_ = true;
         return;
       }
@@ -100,23 +121,36 @@ class ColumnNames {
   bool has_normal_ = false;
 };
 
-// How others call what has a name here.
+// How lines of names call what has a name here, besides what all files do.
 constexpr std::pair<std::string_view, std::string_view> kSynonyms[] = {
-    {"r", "red"},       {"g", "green"},     {"b", "blue"},      {"normalx", "nx"},
-    {"normaly", "ny"},  {"normalz", "nz"},  {"normal_x", "nx"}, {"normal_y", "ny"},
-    {"normal_z", "nz"}, {"i", "intensity"}, {"easting", "x"},   {"northing", "y"},
-    {"elevation", "z"}, {"height", "z"},    {"east", "x"},      {"north", "y"},
+    {"r", "red"},
+    {"g", "green"},
+    {"b", "blue"},
+    {"i", "intensity"},
+    {"class", "classification"},
+    {"easting", "x"},
+    {"northing", "y"},
+    {"elevation", "z"},
+    {"height", "z"},
+    {"east", "x"},
+    {"north", "y"},
 };
 
-std::string field_name(std::string_view word) {
-  while (!word.empty() && (word.front() == '"' || word.front() == '\'')) word.remove_prefix(1);
-  while (!word.empty() && (word.back() == '"' || word.back() == '\'')) word.remove_suffix(1);
+std::string_view without_quotes(std::string_view word) {
+  constexpr std::string_view kAround = "\"' \t";
+  const std::size_t begin = word.find_first_not_of(kAround);
+  if (begin == std::string_view::npos) return {};
+  return word.substr(begin, word.find_last_not_of(kAround) - begin + 1);
+}
+
+std::string column_name(std::string_view quoted_word) {
+  const std::string_view word = without_quotes(quoted_word);
   std::string name;
   for (const char c : word) name += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   for (const auto& [synonym, meaning] : kSynonyms) {
     if (name == synonym) return std::string(meaning);
   }
-  return name;
+  return field_name(name);
 }
 
 }  // namespace
@@ -146,19 +180,15 @@ std::vector<ScanField> named_fields(std::span<const TextColumn> columns,
   const std::array<std::size_t, 3> axes{place_of("x"), place_of("y"), place_of("z")};
   const ScalarType of_positions =
       type_of_positions(columns[axes[0]], columns[axes[1]], columns[axes[2]]);
-  bool is_byte_color = true;
-  for (const char* name : {"red", "green", "blue"}) {
-    const std::size_t place = place_of(name);
-    is_byte_color = is_byte_color && place < names.size() && are_bytes(columns.subspan(place, 1));
-  }
+  const ScalarType of_colors = type_of_named_colors(columns, names);
   std::vector<ScanField> fields;
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const std::string& name = names[c];
     ScanField field = {name, ScalarType::kFloat, c, 0};
     if (std::find(axes.begin(), axes.end(), c) != axes.end()) {
       field.type = of_positions;
-    } else if (is_byte_color && (name == "red" || name == "green" || name == "blue")) {
-      field.type = ScalarType::kUint8;
+    } else if (name == "red" || name == "green" || name == "blue") {
+      field.type = of_colors;
     }
     // One name may stand over several columns, or none.
     if (name.empty() || place_of(name) != c) field.name = name_of_any(c);
@@ -172,16 +202,17 @@ std::vector<std::string> names_in(std::string_view line) {
   const std::size_t found = line.find_first_of(",;\t");
   if (found == std::string_view::npos) {
     for (std::string_view word = take_word(&line); !word.empty(); word = take_word(&line)) {
-      names.push_back(field_name(word));
+      names.push_back(column_name(word));
     }
     return names;
   }
   const char separator = line[found];
   while (true) {
     const std::size_t end = std::min(line.find(separator), line.size());
-    std::string_view part = line.substr(0, end);
-    // What follows is a unit.
-    names.push_back(field_name(take_word(&part)));
+    std::string_view part = without_quotes(line.substr(0, end));
+    const std::string_view known = known_field_name(part);
+    // What follows the first word is a unit.
+    names.push_back(known.empty() ? column_name(take_word(&part)) : std::string(known));
     if (end == line.size()) return names;
     line.remove_prefix(end + 1);
   }

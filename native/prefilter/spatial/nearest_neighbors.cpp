@@ -123,4 +123,23 @@ void NeighborSearch::find(std::uint32_t place, std::size_t count, Neighbors* fou
   });
 }
 
+std::uint32_t NeighborSearch::nearest(const Vector3& point, double squared) const {
+  std::uint32_t found = kNowhere;
+  if (tree_.is_empty()) return found;
+  double least = squared;
+  const auto may_be = [&](double square, std::size_t) { return square < least; };
+  tree_.search(point, may_be, [&](std::size_t leaf) {
+    const BoxTree::Node& node = tree_.nodes()[leaf];
+    for (std::uint32_t i = node.begin; i < node.end; ++i) {
+      const Vector3 offset = positions_[i] - point;
+      const double square = dot(offset, offset);
+      if (square < least) {
+        least = square;
+        found = i;
+      }
+    }
+  });
+  return found;
+}
+
 }  // namespace prefilter

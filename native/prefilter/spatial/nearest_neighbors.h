@@ -54,6 +54,27 @@ class NeighborSearch {
   /// points.
   void find(std::uint32_t place, std::size_t count, Neighbors* found) const;
 
+  /// The place of the position that is nearest to any finite point, and nearer than the root of
+  /// `squared`; kNowhere where there is none.
+  std::uint32_t nearest(const Vector3& point, double squared) const;
+
+  /// Calls `visit(place)` for all positions nearer to a point than the root of `squared`.
+  template <typename Visit>
+  void for_near(const Vector3& point, double squared, const Visit& visit) const {
+    if (tree_.is_empty()) return;
+    const auto may_be = [&](double square, std::size_t) { return square < squared; };
+    tree_.search(point, may_be, [&](std::size_t leaf) {
+      const BoxTree::Node& node = tree_.nodes()[leaf];
+      for (std::uint32_t i = node.begin; i < node.end; ++i) {
+        const Vector3 offset = positions_[i] - point;
+        if (dot(offset, offset) < squared) visit(i);
+      }
+    });
+  }
+
+  /// The box of the positions.
+  Box box() const { return tree_.is_empty() ? kEmptyBox : tree_.nodes()[0].box; }
+
  private:
   std::vector<Vector3> positions_;
   std::vector<std::uint32_t> places_;

@@ -37,14 +37,15 @@ from .meshes.solids import as_solid as as_solid
 from .meshes.surface import Surface as Surface
 from .meshes.topology import MeshTopology as MeshTopology
 from .meshes.topology import mesh_topology as mesh_topology
+from .points.choice import choose_points as choose_points
 from .points.normals import estimate_normals as estimate_normals
 from .points.normals import grid_normals as grid_normals
 from .points.normals import mesh_normals as mesh_normals
 from .points.reconstruction import ReconstructionReport as ReconstructionReport
 from .points.reconstruction import reconstruct as reconstruct
 from .points.reconstruction import reconstruct_file as reconstruct_file
+from .points.scan import ScanPoints as ScanPoints
 from .points.scan_files import POINT_EXTENSIONS as POINT_EXTENSIONS
-from .points.scan_files import ScanPoints as ScanPoints
 from .points.scan_files import float_step as float_step
 from .points.scan_files import read_points as read_points
 from .points.sources import file_normals as file_normals

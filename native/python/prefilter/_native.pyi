@@ -238,19 +238,46 @@ class PointSource:
     @property
     def has_normals(self) -> bool: ...
     @property
+    def are_normals_directed(self) -> bool: ...
+    @property
     def is_double(self) -> bool: ...
     @property
     def attributes(self) -> list[tuple[str, bool]]: ...
     @property
     def viewpoint(self) -> tuple[float, float, float] | None: ...
 
+class ChosenPoints(PointSource):
+    def __init__(
+        self,
+        source: PointSource,
+        box: tuple[list[float], list[float]] | None,
+        classes: list[int] | None,
+        returns: str,
+        name: str,
+    ) -> None: ...
+
+class MovedPoints(PointSource):
+    def __init__(self, source: PointSource, matrix: npt.NDArray[np.float64]) -> None: ...
+
+def moved(
+    points: npt.NDArray[np.float64], matrix: npt.NDArray[np.float64]
+) -> npt.NDArray[np.float64]: ...
+
+class UnpackedFile:
+    def __init__(self, packed: str) -> None: ...
+    def write(self, bytes: bytes) -> None: ...
+
 POINT_EXTENSIONS: Final[tuple[str, ...]]
+RETURNS: Final[tuple[str, ...]]
 
 def open_points(path: bytes) -> PointSource: ...
+def open_ply(file: UnpackedFile) -> PointSource: ...
 def read_range_grid(
-    path: bytes, progress: ProgressCallback | None
+    path: bytes | UnpackedFile, progress: ProgressCallback | None
 ) -> npt.NDArray[np.int64] | None: ...
-def read_faces(path: bytes, progress: ProgressCallback | None) -> npt.NDArray[np.int64]: ...
+def read_faces(
+    path: bytes | UnpackedFile, progress: ProgressCallback | None
+) -> npt.NDArray[np.int64]: ...
 def read_points(
     source: PointSource, most: int, progress: ProgressCallback | None
 ) -> tuple[
@@ -542,6 +569,12 @@ def grid_normals(
     viewpoint: list[float] | None,
     progress: ProgressCallback | None,
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float32]]: ...
+def directed_normals(
+    points: npt.NDArray[np.float64],
+    normals: npt.NDArray[np.float64],
+    progress: ProgressCallback | None,
+    threads: int,
+) -> npt.NDArray[np.float64]: ...
 def estimate_normals(
     points: npt.NDArray[np.float64],
     neighbours: int,

@@ -11,6 +11,7 @@
 
 #include "prefilter/base/progress.h"
 #include "prefilter/scan/range_grid.h"
+#include "prefilter/scan/unpacked_file.h"
 
 namespace prefilter {
 
@@ -18,10 +19,13 @@ namespace prefilter {
 /// "num_cols" tell; none where it has none. Throws Error for what is no PLY file or is damaged,
 /// and for an index that names no point.
 std::optional<RangeGrid> read_range_grid(const std::string& path, const Progress& progress);
+std::optional<RangeGrid> read_range_grid(const UnpackedFile& file, const Progress& progress);
 
 /// The element "face" of a PLY file as triangles, polygons as fans around their first corner;
 /// none where it has none. Throws Error likewise.
 std::vector<std::array<std::int64_t, 3>> read_faces(const std::string& path,
+                                                    const Progress& progress);
+std::vector<std::array<std::int64_t, 3>> read_faces(const UnpackedFile& file,
                                                     const Progress& progress);
 
 }  // namespace prefilter

@@ -43,6 +43,8 @@ class PointSource {
   /// How many points there are, where that is known before they are read.
   virtual std::optional<std::size_t> count() const = 0;
   virtual bool has_normals() const = 0;
+  /// Whether normals point outward; where not, some point inward, and which is not known.
+  virtual bool are_normals_directed() const { return true; }
   /// What every batch carries, in this order.
   virtual const std::vector<PointAttribute>& attributes() const = 0;
   /// Where the scanner stood, in the points' coordinates; none where batches tell it, or nothing

@@ -2,6 +2,7 @@
 
 """Points of E57 files, read by pye57."""
 
+import os
 from collections.abc import Iterator
 from typing import Any
 
@@ -14,6 +15,8 @@ _CARTESIAN = ("cartesianX", "cartesianY", "cartesianZ")
 _SPHERICAL = ("sphericalRange", "sphericalAzimuth", "sphericalElevation")
 _COLORS = ("colorRed", "colorGreen", "colorBlue")
 _NORMALS = ("nor:normalX", "nor:normalY", "nor:normalZ")
+# From 0 on, which LAS files and others count from 1.
+_RETURN, _RETURNS = "returnIndex", "returnCount"
 _INVALID = ("cartesianInvalidState", "sphericalInvalidState")
 
 
@@ -21,9 +24,9 @@ class E57Reader:
     """Reads all scans of an E57 file, one after the other, piece by piece.
 
     Points are carried to the file's coordinates by the pose of their scan; those that a scan marks
-    as invalid are left out. Intensity and colors, as bytes, are attributes where all scans have
-    them, and normals likewise. Where scans have a pose, the scanner stood at its translation; the
-    origin tells nothing where there is only one scan, and no grid.
+    as invalid are left out. Intensity, colors, as bytes, and the numbers of returns are attributes
+    where all scans have them, and normals likewise. Where scans have a pose, the scanner stood at
+    its translation; the origin tells nothing where there is only one scan, and no grid.
     """
 
     def __init__(self, path: str) -> None:
@@ -37,6 +40,7 @@ class E57Reader:
                     f"'{path}': a scan has neither Cartesian nor spherical coordinates"
                 )
             common = set.intersection(*fields) if fields else set()
+            _check_counts(path, [int(scan.point_count) for scan in scans])
             has_gaps = any(name in each for each in fields for name in _INVALID)
             self.count = None if has_gaps else sum(int(scan.point_count) for scan in scans)
             places = [scan.translation for scan in scans if scan.has_pose()]
@@ -49,6 +53,9 @@ class E57Reader:
         self.attributes = [("intensity", False)] if self._has_intensity else []
         if self._has_colors:
             self.attributes += [(name, True) for name in ("red", "green", "blue")]
+        self._has_returns = {_RETURN, _RETURNS} <= common
+        if self._has_returns:
+            self.attributes += [("return_number", True), ("number_of_returns", True)]
         # One for all points, or one for each.
         self._has_viewpoints = bool(places) and len(places) == len(fields)
         self.viewpoint: tuple[float, float, float] | None = None
@@ -71,15 +78,23 @@ class E57Reader:
         names += [name for name in ("intensity",) if self._has_intensity]
         names += [name for name in _COLORS if self._has_colors]
         names += [name for name in _NORMALS if self.has_normals]
+        names += [name for name in (_RETURN, _RETURNS) if self._has_returns]
         scale = _color_scale(scan) if self._has_colors else np.ones(3)
         rotation, translation = scan.rotation_matrix, scan.translation
         data = {name: np.empty(POINTS_AT_ONCE) for name in names}
         with damage_of(self._path, "an E57 file"):
             reader = scan.points.reader(self._buffers(file, data))
+        found = 0
         while True:
             with damage_of(self._path, "an E57 file"):
                 count = reader.read()
+            found += count
             if count == 0:
+                if found != int(scan.point_count):
+                    raise ValueError(
+                        f"'{self._path}': a scan ends after {found} of the {scan.point_count} "
+                        "points in its header"
+                    )
                 return
             values = {name: each[:count] for name, each in data.items()}
             if invalid in values:
@@ -98,6 +113,8 @@ class E57Reader:
             if self._has_colors:
                 colors = np.stack([values[name] for name in _COLORS], axis=1)
                 columns.append(np.round(colors * scale))
+            if self._has_returns:
+                columns.append(np.stack([values[_RETURN] + 1, values[_RETURNS]], axis=1))
             columns.append(np.empty((len(positions), 0)))
             attributes = np.ascontiguousarray(np.concatenate(columns, axis=1), np.float32)
             places = None
@@ -117,6 +134,18 @@ class E57Reader:
     def _opened(self) -> Any:
         with damage_of(self._path, "an E57 file"):
             return self._pye57.E57(self._path)
+
+
+def _check_counts(path: str, counts: list[int]) -> None:
+    """Refuses counts that the file has no room for, before memory is taken for them."""
+    # What says where a point is takes a bit at least.
+    bits = 8 * os.path.getsize(path)
+    for count in counts:
+        if not 0 <= count <= bits:
+            raise ValueError(
+                f"'{path}': too short for the {count} points of a scan in its header: it has "
+                f"{bits // 8} bytes"
+            )
 
 
 def _color_scale(scan: Any) -> np.ndarray:

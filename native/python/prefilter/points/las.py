@@ -17,13 +17,15 @@ from .reader import POINTS_AT_ONCE, PointChunk, damage_of, find_module
 
 _COLORS_LOOKED_AT = 1_000_000
 _COLORS = ("red", "green", "blue")
+_BYTES = ("classification", "return_number", "number_of_returns")
 
 
 class LasReader:
     """Reads a LAS file, or with one of laspy's backends a LAZ file, piece by piece.
 
-    Attributes are intensity, classification, colors as bytes, and what extra dimensions there are;
-    three of these named like normals (nx, NormalX, normal_x) are the normals.
+    Attributes are intensity, classification, the numbers of returns, colors as bytes, and what
+    extra dimensions there are; three of these named like normals (nx, NormalX, normal_x) are the
+    normals.
     """
 
     viewpoint = None
@@ -37,7 +39,7 @@ class LasReader:
             self.count: int | None = int(header.point_count)
             names = set(header.point_format.dimension_names)
             extra = list(header.point_format.extra_dimension_names)
-            room = os.path.getsize(path) - header.offset_to_point_data
+            room = max(os.path.getsize(path) - header.offset_to_point_data, 0)
             least = 0 if header.are_points_compressed else header.point_format.size
             if self.count * least > room:
                 raise ValueError(
@@ -53,7 +55,7 @@ class LasReader:
         self._names = ["intensity", *plain]
         self.has_normals = bool(self._normals)
         self.attributes = [(name, False) for name in self._names]
-        self.attributes.append(("classification", True))
+        self.attributes += [(name, True) for name in _BYTES]
         if self._has_colors:
             self.attributes += [(name, True) for name in _COLORS]
             self._color_scale = self._find_color_scale()
@@ -62,9 +64,9 @@ class LasReader:
         found = 0
         for points in self._pieces():
             found += len(points)
-            positions = np.stack([points.x, points.y, points.z], axis=1).astype(np.float64)
+            positions = _positions(points)
             normals = _columns(points, self._normals) if self._normals else None
-            columns = [_columns(points, [*self._names, "classification"])]
+            columns = [_columns(points, [*self._names, *_BYTES])]
             if self._has_colors:
                 columns.append(np.round(_columns(points, _COLORS) * self._color_scale))
             yield positions, normals, None, None, np.concatenate(columns, axis=1)
@@ -138,8 +140,16 @@ def _end_of_records(file: BinaryIO, header: bytes, size: int) -> int:
     return end
 
 
+def _positions(points: Any) -> np.ndarray:
+    # Scales of a damaged header make what is not finite, which readers of positions find.
+    with np.errstate(all="ignore"):
+        return np.stack([points.x, points.y, points.z], axis=1).astype(np.float64)
+
+
 def _columns(points: Any, names: tuple[str, ...] | list[str]) -> np.ndarray:
-    return np.stack([np.asarray(points[name], np.float32) for name in names], axis=1)
+    # Extra dimensions may be scaled, and of double precision.
+    with np.errstate(all="ignore"):
+        return np.stack([np.asarray(points[name], np.float32) for name in names], axis=1)
 
 
 def _normals_among(names: list[str]) -> list[str]:

@@ -23,8 +23,9 @@ from .._border.arguments import (
 )
 from .._border.arrays import as_threads
 from .._border.staging import as_target
+from .choice import Classes, as_choice
 from .directions import as_wanted
-from .scan_files import AttributeArray
+from .scan import AttributeArray
 from .sources import Cloud, Source, array_cloud, joined_cloud, sources_in
 
 Mesh: TypeAlias = tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]
@@ -117,6 +118,9 @@ def reconstruct(
     weights: npt.ArrayLike | None = None,
     attributes: npt.ArrayLike | bool | None = None,
     support: bool = False,
+    classes: Classes | None = None,
+    returns: str = "all",
+    box: npt.ArrayLike | None = None,
     memory_limit: int | None = None,
     report: ReconstructionReport | None = None,
     progress: ProgressCallback | None = None,
@@ -165,6 +169,10 @@ def reconstruct(
             True: those of files and scans.
         support: Tells of each vertex how far it is from the points, and how dense these are there,
             so that `trim` can cut the mesh elsewhere.
+        classes: Which points of files and scans to use, as `choose_points` has it; also what
+            follows.
+        returns: See there.
+        box: See there.
         memory_limit: In MiB, above what is passed in and returned, points without normals among
             that; beyond it temporary files are used. It holds within a tenth and 8 MiB. What is
             less than needed is refused, with the least that would do: the cells of a few layers of
@@ -193,14 +201,19 @@ def reconstruct(
     options.support = bool(support)
     _check_report(report)
     wanted = as_wanted(direction, viewpoint)
+    choice = as_choice(classes, returns, box)
     sources = sources_in(points)
     if sources is None:
+        if choice is not None:
+            raise ValueError(
+                "classes, returns, box: given beside arrays; they are for files and scans"
+            )
         cloud = array_cloud(
             cast("npt.ArrayLike", points), normals, weights, attributes, wanted, progress, threads
         )
     else:
         _check_sources(normals, weights, attributes)
-        cloud = joined_cloud(sources, wanted, progress, threads)
+        cloud = joined_cloud(sources, wanted, progress, threads, choice)
     options.are_sides_known = cloud.are_sides_known
     positions, triangles, carried, found = _native.reconstruct(
         cloud.points, options, as_progress(cloud.rest(progress))
@@ -231,6 +244,9 @@ def reconstruct_file(
     trim: float | None = None,
     direction: str = "auto",
     viewpoint: npt.ArrayLike | None = None,
+    classes: Classes | None = None,
+    returns: str = "all",
+    box: npt.ArrayLike | None = None,
     memory_limit: int | None = None,
     progress: ProgressCallback | None = None,
     threads: int = 0,
@@ -259,6 +275,9 @@ def reconstruct_file(
         trim: See there.
         direction: See there.
         viewpoint: See there.
+        classes: See there.
+        returns: See there.
+        box: See there.
         memory_limit: See there.
         progress: Called with the fraction done; returning False stops the work, and leaves a file
             that was there before as it was.
@@ -278,7 +297,8 @@ def reconstruct_file(
     options.support = True
     # What is no list of sources is refused as a path.
     wanted = as_wanted(direction, viewpoint)
-    cloud = joined_cloud(sources_in(source) or [cast("Source", source)], wanted, progress, threads)
+    sources = sources_in(source) or [cast("Source", source)]
+    cloud = joined_cloud(sources, wanted, progress, threads, as_choice(classes, returns, box))
     options.are_sides_known = cloud.are_sides_known
     report = ReconstructionReport()
     rest = as_progress(cloud.rest(progress))

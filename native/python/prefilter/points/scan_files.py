@@ -4,19 +4,20 @@
 
 import os
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from .. import _native
-from .._border.arguments import ProgressCallback, as_int, as_progress
+from .._border.arguments import ProgressCallback, as_int, as_progress, progress_part
 from .._border.arrays import as_floats
 from .._border.input import as_path
+from .choice import Classes, as_choice
 from .e57 import E57Reader
 from .las import LasReader
+from .packed import PACKED, unpacked
 from .reader import PointReader
+from .scan import ScanPoints
 
 _READERS: dict[str, Callable[[str], PointReader]] = {
     ".las": LasReader,
@@ -24,77 +25,55 @@ _READERS: dict[str, Callable[[str], PointReader]] = {
     ".e57": E57Reader,
 }
 _FROM_ABOVE = frozenset({".las", ".laz"})
-POINT_EXTENSIONS = (*_native.POINT_EXTENSIONS, *_READERS)
+_PACKED_PLY = f".ply{PACKED}"
+POINT_EXTENSIONS = (*_native.POINT_EXTENSIONS, _PACKED_PLY, *_READERS)
 """What the names of files of points end in."""
 
 _UNLIMITED = 2**62
-
-AttributeArray: TypeAlias = npt.NDArray[np.uint8 | np.float32]
-
-
-@dataclass(frozen=True, eq=False)
-class ScanPoints:
-    """Points of a scan, with what is known of them.
-
-    Attributes:
-        positions: (n, 3). A value that is not finite in the file is not finite here.
-        normals: (n, 3), of any length; None where the file has none.
-        weights: (n,), how much each point counts (a scanner's confidence); None: all the same.
-        attributes: An (n,) array for each other value that the points have, by its name in the
-            file: uint8 where the file has bytes, else float32.
-        viewpoint: Where the scanner stood, (3,), in the coordinates of the points; or for each
-            point, (n, 3), where these were seen from several places; None where the file does not
-            say.
-        stride: Of how many points of the file, in their order, one is here.
-        is_from_above: A scanner looked down at them, as at those of .las and .laz files.
-    """
-
-    positions: npt.NDArray[np.float64]
-    normals: npt.NDArray[np.floating] | None = None
-    weights: npt.NDArray[np.float32] | None = None
-    attributes: dict[str, AttributeArray] = field(default_factory=dict)
-    viewpoint: npt.NDArray[np.float64] | None = None
-    stride: int = 1
-    is_from_above: bool = False
-
-    @property
-    def colors(self) -> AttributeArray | None:
-        """(n, 3), of the attributes red, green and blue; None where one is missing."""
-        names = ("red", "green", "blue")
-        if not all(name in self.attributes for name in names):
-            return None
-        return np.stack([self.attributes[name] for name in names], axis=1)
 
 
 def read_points(
     path: str | os.PathLike[str],
     *,
     most: int | None = None,
+    classes: Classes | None = None,
+    returns: str = "all",
+    box: npt.ArrayLike | None = None,
     progress: ProgressCallback | None = None,
 ) -> ScanPoints:
     """Reads the points of a file; its ending says of which format it is.
 
-    .ply, .pcd: nx, ny, nz (or normal_x and so on) are normals, confidence is the weight; all other
-    numbers are attributes. VIEWPOINT of a .pcd file is the viewpoint, except for the origin in a
-    cloud that is no image: it stands there, too, where nothing is known.
+    .ply, .ply.gz, .pcd: nx, ny, nz (or normal_x and so on) are normals, confidence is the weight;
+    all other numbers are attributes. Gaussian splats have the shortest axis of each as its normal,
+    turned outward, and its opacity as its weight. VIEWPOINT of a .pcd file is the viewpoint, except
+    for the origin in a cloud that is no image: it stands there, too, where nothing is known.
     .xyz, .xyzn, .pts, .asc, .txt, .csv: lines of x y z, and then a normal, a color, an intensity;
     which of these the columns are is told from the first thousands of lines, or by names in the
     first.
+    .obj: vertices, with the file's normals where there are as many, and with colors behind x y z.
     .ptx: scans one after the other, with intensities and perhaps colors, placed by their matrices;
     the viewpoint of each point is that of its scan.
     .las, .laz: need the Python package laspy; .laz also lazrs or laszip.
     .e57: needs the Python package pye57. All scans are read, in the file's coordinates; the places
     of their poses are the viewpoint.
 
+    Colors are bytes, also of files that have 16 bits. What a class and returns are called is told
+    by their names in any spelling: "classification", "return_number" and "number_of_returns".
+
     Args:
         path: Of the file.
         most: At most so many points are kept: each second one, or third, and so on, so that the
-            rest never has to fit into memory. None keeps all.
+            rest never has to fit into memory. None keeps all. Of chosen points that is one of a
+            power of two, as their number is not known before.
+        classes: See `choose_points`, also for what follows: other points are left out.
+        returns: See there.
+        box: See there.
         progress: Called with the fraction done; returning False stops the work.
 
     Raises:
-        ValueError: The extension is another, `most` is not above 0, a package is missing, or the
-            file is damaged; the message names the line or the point.
+        ValueError: The extension is another, a value is not allowed, a package is missing, the
+            file does not tell classes or returns, or it is damaged; the message names the line or
+            the point.
         OSError: The file cannot be read.
         MemoryError: The points would not fit into memory.
         Cancelled: `progress` returned False.
@@ -104,10 +83,20 @@ def read_points(
         limit = as_int("most", most, "a whole number above 0 is needed")
         if limit <= 0:
             raise ValueError(f"most: {most}; a whole number above 0 is needed")
-    source = open_points(path)
-    positions, normals, weights, viewpoint, attributes, stride = _native.read_points(
-        source, limit, as_progress(progress)
-    )
+    choice = as_choice(classes, returns, box)
+    source = open_points(path, progress=progress_part(progress, 0.0, 0.2))
+    if choice is not None:
+        source = choice.of_file(source, os.fsdecode(path))
+    last = 0.5 if is_undirected(source) else 1.0
+    try:
+        positions, normals, weights, viewpoint, attributes, stride = _native.read_points(
+            source, limit, progress_part(progress, 0.2, last)
+        )
+    except MemoryError as error:
+        raise MemoryError(f"'{os.fsdecode(path)}': {_told(error)}") from error
+    if is_undirected(source):
+        rest = progress_part(progress, 0.5, 1.0)
+        normals = _directed(positions, normals, rest)
     if viewpoint is None and source.viewpoint is not None:
         viewpoint = np.array(source.viewpoint)
     above = is_from_above(path)
@@ -138,17 +127,54 @@ def float_step(positions: npt.ArrayLike) -> float:
     return _native.float_step(as_floats("positions", positions, ("points", 3), np.float64))
 
 
-def open_points(path: str | os.PathLike[str]) -> _native.PointSource:
+def _told(error: MemoryError) -> str:
+    """What an error says, where it is not one of the system, which says nothing."""
+    text = str(error)
+    return "its points do not fit into memory" if not text or "bad_alloc" in text else text
+
+
+def is_undirected(source: _native.PointSource) -> bool:
+    """Whether points have normals that may point inward."""
+    return source.has_normals and not source.are_normals_directed
+
+
+def _directed(
+    positions: npt.NDArray[np.float64],
+    normals: npt.NDArray[np.float32] | None,
+    progress: ProgressCallback | None,
+) -> npt.NDArray[np.float32] | None:
+    if normals is None or len(normals) == 0:
+        return normals
+    found = _native.directed_normals(positions, normals.astype(np.float64), progress, 0)
+    return found.astype(np.float32)
+
+
+def open_points(
+    path: str | os.PathLike[str], *, progress: ProgressCallback | None = None
+) -> _native.PointSource:
     """Opens a file for functions of the native module that read it piece by piece."""
     name = as_path(path)
-    ending = os.path.splitext(name)[1].lower()
+    ending = point_extension(name)
     if ending in _READERS:
         return _native.PointSource(_READERS[ending](name))
+    if ending == _PACKED_PLY:
+        return _native.open_ply(unpacked(name, progress))
     if ending not in POINT_EXTENSIONS:
         raise ValueError(
             f"'{name}': unsupported extension '{ending}'; use {', '.join(POINT_EXTENSIONS)}"
         )
     return _native.open_points(os.fsencode(name))
+
+
+def point_extension(path: str | os.PathLike[str]) -> str:
+    """What the name of a file ends in, in lower case: with what comes before ".gz"."""
+    stem, ending = os.path.splitext(os.fsdecode(path).lower())
+    return os.path.splitext(stem)[1] + ending if ending == PACKED else ending
+
+
+def is_ply(path: str | os.PathLike[str]) -> bool:
+    """Whether a file is called a PLY file, perhaps packed."""
+    return point_extension(path) in (".ply", _PACKED_PLY)
 
 
 def read_range_grid(
@@ -165,6 +191,9 @@ def read_range_grid(
         OSError: The file cannot be read.
         Cancelled: `progress` returned False.
     """
+    if point_extension(path) == _PACKED_PLY:
+        file = unpacked(as_path(path), progress_part(progress, 0.0, 0.5))
+        return _native.read_range_grid(file, progress_part(progress, 0.5, 1.0))
     return _native.read_range_grid(os.fsencode(as_path(path)), as_progress(progress))
 
 
@@ -180,4 +209,7 @@ def read_faces(
         OSError: The file cannot be read.
         Cancelled: `progress` returned False.
     """
+    if point_extension(path) == _PACKED_PLY:
+        file = unpacked(as_path(path), progress_part(progress, 0.0, 0.5))
+        return _native.read_faces(file, progress_part(progress, 0.5, 1.0))
     return _native.read_faces(os.fsencode(as_path(path)), as_progress(progress))

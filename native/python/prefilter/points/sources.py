@@ -5,7 +5,6 @@
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import TypeAlias, TypeGuard
 
 import numpy as np
@@ -14,11 +13,14 @@ import numpy.typing as npt
 from .. import _native
 from .._border.arguments import ProgressCallback, progress_part
 from .._border.arrays import as_array, as_floats
+from .choice import Choice
 from .directions import OUTWARD, VIEWPOINT, Viewpoints, Wanted, estimated, parts, turned
 from .normals import as_viewpoints, grid_normals, mesh_normals
+from .scan import ScanPoints
 from .scan_files import (
-    ScanPoints,
     is_from_above,
+    is_ply,
+    is_undirected,
     open_points,
     read_faces,
     read_points,
@@ -107,15 +109,19 @@ def array_cloud(
 
 
 def joined_cloud(
-    sources: Sequence[Source], wanted: Wanted, progress: ProgressCallback | None, threads: int
+    sources: Sequence[Source],
+    wanted: Wanted,
+    progress: ProgressCallback | None,
+    threads: int,
+    choice: Choice | None = None,
 ) -> Cloud:
-    """Several sources as one, with normals.
+    """Several sources as one, with normals, of which only some points may be chosen.
 
     What has normals is read piece by piece, when the surface is made. All else is read into memory
     here: in a PLY file a scanner's grid or faces tell the normals, others are estimated, those seen
     from one place by themselves, and those seen from nobody knows where together.
     """
-    scans = [_opened(source) for source in sources]
+    scans = [_opened(source, choice) for source in sources]
     _place_scanners(scans, wanted.viewpoints)
     missing = [scan for scan in scans if not scan.has_normals]
     progress = progress_part(progress, 0.0, 0.5)
@@ -143,6 +149,7 @@ class _Scan:
         path: Of its file, if it is one.
         points: The file, opened.
         read: What is in memory.
+        choice: Which points of the file are used; those in memory are chosen already.
         is_from_above: See `ScanPoints`.
         seen_from: Where the user says that the scanner stood; see `Wanted`.
         direction: Of its normals, once that is known.
@@ -152,6 +159,7 @@ class _Scan:
     path: str | os.PathLike[str] | None
     points: _native.PointSource | None
     read: ScanPoints | None
+    choice: Choice | None = None
     is_from_above: bool = False
     seen_from: Viewpoints | None = None
     direction: str = ""
@@ -161,7 +169,8 @@ class _Scan:
     def has_normals(self) -> bool:
         if self.read is not None:
             return self.read.normals is not None
-        return self.points is not None and self.points.has_normals
+        points = self.points
+        return points is not None and points.has_normals and not is_undirected(points)
 
     @property
     def viewpoints(self) -> Viewpoints:
@@ -194,9 +203,12 @@ class _Scan:
         )
 
 
-def _opened(source: Source) -> _Scan:
+def _opened(source: Source, choice: Choice | None) -> _Scan:
     if not isinstance(source, ScanPoints):
-        return _Scan(source, open_points(source), None, is_from_above(source))
+        points = open_points(source)
+        if choice is not None:
+            points = choice.of_file(points, os.fsdecode(source))
+        return _Scan(source, points, None, choice, is_from_above(source))
     rows = as_floats("positions", source.positions, ("points", 3), np.float64)
     normals = None if source.normals is None else _as_rows("normals", source.normals)
     if normals is not None and len(normals) != len(rows):
@@ -207,12 +219,9 @@ def _opened(source: Source) -> _Scan:
     weights = source.weights
     if weights is not None:
         weights = as_floats("weights", weights, (len(rows),), np.float32)
-    return _Scan(
-        None,
-        None,
-        replace(source, positions=rows, normals=normals, weights=weights, attributes=checked),
-        source.is_from_above,
-    )
+    read = replace(source, positions=rows, normals=normals, weights=weights, attributes=checked)
+    chosen = read if choice is None else choice.of_scan(read)
+    return _Scan(None, None, chosen, is_from_above=source.is_from_above)
 
 
 def _place_scanners(scans: Sequence[_Scan], viewpoints: Viewpoints) -> None:
@@ -241,18 +250,22 @@ def _look_up_normals(scan: _Scan, wanted: Wanted, progress: ProgressCallback | N
     """Reads a file that has no normals, and what else in it may tell them."""
     if scan.path is None:
         return
+    # Grids and faces name points of the whole file.
     read = read_points(scan.path, progress=progress_part(progress, 0.0, 0.3))
     if scan.seen_from is not None:
         read = replace(read, viewpoint=scan.seen_from[0])
-    seen = _grid_normals(scan.path, read, progress_part(progress, 0.3, 0.6))
-    told = seen or _face_normals(scan.path, read, progress_part(progress, 0.6, 1.0))
+    seen = told = None
+    if read.normals is None:
+        seen = _grid_normals(scan.path, read, progress_part(progress, 0.3, 0.6))
+        told = seen or _face_normals(scan.path, read, progress_part(progress, 0.6, 1.0))
     if told is not None:
         normals, weights = told
         read = replace(read, normals=normals, weights=weights)
-        # A scanner sees outsides. Faces may be inside out.
+    if read.normals is not None:
+        # A scanner sees outsides. Faces, and splats, may be inside out.
         scan.direction = wanted.told(VIEWPOINT if seen is not None else OUTWARD)
         scan.is_to_be_turned = seen is None or scan.direction != VIEWPOINT
-    scan.read = read
+    scan.read = read if scan.choice is None else scan.choice.of_scan(read)
 
 
 def _estimate(
@@ -302,15 +315,11 @@ def _step(progress: ProgressCallback | None, k: int, count: int) -> ProgressCall
     return progress_part(progress, k / count, (k + 1) / count)
 
 
-def _is_ply(path: str | os.PathLike[str]) -> bool:
-    return Path(os.fsdecode(path)).suffix.lower() == ".ply"
-
-
 def _grid_normals(
     path: str | os.PathLike[str], read: ScanPoints, progress: ProgressCallback | None
 ) -> _Told | None:
     first, rest = progress_part(progress, 0.0, 0.5), progress_part(progress, 0.5, 1.0)
-    grid = read_range_grid(path, progress=first) if _is_ply(path) else None
+    grid = read_range_grid(path, progress=first) if is_ply(path) else None
     if grid is None:
         return None
     normals, sureness = grid_normals(read.positions, grid, viewpoint=read.viewpoint, progress=rest)
@@ -320,7 +329,7 @@ def _grid_normals(
 def _face_normals(
     path: str | os.PathLike[str], read: ScanPoints, progress: ProgressCallback | None
 ) -> _Told | None:
-    if not _is_ply(path):
+    if not is_ply(path):
         return None
     first, rest = progress_part(progress, 0.0, 0.5), progress_part(progress, 0.5, 1.0)
     triangles = read_faces(path, progress=first)

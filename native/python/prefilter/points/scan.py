@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Points of a scan in memory."""
+
+from dataclasses import dataclass, field, replace
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import _native
+from .._border.arrays import as_floats
+
+AttributeArray: TypeAlias = npt.NDArray[np.uint8 | np.float32]
+
+
+@dataclass(frozen=True, eq=False)
+class ScanPoints:
+    """Points of a scan, with what is known of them.
+
+    Attributes:
+        positions: (n, 3). A value that is not finite in the file is not finite here.
+        normals: (n, 3), of any length; None where the file has none.
+        weights: (n,), how much each point counts (a scanner's confidence); None: all the same.
+        attributes: An (n,) array for each other value that the points have, by its name in the
+            file: uint8 where the file has bytes, else float32.
+        viewpoint: Where the scanner stood, (3,), in the coordinates of the points; or for each
+            point, (n, 3), where these were seen from several places; None where the file does not
+            say.
+        stride: Of how many points of the file, in their order, one is here.
+        is_from_above: A scanner looked down at them, as at those of .las and .laz files.
+    """
+
+    positions: npt.NDArray[np.float64]
+    normals: npt.NDArray[np.floating] | None = None
+    weights: npt.NDArray[np.float32] | None = None
+    attributes: dict[str, AttributeArray] = field(default_factory=dict)
+    viewpoint: npt.NDArray[np.float64] | None = None
+    stride: int = 1
+    is_from_above: bool = False
+
+    @property
+    def colors(self) -> AttributeArray | None:
+        """(n, 3), of the attributes red, green and blue; None where one is missing."""
+        names = ("red", "green", "blue")
+        if not all(name in self.attributes for name in names):
+            return None
+        return np.stack([self.attributes[name] for name in names], axis=1)
+
+    def take(self, which: npt.NDArray[np.bool_ | np.integer]) -> "ScanPoints":
+        """Some of the points, with all that is known of them.
+
+        Args:
+            which: (n,) bool, or indices: what indexes an array of numpy.
+        """
+        viewpoint = self.viewpoint
+        return replace(
+            self,
+            positions=self.positions[which],
+            normals=None if self.normals is None else self.normals[which],
+            weights=None if self.weights is None else self.weights[which],
+            attributes={name: values[which] for name, values in self.attributes.items()},
+            viewpoint=viewpoint if viewpoint is None or viewpoint.ndim == 1 else viewpoint[which],
+        )
+
+    def moved(self, matrix: npt.ArrayLike) -> "ScanPoints":
+        """The points after a motion, with normals and viewpoints.
+
+        Args:
+            matrix: (4, 4), as `align_scans` returns them: a turn and a shift.
+        """
+        motion = as_floats("matrix", matrix, (4, 4), np.float64)
+        still = np.array(motion)
+        still[:3, 3] = 0.0
+        viewpoint = self.viewpoint
+        return replace(
+            self,
+            positions=_native.moved(_rows(self.positions), motion),
+            normals=None if self.normals is None else _native.moved(_rows(self.normals), still),
+            viewpoint=None
+            if viewpoint is None
+            else _native.moved(_rows(np.atleast_2d(viewpoint)), motion).reshape(viewpoint.shape),
+        )
+
+
+def _rows(values: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    return as_floats("positions", values, ("points", 3), np.float64)
