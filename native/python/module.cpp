@@ -18,6 +18,7 @@ namespace prefilter::python {
 
 void bind_blocks(py::module_& m);
 void bind_exr(py::module_& m);
+void bind_cloud(py::module_& m);
 void bind_color(py::module_& m);
 void bind_contour(py::module_& m);
 void bind_cutout(py::module_& m);
@@ -147,6 +148,7 @@ PYBIND11_MODULE(_native, m) {
   });
   prefilter::python::bind_blocks(m);
   prefilter::python::bind_exr(m);
+  prefilter::python::bind_cloud(m);
   prefilter::python::bind_color(m);
   prefilter::python::bind_cutout(m);
   prefilter::python::bind_elementary(m);

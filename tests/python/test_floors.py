@@ -31,7 +31,7 @@ FLOORS = (
         "surface",
     },
     {"mesh", "remesh", "scan", "tables", "texels", "wavelet"},
-    {"contour", "mipmap", "normals", "raster", "resize", "sampling", "voxel"},
+    {"cloud", "contour", "mipmap", "normals", "raster", "resize", "sampling", "voxel"},
     {"reconstruct", "solid", "views"},
 )
 FLOOR_OF = {room: floor for floor, rooms in enumerate(FLOORS) for room in rooms}

@@ -155,7 +155,7 @@ def test_refusals(tmp_path):
             prefilter.choose_points(points, **choice)
         with pytest.raises(ValueError, match=message):
             prefilter.read_points(path, **choice)
-    with pytest.raises(ValueError, match="box: given beside arrays; they are for files"):
+    with pytest.raises(ValueError, match="box, align: given beside arrays; they are for files"):
         prefilter.reconstruct(points.positions, box=[(0, 0, 0), (1, 1, 1)])
 
 

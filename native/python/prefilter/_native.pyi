@@ -575,6 +575,30 @@ def directed_normals(
     progress: ProgressCallback | None,
     threads: int,
 ) -> npt.NDArray[np.float64]: ...
+
+SUBSAMPLING: Final[tuple[str, ...]]
+
+def subsample(
+    points: npt.NDArray[np.float64],
+    spacing: float,
+    method: str,
+    progress: ProgressCallback | None,
+    threads: int,
+) -> npt.NDArray[np.int64]: ...
+def find_outliers(
+    points: npt.NDArray[np.float64],
+    neighbours: int,
+    factor: float,
+    progress: ProgressCallback | None,
+    threads: int,
+) -> npt.NDArray[np.bool_]: ...
+def align_scans(
+    scans: list[tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]],
+    reach: float | None,
+    iterations: int,
+    progress: ProgressCallback | None,
+    threads: int,
+) -> tuple[npt.NDArray[np.float64], float, float, list[int]]: ...
 def estimate_normals(
     points: npt.NDArray[np.float64],
     neighbours: int,

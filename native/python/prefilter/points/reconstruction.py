@@ -3,7 +3,7 @@
 """Scans: oriented points to surfaces."""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import TypeAlias, cast
@@ -24,6 +24,7 @@ from .._border.arguments import (
 from .._border.arrays import as_threads
 from .._border.staging import as_target
 from .choice import Classes, as_choice
+from .clouds import ScanAlignment
 from .directions import as_wanted
 from .scan import AttributeArray
 from .sources import Cloud, Source, array_cloud, joined_cloud, sources_in
@@ -80,6 +81,7 @@ class ReconstructionReport:
             to 1.
         islands: How many small parts were then left out.
         island_share: Their share of the surface.
+        alignment: How scans were moved onto each other; None where they were not.
     """
 
     points: int = 0
@@ -99,6 +101,7 @@ class ReconstructionReport:
     cut: float = 0.0
     islands: int = 0
     island_share: float = 0.0
+    alignment: ScanAlignment | None = None
 
 
 def reconstruct(
@@ -121,6 +124,7 @@ def reconstruct(
     classes: Classes | None = None,
     returns: str = "all",
     box: npt.ArrayLike | None = None,
+    align: bool = False,
     memory_limit: int | None = None,
     report: ReconstructionReport | None = None,
     progress: ProgressCallback | None = None,
@@ -173,6 +177,7 @@ def reconstruct(
             follows.
         returns: See there.
         box: See there.
+        align: Files and scans are moved onto the first of them, as by `align_scans`.
         memory_limit: In MiB, above what is passed in and returned, points without normals among
             that; beyond it temporary files are used. It holds within a tenth and 8 MiB. What is
             less than needed is refused, with the least that would do: the cells of a few layers of
@@ -204,16 +209,16 @@ def reconstruct(
     choice = as_choice(classes, returns, box)
     sources = sources_in(points)
     if sources is None:
-        if choice is not None:
+        if choice is not None or align:
             raise ValueError(
-                "classes, returns, box: given beside arrays; they are for files and scans"
+                "classes, returns, box, align: given beside arrays; they are for files and scans"
             )
         cloud = array_cloud(
             cast("npt.ArrayLike", points), normals, weights, attributes, wanted, progress, threads
         )
     else:
         _check_sources(normals, weights, attributes)
-        cloud = joined_cloud(sources, wanted, progress, threads, choice)
+        cloud = joined_cloud(sources, wanted, progress, threads, choice, align)
     options.are_sides_known = cloud.are_sides_known
     positions, triangles, carried, found = _native.reconstruct(
         cloud.points, options, as_progress(cloud.rest(progress))
@@ -247,6 +252,7 @@ def reconstruct_file(
     classes: Classes | None = None,
     returns: str = "all",
     box: npt.ArrayLike | None = None,
+    align: bool = False,
     memory_limit: int | None = None,
     progress: ProgressCallback | None = None,
     threads: int = 0,
@@ -278,6 +284,7 @@ def reconstruct_file(
         classes: See there.
         returns: See there.
         box: See there.
+        align: See there.
         memory_limit: See there.
         progress: Called with the fraction done; returning False stops the work, and leaves a file
             that was there before as it was.
@@ -298,9 +305,10 @@ def reconstruct_file(
     # What is no list of sources is refused as a path.
     wanted = as_wanted(direction, viewpoint)
     sources = sources_in(source) or [cast("Source", source)]
-    cloud = joined_cloud(sources, wanted, progress, threads, as_choice(classes, returns, box))
+    choice = as_choice(classes, returns, box)
+    cloud = joined_cloud(sources, wanted, progress, threads, choice, align)
     options.are_sides_known = cloud.are_sides_known
-    report = ReconstructionReport()
+    report = ReconstructionReport(alignment=cloud.alignment)
     rest = as_progress(cloud.rest(progress))
     found = _native.reconstruct_file(cloud.points, os.fsencode(place), options, rest)
     _fill_in(report, found, cloud)
@@ -376,9 +384,12 @@ def _check_report(report: ReconstructionReport | None) -> None:
         raise ValueError(f"report: {report!r}; a ReconstructionReport is needed, or None")
 
 
-def _fill_in(report: ReconstructionReport | None, found: dict[str, float], cloud: Cloud) -> None:
+def _fill_in(
+    report: ReconstructionReport | None, found: Mapping[str, object], cloud: Cloud
+) -> None:
     if report is None:
         return
     report.directions = cloud.directions
+    report.alignment = cloud.alignment
     for name, value in found.items():
         setattr(report, name, value)

@@ -14,6 +14,7 @@ from .. import _native
 from .._border.arguments import ProgressCallback, progress_part
 from .._border.arrays import as_array, as_floats
 from .choice import Choice
+from .clouds import ScanAlignment, align_scans
 from .directions import OUTWARD, VIEWPOINT, Viewpoints, Wanted, estimated, parts, turned
 from .normals import as_viewpoints, grid_normals, mesh_normals
 from .scan import ScanPoints
@@ -31,6 +32,7 @@ Source: TypeAlias = str | os.PathLike[str] | ScanPoints
 """A file that `read_points` reads, or what it returns."""
 
 _LARGEST_VALUE = 1e30
+_ENOUGH = 1_000_000
 _Told: TypeAlias = tuple[npt.NDArray[np.float64], npt.NDArray[np.float32] | None]
 
 
@@ -42,11 +44,13 @@ class Cloud:
         points: For the native module.
         directions: Of normals: each once, in the order of the sources.
         is_read: Points had to be read into memory, or normals estimated, which is half of the work.
+        alignment: How scans were moved onto each other; None where they were not.
     """
 
     points: _native.PointSource
     directions: tuple[str, ...]
     is_read: bool = False
+    alignment: ScanAlignment | None = None
 
     @property
     def are_sides_known(self) -> bool:
@@ -114,6 +118,7 @@ def joined_cloud(
     progress: ProgressCallback | None,
     threads: int,
     choice: Choice | None = None,
+    align: bool = False,
 ) -> Cloud:
     """Several sources as one, with normals, of which only some points may be chosen.
 
@@ -132,12 +137,21 @@ def joined_cloud(
         _look_up_normals(scan, wanted, _step(progress_part(progress, 0.0, 0.6), k, len(missing)))
     groups = _estimated_together([scan for scan in missing if not scan.has_normals])
     for k, group in enumerate(groups):
-        _estimate(group, wanted, _step(progress_part(progress, 0.6, 1.0), k, len(groups)), threads)
+        _estimate(group, wanted, _step(progress_part(progress, 0.6, 0.9), k, len(groups)), threads)
+    alignment = None
+    if align and len(scans) > 1:
+        # What has been read is passed as it is, of all else some points are enough.
+        some = [scan.some_points() for scan in scans]
+        alignment = align_scans(some, progress=progress_part(progress, 0.9, 1.0), threads=threads)
     native = tuple(scan.native() for scan in scans)
+    if alignment is not None:
+        pairs = zip(native, alignment.matrices, strict=True)
+        native = tuple(_native.MovedPoints(points, matrix) for points, matrix in pairs)
     return Cloud(
         native[0] if len(native) == 1 else _native.JoinedPoints(native),
         tuple(dict.fromkeys(scan.direction for scan in scans)),
-        is_read=bool(missing),
+        is_read=bool(missing) or alignment is not None,
+        alignment=alignment,
     )
 
 
@@ -178,6 +192,13 @@ class _Scan:
         if self.seen_from is not None:
             return self.seen_from
         return as_viewpoints(None if self.read is None else self.read.viewpoint)
+
+    def some_points(self) -> ScanPoints:
+        """Points with normals, at most as many as tell where the scan is."""
+        if self.read is not None:
+            return self.read
+        positions, normals, *_ = _native.read_points(self.native(), _ENOUGH, None)
+        return ScanPoints(positions, normals)
 
     def native(self) -> _native.PointSource:
         """The points for the native module."""
