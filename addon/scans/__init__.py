@@ -6,7 +6,12 @@ from ..core.keys import Key
 from ..core.registration import registration
 from . import menus, operators, panel, properties
 
-MANUAL = {"scans": ("reconstruct", "trim_reconstruction", "import_points", "drop_points")}
+MANUAL = {
+    "scans": (
+        *("reconstruct", "trim_reconstruction", "import_points", "drop_points"),
+        *("subsample_points", "remove_outliers", "crop_points", "align_scans"),
+    )
+}
 """The pages about its operators and settings; see `manual.Manual`."""
 KEYS = (Key("reconstruct", "R", "Object Mode"),)
 """What its operators have at first; see `keys.Keys`."""

@@ -4,16 +4,19 @@
 
 from dataclasses import dataclass
 
+from prefilter._options.choices import Choice
 from prefilter._options.scans import (
+    CLASSES,
     DIRECTIONS,
     ISOVALUES,
     POINTS,
     RESOLUTIONS,
+    RETURNS,
     WAVELETS,
     ScanSettings,
 )
 
-from ..core.options import number, switch
+from ..core.options import number, one_of, switch, text
 
 __all__ = (
     "DIRECTIONS",
@@ -22,16 +25,89 @@ __all__ = (
     "POINTS",
     "RESOLUTIONS",
     "WAVELETS",
+    "AlignSettings",
+    "CropSettings",
     "ImportSettings",
+    "OutlierSettings",
     "ScanSettings",
+    "SubsampleSettings",
     "TrimSettings",
 )
 
 EXTENSIONS = (
-    *(".las", ".laz", ".e57", ".pcd", ".ply"),
+    *(".las", ".laz", ".e57", ".pcd", ".ply", ".ply.gz", ".obj"),
     *(".xyz", ".xyzn", ".pts", ".ptx", ".asc", ".txt", ".csv"),
 )
 """Of files of points: `prefilter.POINT_EXTENSIONS`, which takes long to import."""
+
+METHODS = {
+    "poisson": Choice("Poisson Disk", "No two points are nearer to each other than the spacing"),
+    "grid": Choice("Grid", "One point in each cell of a grid, the one nearest to their mean"),
+}
+KEEP = {
+    "inside": Choice("Inside", "Keep the points in the box"),
+    "outside": Choice("Outside", "Keep the points around the box"),
+}
+
+
+@dataclass(frozen=True)
+class SubsampleSettings:
+    """What `prefilter.subsample_points` keeps."""
+
+    spacing: float = number(
+        0.01,
+        "Spacing",
+        "How far apart the points that are kept should be, in world space",
+        low=1e-6,
+        subtype="DISTANCE",
+        display={"soft_min": 0.001, "precision": 4, "step": 1},
+    )
+    method: str = one_of("poisson", "Method", "How points are chosen", METHODS)
+
+
+@dataclass(frozen=True)
+class OutlierSettings:
+    """What `prefilter.remove_outliers` removes."""
+
+    neighbors: int = number(
+        16,
+        "Neighbors",
+        "How many points around each count: more than twice as many as a clump has that should go",
+        low=3,
+        high=1000,
+        display={"soft_max": 64},
+    )
+    factor: float = number(
+        2.0,
+        "Factor",
+        "Remove points that are this many times as far from the points around them as these are "
+        "from theirs. Lower values remove more",
+        low=1.0,
+        is_above=True,
+        display={"soft_max": 5.0, "precision": 2, "step": 10},
+    )
+
+
+@dataclass(frozen=True)
+class CropSettings:
+    """What `prefilter.crop_points` keeps."""
+
+    keep: str = one_of("inside", "Keep", "Which points are kept", KEEP)
+
+
+@dataclass(frozen=True)
+class AlignSettings:
+    """How `prefilter.align_scans` moves scans."""
+
+    reach: float = number(
+        0.0,
+        "Reach",
+        "How far apart surfaces may be that belong together, in world space. 0 takes a 20th of the "
+        "size of all scans",
+        low=0.0,
+        subtype="DISTANCE",
+        display={"precision": 4, "step": 1},
+    )
 
 
 @dataclass(frozen=True)
@@ -46,6 +122,10 @@ class ImportSettings:
         low=0,
         high=2**31 - 1,
         display={"step": 1_000_000},
+    )
+    classes: str = text("", "Classes", CLASSES)
+    returns: str = one_of(
+        "all", "Returns", "Which echoes of each pulse of the scanner are kept", RETURNS
     )
     use_reconstruct: bool = switch(
         False,

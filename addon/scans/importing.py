@@ -9,7 +9,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 import prefilter
-from prefilter._work.scans import merged
+from prefilter._work.scans import as_classes, has_connections, merged
 
 from ..bridge.layers import ATTRIBUTE, NewLayer
 from ..bridge.new_points import Cloud, new_points, scene_offset, spacing
@@ -117,21 +117,30 @@ class PointsImport:
     def _points(self, path: Path, progress: Progress) -> "prefilter.ScanPoints":
         """Returns the points of a file, with the normals that a grid or faces in it tell."""
         most = self._settings.most_points
+        classes, returns = as_classes(self._settings.classes), self._settings.returns
+        # A grid and faces name points of the whole file.
+        is_whole = has_connections(path)
         try:
             found = prefilter.read_points(
-                path, most=most or None, progress=share(progress, 0.0, 0.7)
+                path,
+                most=most or None,
+                classes=None if is_whole else classes,
+                returns="all" if is_whole else returns,
+                progress=share(progress, 0.0, 0.7),
             )
             told = None
-            if found.normals is None and found.stride == 1:
+            if found.normals is None and found.stride == 1 and is_whole:
                 told = prefilter.file_normals(path, found, progress=share(progress, 0.7, 1.0))
         except MemoryError as error:
-            raise MemoryError(
-                f"'{path.name}': {error}; a lower value of Most Points keeps fewer"
-            ) from error
+            raise MemoryError(f"{error}; a lower value of Most Points keeps fewer") from error
         if found.stride > 1:
             text = "'{}': one of {} points was kept, as Most Points is {}"
             self._warnings.append(Sentence(text, path.name, found.stride, most))
-        return found if told is None else replace(found, normals=told[0], weights=told[1])
+        if told is not None:
+            found = replace(found, normals=told[0], weights=told[1])
+        if is_whole:
+            found = prefilter.choose_points(found, classes=classes, returns=returns)
+        return found
 
 
 def _merging_step(cloud: Cloud) -> float:

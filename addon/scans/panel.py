@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Reconstructing: a tab in the 3D view's sidebar, an entry in Object > Prefilter."""
+"""Reconstructing, and what comes before: in the 3D view's sidebar, and in Object > Prefilter."""
 
 import bpy
 
@@ -9,7 +9,11 @@ from ..core.menus import PREFILTER_MT_object
 from ..core.registration import classes, entry, registration
 from ..core.sidebar import SidebarPanel
 from .choices import ScanSettings
+from .operators.align_scans import PREFILTER_OT_align_scans
+from .operators.crop_points import PREFILTER_OT_crop_points
 from .operators.reconstruct import PREFILTER_OT_reconstruct
+from .operators.remove_outliers import PREFILTER_OT_remove_outliers
+from .operators.subsample_points import PREFILTER_OT_subsample_points
 from .operators.trim_reconstruction import PREFILTER_OT_trim_reconstruction
 from .properties import RECONSTRUCT
 
@@ -39,11 +43,39 @@ class PREFILTER_PT_reconstruct(_SidebarPanel, SettingsPanel, bpy.types.Panel):
     makes = "Make Surface"
 
 
+_STEPS = (
+    (PREFILTER_OT_align_scans, "SNAP_ON"),
+    (PREFILTER_OT_crop_points, "SELECT_SET"),
+    (PREFILTER_OT_remove_outliers, "BRUSH_DATA"),
+    (PREFILTER_OT_subsample_points, "STICKY_UVS_DISABLE"),
+)
+"""What may be done to points before, in a usual order; each with its icon."""
+
+
+class PREFILTER_PT_points(_SidebarPanel, bpy.types.Panel):
+    """Buttons of steps before."""
+
+    bl_label = "Points"
+    bl_parent_id = PREFILTER_PT_reconstruct.__name__
+    bl_options = frozenset({"DEFAULT_CLOSED"})
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        del context
+        _draw_steps(self.layout.column())
+
+
+def _draw_steps(layout: bpy.types.UILayout) -> None:
+    for operator, icon in _STEPS:
+        layout.operator(operator.bl_idname, icon=icon)
+
+
 def _draw_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     _RECONSTRUCT.draw(menu.layout, context)
     menu.layout.operator(PREFILTER_OT_trim_reconstruction.bl_idname, icon="MOD_BOOLEAN")
+    _draw_steps(menu.layout)
 
 
 register, unregister = registration(
-    classes(PREFILTER_PT_reconstruct), entry(PREFILTER_MT_object, _draw_menu)
+    classes(PREFILTER_PT_reconstruct, PREFILTER_PT_points), entry(PREFILTER_MT_object, _draw_menu)
 )

@@ -12,7 +12,15 @@ from ..core import preset_menu, presets
 from ..core.properties import following, properties, values
 from ..core.registration import classes, registration, state
 from ..core.sidebar import PartedSettings, subpanel
-from .choices import ImportSettings, ScanSettings, TrimSettings
+from .choices import (
+    AlignSettings,
+    CropSettings,
+    ImportSettings,
+    OutlierSettings,
+    ScanSettings,
+    SubsampleSettings,
+    TrimSettings,
+)
 
 RECONSTRUCT = presets.Kind("reconstruct", "prefilter_reconstruct", [(ScanSettings, ())])
 
@@ -92,6 +100,46 @@ class TrimProperties:
     def to_settings(self) -> TrimSettings:
         """Returns the settings."""
         return values(self, TrimSettings)
+
+
+class SubsampleProperties:
+    """The properties of `prefilter.subsample_points`."""
+
+    __annotations__ = properties(SubsampleSettings)
+
+    def to_settings(self) -> SubsampleSettings:
+        """Returns the settings."""
+        return values(self, SubsampleSettings)
+
+
+class OutlierProperties:
+    """The properties of `prefilter.remove_outliers`."""
+
+    __annotations__ = properties(OutlierSettings)
+
+    def to_settings(self) -> OutlierSettings:
+        """Returns the settings."""
+        return values(self, OutlierSettings)
+
+
+class CropProperties:
+    """The properties of `prefilter.crop_points`."""
+
+    __annotations__ = properties(CropSettings)
+
+    def to_settings(self) -> CropSettings:
+        """Returns the settings."""
+        return values(self, CropSettings)
+
+
+class AlignProperties:
+    """The properties of `prefilter.align_scans`."""
+
+    __annotations__ = properties(AlignSettings)
+
+    def to_settings(self) -> AlignSettings:
+        """Returns the settings."""
+        return values(self, AlignSettings)
 
 
 class PREFILTER_PG_reconstruct(ScanProperties, bpy.types.PropertyGroup):

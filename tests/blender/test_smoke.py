@@ -227,6 +227,36 @@ def test_import_points(tmp_path):
     assert "normal" in bpy.data.objects["Torus"].data.attributes
 
 
+def test_subsample_points():
+    scan = clouds.scan(*clouds.torus(5_000))
+    assert bpy.ops.prefilter.subsample_points(spacing=0.2) == FINISHED
+    assert 50 < len(clouds.points(scan)) < 1_000
+
+
+def test_remove_outliers():
+    scan = clouds.scan(np.concatenate([clouds.torus(5_000)[0], [(0.0, 0.0, 5.0)]]))
+    assert bpy.ops.prefilter.remove_outliers() == FINISHED
+    assert len(clouds.points(scan)) == 5_000
+
+
+def test_crop_points():
+    scan = clouds.scan(clouds.torus(5_000)[0])
+    assert not bpy.ops.prefilter.crop_points.poll()
+    bodies.cube(location=(1, 0, 0))
+    scan.select_set(True)
+    assert bpy.ops.prefilter.crop_points() == FINISHED
+    assert clouds.points(scan)[:, 0].min() >= 0
+
+
+def test_align_scans():
+    points = clouds.torus(5_000)[0] * (1, 1.3, 1)
+    clouds.scan(points, name="Other", location=(0.03, 0.0, 0.02))
+    clouds.scan(clouds.torus(5_000, 2)[0] * (1, 1.3, 1), name="Active")
+    bpy.data.objects["Other"].select_set(True)
+    assert bpy.ops.prefilter.align_scans() == FINISHED
+    assert bpy.data.objects["Other"].location.length < 0.01
+
+
 def test_drop_points(tmp_path):
     clouds.file(tmp_path / "Torus.xyz", *clouds.torus(1_000))
     named = {"directory": str(tmp_path), "files": [{"name": "Torus.xyz"}]}

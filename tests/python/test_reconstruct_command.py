@@ -2,11 +2,14 @@
 
 """The command `reconstruct`: the file that the package's function writes."""
 
+import gzip
+
 import clouds
 import numpy as np
 import prefilter
 import pytest
 from command_files import fails, run
+from scan_writers import ply
 
 
 @pytest.fixture
@@ -63,6 +66,51 @@ def test_normals_face_a_viewpoint(tmp_path, capsys):
     assert "Normals: 'given', but there are points without normals" in told
     told = fails(capsys, 1, "reconstruct", *scans, out, *flags, *flags)
     assert "viewpoint: found 4 for 2 sources" in told
+
+
+def test_points_that_are_chosen(tmp_path, capsys):
+    positions, normals = clouds.sphere(6000).both
+    of = np.arange(6000) % 3 + 1
+    columns = [positions, normals, np.arange(6000) % 4, np.arange(6000) % of + 1, of]
+    names = "x,y,z,nx,ny,nz,classification,return_number,number_of_returns"
+    scan, out, expected = (tmp_path / name for name in ("a.csv", "out.ply", "expected.ply"))
+    np.savetxt(scan, np.column_stack(columns), fmt="%.9g", delimiter=",", header=names, comments="")
+    box = ["-1", "-1", "-0.5", "1", "1", "0.9"]
+    choice = ("--classes", "1, 3", "--returns", "last", "--box", *box)
+    assert run("reconstruct", scan, out, "--depth", "4", "--trim", "3", *choice) == 0
+    corners = [[-1, -1, -0.5], [1, 1, 0.9]]
+    report = prefilter.reconstruct_file(
+        scan, expected, depth=4, trim=3.0, classes=[1, 3], returns="last", box=corners
+    )
+    assert out.read_bytes() == expected.read_bytes()
+    assert f"from {report.points} points" in capsys.readouterr().out
+    for words, arguments in {
+        "Classes: found 'ground'; whole numbers from 0 to 255": ("--classes", "ground"),
+        "Classes: found '2,256'": ("--classes", "2,256"),
+        "box: from": ("--box", *["1", "0", "0", "0", "1", "1"]),
+    }.items():
+        assert words in fails(capsys, 1, "reconstruct", scan, out, *arguments)
+    assert "--returns: found 'second'" in fails(
+        capsys, 2, "reconstruct", scan, out, "--returns", "second"
+    )
+
+
+def test_files_that_are_aligned(tmp_path, capsys):
+    scans = [tmp_path / f"{k}.ply.gz" for k in range(2)]
+    for k, path in enumerate(scans):
+        positions, normals = clouds.sphere(4000, seed=k + 1).both
+        positions = positions * (1, 1.3, 0.8) + (0.05 * k, 0.0, 0.03 * k)
+        kinds = [("double", name) for name in ("x", "y", "z", "nx", "ny", "nz")]
+        rows = np.hstack([positions, normals / (1, 1.3, 0.8)]).tolist()
+        path.write_bytes(gzip.compress(ply("binary_little_endian", [("vertex", kinds, rows)])))
+    out, expected = tmp_path / "out.ply", tmp_path / "expected.ply"
+    assert run("reconstruct", *scans, out, "--depth", "5", "--align") == 0
+    told = capsys.readouterr().out
+    report = prefilter.reconstruct_file(scans, expected, depth=5, align=True)
+    assert out.read_bytes() == expected.read_bytes()
+    after, before = report.alignment.after, report.alignment.before
+    assert after < 0.3 * before
+    assert f"aligned the files: typically {after:.4g} apart, before {before:.4g}" in told
 
 
 def test_what_is_refused(scan, tmp_path, capsys):

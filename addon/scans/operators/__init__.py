@@ -3,9 +3,13 @@
 """The operators on scans, one a file."""
 
 from ...core.registration import classes, registration
+from .align_scans import PREFILTER_OT_align_scans
+from .crop_points import PREFILTER_OT_crop_points
 from .drop_points import PREFILTER_FH_points, PREFILTER_OT_drop_points
 from .import_points import PREFILTER_OT_import_points
 from .reconstruct import PREFILTER_OT_reconstruct
+from .remove_outliers import PREFILTER_OT_remove_outliers
+from .subsample_points import PREFILTER_OT_subsample_points
 from .trim_reconstruction import PREFILTER_OT_trim_reconstruction
 
 register, unregister = registration(
@@ -14,6 +18,12 @@ register, unregister = registration(
         PREFILTER_OT_trim_reconstruction,
         PREFILTER_OT_import_points,
         PREFILTER_OT_drop_points,
+    ),
+    classes(
+        PREFILTER_OT_subsample_points,
+        PREFILTER_OT_remove_outliers,
+        PREFILTER_OT_crop_points,
+        PREFILTER_OT_align_scans,
     ),
     classes(PREFILTER_FH_points),
 )

@@ -13,7 +13,7 @@ _CHOICES = (
     (marked("Import Points"), "IMPORT", False),
     (marked("Reconstruct Surface"), "POINTCLOUD_DATA", True),
 )
-_OTHERS = frozenset({".ply", ".txt"})
+_OTHERS = frozenset({".ply", ".txt", ".obj"})
 """What Blender or other add-ons read, too."""
 
 

@@ -298,4 +298,4 @@ def test_every_kind_of_file_is_offered(addon):
     dropped = set(
         addon("scans.operators.drop_points").PREFILTER_FH_points.bl_file_extensions.split(";")
     )
-    assert set(choices.EXTENSIONS) - dropped == {".ply", ".txt"}
+    assert set(choices.EXTENSIONS) - dropped == {".ply", ".txt", ".obj"}

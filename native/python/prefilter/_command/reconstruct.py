@@ -26,7 +26,8 @@ neither has to fit into memory; with --memory-limit, the rest goes to temporary 
 examples:
   prefilter reconstruct scan.ply surface.ply
   prefilter reconstruct city.laz city.ply --depth 11 --memory-limit 600
-  prefilter reconstruct left.ply right.ply hall.ply --viewpoint 0 0 1.5 --viewpoint 8 0 1.5"""
+  prefilter reconstruct left.ply right.ply hall.ply --viewpoint 0 0 1.5 --viewpoint 8 0 1.5
+  prefilter reconstruct tile.laz ground.ply --classes 2 --returns last --trim 8"""
 
 
 def add(commands: Any, purpose: str) -> None:
@@ -64,7 +65,11 @@ def add_settings(parser: argparse.ArgumentParser, host: Host) -> None:
     host.add_preset(parser)
     sizes = ("depth", "voxel_size")
     add_flags(
-        parser, ScanSettings, exclusive=sizes, without_default=sizes, preferred=host.preferred
+        parser,
+        ScanSettings,
+        exclusive=sizes,
+        without_default=(*sizes, "box"),
+        preferred=host.preferred,
     )
 
 

@@ -27,8 +27,10 @@ def add_command(commands: Any, name: str, purpose: str, *notes: str) -> argparse
 
 def check_ending(options: argparse.Namespace, name: str, path: str, allowed: Sequence[str]) -> str:
     """Returns the extension of a file; ends the program unless it is allowed."""
-    extension = os.path.splitext(path)[1].lower()
-    if extension not in allowed:
+    # Of several that a name ends in, such as ".ply.gz" and ".gz", the longest one.
+    fitting = [one for one in allowed if path.lower().endswith(one)]
+    extension = max(fitting, key=len, default="")
+    if not os.path.splitext(path)[1] or not extension:
         options.usage_error(f"{name}: found '{path}'; allowed: {', '.join(allowed)}")
     return extension
 

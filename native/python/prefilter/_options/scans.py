@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import prefilter
 
 from .choices import Choice
-from .options import number, one_of, switch, threads
+from .options import number, numbers, one_of, switch, text, threads
 
 RESOLUTIONS = {
     "auto": Choice(
@@ -53,6 +53,16 @@ POINTS = {
     "hide": Choice("Hide", "The points are hidden, in renders too"),
     "delete": Choice("Delete", "The points are deleted"),
 }
+RETURNS = {
+    "all": Choice("All", "All of them"),
+    "first": Choice("First", "The first of each pulse: roofs and the tops of trees"),
+    "last": Choice("Last", "The last of each pulse: more of the ground below trees"),
+    "only": Choice("Only", "Those of pulses that have no other"),
+}
+CLASSES = (
+    "Numbers of the classes that are kept, such as 2 for the ground in LAS files, separated by "
+    "commas. Empty keeps all"
+)
 
 
 @dataclass(frozen=True)
@@ -146,6 +156,18 @@ class ScanSettings:
         "Smooth Shading",
         "Shade the result smooth",
     )
+    # What points of files are read: commands alone, as objects have been imported before.
+    classes: str = text("", "", CLASSES, metavar="N[,N]")
+    returns: str = one_of(
+        "all", "", "Which echoes of each pulse of the scanner are kept", RETURNS, metavar="NAME"
+    )
+    box: tuple[float, ...] = numbers(
+        (0.0,) * 6,
+        "",
+        "Keep the points in a box, given by its lowest x, y and z and its highest",
+        metavar="NUMBER",
+    )
+    use_align: bool = switch(False, "", "Move the files onto the first of them, a little")
     memory_limit: int = number(
         0,
         "Memory Limit",

@@ -10,6 +10,7 @@ from typing import Any
 import prefilter
 
 from .._options.scans import ScanSettings
+from ..points.scan_files import is_ply
 from .outcome import Outcome
 from .progress import Progress
 from .wording import Sentence, amount, listed
@@ -21,6 +22,7 @@ _LABELS = {
     "trim": "Trim",
     "isovalue": "Iso-Value",
     "direction": "Normals",
+    "spacing": "Spacing",
     "memory_limit": "Memory Limit",
 }
 _DIRECTIONS = {
@@ -29,6 +31,7 @@ _DIRECTIONS = {
     "viewpoint": Sentence("normals point to the scanner"),
     "outward": Sentence("normals point outward"),
 }
+_LAST_CLASS = 255
 _FEW = 1e-3
 """The share of outliers that every scan may have."""
 
@@ -107,9 +110,29 @@ def options(settings: ScanSettings) -> dict[str, Any]:
         "direction": settings.direction,
         "watertight": settings.use_watertight,
         "trim": settings.trim if settings.trim > 0.0 else None,
+        "classes": as_classes(settings.classes),
+        "returns": settings.returns,
+        "box": (settings.box[:3], settings.box[3:]) if any(settings.box) else None,
+        "align": settings.use_align,
         "memory_limit": settings.memory_limit or None,
         "threads": settings.threads,
     }
+
+
+def has_connections(path: Path) -> bool:
+    """Returns whether a file is of a kind that may say how its points are connected."""
+    return is_ply(path)
+
+
+def as_classes(text: str) -> list[int] | None:
+    """Returns the numbers of classes in a text, None for none; raises ValueError for others."""
+    words = text.replace(",", " ").split()
+    if not all(word.isdecimal() and int(word) <= _LAST_CLASS for word in words):
+        raise ValueError(
+            f"Classes: found '{text}'; whole numbers from 0 to {_LAST_CLASS} are needed, separated "
+            "by commas"
+        )
+    return [int(word) for word in words] or None
 
 
 def told(report: "prefilter.ReconstructionReport", length: Callable[[float], str]) -> str:
@@ -197,14 +220,14 @@ def outcome(
 ) -> Outcome:
     """Returns what was done, as users read it."""
     several = len(sources) > 1
+    notes = [f"read {listed(path.name for path in sources)}"] if several else []
+    if report.alignment is not None:
+        before, after = length(report.alignment.before), length(report.alignment.after)
+        notes.append(f"aligned the files: typically {after} apart, before {before}")
     return Outcome(
         Sentence("Reconstructed '{}' from {}", target.name, told(report, length)),
         objects=list(objects),
         files=[str(target)],
         warnings=oddities(report, length),
-        notes=[
-            *([f"read {listed(path.name for path in sources)}"] if several else []),
-            *directions(report),
-            *openings(report),
-        ],
+        notes=[*notes, *directions(report), *openings(report)],
     )

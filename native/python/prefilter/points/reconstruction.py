@@ -308,7 +308,7 @@ def reconstruct_file(
     choice = as_choice(classes, returns, box)
     cloud = joined_cloud(sources, wanted, progress, threads, choice, align)
     options.are_sides_known = cloud.are_sides_known
-    report = ReconstructionReport(alignment=cloud.alignment)
+    report = ReconstructionReport()
     rest = as_progress(cloud.rest(progress))
     found = _native.reconstruct_file(cloud.points, os.fsencode(place), options, rest)
     _fill_in(report, found, cloud)

@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""What operators share that change the selected scans."""
+
+import bpy
+
+from ...core.doing import Doing
+from ...core.translations import tr
+
+
+class SelectedScans(Doing):
+    """A mixin: works on the selected objects that have points."""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Tells whether points are selected."""
+        if context.mode != "OBJECT":
+            cls.poll_message_set(tr("Switch to Object Mode first"))
+            return False
+        if cls.may_be_redone(context):
+            return True
+        if not selected_scans(context):
+            cls.poll_message_set(tr("Select objects with vertices and no faces, or point clouds"))
+            return False
+        return True
+
+    def targets(self, context: bpy.types.Context) -> list[bpy.types.Object]:
+        """Returns the selected points, those of the active object first."""
+        return selected_scans(context)
+
+
+def selected_scans(context: bpy.types.Context) -> list[bpy.types.Object]:
+    """Returns the selected objects with points of their own, the active one first."""
+    from ...bridge.kept_points import may_lose_points
+
+    found = [obj for obj in context.selected_objects if may_lose_points(obj)]
+    return sorted(found, key=lambda obj: obj != context.active_object)

@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""`prefilter.subsample_points`: subsample points of the selected scans."""
+
+from typing import TYPE_CHECKING
+
+import bpy
+
+from ...core.operator import WorkOperator
+from ..properties import SubsampleProperties
+from .selected import SelectedScans
+
+if TYPE_CHECKING:
+    from ..cleaning import Cleaning
+
+
+class PREFILTER_OT_subsample_points(
+    SubsampleProperties, SelectedScans, WorkOperator, bpy.types.Operator
+):
+    """Subsample Points of the selected scans."""
+
+    bl_idname = "prefilter.subsample_points"
+    bl_label = "Subsample Points"
+    bl_description = (
+        "Keep fewer points of the selected scans, spread evenly. Scans count as one cloud"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+    doing = "Subsampling"
+
+    if TYPE_CHECKING:
+        work: Cleaning | None
+
+    def read_work(self, context: bpy.types.Context) -> "Cleaning":
+        """Copies where the points are."""
+        from ..cleaning import subsampling
+
+        return subsampling(self.targets(context), self.to_settings())
