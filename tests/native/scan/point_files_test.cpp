@@ -8,6 +8,8 @@
 
 #include "io/files.h"
 #include "prefilter/base/error.h"
+#include "prefilter/scan/chosen_points.h"
+#include "prefilter/scan/moved_points.h"
 #include "prefilter/scan/open_points.h"
 #include "prefilter/scan/ply_faces.h"
 
@@ -45,6 +47,15 @@ std::string pcd(const std::string& data, const std::string& points) {
          data + "\n" + points;
 }
 
+std::string splats() {
+  std::string header = "ply\nformat ascii 1.0\nelement vertex 2\n";
+  for (const char* name : {"x", "y", "z", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1",
+                           "rot_2", "rot_3", "opacity", "f_dc_0", "f_dc_1", "f_dc_2"}) {
+    header += std::string("property float ") + name + "\n";
+  }
+  return header + "end_header\n1 2 3 -4 -5 -6 1 0 0 0 2 0 0 0\n4 5 6 -6 -5 -4 0 0 0 0 nan 9 -9 1\n";
+}
+
 struct ExampleFile {
   std::string name;
   std::string contents;
@@ -65,6 +76,8 @@ std::vector<ExampleFile> examples() {
       {"packed.pcd", pcd("binary_compressed", packed)},
       {"counted.pts", "2\n1 2 3 -100 0 10 255\n4 5 6 7 8 9 10\n"},
       {"plain.xyz", "# x y z nx ny nz\n1,2,3,0,0,1\n1\t2 3;0 -1 0\n"},
+      {"vertices.obj", "v 1 2 3 0.5 0 1\nv 4 5 6 0 0 0\nvn 0 0 1\nvn 0 1 0\nf 1 2 1\n"},
+      {"splats.ply", splats()},
   };
 }
 
@@ -134,6 +147,40 @@ TEST(OpenPoints, ReadsOrRefusesWhatIsDamaged) {
     }
     EXPECT_GT(refused, kTries / 10) << example.name;
   }
+}
+
+TEST(OpenPoints, SplatsAreFlatAlongTheirShortestAxis) {
+  const TestFolder folder;
+  write(folder.path("splats.ply"), splats());
+  const std::unique_ptr<PointSource> source = open_points(folder.path("splats.ply"));
+  PointBatch batch;
+  ASSERT_TRUE(source->read(10, &batch));
+  EXPECT_FALSE(source->are_normals_directed());
+  EXPECT_EQ(batch.normals[0], (std::array<float, 3>{0.0F, 0.0F, 1.0F}));
+  EXPECT_EQ(batch.normals[1], (std::array<float, 3>{0.0F, 0.0F, 0.0F}));
+  EXPECT_EQ(batch.weights[1], 0.0F);
+  EXPECT_EQ(batch.attributes, (std::vector<float>{128, 128, 128, 255, 0, 199}));
+}
+
+TEST(OpenPoints, PointsAreChosenAndMoved) {
+  const TestFolder folder;
+  write(folder.path("a.csv"),
+        "x,y,z,classification,return_number,number_of_returns\n1,2,3,2,1,1\n4,5,6,2,1,2\n"
+        "7,8,9,3,0,0\n");
+  const std::unique_ptr<PointSource> source = open_points(folder.path("a.csv"));
+  PointChoice choice;
+  choice.classes.emplace().set(2);
+  choice.returns = Returns::kLast;
+  choice.box = Box{{0, 0, 0}, {4, 5, 6}};
+  ChosenPoints chosen(source.get(), choice, "a");
+  RigidMotion motion;
+  motion.shift = {10, 0, 0};
+  MovedPoints moved(&chosen, motion);
+  PointBatch batch;
+  ASSERT_TRUE(moved.read(10, &batch));
+  EXPECT_EQ(batch.positions, (std::vector<Vector3>{{11, 2, 3}}));
+  EXPECT_EQ(batch.attributes.size(), 3U);
+  EXPECT_FALSE(moved.read(10, &batch));
 }
 
 }  // namespace

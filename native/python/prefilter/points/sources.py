@@ -126,7 +126,8 @@ def joined_cloud(
     here: in a PLY file a scanner's grid or faces tell the normals, others are estimated, those seen
     from one place by themselves, and those seen from nobody knows where together.
     """
-    scans = [_opened(source, choice) for source in sources]
+    # Nothing is told of unpacking, which may be stopped.
+    scans = [_opened(source, choice, progress_part(progress, 0.0, 0.0)) for source in sources]
     _place_scanners(scans, wanted.viewpoints)
     missing = [scan for scan in scans if not scan.has_normals]
     progress = progress_part(progress, 0.0, 0.5)
@@ -141,7 +142,8 @@ def joined_cloud(
     alignment = None
     if align and len(scans) > 1:
         # What has been read is passed as it is, of all else some points are enough.
-        some = [scan.some_points() for scan in scans]
+        still = progress_part(progress, 0.9, 0.9)
+        some = [scan.some_points(still) for scan in scans]
         alignment = align_scans(some, progress=progress_part(progress, 0.9, 1.0), threads=threads)
     native = tuple(scan.native() for scan in scans)
     if alignment is not None:
@@ -193,11 +195,11 @@ class _Scan:
             return self.seen_from
         return as_viewpoints(None if self.read is None else self.read.viewpoint)
 
-    def some_points(self) -> ScanPoints:
+    def some_points(self, progress: ProgressCallback | None) -> ScanPoints:
         """Points with normals, at most as many as tell where the scan is."""
         if self.read is not None:
             return self.read
-        positions, normals, *_ = _native.read_points(self.native(), _ENOUGH, None)
+        positions, normals, *_ = _native.read_points(self.native(), _ENOUGH, progress)
         return ScanPoints(positions, normals)
 
     def native(self) -> _native.PointSource:
@@ -224,9 +226,9 @@ class _Scan:
         )
 
 
-def _opened(source: Source, choice: Choice | None) -> _Scan:
+def _opened(source: Source, choice: Choice | None, progress: ProgressCallback | None) -> _Scan:
     if not isinstance(source, ScanPoints):
-        points = open_points(source)
+        points = open_points(source, progress=progress)
         if choice is not None:
             points = choice.of_file(points, os.fsdecode(source))
         return _Scan(source, points, None, choice, is_from_above(source))
