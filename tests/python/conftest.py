@@ -40,6 +40,8 @@ SAME_IN_ANY_PYTHON = {
     "test_normals_of_points.py",
     "test_opengl_bench.py",
     "test_places.py",
+    "test_point_choice.py",
+    "test_point_clouds.py",
     "test_quads.py",
     "test_rasterize_gradients.py",
     "test_rasterize_laws.py",
