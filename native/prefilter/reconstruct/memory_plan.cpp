@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "prefilter/base/error.h"
@@ -59,6 +60,12 @@ double batch_bytes(const CloudLoad& load) {
   return points * (kBytesPerPoint + 2.0 * kFloat * attributes);
 }
 
+std::uint64_t as_bytes(double bytes) {
+  constexpr double kMost = 0x1p63;
+  return bytes < kMost ? static_cast<std::uint64_t>(std::max(bytes, 0.0))
+                       : std::numeric_limits<std::uint64_t>::max();
+}
+
 std::string in_mib(double bytes) {
   return std::to_string(static_cast<std::uint64_t>(std::ceil(bytes / kMib)));
 }
@@ -99,8 +106,9 @@ MemoryPlan plan_memory(const SampleStore& store, const CloudLoad& load,
       const double needed = bytes_needed(store, load, keeps_all || is_all, threads);
       // Slabs that are kept take their cells out of the store.
       const double stays = keeps_all ? 0.0 : held;
-      if (needed + stays <= limit) return {threads, keeps_all || is_all, true};
-      if (needed <= limit && !keeps_all) return {threads, is_all, false};
+      const double left = limit - needed;
+      if (stays <= left) return {threads, keeps_all || is_all, true, as_bytes(left - stays)};
+      if (left >= 0.0 && !keeps_all) return {threads, is_all, false, as_bytes(left)};
     }
   }
   if (options.memory_limit > 0) {

@@ -22,6 +22,7 @@ struct MemoryPlan {
   int threads = 1;         // so many slabs at a time
   bool keeps_all = false;  // slabs are made once, and kept until they are needed no more
   bool is_held = true;     // the cells that a store holds may stay in memory
+  std::uint64_t left = 0;  // bytes for the mesh, where that has to be kept
 };
 
 /// How many batches of points may be in memory at a time.

@@ -132,7 +132,7 @@ void find_mesh(const SurfaceSamples& surface, const ReconstructOptions& options,
             make, join);
 }
 
-// From samples in cells to the mesh.
+// From samples in cells to the mesh. The memory limit is that of the mesh.
 void find_surface(PointSource* source, const SampleGrid& grid, const ReconstructOptions& options,
                   double mean_weight, bool keeps_all, SampleStore* store, MeshSink* sink,
                   ReconstructReport* report) {
@@ -158,7 +158,7 @@ void find_surface(PointSource* source, const SampleGrid& grid, const Reconstruct
     report->triangles = joiner.triangles();
     return;
   }
-  SurfaceCutter cutter(TrimOptions(), all, grid.cell, options.support, options.memory_limit / 4,
+  SurfaceCutter cutter(TrimOptions(), all, grid.cell, options.support, options.memory_limit,
                        options.folder);
   MeshJoiner joiner(grid, all, &cutter);
   find_mesh(surface, options, level, &slabs, &joiner, &cutter);
@@ -261,6 +261,7 @@ ReconstructReport reconstruct(PointSource* source, const ReconstructOptions& opt
   ReconstructOptions rest = options;
   rest.progress = options.progress.part(0.4, 1.0);
   rest.threads = plan.threads;
+  rest.memory_limit = plan.left;
   find_surface(source, grid, rest, mean_weight, plan.keeps_all, &store, sink, &report);
   report.outliers /= extent.part.weight;
   check_mesh(options, report);
