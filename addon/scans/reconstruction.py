@@ -276,7 +276,7 @@ class ObjectsStreaming:
             Sentence("Reconstructed '{}' from {}", self._target.name, told(self._report)),
             files=[str(self._target)],
             warnings=oddities(self._report),
-            notes=directions(self._report),
+            notes=[*directions(self._report), *openings(self._report)],
         )
 
     def discard(self) -> None:
