@@ -149,7 +149,7 @@ def test_depth_is_the_one_that_points_carry(wavelet: str, tmp_path: Path) -> Non
     np.testing.assert_array_equal(found[0], expected[0])
     np.testing.assert_array_equal(found[1], expected[1])
     scan = prefilter.ScanPoints(cloud.points, cloud.normals)
-    for options in ({"threads": 1}, {"threads": 3, "memory_limit": 1}):
+    for options in ({"threads": 1}, {"threads": 3, "memory_limit": 0}):
         streamed = prefilter.reconstruct_file(
             scan, tmp_path / "torus.ply", wavelet=wavelet, **options
         )
