@@ -13,6 +13,8 @@ ABSENT = {
     "roughness": ("", None),
     "trim": (0.0, None),
     "memory_limit": (0, None),
+    "classes": ("", None),
+    "box": ((0.0,) * 6, None),
     "background": ("transparent", None),
     "table": ("", None),
     "target": ("filter", None),
