@@ -69,6 +69,9 @@ std::vector<Vector3> some_of(std::span<const Vector3> points) {
     const Vector3& p = points[i];
     if (std::abs(p[0]) + std::abs(p[1]) + std::abs(p[2]) <= kLargestCoordinate) result.push_back(p);
   }
+  // Copies of a point say no more of the shape than one.
+  std::sort(result.begin(), result.end());
+  result.erase(std::unique(result.begin(), result.end()), result.end());
   return result;
 }
 
