@@ -140,7 +140,8 @@ def test_only_the_ratios_of_weights_count(scale):
     expected = _rebuilt(CLOUD.points, weights=weights)
     found = _rebuilt(CLOUD.points, weights=scale * weights)
     np.testing.assert_array_equal(found[1], expected[1])
-    np.testing.assert_allclose(found[0], expected[0], atol=1e-5)
+    # Values are solved for in single precision; where they are nearly level, vertices tell.
+    np.testing.assert_allclose(found[0], expected[0], atol=1e-4)
 
 
 @BASES

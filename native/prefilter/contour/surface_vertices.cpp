@@ -140,8 +140,16 @@ class VertexMaker {
                    const CellNode& neighbor) const {
     const Crossing found = crossing(tree_, leaf, neighbor, interpolant_);
     Vector3 result;
+    const int shift = leaf.depth - neighbor.depth;
     for (int a = 0; a < 3; ++a) {
-      const double center = 2.0 * visit.at[a] + ((o >> a) & 1) + 0.5;
+      const int cell = 2 * visit.at[a] + ((o >> a) & 1);
+      double center = cell + 0.5;
+      // Of values between which the surface runs on, those of smooth functions, the line through
+      // the centers.
+      if (heights_ != nullptr && shift > 0 && found.distance > 1.0F && a != face / 2) {
+        const double other = ((cell >> shift) + 0.5) * (1 << shift);
+        center += static_cast<double>(found.t / found.distance) * (other - center);
+      }
       result[a] = a == face / 2 ? frame_.crossing(face, center, static_cast<double>(found.t),
                                                   static_cast<double>(found.distance), leaf.depth)
                                 : frame_.position(a, center, leaf.depth);

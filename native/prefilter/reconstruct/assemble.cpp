@@ -2,6 +2,7 @@
 
 #include "prefilter/reconstruct/assemble.h"
 
+#include <algorithm>
 #include <bit>
 #include <utility>
 
@@ -10,18 +11,15 @@
 namespace prefilter {
 namespace {
 
-struct BlockOf {
-  const NodeLevel* level;
-  std::size_t block;
-};
-
 // Which blocks of a tree a slab needs.
 class Window {
  public:
-  Window(int low, int high, int depth) : low_(low), high_(high), depth_(depth) {}
+  // In finest cells; `octants` wide around them, but no more than `most` finest cells.
+  Window(int low, int high, int depth, int octants, int most)
+      : low_(low), high_(high), depth_(depth), octants_(octants), most_(most) {}
   bool holds(std::uint64_t place, int node_depth) const {
     const int shift = depth_ - node_depth;
-    const int margin = 1 << shift;  // two octants
+    const int margin = std::max(1 << shift, std::min(octants_ << shift >> 1, most_));
     const int z = morton_cell(place)[2];
     return z << shift < high_ + margin && (z + 1) << shift > low_ - margin;
   }
@@ -30,23 +28,22 @@ class Window {
   int low_;
   int high_;
   int depth_;
+  int octants_;
+  int most_;
 };
 
-}  // namespace
-
-CellTree assemble(const CoarseTree& coarse, const SlabTrees& trees, int slab, int depth,
-                  float scale) {
+CellTree assemble_within(const Window& window, const CoarseTree& coarse, const SlabTrees& trees,
+                         int slab, int depth, bool is_solved, BlockSources* sources) {
   const int top = static_cast<int>(coarse.tree.levels.size());
-  const Window window(slab << (depth - top), (slab + 1) << (depth - top), depth);
   CellTree result;
-  result.root = scale * coarse.root;
+  result.root = coarse.root;
   result.levels.resize(static_cast<std::size_t>(depth));
   const auto continued = [&](std::size_t number) {
     const CoarseTree::Continuation& found = coarse.continuations[number];
     const FluxTree* tree = trees[static_cast<std::size_t>(found.slab - slab + 1)];
-    return BlockOf{tree->levels.data(), found.block};
+    return BlockSource{tree->levels.data(), found.block};
   };
-  std::vector<BlockOf> blocks;
+  std::vector<BlockSource> blocks;
   if (top > 0) {
     blocks.push_back({coarse.tree.levels.data(), 0});
   } else {
@@ -56,8 +53,8 @@ CellTree assemble(const CoarseTree& coarse, const SlabTrees& trees, int slab, in
     TreeLevel& level = result.levels[static_cast<std::size_t>(k)];
     level.blocks.reserve(blocks.size());
     level.split.reserve(blocks.size());
-    std::vector<BlockOf> next;
-    for (const BlockOf& found : blocks) {
+    std::vector<BlockSource> next;
+    for (const BlockSource& found : blocks) {
       const TreeLevel& from = found.level->blocks;
       const std::uint64_t place = found.level->places[found.block];
       unsigned split = from.split[found.block];
@@ -72,14 +69,40 @@ CellTree assemble(const CoarseTree& coarse, const SlabTrees& trees, int slab, in
           next.push_back({found.level + 1, child});
         }
       }
-      level.blocks.push_back(from.blocks[found.block]);
-      for (float& value : level.blocks.back()) value *= scale;
+      const std::vector<OctantValues>& solved = found.level->solved;
+      level.blocks.push_back(is_solved && !solved.empty() ? solved[found.block]
+                                                          : from.blocks[found.block]);
       level.split.push_back(static_cast<std::uint8_t>(split));
     }
     link_blocks(&level);
+    if (sources != nullptr) sources->push_back(std::move(blocks));
     blocks = std::move(next);
   }
   return result;
+}
+
+}  // namespace
+
+CellTree assemble(const CoarseTree& coarse, const SlabTrees& trees, int slab, int depth,
+                  float scale) {
+  const int shift = depth - static_cast<int>(coarse.tree.levels.size());
+  const Window window(slab << shift, (slab + 1) << shift, depth, 2, 0);
+  CellTree result = assemble_within(window, coarse, trees, slab, depth, true, nullptr);
+  result.root *= scale;
+  for (TreeLevel& level : result.levels) {
+    for (OctantValues& block : level.blocks) {
+      for (float& value : block) value *= scale;
+    }
+  }
+  return result;
+}
+
+CellTree assemble_unsolved(const CoarseTree& coarse, const SlabTrees& trees, int slab, int depth,
+                           BlockSources* sources) {
+  constexpr int kOctants = 8;
+  const int shift = depth - static_cast<int>(coarse.tree.levels.size());
+  const Window window(slab << shift, (slab + 1) << shift, depth, kOctants, 1 << shift);
+  return assemble_within(window, coarse, trees, slab, depth, false, sources);
 }
 
 }  // namespace prefilter

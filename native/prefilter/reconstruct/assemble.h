@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "prefilter/reconstruct/flux_tree.h"
+#include "prefilter/reconstruct/screened_solve.h"
 #include "prefilter/wavelet/cell_tree.h"
 
 namespace prefilter {
@@ -16,6 +17,7 @@ namespace prefilter {
 struct CoarseTree {
   FluxTree tree;  // values, from depth 0 to that of the slabs' first cells
   float root = 0.0F;
+  bool has_surface = true;
   // Of each cell of the slabs' first depth that is split, along the Morton curve: its slab, and its
   // number among the slab's blocks.
   struct Continuation {
@@ -26,6 +28,7 @@ struct CoarseTree {
 
   /// Whether not even the root is split.
   bool is_empty() const {
+    if (!has_surface) return true;
     return tree.levels.empty() ? continuations.empty() : tree.levels.front().places.empty();
   }
 };
@@ -34,8 +37,13 @@ struct CoarseTree {
 using SlabTrees = std::array<const FluxTree*, 3>;
 
 /// The tree of `depth` as the slab needs it: all blocks that reach within two of their octants of
-/// it, and the values times `scale`.
+/// it, and the values times `scale`: those solved for, where there are.
 CellTree assemble(const CoarseTree& coarse, const SlabTrees& trees, int slab, int depth,
                   float scale);
+
+/// The tree that a slab is solved in, of the values before: all blocks within some of their octants
+/// of it and no farther than the slabs next to it.
+CellTree assemble_unsolved(const CoarseTree& coarse, const SlabTrees& trees, int slab, int depth,
+                           BlockSources* sources);
 
 }  // namespace prefilter

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <utility>
 
+#include "prefilter/reconstruct/leaf_band.h"
+#include "prefilter/reconstruct/plane_patches.h"
 #include "prefilter/reconstruct/slab_walk.h"
 #include "prefilter/spatial/morton.h"
 #include "prefilter/wavelet/root_mean.h"
@@ -32,10 +34,67 @@ CoarseTree make_coarse_tree(PooledFlux flux, int top, int slab_count) {
   return coarse;
 }
 
+double coarse_mean(const Slabs& slabs) {
+  const std::vector<NodeLevel>& levels = slabs.coarse.tree.levels;
+  if (levels.empty()) return static_cast<double>(slabs.coarse.root);
+  const NodeLevel& last = levels.back();
+  double sum = 0.0;
+  double weight = 0.0;
+  for (const SampleCell& cell : slabs.whole.at(slabs.top()).samples.cells) {
+    const std::uint64_t place = morton_index(cell_position(cell.key));
+    const auto found = std::lower_bound(last.places.begin(), last.places.end(), place >> 3U);
+    if (found == last.places.end() || *found != place >> 3U) continue;
+    const auto block = static_cast<std::size_t>(found - last.places.begin());
+    sum += static_cast<double>(cell.weight) *
+           static_cast<double>(last.blocks.blocks[block][place & 7U]);
+    weight += static_cast<double>(cell.weight);
+  }
+  return weight > 0.0 ? sum / weight : static_cast<double>(slabs.coarse.root);
+}
+
+void solve_coarse_tree(float middle, CoarseTree* coarse) {
+  CellTree tree;
+  tree.root = coarse->root;
+  BlockSources sources;
+  for (const NodeLevel& level : coarse->tree.levels) {
+    tree.levels.push_back(level.blocks);
+    sources.emplace_back();
+    for (std::size_t b = 0; b < level.blocks.size(); ++b) sources.back().push_back({&level, b});
+  }
+  // Those of the last level go on in the slabs.
+  if (!tree.levels.empty()) {
+    std::fill(tree.levels.back().split.begin(), tree.levels.back().split.end(), std::uint8_t{0});
+  }
+  solve_screened(sources, 0, middle, &tree);
+  for (std::size_t k = 0; k < tree.levels.size(); ++k) {
+    coarse->tree.levels[k].blocks.blocks = std::move(tree.levels[k].blocks);
+  }
+}
+
+namespace {
+
+// Those above the slabs. Samples that count in the slabs' first cells have been added there.
+void add_coarse_leaves(const SplitCells& splits, SampleSlab* whole, PooledFlux* flux) {
+  find_split(whole);
+  SampleLevel& last = whole->at(whole->depth());
+  for (std::size_t i = 0; i < last.size(); ++i) {
+    if (last.leaf[i] == whole->depth()) last.is_leaf[i] = 0;
+  }
+  for (int k = 0; k <= whole->depth(); ++k) {
+    const SampleLevel* coarser = k > 0 ? &whole->at(k - 1) : nullptr;
+    add_patches({nullptr, &whole->at(k), nullptr, coarser}, k, 0, 1 << k, splits, flux);
+  }
+}
+
+}  // namespace
+
 double find_coarse_tree(const Progress& progress, int threads, Slabs* slabs) {
   PooledFlux flux(static_cast<std::size_t>(slabs->top()) + 1);
   double left_out = 0.0;
+  std::vector<std::uint8_t> is_split;
   const auto collect = [&](int s) {
+    const std::vector<std::uint8_t>& first = slabs->samples(s)->at(slabs->top()).is_split;
+    is_split.insert(is_split.end(), first.begin(), first.end());
     const PooledFlux& pooled = slabs->coarse_flux(s);
     for (std::size_t k = 0; k < pooled.size(); ++k) {
       flux[k].insert(flux[k].end(), pooled[k].begin(), pooled[k].end());
@@ -46,7 +105,16 @@ double find_coarse_tree(const Progress& progress, int threads, Slabs* slabs) {
   };
   for_slabs(
       {SlabStage::kCoefficients}, progress, threads, slabs, [](int) {}, collect);
+  slabs->whole.at(slabs->top()).is_split = std::move(is_split);
+  const SplitCells splits = coarse_splits(slabs->whole, flux.back());
+  add_coarse_leaves(splits, &slabs->whole, &flux);
+  const bool has_surface = std::any_of(flux.begin(), flux.end(), [](const auto& cells) {
+    return std::any_of(cells.begin(), cells.end(),
+                       [](const CellFlux& cell) { return cell.sampled.area > 0.0F; });
+  });
+  add_coarse_band(splits, &flux);
   slabs->coarse = make_coarse_tree(std::move(flux), slabs->top(), slabs->count());
+  slabs->coarse.has_surface = has_surface;
   return left_out;
 }
 

@@ -20,7 +20,7 @@ SlabLeaves find_slab_leaves(const Slabs& slabs, int s) {
   std::vector<std::uint8_t> counts(finest.size());
   for (std::size_t i = 0; i < finest.size(); ++i) {
     const int leaf = finest.leaf[i];
-    if (leaf < slabs.least_leaf) {
+    if (leaf < 0) {
       result.left_out += static_cast<double>(finest.samples.cells[i].weight);
       continue;
     }
@@ -72,7 +72,7 @@ LeafFlags find_whole_flags(const Slabs& slabs, std::span<const SlabLeaves> leave
     if (counts[i] != 0) continue;
     // Its samples count in larger cells, if at all.
     leaf[i] = slabs.whole.at(top).leaf[i];
-    counts[i] = leaf[i] >= slabs.least_leaf ? 1 : 0;
+    counts[i] = leaf[i] >= 0 ? 1 : 0;
   }
   return find_leaf_flags(slabs.whole, counts, leaf);
 }

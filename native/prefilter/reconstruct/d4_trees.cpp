@@ -3,11 +3,10 @@
 #include "prefilter/reconstruct/d4_trees.h"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <utility>
 
-#include "prefilter/base/radix_sort.h"
+#include "prefilter/reconstruct/split_finder.h"
 #include "prefilter/spatial/morton.h"
 
 namespace prefilter {
@@ -42,36 +41,6 @@ void link(const std::vector<std::uint64_t>& next, NodeLevel* level) {
 }
 
 }  // namespace
-
-void SplitFinder::add(const CellPosition& cell) {
-  std::array<std::array<std::int32_t, 2>, 3> parents;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const std::int32_t p = cell[a] >> 1;
-    parents[a] = {p, (cell[a] & 1) != 0 ? p + 1 : p - 1};
-  }
-  for (const std::int32_t z : parents[2]) {
-    if (z < low_ || z >= high_) continue;
-    for (const std::int32_t y : parents[1]) {
-      if (y < 0 || y >= side_) continue;
-      for (const std::int32_t x : parents[0]) {
-        if (x >= 0 && x < side_) places_.push_back(morton_index({x, y, z}));
-      }
-    }
-  }
-  if (places_.size() > 2 * compact_size_ + (1U << 16U)) compact();
-}
-
-std::vector<std::uint64_t> SplitFinder::take() {
-  compact();
-  return std::move(places_);
-}
-
-void SplitFinder::compact() {
-  std::vector<std::uint64_t> other;
-  radix_sort(&places_, 0, 3 * kMaxTreeDepth, &other);
-  places_.erase(std::unique(places_.begin(), places_.end()), places_.end());
-  compact_size_ = places_.size();
-}
 
 FluxTree split_slab(const Slabs& slabs, std::span<const SlabLeaves> leaves, int s) {
   FluxTree tree;

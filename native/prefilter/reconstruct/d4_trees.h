@@ -4,7 +4,6 @@
 // octants, or are next to such a leaf. The values of the trees are not set.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -15,26 +14,6 @@
 #include "prefilter/reconstruct/slabs.h"
 
 namespace prefilter {
-
-/// Of some cells of a depth, the cells that are to be split: which hold these, or a neighbor, as
-/// places along the Morton curve of the depth above. Only those from `low` up to `high` there.
-class SplitFinder {
- public:
-  SplitFinder(int depth, int low, int high) : side_(1 << depth >> 1), low_(low), high_(high) {}
-
-  void add(const CellPosition& cell);
-  /// Each once, in order.
-  std::vector<std::uint64_t> take();
-
- private:
-  void compact();
-
-  std::int32_t side_;
-  std::int32_t low_;
-  std::int32_t high_;
-  std::size_t compact_size_ = 0;
-  std::vector<std::uint64_t> places_;
-};
 
 /// The tree of slab `s`.
 FluxTree split_slab(const Slabs& slabs, std::span<const SlabLeaves> leaves, int s);

@@ -14,19 +14,21 @@ namespace prefilter {
 namespace {
 
 constexpr int kRounds = 2;
+// Of the surface's normal along the line that a vertex moves on; on others it hardly meets it.
+constexpr double kLeastSlope = 0.05;
+// Samples tell better than the function where their cells agree, to this share of a cell's side;
+// where they are off by twice that or more, they do not.
+constexpr double kAgreement = 0.06;
 // Normals that cancel each other to less than this share do not tell a side.
 constexpr double kLeastCoherence = 0.2;
 // Of two normals close together, the mean cosine: of noisy ones, and of such as curvature alone
 // makes differ.
 constexpr double kNoisyCosine = 0.86;
 constexpr double kCleanCosine = 0.96;
-// Of a leaf's side: what noise may leave open.
-constexpr double kOpen = 0.12;
 // On smooth surfaces 1/2 is exact; at creases the samples' own planes are the better of the two.
 constexpr double kOwnPlanes = 0.65;
-constexpr int kMostCoarser = 2;
 // How many depths up samples are looked for where there are none as near: to bring spikes back.
-constexpr int kFarthest = 2;
+constexpr int kFarthest = 4;
 
 // Calls visit(cell, index, corner, mean, weight) for the cells of samples around a point.
 template <typename Visit>
@@ -115,6 +117,11 @@ std::optional<LocalSurface> local_surface(const SampleIndex& index, const Vector
   }
   const double mean = sum / weight;
   surface.distance = -mean;
+  double variance = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    variance += cells[i].weight * (cells[i].planes - mean) * (cells[i].planes - mean);
+  }
+  surface.spread = std::sqrt(variance / weight);
   surface.weight = weight * weight / squares;
   return surface;
 }
@@ -158,29 +165,32 @@ SampleNoise measure_noise(std::span<const SampleCell> cells, const SampleIndex& 
           std::clamp((cosine - kNoisyCosine) / (kCleanCosine - kNoisyCosine), 0.0, 1.0)};
 }
 
-int SampleFit::depth_of_samples(int depth) const {
-  const double enough = kOpen * std::ldexp(1.0, finest_ - depth);
-  double open = noise_.distance / std::sqrt(noise_.samples);
-  int found = depth;
-  for (; open > enough && found > std::max(1, depth - kMostCoarser); --found) open /= 2.0;
-  return found;
-}
-
-void SampleFit::move(int depth, Vector3* point) const {
-  int k = depth_of_samples(depth);
+void SampleFit::move(int depth, const FitLine* line, Vector3* point) const {
+  int k = depth;
   for (int round = 0; round < kRounds; ++round) {
     std::optional<LocalSurface> surface;
     double cell = 1.0;
     // Where there are no samples as near, larger cells may have some.
-    for (const int last = std::max(1, k - kMostCoarser - kFarthest);; --k) {
+    for (const int last = std::max(1, k - kFarthest);; --k) {
       cell = std::ldexp(1.0, finest_ - k);
       const Vector3 p = {(*point)[0] / cell, (*point)[1] / cell, (*point)[2] / cell};
       surface = local_surface(index_of_(k), p, noise_.normal_trust);
       if (surface || k == last) break;
     }
     if (!surface) return;
-    const double step = cell * std::clamp(surface->distance, -1.0, 1.0);
-    for (std::size_t a = 0; a < 3; ++a) (*point)[a] -= step * surface->normal[a];
+    if (line == nullptr) {
+      const double step = cell * std::clamp(surface->distance, -1.0, 1.0);
+      for (std::size_t a = 0; a < 3; ++a) (*point)[a] -= step * surface->normal[a];
+      continue;
+    }
+    const double squared = dot(line->direction, line->direction);
+    const double slope = dot(surface->normal, line->direction);
+    if (slope * slope < kLeastSlope * kLeastSlope * squared) return;
+    const double trust = std::clamp(2.0 - surface->spread / kAgreement, 0.0, 1.0);
+    const double now = dot(*point - line->start, line->direction) / squared;
+    const double t =
+        std::clamp(now - trust * cell * surface->distance / slope, line->low, line->high);
+    *point = line->start + t * line->direction;
   }
 }
 

@@ -20,6 +20,7 @@ namespace prefilter {
 struct LocalSurface {
   Vector3 normal{};       // of length 1
   double distance = 0.0;  // of the point from the surface, along the normal
+  double spread = 0.0;    // of that distance by the samples of each cell: standard deviation
   double weight = 0.0;    // of as many samples as would have the same noise, all weighted alike
 };
 
@@ -45,9 +46,16 @@ struct SampleNoise {
 SampleNoise measure_noise(std::span<const SampleCell> cells, const SampleIndex& coarser,
                           double mean_weight);
 
-/// Moves points onto the surface of the samples around them. Detail wants these near, noise wants
-/// many: they are taken from cells of the smallest size at which noise leaves the surface open by
-/// no more than a small share of a leaf.
+/// Where a point may move: to start + t * direction, t from `low` up to `high`.
+struct FitLine {
+  Vector3 start{};
+  Vector3 direction{};
+  double low = 0.0;
+  double high = 1.0;
+};
+
+/// Moves points onto the surface of the samples around them, where these agree on it: where noise
+/// or scans that are off part them, the function that was solved for tells better.
 class SampleFit {
  public:
   /// `index_of(k)` gives the samples of depth k; `finest` is the largest.
@@ -55,12 +63,12 @@ class SampleFit {
   SampleFit(IndexOf index_of, int finest, const SampleNoise& noise)
       : index_of_(std::move(index_of)), finest_(finest), noise_(noise) {}
 
-  /// Of a point in finest cells, next to leaves of this depth.
-  void move(int depth, Vector3* point) const;
+  /// Of a point in finest cells, next to leaves of this depth. A contour whose vertices stay on the
+  /// lines between the cells that they part does not fold. Without a line it moves along the
+  /// normal, up to a cell of the samples at a time, for a function that was not solved for.
+  void move(int depth, const FitLine* line, Vector3* point) const;
 
  private:
-  int depth_of_samples(int depth) const;
-
   IndexOf index_of_;
   int finest_;
   SampleNoise noise_;

@@ -16,21 +16,29 @@ namespace {
 
 constexpr int kPlaceBits = 3 * kMaxTreeDepth;
 
-// The flux of samples with this area per weight, in the cell `shift` depths up.
-CellFlux flux_in_leaf(const SampleCell& cell, double unit_area, int shift) {
-  const CellPosition at = cell_position(cell.key);
-  const double scale = std::ldexp(1.0, -shift);
-  CellFlux result;
-  CellPosition leaf;
+bool is_any(const CellFlux& cell) {
+  const Vector3& area = cell.flux.area;
+  return area[0] != 0.0 || area[1] != 0.0 || area[2] != 0.0 || cell.sampled.area > 0.0F;
+}
+
+OctantFlux octant_flux(const CellFlux& cell) {
+  OctantFlux result;
   for (std::size_t a = 0; a < 3; ++a) {
-    leaf[a] = at[a] >> shift;
-    const double offset = at[a] - (leaf[a] << shift);
-    const auto normal = static_cast<double>(cell.normal[a]);
-    const double area = unit_area * scale * scale;
-    result.flux.area[a] = area * normal;
-    result.flux.moment[a] = area * scale * (static_cast<double>(cell.flux[a]) + offset * normal);
+    result.area[a] = static_cast<float>(cell.flux.area[a]);
+    result.moment[a] = static_cast<float>(cell.flux.moment[a]);
   }
-  result.place = morton_index(leaf);
+  result.sampled = cell.sampled;
+  return result;
+}
+
+// The same in the coordinates of the cell that has it as octant `o`.
+SampledArea in_block(const SampledArea& octant, std::uint64_t o) {
+  SampledArea result;
+  result.area = octant.area / 4.0F;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const float upper = ((o >> a) & 1U) != 0U ? octant.area : 0.0F;
+    result.moment[a] = (octant.moment[a] + upper) / 8.0F;
+  }
   return result;
 }
 
@@ -49,6 +57,7 @@ std::vector<CellFlux> joined(const std::vector<CellFlux>& entries) {
     const CellFlux& cell = entries[entry & ((std::uint64_t{1} << (64 - kPlaceBits)) - 1)];
     if (!result.empty() && result.back().place == cell.place) {
       result.back().flux.add(cell.flux);
+      result.back().sampled.add(cell.sampled);
       result.back().is_split = result.back().is_split || cell.is_split;
     } else {
       result.push_back(cell);
@@ -66,49 +75,29 @@ std::vector<CellFlux> add_blocks(const std::vector<CellFlux>& octants, NodeLevel
     cell.is_split = true;
     std::array<BoundaryFlux, 8> fluxes;
     std::uint8_t split = 0;
+    std::uint8_t has_flux = 0;
+    level->first_flux.push_back(static_cast<std::uint32_t>(level->fluxes.size()));
     for (; i < octants.size() && octants[i].place >> 3U == cell.place; ++i) {
       const std::uint64_t o = octants[i].place & 7U;
       fluxes[o] = octants[i].flux;
+      cell.sampled.add(in_block(octants[i].sampled, o));
+      if (is_any(octants[i])) {
+        has_flux |= static_cast<std::uint8_t>(1U << o);
+        level->fluxes.push_back(octant_flux(octants[i]));
+      }
       if (octants[i].is_split) split |= static_cast<std::uint8_t>(1U << o);
     }
     cell.flux = flux_of_octants(fluxes);
     level->places.push_back(cell.place);
     level->blocks.blocks.push_back(details_of_octants(fluxes));
     level->blocks.split.push_back(split);
+    level->has_flux.push_back(has_flux);
     cells.push_back(cell);
   }
   return cells;
 }
 
 }  // namespace
-
-double pool_flux(const SampleSlab& slab, const SampleSlab& whole, std::size_t offset,
-                 int least_leaf, PooledFlux* pooled) {
-  const int depth = slab.depth();
-  const SampleLevel& finest = slab.at(depth);
-  double left_out = 0.0;
-  for (std::size_t i = 0; i < finest.size(); ++i) {
-    const SampleCell& cell = finest.samples.cells[i];
-    const int leaf = finest.leaf[i];
-    if (leaf < least_leaf) {
-      left_out += static_cast<double>(cell.weight);
-      continue;
-    }
-    if (leaf == depth && finest.is_met[i] != 0) continue;
-    std::size_t at = i;
-    int k = depth;
-    for (; k > std::max(leaf, slab.top); --k) at = slab.at(k).parents[at];
-    const SampleLevel* level = &slab.at(k);
-    if (leaf < slab.top) {
-      at += offset;
-      for (; k > leaf; --k) at = whole.at(k).parents[at];
-      level = &whole.at(k);
-    }
-    (*pooled)[static_cast<std::size_t>(leaf)].push_back(
-        flux_in_leaf(cell, static_cast<double>(level->unit_area[at]), depth - leaf));
-  }
-  return left_out;
-}
 
 FluxTree analyze_flux(PooledFlux pooled, int top, int depth) {
   FluxTree tree;

@@ -21,16 +21,16 @@ constexpr auto kFloat = static_cast<double>(sizeof(float));
 constexpr double kBytesPerPoint = 110.0;
 // Of a finest cell of the samples, with those above it, in all stages; attributes are in those of
 // all depths.
-constexpr double kBytesPerCell = 155.0;
+constexpr double kBytesPerCell = 290.0;
 // The same for each cell that the surface meets, in the D4 basis.
 constexpr double kD4BytesPerMetCell = 200.0;
 constexpr double kDepths = 1.4;
 // Of a triangle of a slab that is made, with its leaves, edges and vertices.
-constexpr double kBytesPerTriangle = 195.0;
+constexpr double kBytesPerTriangle = 330.0;
 constexpr double kVerticesPerTriangle = 1.0;  // twice the half, as they are copied
 constexpr double kTrianglesPerMetCell = 2.1;
 // So many slabs to both sides of those at work are in memory: see Slabs::bring.
-constexpr int kMargin = 3;
+constexpr int kMargin = 4;
 // What does not depend on the cloud.
 constexpr double kAlways = 4.0 * kMib;
 
@@ -38,7 +38,7 @@ constexpr double kAlways = 4.0 * kMib;
 // at random, 1 / (1 - exp(-x)) where cells with samples have x / (1 - exp(-x)) in the mean, which
 // this exceeds; leaves are larger where there are still fewer.
 double met_cells_per_cell(double points_per_cell) {
-  constexpr double kMost = 4.0;
+  constexpr double kMost = 2.0;
   return std::min(kMost, 1.0 + 0.45 / std::max(points_per_cell - 1.0, 1e-3));
 }
 

@@ -68,12 +68,51 @@ CellPolygon cut_to_cell(const Plane& plane) {
   return polygon;
 }
 
-CellFlux patch(const CellPosition& at, const CellPolygon& polygon) {
-  CellFlux result;
-  result.place = morton_index(at);
-  result.flux = polygon_flux(polygon, {0.0, 0.0, 0.0});
-  return result;
-}
+// Where pieces of planes go.
+struct Pieces {
+  const SplitCells& splits;
+  PooledFlux* flux;
+
+  // That of a plane in a cell of depth `k`, or in its octants where it is split. Only those with
+  // samples tell where the function is.
+  void add(std::uint64_t place, int k, const Plane& plane, bool is_sampled) const {
+    const CellPolygon polygon = cut_to_cell(plane);
+    if (polygon.count >= 3) add_cut(place, k, plane, polygon, is_sampled);
+  }
+
+  void add_cut(std::uint64_t place, int k, const Plane& plane, const CellPolygon& polygon,
+               bool is_sampled) const {
+    if (splits.is_split(k, place)) {
+      for (std::uint64_t o = 0; o < 8; ++o) {
+        Plane within = plane;
+        for (std::size_t a = 0; a < 3; ++a) {
+          within.point[a] = 2.0 * plane.point[a] - static_cast<double>((o >> a) & 1U);
+        }
+        add(place << 3U | o, k + 1, within, is_sampled);
+      }
+      return;
+    }
+    CellFlux piece;
+    piece.place = place;
+    piece.flux = polygon_flux(polygon, {0.0, 0.0, 0.0});
+    if (is_sampled) piece.sampled = sampled_area(polygon, piece.flux);
+    (*flux)[static_cast<std::size_t>(k)].push_back(piece);
+  }
+
+ private:
+  // At the mean of the corners, which is within the piece.
+  static SampledArea sampled_area(const CellPolygon& polygon, const BoundaryFlux& flux) {
+    SampledArea result;
+    const double area = std::sqrt(dot(flux.area, flux.area));
+    result.area = static_cast<float>(area);
+    for (std::size_t a = 0; a < 3; ++a) {
+      double sum = 0.0;
+      for (int i = 0; i < polygon.count; ++i) sum += polygon.corners[i][a];
+      result.moment[a] = static_cast<float>(area * sum / polygon.count);
+    }
+    return result;
+  }
+};
 
 // Sums for a cell without samples, from the planes next to it.
 struct Guess {
@@ -165,31 +204,62 @@ void for_cells_and_layers(const SampleLevel* below, const SampleLevel& level,
   }
 }
 
+// Whether leaves of another size tell of a cell without samples: a coarser one that holds it, or
+// smaller ones beside it.
+bool is_others(CellKey key, const SampleLevel* coarser, const std::vector<CellKey>& split) {
+  const CellPosition at = cell_position(key);
+  if (coarser != nullptr) {
+    const std::vector<SampleCell>& cells = coarser->samples.cells;
+    const CellKey parent = cell_key({at[0] / 2, at[1] / 2, at[2] / 2});
+    const auto found =
+        std::lower_bound(cells.begin(), cells.end(), parent,
+                         [](const SampleCell& cell, CellKey sought) { return cell.key < sought; });
+    if (found != cells.end() && found->key == parent &&
+        coarser->is_split[static_cast<std::size_t>(found - cells.begin())] == 0) {
+      return true;
+    }
+  }
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (const int step : {-1, 1}) {
+      CellPosition next = at;
+      next[a] += step;
+      if (std::binary_search(split.begin(), split.end(), cell_key(next))) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
-void add_patches(const SampleLevel* below, const SampleLevel& level, const SampleLevel* above,
-                 int depth, int low, int high, std::vector<CellFlux>* patches) {
-  const std::vector<CellKey> keys = keys_with_layers(below, level, above);
+void add_patches(const PatchLevels& levels, int depth, int low, int high, const SplitCells& splits,
+                 PooledFlux* flux) {
+  const auto& [below, own, above, coarser] = levels;
+  const SampleLevel& level = *own;
+  const Pieces pieces = {splits, flux};
+  const std::vector<CellKey> keys = with_layers(below, level, above).keys;
   Neighbors neighbors(keys);
   std::vector<Guess> guesses;
   const CellRange range = {1 << depth, low, high};
+  std::vector<CellKey> split;
   const auto visit = [&](const SampleLevel& from, std::size_t i) {
-    if (from.is_met[i] == 0) return;
+    if (from.is_split[i] != 0) split.push_back(from.samples.cells[i].key);
+    if (from.is_leaf[i] == 0) return;
     const SampleCell& cell = from.samples.cells[i];
     const std::optional<Plane> plane = plane_of(cell);
     if (!plane) return;
     const CellPolygon polygon = cut_to_cell(*plane);
     if (polygon.count < 3) return;
-    if (&from == &level) patches->push_back(patch(cell_position(cell.key), polygon));
+    if (&from == &level) {
+      pieces.add_cut(morton_index(cell_position(cell.key)), depth, *plane, polygon, true);
+    }
     add_guesses(cell, polygon, range, &neighbors, &guesses);
   };
   for_cells_and_layers(below, level, above, range, visit);
   merge_guesses(&guesses);
   for (const Guess& guess : guesses) {
+    if (is_others(guess.key, coarser, split)) continue;
     const std::optional<Plane> plane = plane_of(guess.normal, guess.position, guess.weight);
-    if (!plane) continue;
-    const CellPolygon polygon = cut_to_cell(*plane);
-    if (polygon.count >= 3) patches->push_back(patch(cell_position(guess.key), polygon));
+    if (plane) pieces.add(morton_index(cell_position(guess.key)), depth, *plane, false);
   }
 }
 

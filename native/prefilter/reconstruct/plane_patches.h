@@ -11,14 +11,24 @@
 #include <vector>
 
 #include "prefilter/reconstruct/flux_tree.h"
+#include "prefilter/reconstruct/leaf_band.h"
 #include "prefilter/reconstruct/sample_slab.h"
 
 namespace prefilter {
 
-/// Appends the pieces in the cells of one depth of a slab whose samples count there, and in those
-/// between them. The slab is from `low` up to `high`, in cells; `below` and `above` are the same
-/// depth of the slabs next to it, if there are any.
-void add_patches(const SampleLevel* below, const SampleLevel& level, const SampleLevel* above,
-                 int depth, int low, int high, std::vector<CellFlux>* patches);
+/// The samples of a depth in a slab, and in those below and above it, and of the depth above in the
+/// same slab; null where there are none.
+struct PatchLevels {
+  const SampleLevel* below;
+  const SampleLevel* own;
+  const SampleLevel* above;
+  const SampleLevel* coarser;
+};
+
+/// Adds the pieces in the cells of one depth of a slab whose samples count there, and in those
+/// between them. The slab is from `low` up to `high`, in cells. In cells that are split the pieces
+/// are cut further.
+void add_patches(const PatchLevels& levels, int depth, int low, int high, const SplitCells& splits,
+                 PooledFlux* flux);
 
 }  // namespace prefilter

@@ -100,6 +100,9 @@ FunctionFindings find_function(PointSource* source, const SampleGrid& grid,
   } else {
     found.left_out = find_coarse_tree(options.progress.part(0.15, 0.35), options.threads, slabs);
     found.is_inward = slabs->coarse.root < 0.0F;
+    slabs->unsolved_mean = coarse_mean(*slabs);
+    slabs->middle = found.is_inward ? -0.5F : 0.5F;
+    solve_coarse_tree(slabs->middle, &slabs->coarse);
   }
   if (slabs->coarse.is_empty()) {
     throw_invalid(
@@ -128,7 +131,7 @@ void find_mesh(const SurfaceSamples& surface, const ReconstructOptions& options,
     cutter->add_far_places(joiner->far_places());
     cutter->end_part(joiner->shared());
   };
-  for_slabs({SlabStage::kValues, 1, true}, options.progress.part(0.6, 0.95), options.threads, slabs,
+  for_slabs({SlabStage::kSolved, 1, true}, options.progress.part(0.6, 0.95), options.threads, slabs,
             make, join);
 }
 

@@ -20,6 +20,14 @@ constexpr int kNeighborsOfSurface = 3;
 constexpr int kAreaSteps = 2;
 // Cells this large always count, so that there is one where every sample does.
 constexpr int kCoarsestLeaf = 2;
+// A plane through a cell's middle meets about so many cells of the 27 around it.
+constexpr double kCellsAround = 9.0;
+// Of the weight of all samples: what is in a cell of strays alone.
+constexpr double kLoneShare = 1e-3;
+// Depths that a stray's cell is above those of the samples around it.
+constexpr int kOutlierDepths = 3;
+// In a cell that the surface meets.
+constexpr double kLeastSamples = 1.5;
 
 SampleLevel coarser(SampleLevel* level, std::size_t attribute_count) {
   const std::vector<SampleCell>& cells = level->samples.cells;
@@ -54,7 +62,8 @@ SampleLevel coarser(SampleLevel* level, std::size_t attribute_count) {
 
 // Of the cells, those with enough neighbors. As keys are in row-major order, so are the nine rows
 // around them: one cursor for each goes through all keys once.
-void mark_met(const std::vector<CellKey>& keys, SampleLevel* level) {
+void mark_met(const CellLayers& cells, SampleLevel* level) {
+  const std::vector<CellKey>& keys = cells.keys;
   std::array<CellKey, 9> rows;
   for (std::size_t r = 0; r < 9; ++r) {
     rows[r] = ((CellKey{r / 3} << kRowShift) + r % 3) << kRowShift;
@@ -62,15 +71,21 @@ void mark_met(const std::vector<CellKey>& keys, SampleLevel* level) {
   constexpr CellKey kBack = ((CellKey{1} << kRowShift) + 1) << kRowShift;
   std::array<std::size_t, 9> cursors{};
   level->is_met.resize(level->size());
+  level->around.resize(level->size());
   for (std::size_t i = 0; i < level->size(); ++i) {
     const CellKey key = level->samples.cells[i].key;
     int found = -1;  // itself
+    float around = 0.0F;
     for (std::size_t r = 0; r < 9; ++r) {
       const CellKey middle = key + rows[r] - kBack;
       std::size_t& cursor = cursors[r];
       while (cursor < keys.size() && keys[cursor] + 1 < middle) ++cursor;
-      for (std::size_t j = cursor; j < keys.size() && keys[j] <= middle + 1; ++j) ++found;
+      for (std::size_t j = cursor; j < keys.size() && keys[j] <= middle + 1; ++j) {
+        ++found;
+        around += cells.weights[j];
+      }
     }
+    level->around[i] = around;
     level->is_met[i] = found >= kNeighborsOfSurface ? 1 : 0;
   }
 }
@@ -101,6 +116,40 @@ double area_in(const SampleCell& cell) {
   return length / sum;
 }
 
+// Cells count where the surface seems to meet them and there are samples enough for their size:
+// those in and around the cell two depths up, so that sizes do not change with every few samples.
+void find_leaves_of_level(const CloudWeights& weights, int finest, int k, SampleSlab* slab) {
+  const double enough = 4.0 * kCellsAround * kLeastSamples * weights.mean;
+  // Where samples are so dense around, one without neighbors is a stray.
+  const double isolated = enough * std::ldexp(1.0, 2 * (kOutlierDepths - 1));
+  SampleLevel& level = slab->at(k);
+  const SampleLevel& above = slab->at(k - 1);
+  level.leaf.resize(level.size());
+  for (std::size_t i = 0; i < level.size(); ++i) {
+    const std::uint32_t parent = level.parents[i];
+    const auto around = static_cast<double>(above.around[parent]);
+    const double wide =
+        k - 2 >= slab->top
+            ? static_cast<double>(slab->at(k - 2).around[above.parents[parent]]) / 4.0
+            : around;
+    // Nothing else is as far as a stray that is alone even in the coarsest cells.
+    const bool is_lone =
+        k == kCoarsestLeaf && level.is_met[i] == 0 && weights.all >= isolated &&
+        finest - k >= kOutlierDepths &&
+        kLoneShare * weights.all > static_cast<double>(level.samples.cells[i].weight);
+    if (is_lone) {
+      level.leaf[i] = -1;
+    } else if (k <= kCoarsestLeaf || (level.is_met[i] != 0 && wide >= enough)) {
+      level.leaf[i] = static_cast<std::int8_t>(k);
+    } else if (above.leaf[parent] == k - 1 && around >= isolated &&
+               finest - (k - 1) >= kOutlierDepths) {
+      level.leaf[i] = -1;
+    } else {
+      level.leaf[i] = above.leaf[parent];
+    }
+  }
+}
+
 struct Extent {
   double area = 0.0;
   double weight = 0.0;
@@ -118,47 +167,67 @@ SampleSlab make_sample_slab(SampleCells finest, int depth, int top, std::size_t 
   return slab;
 }
 
-std::vector<CellKey> keys_with_layers(const SampleLevel* below, const SampleLevel& level,
-                                      const SampleLevel* above) {
-  std::vector<CellKey> keys;
+CellLayers with_layers(const SampleLevel* below, const SampleLevel& level,
+                       const SampleLevel* above) {
+  CellLayers layers;
   if (below != nullptr && below->size() > 0) {
     const std::vector<SampleCell>& cells = below->samples.cells;
     const int last = cell_position(cells.back().key)[2];
     auto first = cells.end();
     while (first != cells.begin() && cell_position(std::prev(first)->key)[2] == last) --first;
-    for (; first != cells.end(); ++first) keys.push_back(first->key);
+    for (; first != cells.end(); ++first) layers.add(*first);
   }
-  for (const SampleCell& cell : level.samples.cells) keys.push_back(cell.key);
+  for (const SampleCell& cell : level.samples.cells) layers.add(cell);
   if (above != nullptr && above->size() > 0) {
     const int first = cell_position(above->samples.cells.front().key)[2];
     for (const SampleCell& cell : above->samples.cells) {
       if (cell_position(cell.key)[2] != first) break;
-      keys.push_back(cell.key);
+      layers.add(cell);
     }
   }
-  return keys;
+  return layers;
 }
 
 void find_met_cells(const SampleSlab* below, const SampleSlab* above, SampleSlab* slab) {
   for (int k = slab->top; k <= slab->depth(); ++k) {
-    const std::vector<CellKey> keys =
-        keys_with_layers(below == nullptr ? nullptr : &below->at(k), slab->at(k),
-                         above == nullptr ? nullptr : &above->at(k));
-    mark_met(keys, &slab->at(k));
+    mark_met(with_layers(below == nullptr ? nullptr : &below->at(k), slab->at(k),
+                         above == nullptr ? nullptr : &above->at(k)),
+             &slab->at(k));
   }
 }
 
-void find_leaves(double mean_weight, int finest, SampleSlab* slab) {
+void find_split(SampleSlab* slab) {
+  for (int k = slab->depth(); k > slab->top; --k) {
+    const SampleLevel& level = slab->at(k);
+    SampleLevel& above = slab->at(k - 1);
+    above.is_split.assign(above.size(), 0);
+    for (std::size_t i = 0; i < level.size(); ++i) {
+      if (level.leaf[i] == k || level.is_split[i] != 0) above.is_split[level.parents[i]] = 1;
+    }
+  }
   for (int k = slab->top; k <= slab->depth(); ++k) {
     SampleLevel& level = slab->at(k);
-    if (k > slab->top) {
-      level.leaf.resize(level.size());
-      for (std::size_t i = 0; i < level.size(); ++i) {
-        const bool counts = level.is_met[i] != 0 || k <= kCoarsestLeaf;
-        level.leaf[i] =
-            counts ? static_cast<std::int8_t>(k) : slab->at(k - 1).leaf[level.parents[i]];
-      }
+    level.is_leaf.assign(level.size(), 0);
+    for (std::size_t i = 0; i < level.size(); ++i) {
+      if (level.is_split[i] != 0 || level.leaf[i] < 0) continue;
+      const bool is_of_split = k > slab->top && slab->at(k - 1).is_split[level.parents[i]] != 0;
+      if (level.leaf[i] == k || is_of_split) level.is_leaf[i] = 1;
     }
+  }
+}
+
+double weight_of_outliers(const SampleLevel& finest) {
+  double weight = 0.0;
+  for (std::size_t i = 0; i < finest.size(); ++i) {
+    if (finest.leaf[i] < 0) weight += static_cast<double>(finest.samples.cells[i].weight);
+  }
+  return weight;
+}
+
+void find_leaves(const CloudWeights& weights, int finest, SampleSlab* slab) {
+  for (int k = slab->top; k <= slab->depth(); ++k) {
+    SampleLevel& level = slab->at(k);
+    if (k > slab->top) find_leaves_of_level(weights, finest, k, slab);
     const int steps = std::min(kAreaSteps, k - slab->top);
     std::vector<std::uint32_t> ancestors(level.size());
     for (std::size_t i = 0; i < level.size(); ++i) {
@@ -177,12 +246,14 @@ void find_leaves(double mean_weight, int finest, SampleSlab* slab) {
     std::vector<float> unit_areas(extents.size());
     for (std::size_t i = 0; i < extents.size(); ++i) {
       const Extent& e = extents[i];
-      const double share = share_hit(e.weight / (e.cells * mean_weight));
+      const double share = share_hit(e.weight / (e.cells * weights.mean));
       unit_areas[i] = static_cast<float>(e.area * side * side / (share * e.weight));
     }
     level.unit_area.resize(level.size());
     for (std::size_t i = 0; i < level.size(); ++i) level.unit_area[i] = unit_areas[ancestors[i]];
   }
+  slab->at(slab->depth()).is_split.assign(slab->at(slab->depth()).size(), 0);
+  find_split(slab);
 }
 
 }  // namespace prefilter

@@ -23,8 +23,14 @@ struct SampleLevel {
   SampleCells samples;
   std::vector<std::uint32_t> parents;  // of each, its index on the level above; none on the first
   std::vector<std::uint8_t> is_met;    // whether enough neighbors have samples
-  std::vector<std::int8_t> leaf;  // the depth at which its samples count, if not at a larger one
-  std::vector<float> unit_area;   // of the surface, in finest cells, per unit of weight
+  std::vector<float> around;           // the weight of its samples and of those of its neighbors
+  // The depth at which its samples count, if not at a larger one; below 0: not at all.
+  std::vector<std::int8_t> leaf;
+  std::vector<std::uint8_t> is_split;  // whether some of its samples count at a larger depth
+  // Whether its samples count here: at this depth, or with others of the cell above at a larger
+  // one.
+  std::vector<std::uint8_t> is_leaf;
+  std::vector<float> unit_area;  // of the surface, in finest cells, per unit of weight
 
   std::size_t size() const { return samples.size(); }
 };
@@ -42,15 +48,38 @@ struct SampleSlab {
 /// The levels of cells of `depth`, up to `top`.
 SampleSlab make_sample_slab(SampleCells finest, int depth, int top, std::size_t attribute_count);
 
-/// Sets is_met of all levels, where the slabs below and above, if there are any, have been made.
+/// Sets is_met and `around` of all levels, where the slabs below and above, if there are any, have
+/// been made.
 void find_met_cells(const SampleSlab* below, const SampleSlab* above, SampleSlab* slab);
 
-/// The keys of the cells of a level and, where there are any, of the layers next to them; sorted.
-std::vector<CellKey> keys_with_layers(const SampleLevel* below, const SampleLevel& level,
-                                      const SampleLevel* above);
+/// The cells of a level and, where there are any, of the layers next to them, in order of their
+/// keys.
+struct CellLayers {
+  std::vector<CellKey> keys;
+  std::vector<float> weights;
 
-/// Sets `leaf`, from that of the first level, and unit_area. `mean_weight` is that of a sample;
-/// `finest` the depth of the cells that areas are measured in.
-void find_leaves(double mean_weight, int finest, SampleSlab* slab);
+  void add(const SampleCell& cell) {
+    keys.push_back(cell.key);
+    weights.push_back(cell.weight);
+  }
+};
+CellLayers with_layers(const SampleLevel* below, const SampleLevel& level,
+                       const SampleLevel* above);
+
+/// Of all samples.
+struct CloudWeights {
+  double mean = 1.0;
+  double all = 0.0;
+};
+
+/// Sets is_split of all levels, from that of the last, and is_leaf.
+void find_split(SampleSlab* slab);
+
+/// The weight of the samples that do not count.
+double weight_of_outliers(const SampleLevel& finest);
+
+/// Sets `leaf`, from that of the first level, is_split, is_leaf and unit_area. `finest` is the
+/// depth of the cells that areas are measured in.
+void find_leaves(const CloudWeights& weights, int finest, SampleSlab* slab);
 
 }  // namespace prefilter

@@ -76,7 +76,31 @@ void find_attributes(const Vector3& point, int k, int finest, SampleDepths* samp
   }
 }
 
+// The line that a vertex is on, from the center of its leaf to the one beyond the face.
+FitLine line_of(const VertexPlace& place, const Vector3& position, int depth) {
+  // Between a vertex and the centers, in sides of the leaf.
+  constexpr double kLeastGap = 0.01;
+  const double side = std::ldexp(1.0, depth - place.depth);
+  const auto axis = static_cast<std::size_t>(place.face / 2);
+  FitLine line;
+  for (std::size_t a = 0; a < 3; ++a) {
+    line.start[a] = (place.leaf[a] + 0.5) * side;
+    line.direction[a] = position[a] - line.start[a];
+  }
+  const double along = std::abs(line.direction[axis]);
+  if (along > kLeastGap * side) {
+    for (double& x : line.direction) x *= side / along;
+  } else {
+    line.direction = {};
+    line.direction[axis] = (place.face & 1) != 0 ? side : -side;
+  }
+  line.low = kLeastGap;
+  line.high = std::max(1.0 - kLeastGap, along / side);
+  return line;
+}
+
 void follow_samples(const SurfaceSamples& surface, bool are_moved, int s, SlabMesh* slab) {
+  const bool is_solved = surface.slabs.middle != 0.0F;
   const int depth = surface.slabs.depth();
   const std::size_t width = surface.attribute_count;
   std::vector<Vector3>& positions = slab->contour.mesh.positions;
@@ -87,7 +111,10 @@ void follow_samples(const SurfaceSamples& surface, bool are_moved, int s, SlabMe
                       surface.noise);
   for (std::size_t v = 0; v < positions.size(); ++v) {
     const int k = v < places.size() ? places[v].depth : depth;
-    if (are_moved) fit.move(k, &positions[v]);
+    if (are_moved && v < places.size()) {
+      const FitLine line = line_of(places[v], positions[v], depth);
+      fit.move(k, is_solved ? &line : nullptr, &positions[v]);
+    }
     if (width > 0) {
       find_attributes(positions[v], k, depth, &samples,
                       {slab->attributes.data() + v * width, width});

@@ -26,7 +26,7 @@ template <typename Visit, typename Join>
 void for_slabs(const SlabWalk& walk, const Progress& progress, int threads, Slabs* slabs,
                const Visit& visit, const Join& join) {
   // kValues and kCoefficients of a slab need kLevels of the second one below it.
-  constexpr int kReach = 2;
+  constexpr int kReach = 3;
   const int width = resolve_threads(threads);
   for (int begin = 0; begin < slabs->count(); begin += width) {
     const int end = std::min(begin + width, slabs->count());

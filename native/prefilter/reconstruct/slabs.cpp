@@ -43,12 +43,14 @@ void Slabs::bring(int begin, int end, SlabStage stage) {
   end = std::min(end, count());
   // Neighbors tell which cells are met, and their patches leave through the sides.
   if (stage == SlabStage::kMet) bring(begin - 1, end + 1, SlabStage::kLevels);
-  if (stage == SlabStage::kCoefficients) bring(begin - 1, end + 1, SlabStage::kMet);
+  if (stage == SlabStage::kCoefficients) bring(begin - 1, end + 1, SlabStage::kLeaves);
+  if (stage == SlabStage::kSolved) bring(begin - 1, end + 1, SlabStage::kValues);
   bring(begin, end, static_cast<SlabStage>(static_cast<int>(stage) - 1));
   parallel_for(end - begin, threads_, Progress(), [&](std::int64_t i) {
     const int s = begin + static_cast<int>(i);
     if (slots_[static_cast<std::size_t>(s)].stage < stage) advance(s, stage);
   });
+  for (int s = begin - 1; stage == SlabStage::kSolved && s <= end; ++s) drop_unsolved(s);
   if (!keeps_all_) dropped_ = std::min(dropped_, begin);
 }
 
@@ -80,6 +82,9 @@ void Slabs::advance(int s, SlabStage stage) {
     case SlabStage::kValues:
       synthesise_slab(s);
       break;
+    case SlabStage::kSolved:
+      solve(s);
+      break;
   }
   slot.stage = stage;
   ++steps_;
@@ -90,7 +95,10 @@ void Slabs::find_leaves_of(int s) {
   const auto first = whole.at(top_).leaf.begin() +
                      static_cast<std::ptrdiff_t>(offsets[static_cast<std::size_t>(s)]);
   slab.at(top_).leaf.assign(first, first + static_cast<std::ptrdiff_t>(slab.at(top_).size()));
-  find_leaves(mean_weight, depth_, &slab);
+  const double all =
+      whole.at(0).size() == 0 ? 0.0 : static_cast<double>(whole.at(0).samples.cells.front().weight);
+  find_leaves({mean_weight, all}, depth_, &slab);
+  slots_[static_cast<std::size_t>(s)].splits = split_around_leaves(slab);
   for (int k = top_; is_sparse(k); ++k) {
     std::vector<SupportCell>& cells =
         sparse_[static_cast<std::size_t>(s)][static_cast<std::size_t>(k - top_)];
@@ -101,15 +109,23 @@ void Slabs::find_leaves_of(int s) {
 
 void Slabs::analyze(int s) {
   Slot& slot = slots_[static_cast<std::size_t>(s)];
-  const auto finest_of = [&](int t) {
-    const SampleSlab* slab = samples(t);
-    return slab == nullptr ? nullptr : &slab->at(depth_);
-  };
   PooledFlux pooled(static_cast<std::size_t>(depth_) + 1);
-  slot.left_out =
-      pool_flux(slot.samples, whole, offsets[static_cast<std::size_t>(s)], least_leaf, &pooled);
-  add_patches(finest_of(s - 1), *finest_of(s), finest_of(s + 1), depth_, s * height(),
-              (s + 1) * height(), &pooled.back());
+  slot.left_out = weight_of_outliers(slot.samples.at(depth_));
+  std::vector<const SplitCells*> all_splits;
+  for (int t = std::max(s - 1, 0); t < std::min(s + 2, count()); ++t) {
+    all_splits.push_back(&slots_[static_cast<std::size_t>(t)].splits);
+  }
+  const SplitCells splits = splits_in_slab(all_splits, s, top_, depth_);
+  for (int k = top_; k <= depth_; ++k) {
+    const auto level_of = [&](int t) {
+      const SampleSlab* slab = samples(t);
+      return slab == nullptr ? nullptr : &slab->at(k);
+    };
+    const SampleLevel* coarser = k > top_ ? &samples(s)->at(k - 1) : nullptr;
+    add_patches({level_of(s - 1), level_of(s), level_of(s + 1), coarser}, k, s << (k - top_),
+                (s + 1) << (k - top_), splits, &pooled);
+  }
+  add_band(splits, s, top_, &pooled);
   slot.coarse_flux.assign(std::make_move_iterator(pooled.begin()),
                           std::make_move_iterator(pooled.begin() + top_));
   slot.tree = analyze_flux(std::move(pooled), top_, depth_);
@@ -129,6 +145,40 @@ void Slabs::synthesise_slab(int s) {
     values.push_back(value);
   }
   synthesise_part(values, &tree);
+}
+
+// What was solved from, once no slab next to it needs that any more.
+void Slabs::drop_unsolved(int s) {
+  const auto is_solved = [&](int t) {
+    return t < 0 || t >= count() || slots_[static_cast<std::size_t>(t)].stage == SlabStage::kSolved;
+  };
+  if (s < 0 || s >= count() || !is_solved(s - 1) || !is_solved(s) || !is_solved(s + 1)) return;
+  for (NodeLevel& level : slots_[static_cast<std::size_t>(s)].tree.levels) {
+    if (level.solved.empty()) continue;
+    level.blocks.blocks = std::move(level.solved);
+    level.solved = {};
+    level.fluxes = {};
+    level.has_flux = {};
+    level.first_flux = {};
+  }
+}
+
+void Slabs::solve(int s) {
+  if (middle == 0.0F) return;
+  BlockSources sources;
+  CellTree window =
+      assemble_unsolved(coarse, {tree(s - 1), tree(s), tree(s + 1)}, s, depth_, &sources);
+  solve_screened(sources, top_, middle, &window);
+  for (int k = top_; k < depth_; ++k) {
+    const auto level = static_cast<std::size_t>(k);
+    NodeLevel& own =
+        slots_[static_cast<std::size_t>(s)].tree.levels[static_cast<std::size_t>(k - top_)];
+    own.solved.resize(own.blocks.size());
+    for (std::size_t b = 0; b < sources[level].size(); ++b) {
+      const BlockSource& source = sources[level][b];
+      if (source.level == &own) own.solved[source.block] = window.levels[level].blocks[b];
+    }
+  }
 }
 
 }  // namespace prefilter

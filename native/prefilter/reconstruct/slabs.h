@@ -12,6 +12,7 @@
 
 #include "prefilter/reconstruct/assemble.h"
 #include "prefilter/reconstruct/flux_tree.h"
+#include "prefilter/reconstruct/leaf_band.h"
 #include "prefilter/reconstruct/sample_slab.h"
 #include "prefilter/reconstruct/sample_store.h"
 #include "prefilter/reconstruct/support_field.h"
@@ -26,6 +27,7 @@ enum class SlabStage : std::uint8_t {
   kLeaves,        // where samples count, and for how much
   kCoefficients,  // the slab's part of the tree
   kValues,
+  kSolved,
 };
 
 /// The slabs of a cloud, from below. What has been made of one is kept until it is dropped, and
@@ -70,13 +72,16 @@ class Slabs {
   }
 
   /// For kLeaves: the levels down to `top` of all slabs together, and where a slab's cells begin
-  /// in the last of them. For kCoefficients: leaves less deep do not count. For kValues: the levels
+  /// in the last of them. For kValues: the levels
   /// above.
   SampleSlab whole;
   std::vector<std::size_t> offsets;
   double mean_weight = 1.0;
-  int least_leaf = 0;
   CoarseTree coarse;
+  /// For kSolved: the value wanted at samples; 0: nothing is solved for.
+  float middle = 0.0F;
+  /// At the samples, about, of the wavelets' function; where it is solved for.
+  double unsolved_mean = 0.0;
 
  private:
   struct Slot {
@@ -85,12 +90,15 @@ class Slabs {
     FluxTree tree;
     PooledFlux coarse_flux;
     double left_out = 0.0;
+    SplitCells splits;
   };
 
   void advance(int s, SlabStage stage);
   void find_leaves_of(int s);
   void analyze(int s);
   void synthesise_slab(int s);
+  void solve(int s);
+  void drop_unsolved(int s);
 
   SampleStore* store_;
   int depth_;

@@ -28,8 +28,6 @@ constexpr int kFarCells = 8;
 constexpr double kAway = -0.25;
 // Where normals cancel each other, to so much of their lengths, they face all ways.
 constexpr double kAligned = 0.5;
-// Of all cells with samples around, for those that lie thinner than the surface does.
-constexpr int kLeastOfSurface = 5;
 
 SupportCell support_of(const SampleCell& sum, int k, int finest, double unit_area,
                        double mean_weight) {
@@ -138,18 +136,6 @@ void SupportLevel::for_near(const CellPosition& at, int reach, const Visit& visi
   }
 }
 
-void SupportLevel::drop_lone(int least) {
-  if (cells_.empty()) return;
-  std::vector<SupportCell> kept;
-  for (const SupportCell& cell : cells_) {
-    int around = 0;
-    for_near(cell_position(cell.key), 2, [&](const SupportCell&) { ++around; });
-    if (around >= least) kept.push_back(cell);
-  }
-  cells_ = std::move(kept);
-  begin_rows();
-}
-
 void SupportLevel::look(const FacingPoint& point, double side, int reach, Support* best) const {
   if (cells_.empty()) return;
   CellPosition at;
@@ -178,8 +164,7 @@ void SupportLevel::look(const FacingPoint& point, double side, int reach, Suppor
 SupportField::SupportField(const Slabs& slabs, double sign, int s)
     : slabs_(slabs), sign_(sign), s_(s), met_(static_cast<std::size_t>(slabs.depth()) + 1) {
   for (int k = 0; k <= slabs.depth(); ++k) {
-    SupportLevel& level = levels_.emplace_back(level_of(k));
-    if (k < slabs.least_leaf) level.drop_lone(kLeastOfSurface);
+    levels_.push_back(level_of(k));
   }
 }
 

@@ -57,8 +57,6 @@ class SupportLevel {
   SupportLevel(int depth, int low, int high, const std::vector<SupportCell>& cells);
 
   bool is_empty() const { return cells_.empty(); }
-  /// Leaves those that are one of at least `least` cells among the 125 around each.
-  void drop_lone(int least);
   /// Lowers `best` to what cells up to `reach` cells away support of a point.
   void look(const FacingPoint& point, double side, int reach, Support* best) const;
 

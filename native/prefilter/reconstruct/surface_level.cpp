@@ -36,7 +36,7 @@ MeanSample mean_at_samples(float sign, const ReconstructOptions& options, const 
       for (std::size_t a = 0; a < 3; ++a) sum.normal[a] += static_cast<double>(cell.normal[a]);
     }
   };
-  for_slabs({SlabStage::kValues, 1}, progress, options.threads, slabs, add_up, join);
+  for_slabs({SlabStage::kSolved, 1}, progress, options.threads, slabs, add_up, join);
   return {sum.value / weight, (1.0 / weight) * sum.normal};
 }
 
@@ -47,15 +47,23 @@ SurfaceLevel find_surface_level(const ReconstructOptions& options, bool is_inwar
   const bool is_flipped = is_inward && !options.are_sides_known;
   const bool may_be_room = is_inward && options.are_sides_known;
   MeanSample mean;
-  if (options.isovalue == Isovalue::kMean || may_be_room) {
+  const bool is_solved = slabs->middle != 0.0F;
+  // Smoothing leaves little of shapes of a few cells.
+  constexpr int kLeastDepth = 4;
+  const bool is_known = is_solved && slabs->depth() >= kLeastDepth;
+  if ((options.isovalue == Isovalue::kMean && !is_known) || may_be_room) {
     mean = mean_at_samples(is_flipped ? -1.0F : 1.0F, options, progress, slabs);
   }
   // Room is then what is inside, as it is what normals point to: there is no end to what is not.
-  const bool is_reversed = may_be_room && is_room(mean);
+  // The solve wants the same at all samples, and so tells no room from a sheet.
+  const double before = is_solved ? slabs->unsolved_mean : mean.value;
+  const bool is_reversed = may_be_room && is_room({before, mean.normal});
   if (is_reversed) mean.value = -mean.value;
   const float sign = is_flipped || is_reversed ? -1.0F : 1.0F;
   SurfaceLevel level;
-  if (options.isovalue == Isovalue::kMean) {
+  if (options.isovalue == Isovalue::kMean && is_known) {
+    level = {sign, sign * slabs->middle};
+  } else if (options.isovalue == Isovalue::kMean) {
     level = level_of_mean(mean.value, sign < 0.0F, options.are_sides_known);
   } else {
     level = {sign, options.isovalue == Isovalue::kHalf

@@ -8,6 +8,7 @@
 #include <random>
 #include <set>
 
+#include "prefilter/reconstruct/split_finder.h"
 #include "prefilter/reconstruct/whole_samples.h"
 #include "prefilter/spatial/morton.h"
 #include "reconstruct/test_cloud.h"
@@ -66,7 +67,7 @@ class D4Trees : public ::testing::Test {
     for (int s = 0; s < slabs_.count(); ++s) {
       const SampleLevel& finest = slabs_.samples(s)->at(kDepth);
       for (std::size_t i = 0; i < finest.size(); ++i) {
-        if (finest.leaf[i] < std::max(k, slabs_.least_leaf)) continue;
+        if (finest.leaf[i] < k) continue;
         const CellPosition at = cell_position(finest.samples.cells[i].key);
         const int shift = kDepth - k;
         cells.insert({at[0] >> shift, at[1] >> shift, at[2] >> shift});
@@ -138,7 +139,7 @@ TEST_F(D4Trees, AreasAreThoseOfTheLeaves) {
     const std::vector<SampleCell>& cells = slabs_.samples(s)->at(kDepth).samples.cells;
     weight += leaves.left_out;
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      if (leaves.leaf[i] < slabs_.least_leaf) {
+      if (leaves.leaf[i] < 0) {
         EXPECT_EQ(leaves.area[i], 0.0F);
         continue;
       }
@@ -151,7 +152,8 @@ TEST_F(D4Trees, AreasAreThoseOfTheLeaves) {
   }
   EXPECT_NEAR(weight, static_cast<double>(testing::uneven_sphere_cloud().points.size()), 1e-3);
   const double radius = 0.35 * 64.0;
-  EXPECT_NEAR(area, 4.0 * 3.14159265 * radius * radius, 0.1 * 4.0 * 3.14159265 * radius * radius);
+  // Areas are taken over cells two depths up, which the border of the thin half runs through.
+  EXPECT_NEAR(area, 4.0 * 3.14159265 * radius * radius, 0.12 * 4.0 * 3.14159265 * radius * radius);
 }
 
 TEST(D4Leaves, LeaveOutliersOut) {

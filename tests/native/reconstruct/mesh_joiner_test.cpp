@@ -77,7 +77,8 @@ TEST(MeshJoiner, SlabsAreTheWhole) {
       options.interpolant = interpolant;
       options.clean_up = false;
       options.threads = 1;
-      const TriangleMesh whole = contour_tree(tree, kUnitCube, options);
+      const TriangleMesh whole = contour_slab(tree, 0.5F, interpolant, {0, kSide + 1}).mesh;
+      EXPECT_EQ(whole.triangles.size(), contour_tree(tree, kUnitCube, options).triangles.size());
       for (const int height : {1, 4, kSide / 2, kSide}) {
         const Joined joined =
             join_slabs(tree, interpolant, height, [](const Vector3&) { return false; });
@@ -96,11 +97,7 @@ TEST(MeshJoiner, SlabsAreTheWhole) {
 
 TEST(MeshJoiner, LeavesOutTrianglesOfTrimmedVertices) {
   const CellTree tree = random_tree(3, kDepth);
-  ContourOptions options;
-  options.interpolant = Interpolant::kLinear;
-  options.clean_up = false;
-  options.threads = 1;
-  const TriangleMesh whole = contour_tree(tree, kUnitCube, options);
+  const TriangleMesh whole = contour_slab(tree, 0.5F, Interpolant::kLinear, {0, kSide + 1}).mesh;
   const auto is_trimmed = [](const Vector3& p) { return p[0] + p[2] > 0.7; };
   std::vector<std::array<std::int32_t, 3>> kept;
   for (const auto& t : whole.triangles) {

@@ -104,7 +104,8 @@ std::array<SampleLevel, kSide / 2> sampled_plane(const Vector3& n, double d, dou
         if (is_last_missing) continue;
         SampleLevel& slab = slabs[static_cast<std::size_t>(z / 2)];
         slab.samples.cells.push_back(*cell);
-        slab.is_met.push_back(1);
+        slab.is_leaf.push_back(1);
+        slab.is_split.push_back(0);
       }
     }
   }
@@ -115,10 +116,11 @@ std::map<std::uint64_t, BoundaryFlux> patches_of(const std::array<SampleLevel, k
   std::map<std::uint64_t, BoundaryFlux> found;
   for (std::size_t s = 0; s < slabs.size(); ++s) {
     const int low = 2 * static_cast<int>(s);
-    std::vector<CellFlux> patches;
-    add_patches(s > 0 ? &slabs[s - 1] : nullptr, slabs[s],
-                s + 1 < slabs.size() ? &slabs[s + 1] : nullptr, kDepth, low, low + 2, &patches);
-    for (const CellFlux& patch : patches) {
+    PooledFlux patches(kDepth + 1);
+    const SampleLevel* below = s > 0 ? &slabs[s - 1] : nullptr;
+    const SampleLevel* above = s + 1 < slabs.size() ? &slabs[s + 1] : nullptr;
+    add_patches({below, &slabs[s], above, nullptr}, kDepth, low, low + 2, SplitCells(), &patches);
+    for (const CellFlux& patch : patches.back()) {
       EXPECT_TRUE(found.emplace(patch.place, patch.flux).second) << "a cell has two patches";
       const int z = morton_cell(patch.place)[2];
       EXPECT_TRUE(z >= low && z < low + 2);
@@ -173,7 +175,7 @@ TEST(PlanePatches, OfAPlaneAcrossAnAxisAreWholeFaces) {
 
 TEST(PlanePatches, CellsThatAreNotMetOrWhoseNormalsCancelGiveNone) {
   std::array<SampleLevel, kSide / 2> slabs = sampled_plane({0.0, 0.0, 1.0}, 3.25, 0.0, 1);
-  for (std::uint8_t& is_met : slabs[1].is_met) is_met = 0;
+  for (std::uint8_t& is_leaf : slabs[1].is_leaf) is_leaf = 0;
   EXPECT_TRUE(patches_of(slabs).empty());
   slabs = sampled_plane({0.0, 0.0, 1.0}, 3.25, 0.0, 1);
   for (SampleCell& cell : slabs[1].samples.cells) cell.normal = {0.0F, 0.0F, 0.1F};

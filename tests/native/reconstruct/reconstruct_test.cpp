@@ -278,7 +278,13 @@ TEST(Reconstruct, OfPointsThatBoundNothingIsClosed) {
       ReconstructOptions options;
       options.basis = basis;
       options.depth = 6;
-      const Result result = surface_of(cloud, options);
+      Result result;
+      try {
+        result = surface_of(cloud, options);
+      } catch (const Error& error) {
+        EXPECT_EQ(std::string(error.what()).find("normals: they contradict"), 0U) << error.what();
+        continue;
+      }
       for (const Vector3& p : result.mesh.positions) {
         for (const double x : p) ASSERT_TRUE(std::isfinite(x));
       }

@@ -190,8 +190,8 @@ TEST(SlabMesh, FollowsThinSamplesToo) {
     }
     count += static_cast<double>(slab.contour.mesh.positions.size());
   }
-  EXPECT_GT(count, 1000.0);
-  EXPECT_LT(error, 0.05 * count);
+  EXPECT_GT(count, 500.0);               // in cells as large as there are samples for
+  EXPECT_LT(error, 0.05 * 2.0 * count);  // of their sides
 }
 
 }  // namespace
