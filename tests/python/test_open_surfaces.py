@@ -118,7 +118,7 @@ def test_small_holes_are_filled(radius, is_open):
 
 @pytest.mark.parametrize("depth", [6, 7, 9])
 def test_thin_parts_stay(depth):
-    """A thousand times thinner at the top than at the bottom: points are farther from each other."""
+    """A thousand times thinner at the top: points there are farther from each other."""
     cloud = sphere(2_000_000, seed=4)
     share = 10 ** (-1.5 * (cloud.points[:, 2] + 1))
     kept = np.random.default_rng(3).random(len(share)) < share

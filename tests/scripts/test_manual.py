@@ -78,7 +78,7 @@ def test_no_words_are_lost_and_no_marks_are_left(written):
         assert "](" not in plain
         assert "**" not in plain
         assert "\0" not in plain
-        rows = len(re.findall(r"^\|(?!( ?:?-{3,}:? ?\|)+$)", source, re.M))
+        rows = len(re.findall(r"^ *\|(?!( ?:?-{3,}:? ?\|)+$)", source, re.M))
         assert found.tags.count("tr") == rows, page
 
 
