@@ -52,6 +52,13 @@ Patch patch_of(const Neighbors& found) {
 double median_density(std::vector<Patch>* patches) {
   std::sort(patches->begin(), patches->end(),
             [](const Patch& a, const Patch& b) { return a.density < b.density; });
+  // Points that lie by themselves, outliers, would have more area than all the surface.
+  constexpr double kLeastShare = 1.0 / 64.0;
+  const double middle = (*patches)[patches->size() / 2].density;
+  const auto first = std::find_if(patches->begin(), patches->end(), [&](const Patch& patch) {
+    return patch.density >= kLeastShare * middle;
+  });
+  patches->erase(patches->begin(), first);
   double whole = 0.0;
   for (const Patch& patch : *patches) whole += patch.area;
   double below = 0.0;

@@ -34,24 +34,6 @@ CoarseTree make_coarse_tree(PooledFlux flux, int top, int slab_count) {
   return coarse;
 }
 
-double coarse_mean(const Slabs& slabs) {
-  const std::vector<NodeLevel>& levels = slabs.coarse.tree.levels;
-  if (levels.empty()) return static_cast<double>(slabs.coarse.root);
-  const NodeLevel& last = levels.back();
-  double sum = 0.0;
-  double weight = 0.0;
-  for (const SampleCell& cell : slabs.whole.at(slabs.top()).samples.cells) {
-    const std::uint64_t place = morton_index(cell_position(cell.key));
-    const auto found = std::lower_bound(last.places.begin(), last.places.end(), place >> 3U);
-    if (found == last.places.end() || *found != place >> 3U) continue;
-    const auto block = static_cast<std::size_t>(found - last.places.begin());
-    sum += static_cast<double>(cell.weight) *
-           static_cast<double>(last.blocks.blocks[block][place & 7U]);
-    weight += static_cast<double>(cell.weight);
-  }
-  return weight > 0.0 ? sum / weight : static_cast<double>(slabs.coarse.root);
-}
-
 void solve_coarse_tree(float middle, CoarseTree* coarse) {
   CellTree tree;
   tree.root = coarse->root;

@@ -20,9 +20,6 @@ CoarseTree make_coarse_tree(PooledFlux flux, int top, int slab_count);
 /// Throws Error(kCancelled).
 double find_coarse_tree(const Progress& progress, int threads, Slabs* slabs);
 
-/// The mean at the samples of the tree's values, told in its smallest cells.
-double coarse_mean(const Slabs& slabs);
-
 /// Solves for the values of the tree; `middle` is that wanted at samples.
 void solve_coarse_tree(float middle, CoarseTree* coarse);
 

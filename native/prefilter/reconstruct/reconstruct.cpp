@@ -92,6 +92,8 @@ FunctionFindings find_d4_trees(PointSource* source, const SampleGrid& grid,
 
 // The function that is 1 inside and 0 outside: the tree above the slabs, and what these need to
 // make their own levels.
+constexpr double kLeastBoxShare = 1e-3;
+
 FunctionFindings find_function(PointSource* source, const SampleGrid& grid,
                                const ReconstructOptions& options, Slabs* slabs) {
   FunctionFindings found;
@@ -100,7 +102,10 @@ FunctionFindings find_function(PointSource* source, const SampleGrid& grid,
   } else {
     found.left_out = find_coarse_tree(options.progress.part(0.15, 0.35), options.threads, slabs);
     found.is_inward = slabs->coarse.root < 0.0F;
-    slabs->unsolved_mean = coarse_mean(*slabs);
+    // What is inside, of the box around the points: their walls enclose most of it, or of
+    // themselves.
+    slabs->unsolved_mean =
+        static_cast<double>(slabs->coarse.root) / std::max(slabs->box_share, kLeastBoxShare);
     slabs->middle = found.is_inward ? -0.5F : 0.5F;
     solve_coarse_tree(slabs->middle, &slabs->coarse);
   }
@@ -137,12 +142,13 @@ void find_mesh(const SurfaceSamples& surface, const ReconstructOptions& options,
 
 // From samples in cells to the mesh. The memory limit is that of the mesh.
 void find_surface(PointSource* source, const SampleGrid& grid, const ReconstructOptions& options,
-                  double mean_weight, bool keeps_all, SampleStore* store, MeshSink* sink,
-                  ReconstructReport* report) {
+                  double mean_weight, double box_share, bool keeps_all, SampleStore* store,
+                  MeshSink* sink, ReconstructReport* report) {
   const std::size_t width = source->attributes().size();
   Slabs slabs(store, grid.depth, grid.depth - slab_bits(grid.depth), width, keeps_all,
               options.threads);
   slabs.mean_weight = mean_weight;
+  slabs.box_share = box_share;
   const int largest = find_whole(width, options.progress.part(0.0, 0.15), options.threads, &slabs);
   const FunctionFindings found = find_function(source, grid, options, &slabs);
   report->outliers = found.left_out;
@@ -265,7 +271,10 @@ ReconstructReport reconstruct(PointSource* source, const ReconstructOptions& opt
   rest.progress = options.progress.part(0.4, 1.0);
   rest.threads = plan.threads;
   rest.memory_limit = plan.left;
-  find_surface(source, grid, rest, mean_weight, plan.keeps_all, &store, sink, &report);
+  const double side = std::ldexp(grid.cell, grid.depth);
+  double box_share = 1.0;
+  for (int a = 0; a < 3; ++a) box_share *= extent.part.box.size(a) / side;
+  find_surface(source, grid, rest, mean_weight, box_share, plan.keeps_all, &store, sink, &report);
   report.outliers /= extent.part.weight;
   check_mesh(options, report);
   return report;

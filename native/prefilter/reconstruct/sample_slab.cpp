@@ -137,11 +137,15 @@ void find_leaves_of_level(const CloudWeights& weights, int finest, int k, Sample
         k == kCoarsestLeaf && level.is_met[i] == 0 && weights.all >= isolated &&
         finest - k >= kOutlierDepths &&
         kLoneShare * weights.all > static_cast<double>(level.samples.cells[i].weight);
-    if (is_lone) {
+    // Alone beside samples that are much denser: 32 times, where 16 times as much is as dense.
+    const bool is_far_thinner = k > kCoarsestLeaf && finest - k >= kOutlierDepths &&
+                                4.0 * wide > 512.0 * static_cast<double>(level.around[i]);
+    if (is_lone || (is_far_thinner && above.leaf[parent] == k - 1)) {
       level.leaf[i] = -1;
-    } else if (k <= kCoarsestLeaf || (level.is_met[i] != 0 && wide >= enough)) {
+    } else if (k <= kCoarsestLeaf ||
+               (level.is_met[i] != 0 && wide >= enough && around >= enough / 4.0)) {
       level.leaf[i] = static_cast<std::int8_t>(k);
-    } else if (above.leaf[parent] == k - 1 && around >= isolated &&
+    } else if (above.leaf[parent] == k - 1 && (around >= isolated || wide >= isolated) &&
                finest - (k - 1) >= kOutlierDepths) {
       level.leaf[i] = -1;
     } else {

@@ -80,8 +80,10 @@ class Slabs {
   CoarseTree coarse;
   /// For kSolved: the value wanted at samples; 0: nothing is solved for.
   float middle = 0.0F;
-  /// At the samples, about, of the wavelets' function; where it is solved for.
+  /// Of the wavelets' function, where it is solved for: over the box around the points.
   double unsolved_mean = 0.0;
+  /// Of the root's volume: that of the box around the points.
+  double box_share = 1.0;
 
  private:
   struct Slot {
