@@ -90,10 +90,11 @@ FunctionFindings find_d4_trees(PointSource* source, const SampleGrid& grid,
   return {made.left_out, made.is_flipped};
 }
 
-// The function that is 1 inside and 0 outside: the tree above the slabs, and what these need to
-// make their own levels.
+// Of flat boxes, which hold nothing.
 constexpr double kLeastBoxShare = 1e-3;
 
+// The function that is 1 inside and 0 outside: the tree above the slabs, and what these need to
+// make their own levels.
 FunctionFindings find_function(PointSource* source, const SampleGrid& grid,
                                const ReconstructOptions& options, Slabs* slabs) {
   FunctionFindings found;
