@@ -19,7 +19,6 @@ a criterion does not hold.
 import argparse
 import dataclasses
 import json
-import subprocess
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -31,8 +30,8 @@ from bench.peers import Measurement, Peer
 from bench.peers.poisson_recon import PoissonRecon
 from bench.peers.wavelets import Wavelets
 from bench.report import Report, add_json_option
+from bench.scans.reconstruct import python
 
-ROOT = Path(__file__).resolve().parents[2]
 OURS, POISSON = "ours", "poisson"
 TIME_BAR, MEMORY_BAR, CLEAN_BAR = 1 / 6, 1 / 2, 0.5
 TRIM_LEVELS = 2.0
@@ -140,12 +139,6 @@ def measured(target: Path, found: Prepared) -> dict[str, Any]:
     """Measures a surface."""
     arguments = (target, found.truth or "-", found.cell, found.points)
     return json.loads(python("bench.scans.soundness", *arguments))
-
-
-def python(module: str, *arguments: object) -> str:
-    """Runs a module in a process of its own, so that nothing stays in the memory of this one."""
-    command = [sys.executable, "-m", module, *map(str, arguments)]
-    return subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True).stdout
 
 
 HEAD = (

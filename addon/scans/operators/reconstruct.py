@@ -9,14 +9,17 @@ import bpy
 from ...core.doing import LONG_WORK
 from ...core.operator import WorkOperator
 from ...core.presets import PresetsOperator
-from ...core.translations import report, tr
+from ...core.translations import report
 from ..properties import RECONSTRUCT, ScanProperties
+from .selected import SelectedScans
 
 if TYPE_CHECKING:
     from ..reconstruction import Load, Reconstruction
 
 
-class PREFILTER_OT_reconstruct(ScanProperties, PresetsOperator, WorkOperator, bpy.types.Operator):
+class PREFILTER_OT_reconstruct(
+    ScanProperties, SelectedScans, PresetsOperator, WorkOperator, bpy.types.Operator
+):
     """Reconstructs the surface of the selected points."""
 
     bl_idname = "prefilter.reconstruct"
@@ -35,17 +38,11 @@ class PREFILTER_OT_reconstruct(ScanProperties, PresetsOperator, WorkOperator, bp
         work: Reconstruction | None
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether points are selected."""
-        if context.mode != "OBJECT":
-            cls.poll_message_set(tr("Switch to Object Mode first"))
-            return False
-        if cls.may_be_redone(context):
-            return True
-        if not _chosen(context):
-            cls.poll_message_set(tr("Select objects with vertices and no faces, or point clouds"))
-            return False
-        return True
+    def chosen(cls, context: bpy.types.Context) -> list[bpy.types.Object]:
+        """Returns the selected points, also those that modifiers make."""
+        from ...bridge.points import may_be_points
+
+        return [obj for obj in context.selected_objects if may_be_points(obj)]
 
     def complete_settings(self) -> None:
         """Sets what the caller has left; who names a depth, or a size, means it."""
@@ -54,16 +51,12 @@ class PREFILTER_OT_reconstruct(ScanProperties, PresetsOperator, WorkOperator, bp
             self.resolution = "depth" if named("depth") else "size"
         super().complete_settings()
 
-    def targets(self, context: bpy.types.Context) -> list[bpy.types.Object]:
-        """Returns the selected points."""
-        return _chosen(context)
-
     def read_work(self, context: bpy.types.Context) -> "Reconstruction":
         """Copies the selected points."""
         from ..reconstruction import Reconstruction
 
         return Reconstruction.read(
-            _chosen(context),
+            self.chosen(context),
             context.active_object,
             self.to_settings(),
             context.evaluated_depsgraph_get(),
@@ -92,9 +85,3 @@ class PREFILTER_OT_reconstruct(ScanProperties, PresetsOperator, WorkOperator, bp
         """Draws the settings."""
         del context
         self.draw_in(layout)
-
-
-def _chosen(context: bpy.types.Context) -> list[bpy.types.Object]:
-    from ...bridge.points import may_be_points
-
-    return [obj for obj in context.selected_objects if may_be_points(obj)]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What operators share that change the selected scans."""
+"""What operators of the selected scans share."""
 
 import bpy
 
@@ -19,14 +19,19 @@ class SelectedScans(Doing):
             return False
         if cls.may_be_redone(context):
             return True
-        if not selected_scans(context):
+        if not cls.chosen(context):
             cls.poll_message_set(tr("Select objects with vertices and no faces, or point clouds"))
             return False
         return True
 
-    def targets(self, context: bpy.types.Context) -> list[bpy.types.Object]:
+    @classmethod
+    def chosen(cls, context: bpy.types.Context) -> list[bpy.types.Object]:
         """Returns the selected points, those of the active object first."""
         return selected_scans(context)
+
+    def targets(self, context: bpy.types.Context) -> list[bpy.types.Object]:
+        """Returns the selected points."""
+        return self.chosen(context)
 
 
 def selected_scans(context: bpy.types.Context) -> list[bpy.types.Object]:

@@ -77,10 +77,6 @@ double find_coarse_tree(const Progress& progress, int threads, Slabs* slabs) {
   const auto collect = [&](int s) {
     const std::vector<std::uint8_t>& first = slabs->samples(s)->at(slabs->top()).is_split;
     is_split.insert(is_split.end(), first.begin(), first.end());
-    const PooledFlux& pooled = slabs->coarse_flux(s);
-    for (std::size_t k = 0; k < pooled.size(); ++k) {
-      flux[k].insert(flux[k].end(), pooled[k].begin(), pooled[k].end());
-    }
     const std::vector<CellFlux>& tops = slabs->tree(s)->tops;
     flux.back().insert(flux.back().end(), tops.begin(), tops.end());
     left_out += slabs->left_out(s);

@@ -130,7 +130,6 @@ SampleNoise measure_noise(std::span<const SampleCell> cells, const SampleIndex& 
                           double mean_weight) {
   constexpr double kMedianOfNormal = 0.6745;
   std::vector<double> distances;
-  std::vector<double> weights;
   double cosines = 0.0;
   double pairs = 0.0;
   for (const SampleCell& cell : cells) {
@@ -152,16 +151,12 @@ SampleNoise measure_noise(std::span<const SampleCell> cells, const SampleIndex& 
     if (!surface) continue;
     // The mean of a cell's samples has less noise than each.
     distances.push_back(2.0 * std::abs(surface->distance) * std::sqrt(samples));
-    weights.push_back(surface->weight / 4.0);
   }
   if (distances.empty()) return {};
-  const auto median = [](std::vector<double>* values) {
-    const auto middle = values->begin() + static_cast<std::ptrdiff_t>(values->size() / 2);
-    std::nth_element(values->begin(), middle, values->end());
-    return *middle;
-  };
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
   const double cosine = pairs > 0.0 ? cosines / pairs : 1.0;
-  return {median(&distances) / kMedianOfNormal, median(&weights) / mean_weight,
+  return {*middle / kMedianOfNormal,
           std::clamp((cosine - kNoisyCosine) / (kCleanCosine - kNoisyCosine), 0.0, 1.0)};
 }
 

@@ -37,7 +37,6 @@ std::optional<LocalSurface> local_surface(const SampleIndex& index, const Vector
 /// What a cloud's samples are like, in finest cells.
 struct SampleNoise {
   double distance = 0.0;      // of a sample from the surface: the standard deviation
-  double samples = 1.0;       // that count for the surface within a finest cell's side of a point
   double normal_trust = 1.0;  // 1 where normals of one cell agree, 0 where they hardly do
 };
 

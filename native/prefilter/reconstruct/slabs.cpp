@@ -3,7 +3,6 @@
 #include "prefilter/reconstruct/slabs.h"
 
 #include <algorithm>
-#include <iterator>
 #include <utility>
 
 #include "prefilter/base/parallel.h"
@@ -126,8 +125,6 @@ void Slabs::analyze(int s) {
                 (s + 1) << (k - top_), splits, &pooled);
   }
   add_band(splits, s, top_, &pooled);
-  slot.coarse_flux.assign(std::make_move_iterator(pooled.begin()),
-                          std::make_move_iterator(pooled.begin() + top_));
   slot.tree = analyze_flux(std::move(pooled), top_, depth_);
 }
 

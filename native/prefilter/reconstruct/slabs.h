@@ -58,10 +58,7 @@ class Slabs {
   /// Values that were made otherwise, as kValues.
   void set_values(int s, FluxTree tree);
 
-  /// What a slab's coefficients leave to the levels above it, and the weight that was left out.
-  const PooledFlux& coarse_flux(int s) const {
-    return slots_[static_cast<std::size_t>(s)].coarse_flux;
-  }
+  /// The weight of outliers in a slab.
   double left_out(int s) const { return slots_[static_cast<std::size_t>(s)].left_out; }
 
   /// What counts at depths whose cells are as high as a slab, or half, may be of slabs that are not
@@ -90,7 +87,6 @@ class Slabs {
     SlabStage stage = SlabStage::kNone;
     SampleSlab samples;
     FluxTree tree;
-    PooledFlux coarse_flux;
     double left_out = 0.0;
     SplitCells splits;
   };

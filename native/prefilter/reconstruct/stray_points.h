@@ -20,20 +20,13 @@ void leave_out_strays(PointSource* source, const Progress& progress, int threads
                       CloudExtent* extent);
 
 /// A source whose points outside of a box have no weight.
-class PointsWithin final : public PointSource {
+class PointsWithin final : public ChangedPoints {
  public:
-  PointsWithin(PointSource* source, const Box& box) : source_(source), box_(box) {}
+  PointsWithin(PointSource* source, const Box& box) : ChangedPoints(source), box_(box) {}
 
-  std::optional<std::size_t> count() const override { return source_->count(); }
-  bool has_normals() const override { return source_->has_normals(); }
-  const std::vector<PointAttribute>& attributes() const override { return source_->attributes(); }
-  std::optional<Vector3> viewpoint() const override { return source_->viewpoint(); }
-  bool is_double() const override { return source_->is_double(); }
-  void rewind() override { source_->rewind(); }
   bool read(std::size_t most, PointBatch* batch) override;
 
  private:
-  PointSource* source_;
   Box box_;
 };
 

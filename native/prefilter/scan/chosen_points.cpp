@@ -42,7 +42,7 @@ void keep(const std::vector<bool>& is_kept, std::size_t width, std::vector<T>* v
 }  // namespace
 
 ChosenPoints::ChosenPoints(PointSource* source, const PointChoice& choice, const std::string& name)
-    : source_(source), choice_(choice) {
+    : ChangedPoints(source), choice_(choice) {
   if (choice_.classes) class_ = place_of(*source_, "classification", "classes", name);
   if (choice_.returns == Returns::kAll) return;
   if (choice_.returns != Returns::kOnly) {

@@ -10,7 +10,7 @@
 namespace prefilter {
 
 TurnedPoints::TurnedPoints(PointSource* source, Side side, std::vector<Vector3> viewpoints)
-    : source_(source), side_(side), viewpoints_(std::move(viewpoints)) {
+    : ChangedPoints(source), side_(side), viewpoints_(std::move(viewpoints)) {
   if (!source->has_normals()) throw_invalid("source: has no normals; they are needed");
   const std::optional<std::size_t> points = source->count();
   if (viewpoints_.size() > 1 && points && viewpoints_.size() != *points) {

@@ -34,9 +34,8 @@ struct PointChoice {
   Returns returns = Returns::kAll;
 };
 
-/// The points of a source that a choice has; the source must outlive it. Its attributes are those
-/// of the source.
-class ChosenPoints final : public PointSource {
+/// The points of a source that a choice has.
+class ChosenPoints final : public ChangedPoints {
  public:
   /// `name` is what messages call the source. Throws Error where a choice asks for classes or
   /// returns, and the source has no "classification", or no "return_number" (and, but for the
@@ -44,18 +43,11 @@ class ChosenPoints final : public PointSource {
   ChosenPoints(PointSource* source, const PointChoice& choice, const std::string& name);
 
   std::optional<std::size_t> count() const override { return std::nullopt; }
-  bool has_normals() const override { return source_->has_normals(); }
-  bool are_normals_directed() const override { return source_->are_normals_directed(); }
-  const std::vector<PointAttribute>& attributes() const override { return source_->attributes(); }
-  std::optional<Vector3> viewpoint() const override { return source_->viewpoint(); }
-  bool is_double() const override { return source_->is_double(); }
-  void rewind() override { source_->rewind(); }
   bool read(std::size_t most, PointBatch* batch) override;
 
  private:
   bool is_chosen(const PointBatch& batch, std::size_t point) const;
 
-  PointSource* source_;
   PointChoice choice_;
   std::size_t class_ = 0;  // places of attributes
   std::size_t number_ = 0;

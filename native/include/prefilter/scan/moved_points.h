@@ -14,22 +14,16 @@
 
 namespace prefilter {
 
-/// The points of a source after a motion, with their normals and viewpoints; the source must
-/// outlive it.
-class MovedPoints final : public PointSource {
+/// The points of a source after a motion, with their normals and viewpoints.
+class MovedPoints final : public ChangedPoints {
  public:
-  MovedPoints(PointSource* source, const RigidMotion& motion) : source_(source), motion_(motion) {}
+  MovedPoints(PointSource* source, const RigidMotion& motion)
+      : ChangedPoints(source), motion_(motion) {}
 
-  std::optional<std::size_t> count() const override { return source_->count(); }
-  bool has_normals() const override { return source_->has_normals(); }
-  bool are_normals_directed() const override { return source_->are_normals_directed(); }
-  const std::vector<PointAttribute>& attributes() const override { return source_->attributes(); }
   std::optional<Vector3> viewpoint() const override {
     const std::optional<Vector3> viewpoint = source_->viewpoint();
     return viewpoint ? std::optional(moved(motion_, *viewpoint)) : std::nullopt;
   }
-  bool is_double() const override { return source_->is_double(); }
-  void rewind() override { source_->rewind(); }
 
   bool read(std::size_t most, PointBatch* batch) override {
     if (!source_->read(most, batch)) return false;
@@ -43,7 +37,6 @@ class MovedPoints final : public PointSource {
   }
 
  private:
-  PointSource* source_;
   RigidMotion motion_;
 };
 

@@ -61,4 +61,22 @@ class PointSource {
   virtual bool read(std::size_t most, PointBatch* batch) = 0;
 };
 
+/// What changes the points of another source, which must outlive it, and knows of them what that
+/// one does.
+class ChangedPoints : public PointSource {
+ public:
+  explicit ChangedPoints(PointSource* source) : source_(source) {}
+
+  std::optional<std::size_t> count() const override { return source_->count(); }
+  bool has_normals() const override { return source_->has_normals(); }
+  bool are_normals_directed() const override { return source_->are_normals_directed(); }
+  const std::vector<PointAttribute>& attributes() const override { return source_->attributes(); }
+  std::optional<Vector3> viewpoint() const override { return source_->viewpoint(); }
+  bool is_double() const override { return source_->is_double(); }
+  void rewind() override { source_->rewind(); }
+
+ protected:
+  PointSource* source_;
+};
+
 }  // namespace prefilter

@@ -12,9 +12,9 @@
 
 namespace prefilter {
 
-/// The points of a source, which must outlive it, with each normal that points away from where it
-/// should reversed. Zero normals stay.
-class TurnedPoints final : public PointSource {
+/// The points of a source, with each normal that points away from where it should reversed. Zero
+/// normals stay.
+class TurnedPoints final : public ChangedPoints {
  public:
   enum class Side {
     kUp,         // along z
@@ -26,11 +26,7 @@ class TurnedPoints final : public PointSource {
   /// source knows how many points it has, or one that is not finite.
   TurnedPoints(PointSource* source, Side side, std::vector<Vector3> viewpoints);
 
-  std::optional<std::size_t> count() const override { return source_->count(); }
-  bool has_normals() const override { return true; }
-  const std::vector<PointAttribute>& attributes() const override { return source_->attributes(); }
-  std::optional<Vector3> viewpoint() const override { return source_->viewpoint(); }
-  bool is_double() const override { return source_->is_double(); }
+  bool are_normals_directed() const override { return true; }
   void rewind() override;
   bool read(std::size_t most, PointBatch* batch) override;
 
@@ -38,7 +34,6 @@ class TurnedPoints final : public PointSource {
   // Of point `i` of a batch, where its normal should point to.
   Vector3 way(const PointBatch& batch, std::size_t i) const;
 
-  PointSource* source_;
   Side side_;
   std::vector<Vector3> viewpoints_;
   std::size_t next_ = 0;
