@@ -11,6 +11,7 @@
 #include "prefilter/base/elementary.h"
 #include "prefilter/base/geometry.h"
 #include "prefilter/base/radix_sort.h"
+#include "prefilter/normals/local_plane.h"
 
 namespace prefilter {
 namespace {
@@ -22,12 +23,18 @@ constexpr int kAreaSteps = 2;
 constexpr int kCoarsestLeaf = 2;
 // A plane through a cell's middle meets about so many cells of the 27 around it.
 constexpr double kCellsAround = 9.0;
-// Of the weight of all samples: what is in a cell of strays alone.
-constexpr double kLoneShare = 1e-3;
+// Of a surface, cells with samples among the 27 around one, and how far the means of their samples
+// are from a plane, in cells: of points spread over space that is about 0.8.
+constexpr std::size_t kLeastOfSurface = 6;
+constexpr double kMostOffPlane = 0.25;
 // Depths that a stray's cell is above those of the samples around it.
 constexpr int kOutlierDepths = 3;
 // In a cell that the surface meets.
 constexpr double kLeastSamples = 1.5;
+// In the cells around one that has octants with so many.
+constexpr double kEnough = 4.0 * kCellsAround * kLeastSamples;
+// Where there are so many in the cells around one, a sample in it without neighbors is a stray.
+constexpr double kIsolated = kEnough * (1 << (2 * (kOutlierDepths - 1)));
 
 SampleLevel coarser(SampleLevel* level, std::size_t attribute_count) {
   const std::vector<SampleCell>& cells = level->samples.cells;
@@ -60,9 +67,37 @@ SampleLevel coarser(SampleLevel* level, std::size_t attribute_count) {
   return result;
 }
 
-// Of the cells, those with enough neighbors. As keys are in row-major order, so are the nine rows
-// around them: one cursor for each goes through all keys once.
-void mark_met(const CellLayers& cells, SampleLevel* level) {
+// Whether the mean samples of cells are near a plane; means are in cells from anywhere.
+bool are_flat(std::span<const Vector3> means) {
+  if (means.size() < kLeastOfSurface) return false;
+  const double share = 1.0 / static_cast<double>(means.size());
+  Vector3 middle{};
+  for (const Vector3& mean : means) middle = middle + share * mean;
+  SymmetricMatrix covariance;
+  for (const Vector3& mean : means) covariance.add_square(share, mean - middle);
+  const Vector3 normal = least_eigenvector(covariance);
+  double squared = 0.0;
+  for (const Vector3& mean : means) {
+    const double off = dot(mean - middle, normal);
+    squared += off * off;
+  }
+  // Three of any points are on a plane.
+  return squared <= kMostOffPlane * kMostOffPlane * static_cast<double>(means.size() - 3);
+}
+
+Vector3 mean_sample(const SampleCell& cell) {
+  const CellPosition at = cell_position(cell.key);
+  Vector3 mean;
+  for (std::size_t a = 0; a < 3; ++a) {
+    mean[a] = at[a] + static_cast<double>(cell.position[a]) / static_cast<double>(cell.weight);
+  }
+  return mean;
+}
+
+// Of the cells, those with enough neighbors, and those thinly sampled ones that are of no surface.
+// As keys are in row-major order, so are the nine rows around them: one cursor for each goes
+// through all keys once.
+void mark_met(const CellLayers& cells, double mean_weight, SampleLevel* level) {
   const std::vector<CellKey>& keys = cells.keys;
   std::array<CellKey, 9> rows;
   for (std::size_t r = 0; r < 9; ++r) {
@@ -72,21 +107,31 @@ void mark_met(const CellLayers& cells, SampleLevel* level) {
   std::array<std::size_t, 9> cursors{};
   level->is_met.resize(level->size());
   level->around.resize(level->size());
+  level->is_scattered.resize(level->size());
+  std::array<const SampleCell*, 27> near;
+  std::vector<Vector3> means;
   for (std::size_t i = 0; i < level->size(); ++i) {
     const CellKey key = level->samples.cells[i].key;
     int found = -1;  // itself
     float around = 0.0F;
+    means.clear();
     for (std::size_t r = 0; r < 9; ++r) {
       const CellKey middle = key + rows[r] - kBack;
       std::size_t& cursor = cursors[r];
       while (cursor < keys.size() && keys[cursor] + 1 < middle) ++cursor;
       for (std::size_t j = cursor; j < keys.size() && keys[j] <= middle + 1; ++j) {
         ++found;
-        around += cells.weights[j];
+        around += cells.cells[j]->weight;
+        near[static_cast<std::size_t>(found)] = cells.cells[j];
       }
     }
     level->around[i] = around;
     level->is_met[i] = found >= kNeighborsOfSurface ? 1 : 0;
+    level->is_scattered[i] = 0;
+    if (static_cast<double>(around) >= kIsolated * mean_weight) continue;
+    for (int n = 0; n <= found; ++n)
+      means.push_back(mean_sample(*near[static_cast<std::size_t>(n)]));
+    level->is_scattered[i] = are_flat(means) ? 0 : 1;
   }
 }
 
@@ -118,10 +163,9 @@ double area_in(const SampleCell& cell) {
 
 // Cells count where the surface seems to meet them and there are samples enough for their size:
 // those in and around the cell two depths up, so that sizes do not change with every few samples.
-void find_leaves_of_level(const CloudWeights& weights, int finest, int k, SampleSlab* slab) {
-  const double enough = 4.0 * kCellsAround * kLeastSamples * weights.mean;
-  // Where samples are so dense around, one without neighbors is a stray.
-  const double isolated = enough * std::ldexp(1.0, 2 * (kOutlierDepths - 1));
+void find_leaves_of_level(const CloudLeaves& cloud, int finest, int k, SampleSlab* slab) {
+  const double enough = kEnough * cloud.mean_weight;
+  const double isolated = kIsolated * cloud.mean_weight;
   SampleLevel& level = slab->at(k);
   const SampleLevel& above = slab->at(k - 1);
   level.leaf.resize(level.size());
@@ -132,24 +176,15 @@ void find_leaves_of_level(const CloudWeights& weights, int finest, int k, Sample
         k - 2 >= slab->top
             ? static_cast<double>(slab->at(k - 2).around[above.parents[parent]]) / 4.0
             : around;
-    // Nothing else is as far as a stray that is alone even in the coarsest cells.
-    const bool is_lone =
-        k == kCoarsestLeaf && level.is_met[i] == 0 && weights.all >= isolated &&
-        finest - k >= kOutlierDepths &&
-        kLoneShare * weights.all > static_cast<double>(level.samples.cells[i].weight);
-    // Alone beside samples that are much denser: 32 times, where 16 times as much is as dense.
-    const bool is_far_thinner = k > kCoarsestLeaf && finest - k >= kOutlierDepths &&
-                                4.0 * wide > 512.0 * static_cast<double>(level.around[i]);
-    if (is_lone || (is_far_thinner && above.leaf[parent] == k - 1)) {
-      level.leaf[i] = -1;
-    } else if (k <= kCoarsestLeaf ||
-               (level.is_met[i] != 0 && wide >= enough && around >= enough / 4.0)) {
-      level.leaf[i] = static_cast<std::int8_t>(k);
-    } else if (above.leaf[parent] == k - 1 && (around >= isolated || wide >= isolated) &&
-               finest - (k - 1) >= kOutlierDepths) {
-      level.leaf[i] = -1;
+    const bool counts =
+        k <= kCoarsestLeaf || (level.is_met[i] != 0 && wide >= enough && around >= enough / 4.0);
+    const bool is_stray =
+        above.leaf[parent] == k - 1 && around >= isolated && finest - (k - 1) >= kOutlierDepths;
+    if (counts) {
+      const bool is_outlier = k < cloud.least_leaf && level.is_scattered[i] != 0;
+      level.leaf[i] = static_cast<std::int8_t>(is_outlier ? -1 : k);
     } else {
-      level.leaf[i] = above.leaf[parent];
+      level.leaf[i] = is_stray ? std::int8_t{-1} : above.leaf[parent];
     }
   }
 }
@@ -192,11 +227,12 @@ CellLayers with_layers(const SampleLevel* below, const SampleLevel& level,
   return layers;
 }
 
-void find_met_cells(const SampleSlab* below, const SampleSlab* above, SampleSlab* slab) {
+void find_met_cells(const SampleSlab* below, const SampleSlab* above, double mean_weight,
+                    SampleSlab* slab) {
   for (int k = slab->top; k <= slab->depth(); ++k) {
     mark_met(with_layers(below == nullptr ? nullptr : &below->at(k), slab->at(k),
                          above == nullptr ? nullptr : &above->at(k)),
-             &slab->at(k));
+             mean_weight, &slab->at(k));
   }
 }
 
@@ -228,10 +264,10 @@ double weight_of_outliers(const SampleLevel& finest) {
   return weight;
 }
 
-void find_leaves(const CloudWeights& weights, int finest, SampleSlab* slab) {
+void find_leaves(const CloudLeaves& cloud, int finest, SampleSlab* slab) {
   for (int k = slab->top; k <= slab->depth(); ++k) {
     SampleLevel& level = slab->at(k);
-    if (k > slab->top) find_leaves_of_level(weights, finest, k, slab);
+    if (k > slab->top) find_leaves_of_level(cloud, finest, k, slab);
     const int steps = std::min(kAreaSteps, k - slab->top);
     std::vector<std::uint32_t> ancestors(level.size());
     for (std::size_t i = 0; i < level.size(); ++i) {
@@ -250,7 +286,7 @@ void find_leaves(const CloudWeights& weights, int finest, SampleSlab* slab) {
     std::vector<float> unit_areas(extents.size());
     for (std::size_t i = 0; i < extents.size(); ++i) {
       const Extent& e = extents[i];
-      const double share = share_hit(e.weight / (e.cells * weights.mean));
+      const double share = share_hit(e.weight / (e.cells * cloud.mean_weight));
       unit_areas[i] = static_cast<float>(e.area * side * side / (share * e.weight));
     }
     level.unit_area.resize(level.size());

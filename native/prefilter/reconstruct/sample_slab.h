@@ -24,6 +24,8 @@ struct SampleLevel {
   std::vector<std::uint32_t> parents;  // of each, its index on the level above; none on the first
   std::vector<std::uint8_t> is_met;    // whether enough neighbors have samples
   std::vector<float> around;           // the weight of its samples and of those of its neighbors
+  // Whether samples, if they are few, are spread over space instead of a surface.
+  std::vector<std::uint8_t> is_scattered;
   // The depth at which its samples count, if not at a larger one; below 0: not at all.
   std::vector<std::int8_t> leaf;
   std::vector<std::uint8_t> is_split;  // whether some of its samples count at a larger depth
@@ -48,28 +50,30 @@ struct SampleSlab {
 /// The levels of cells of `depth`, up to `top`.
 SampleSlab make_sample_slab(SampleCells finest, int depth, int top, std::size_t attribute_count);
 
-/// Sets is_met and `around` of all levels, where the slabs below and above, if there are any, have
-/// been made.
-void find_met_cells(const SampleSlab* below, const SampleSlab* above, SampleSlab* slab);
+/// Sets is_met, `around` and is_scattered of all levels, where the slabs below and above, if there
+/// are any, have been made.
+void find_met_cells(const SampleSlab* below, const SampleSlab* above, double mean_weight,
+                    SampleSlab* slab);
 
 /// The cells of a level and, where there are any, of the layers next to them, in order of their
 /// keys.
 struct CellLayers {
   std::vector<CellKey> keys;
-  std::vector<float> weights;
+  std::vector<const SampleCell*> cells;
 
   void add(const SampleCell& cell) {
     keys.push_back(cell.key);
-    weights.push_back(cell.weight);
+    cells.push_back(&cell);
   }
 };
 CellLayers with_layers(const SampleLevel* below, const SampleLevel& level,
                        const SampleLevel* above);
 
-/// Of all samples.
-struct CloudWeights {
-  double mean = 1.0;
-  double all = 0.0;
+/// What is known of all samples.
+struct CloudLeaves {
+  double mean_weight = 1.0;
+  // Those that count at less depth than this are outliers where they are spread over space.
+  int least_leaf = 0;
 };
 
 /// Sets is_split of all levels, from that of the last, and is_leaf.
@@ -80,6 +84,6 @@ double weight_of_outliers(const SampleLevel& finest);
 
 /// Sets `leaf`, from that of the first level, is_split, is_leaf and unit_area. `finest` is the
 /// depth of the cells that areas are measured in.
-void find_leaves(const CloudWeights& weights, int finest, SampleSlab* slab);
+void find_leaves(const CloudLeaves& cloud, int finest, SampleSlab* slab);
 
 }  // namespace prefilter

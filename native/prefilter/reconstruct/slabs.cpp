@@ -70,7 +70,7 @@ void Slabs::advance(int s, SlabStage stage) {
                                       attribute_count_);
       break;
     case SlabStage::kMet:
-      find_met_cells(samples(s - 1), samples(s + 1), &slot.samples);
+      find_met_cells(samples(s - 1), samples(s + 1), mean_weight, &slot.samples);
       break;
     case SlabStage::kLeaves:
       find_leaves_of(s);
@@ -94,9 +94,7 @@ void Slabs::find_leaves_of(int s) {
   const auto first = whole.at(top_).leaf.begin() +
                      static_cast<std::ptrdiff_t>(offsets[static_cast<std::size_t>(s)]);
   slab.at(top_).leaf.assign(first, first + static_cast<std::ptrdiff_t>(slab.at(top_).size()));
-  const double all =
-      whole.at(0).size() == 0 ? 0.0 : static_cast<double>(whole.at(0).samples.cells.front().weight);
-  find_leaves({mean_weight, all}, depth_, &slab);
+  find_leaves({mean_weight, least_leaf}, depth_, &slab);
   slots_[static_cast<std::size_t>(s)].splits = split_around_leaves(slab);
   for (int k = top_; is_sparse(k); ++k) {
     std::vector<SupportCell>& cells =

@@ -74,6 +74,7 @@ class Slabs {
   SampleSlab whole;
   std::vector<std::size_t> offsets;
   double mean_weight = 1.0;
+  int least_leaf = 0;
   CoarseTree coarse;
   /// For kSolved: the value wanted at samples; 0: nothing is solved for.
   float middle = 0.0F;

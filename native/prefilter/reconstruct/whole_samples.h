@@ -11,8 +11,16 @@
 
 namespace prefilter {
 
-/// Sets what Slabs needs for kLeaves and kCoefficients: `whole` and `offsets`. Returns the
-/// slab that has most cells. Throws Error(kCancelled).
+/// Sets what Slabs needs for kLeaves and kCoefficients: `whole`, `offsets` and `least_leaf`.
+/// Returns the slab that has most cells. Throws Error(kCancelled).
 int find_whole(std::size_t attribute_count, const Progress& progress, int threads, Slabs* slabs);
+
+/// Adds the weight of a slab's samples to that of the depth at which they count: the largest one at
+/// which their cell is met. Those that count above the slab's first level are taken to count there.
+void weigh_leaves(const SampleSlab& slab, std::vector<double>* weights);
+
+/// Samples that count at smaller depths than this lie much thinner than most: two depths above the
+/// one up to which half of the weight counts.
+int least_leaf_depth(const std::vector<double>& weights);
 
 }  // namespace prefilter

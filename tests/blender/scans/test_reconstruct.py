@@ -356,7 +356,7 @@ def test_points_that_do_not_count(capfd):
 def test_stray_points(capfd):
     points, normals = clouds.torus()
     random = np.random.default_rng(2)
-    stray = random.uniform(-2, 2, (40, 3))
+    stray = random.uniform(-2, 2, (200, 3))
     clouds.scan(np.concatenate([points, stray]), np.concatenate([normals, stray]))
     reconstruct()
     distances = np.abs(clouds.torus_distance(clouds.vertices(surface())))

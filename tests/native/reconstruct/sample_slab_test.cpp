@@ -77,7 +77,8 @@ TEST(SampleSlab, CellsAreMetWhereThreeNeighborsHaveSamples) {
       }
     }
     for (std::size_t s = 0; s < 3; ++s) {
-      find_met_cells(s > 0 ? &slabs[s - 1] : nullptr, s < 2 ? &slabs[s + 1] : nullptr, &slabs[s]);
+      find_met_cells(s > 0 ? &slabs[s - 1] : nullptr, s < 2 ? &slabs[s + 1] : nullptr, 1.0,
+                     &slabs[s]);
       for (int k = kTop; k <= kDepth; ++k) {
         const SampleLevel& level = slabs[s].at(k);
         ASSERT_EQ(level.is_met.size(), level.size());
