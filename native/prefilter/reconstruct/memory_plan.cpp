@@ -21,7 +21,7 @@ constexpr auto kFloat = static_cast<double>(sizeof(float));
 constexpr double kBytesPerPoint = 110.0;
 // Of a finest cell of the samples, with those above it, in all stages; attributes are in those of
 // all depths.
-constexpr double kBytesPerCell = 290.0;
+constexpr double kBytesPerCell = 320.0;
 // The same for each cell that the surface meets, in the D4 basis.
 constexpr double kD4BytesPerMetCell = 200.0;
 constexpr double kDepths = 1.4;

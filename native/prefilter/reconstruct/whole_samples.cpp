@@ -12,7 +12,7 @@
 namespace prefilter {
 namespace {
 
-constexpr int kOutlierDepths = 3;
+constexpr int kOutlierDepths = 2;
 
 void append(const SampleCells& more, SampleCells* all) {
   all->cells.insert(all->cells.end(), more.cells.begin(), more.cells.end());

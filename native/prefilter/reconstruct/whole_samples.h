@@ -19,7 +19,7 @@ int find_whole(std::size_t attribute_count, const Progress& progress, int thread
 /// which their cell is met. Those that count above the slab's first level are taken to count there.
 void weigh_leaves(const SampleSlab& slab, std::vector<double>* weights);
 
-/// Samples that count at smaller depths than this lie much thinner than most: two depths above the
+/// Samples that count at smaller depths than this lie much thinner than most: one depth above the
 /// one up to which half of the weight counts.
 int least_leaf_depth(const std::vector<double>& weights);
 

@@ -13,12 +13,12 @@
 namespace prefilter {
 namespace {
 
-TEST(WholeSamples, LeastLeafIsTwoAboveTheMedian) {
-  EXPECT_EQ(least_leaf_depth({0, 0, 0, 0, 0, 0, 1}), 4);
-  EXPECT_EQ(least_leaf_depth({0, 0, 0, 0, 0, 1, 0.9}), 3);
-  EXPECT_EQ(least_leaf_depth({0, 0, 0, 0, 0, 0.9, 1}), 4);
+TEST(WholeSamples, LeastLeafIsOneAboveTheMedian) {
+  EXPECT_EQ(least_leaf_depth({0, 0, 0, 0, 0, 0, 1}), 5);
+  EXPECT_EQ(least_leaf_depth({0, 0, 0, 0, 0, 1, 0.9}), 4);
+  EXPECT_EQ(least_leaf_depth({0, 0, 0, 0, 0, 0.9, 1}), 5);
   // Half of the weight is enough.
-  EXPECT_EQ(least_leaf_depth({0, 0, 0, 0, 0, 1, 1}), 3);
+  EXPECT_EQ(least_leaf_depth({0, 0, 0, 0, 0, 1, 1}), 4);
   EXPECT_EQ(least_leaf_depth({9, 0, 0, 1}), 0);
   EXPECT_EQ(least_leaf_depth({0, 0}), 0);
 }
