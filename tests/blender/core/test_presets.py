@@ -208,8 +208,8 @@ def test_print_ready_solid():
 
 
 def test_preview_is_coarse(tmp_path):
-    """A fraction of the triangles of the default, and the points stay."""
-    points = clouds.scan(*clouds.torus(50_000))
+    """A fraction of the triangles of a depth more, where there are points enough for it, and the points stay."""
+    points = clouds.scan(*clouds.torus(200_000))
     bpy.ops.prefilter.reconstruct(preset="Preview scan")
     coarse = bpy.context.active_object
     assert points.visible_get()
