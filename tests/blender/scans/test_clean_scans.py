@@ -108,9 +108,10 @@ def test_point_clouds(tmp_path):
     kept = clouds.points(obj)
     assert 50 < len(kept) < 1_000
     found = attribute(obj, "normal", "vector", 3)
-    places = [row.tobytes() for row in positions.astype(np.float32)]
-    by_place = dict(zip(places, normals, strict=True))
-    np.testing.assert_allclose(found, [by_place[row.tobytes()] for row in kept], atol=1e-5)
+    # The file's decimals may differ from the points in the last bit.
+    distances = np.linalg.norm(kept[:, None] - positions[None], axis=2)
+    assert distances.min(axis=1).max() < 1e-5
+    np.testing.assert_allclose(found, normals[distances.argmin(axis=1)], atol=1e-5)
 
 
 def test_outliers_of_all_scans_together():
