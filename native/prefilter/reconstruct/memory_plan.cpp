@@ -22,7 +22,8 @@ constexpr double kBytesPerPoint = 110.0;
 // Of a finest cell of the samples, with those above it, in all stages; attributes are in those of
 // all depths.
 constexpr double kBytesPerCell = 320.0;
-// The same for each cell that the surface meets, in the D4 basis.
+// In the D4 basis, which has no solve; and the same for each cell that the surface meets.
+constexpr double kD4BytesPerCell = 120.0;
 constexpr double kD4BytesPerMetCell = 200.0;
 constexpr double kDepths = 1.4;
 // Of a triangle of a slab that is made, with its leaves, edges and vertices.
@@ -30,7 +31,7 @@ constexpr double kBytesPerTriangle = 330.0;
 constexpr double kVerticesPerTriangle = 1.0;  // twice the half, as they are copied
 constexpr double kTrianglesPerMetCell = 2.1;
 // So many slabs to both sides of those at work are in memory: see Slabs::bring.
-constexpr int kMargin = 4;
+constexpr int kMargin = 3;
 // What does not depend on the cloud.
 constexpr double kAlways = 4.0 * kMib;
 
@@ -85,8 +86,8 @@ double bytes_needed(const SampleStore& store, const CloudLoad& load, bool keeps_
   const double cells = static_cast<double>(std::max<std::size_t>(store.size(), 1));
   const double kept = is_d4 || keeps_all ? cells : cells_of_slabs(store, threads + 2 * kMargin);
   const double met = met_cells_per_cell(static_cast<double>(load.points) / cells);
-  const double per_cell =
-      kBytesPerCell + (is_d4 ? met * kD4BytesPerMetCell : 0.0) + kDepths * kFloat * attributes;
+  const double per_cell = (is_d4 ? kD4BytesPerCell + met * kD4BytesPerMetCell : kBytesPerCell) +
+                          kDepths * kFloat * attributes;
   const double triangles = kTrianglesPerMetCell * met * cells_of_slabs(store, threads);
   const double per_triangle = kBytesPerTriangle + kVerticesPerTriangle * kFloat * attributes;
   return kAlways + std::max(batch_bytes(load), kept * per_cell + triangles * per_triangle);

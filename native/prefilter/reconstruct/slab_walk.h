@@ -25,8 +25,8 @@ struct SlabWalk {
 template <typename Visit, typename Join>
 void for_slabs(const SlabWalk& walk, const Progress& progress, int threads, Slabs* slabs,
                const Visit& visit, const Join& join) {
-  // kValues and kCoefficients of a slab need kLevels of the second one below it.
-  constexpr int kReach = 3;
+  // What the next slabs are made from is that of the one below them, at the most.
+  const int reach = std::max(walk.margin, 1);
   const int width = resolve_threads(threads);
   for (int begin = 0; begin < slabs->count(); begin += width) {
     const int end = std::min(begin + width, slabs->count());
@@ -34,7 +34,7 @@ void for_slabs(const SlabWalk& walk, const Progress& progress, int threads, Slab
     parallel_for(end - begin, threads, Progress(),
                  [&](std::int64_t i) { visit(begin + static_cast<int>(i)); });
     for (int s = begin; s < end; ++s) join(s);
-    slabs->drop_below(end - walk.margin - kReach, walk.is_last);
+    slabs->drop_below(end - reach, walk.is_last);
     progress.report(static_cast<double>(end) / slabs->count());
   }
   slabs->drop_below(slabs->count(), walk.is_last);

@@ -33,6 +33,7 @@ const FluxTree* Slabs::tree(int s) const {
 void Slabs::set_values(int s, FluxTree tree) {
   Slot& slot = slots_[static_cast<std::size_t>(s)];
   slot.tree = std::move(tree);
+  slot.splits = SplitCells();
   slot.stage = SlabStage::kValues;
 }
 
@@ -40,6 +41,10 @@ void Slabs::bring(int begin, int end, SlabStage stage) {
   if (stage == SlabStage::kNone) return;
   begin = std::max(begin, 0);
   end = std::min(end, count());
+  const auto is_there = [&](int s) { return slots_[static_cast<std::size_t>(s)].stage >= stage; };
+  while (begin < end && is_there(begin)) ++begin;
+  while (begin < end && is_there(end - 1)) --end;
+  if (begin == end) return;
   // Neighbors tell which cells are met, and their patches leave through the sides.
   if (stage == SlabStage::kMet) bring(begin - 1, end + 1, SlabStage::kLevels);
   if (stage == SlabStage::kCoefficients) bring(begin - 1, end + 1, SlabStage::kLeaves);
@@ -47,10 +52,10 @@ void Slabs::bring(int begin, int end, SlabStage stage) {
   bring(begin, end, static_cast<SlabStage>(static_cast<int>(stage) - 1));
   parallel_for(end - begin, threads_, Progress(), [&](std::int64_t i) {
     const int s = begin + static_cast<int>(i);
-    if (slots_[static_cast<std::size_t>(s)].stage < stage) advance(s, stage);
+    if (!is_there(s)) advance(s, stage);
   });
-  for (int s = begin - 1; stage == SlabStage::kSolved && s <= end; ++s) drop_unsolved(s);
   if (!keeps_all_) dropped_ = std::min(dropped_, begin);
+  for (int s = std::max(begin - 1, 0); s < std::min(end + 1, count()); ++s) drop_used(s, stage);
 }
 
 void Slabs::drop_below(int end, bool for_good) {
@@ -142,13 +147,15 @@ void Slabs::synthesise_slab(int s) {
   synthesise_part(values, &tree);
 }
 
-// What was solved from, once no slab next to it needs that any more.
-void Slabs::drop_unsolved(int s) {
-  const auto is_solved = [&](int t) {
-    return t < 0 || t >= count() || slots_[static_cast<std::size_t>(t)].stage == SlabStage::kSolved;
-  };
-  if (s < 0 || s >= count() || !is_solved(s - 1) || !is_solved(s) || !is_solved(s + 1)) return;
-  for (NodeLevel& level : slots_[static_cast<std::size_t>(s)].tree.levels) {
+// What a stage was made from, once no slab next to it needs that any more.
+void Slabs::drop_used(int s, SlabStage stage) {
+  for (int t = std::max({s - 1, dropped_, 0}); t < std::min(s + 2, count()); ++t) {
+    if (slots_[static_cast<std::size_t>(t)].stage < stage) return;
+  }
+  Slot& slot = slots_[static_cast<std::size_t>(s)];
+  if (stage == SlabStage::kCoefficients) slot.splits = SplitCells();
+  if (stage != SlabStage::kSolved) return;
+  for (NodeLevel& level : slot.tree.levels) {
     if (level.solved.empty()) continue;
     level.blocks.blocks = std::move(level.solved);
     level.solved = {};

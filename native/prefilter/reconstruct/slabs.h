@@ -97,7 +97,7 @@ class Slabs {
   void analyze(int s);
   void synthesise_slab(int s);
   void solve(int s);
-  void drop_unsolved(int s);
+  void drop_used(int s, SlabStage stage);
 
   SampleStore* store_;
   int depth_;

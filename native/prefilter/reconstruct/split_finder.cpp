@@ -32,6 +32,7 @@ void SplitFinder::add(const CellPosition& cell) {
 
 std::vector<std::uint64_t> SplitFinder::take() {
   compact();
+  places_.shrink_to_fit();
   return std::move(places_);
 }
 
