@@ -42,33 +42,74 @@ SampledArea in_block(const SampledArea& octant, std::uint64_t o) {
   return result;
 }
 
-// Sorted, and each place once.
-std::vector<CellFlux> joined(const std::vector<CellFlux>& entries) {
-  std::vector<std::uint64_t> order;
-  order.reserve(entries.size());
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    order.push_back(entries[i].place << (64 - kPlaceBits) | i);
-  }
-  std::vector<std::uint64_t> other;
-  radix_sort(&order, 64 - kPlaceBits, 64, &other);
-  std::vector<CellFlux> result;
-  result.reserve(entries.size());
-  for (const std::uint64_t entry : order) {
-    const CellFlux& cell = entries[entry & ((std::uint64_t{1} << (64 - kPlaceBits)) - 1)];
-    if (!result.empty() && result.back().place == cell.place) {
-      result.back().flux.add(cell.flux);
-      result.back().sampled.add(cell.sampled);
-      result.back().is_split = result.back().is_split || cell.is_split;
-    } else {
-      result.push_back(cell);
+// Brings entries into the order that the lowest bits of `order` tell.
+void permute(std::uint64_t mask, std::vector<std::uint64_t>* order,
+             std::vector<CellFlux>* entries) {
+  for (std::size_t i = 0; i < order->size(); ++i) {
+    // Around a cycle: each place gets what belongs there, the last one what was at the first.
+    const CellFlux first = (*entries)[i];
+    for (std::size_t at = i;;) {
+      const std::size_t from = (*order)[at] & mask;
+      (*order)[at] = at;
+      if (from == i) {
+        (*entries)[at] = first;
+        break;
+      }
+      (*entries)[at] = (*entries)[from];
+      at = from;
     }
   }
-  return result;
 }
 
-// Appends the blocks of the cells of which some of `octants` are; returns these cells.
-std::vector<CellFlux> add_blocks(const std::vector<CellFlux>& octants, NodeLevel* level) {
-  std::vector<CellFlux> cells;
+// Sorts, and sums those of the same place. It is done in place, as they are many.
+void join(std::vector<CellFlux>* entries) {
+  constexpr std::uint64_t kMask = (std::uint64_t{1} << (64 - kPlaceBits)) - 1;
+  std::vector<std::uint64_t> order;
+  order.reserve(entries->size());
+  for (std::size_t i = 0; i < entries->size(); ++i) {
+    order.push_back((*entries)[i].place << (64 - kPlaceBits) | i);
+  }
+  {
+    std::vector<std::uint64_t> other;
+    radix_sort(&order, 64 - kPlaceBits, 64, &other);
+  }
+  permute(kMask, &order, entries);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < entries->size(); ++i) {
+    const CellFlux& cell = (*entries)[i];
+    if (kept > 0 && (*entries)[kept - 1].place == cell.place) {
+      CellFlux& sum = (*entries)[kept - 1];
+      sum.flux.add(cell.flux);
+      sum.sampled.add(cell.sampled);
+      sum.is_split = sum.is_split || cell.is_split;
+    } else {
+      (*entries)[kept++] = cell;
+    }
+  }
+  entries->resize(kept);
+}
+
+// Room for the blocks that octants need, and no more.
+void reserve_blocks(const std::vector<CellFlux>& octants, NodeLevel* level) {
+  std::size_t blocks = 0;
+  for (std::size_t i = 0; i < octants.size(); ++i) {
+    if (i == 0 || octants[i].place >> 3U != octants[i - 1].place >> 3U) ++blocks;
+  }
+  level->places.reserve(blocks);
+  level->blocks.blocks.reserve(blocks);
+  level->blocks.split.reserve(blocks);
+  level->has_flux.reserve(blocks);
+  level->first_flux.reserve(blocks);
+  level->fluxes.reserve(
+      static_cast<std::size_t>(std::count_if(octants.begin(), octants.end(), is_any)));
+}
+
+// Appends the blocks of the cells of which some of `cells` are octants, and puts these cells in
+// their place.
+void add_blocks(std::vector<CellFlux>* cells, NodeLevel* level) {
+  const std::vector<CellFlux>& octants = *cells;
+  reserve_blocks(octants, level);
+  std::size_t count = 0;
   for (std::size_t i = 0; i < octants.size();) {
     CellFlux cell;
     cell.place = octants[i].place >> 3U;
@@ -92,9 +133,9 @@ std::vector<CellFlux> add_blocks(const std::vector<CellFlux>& octants, NodeLevel
     level->blocks.blocks.push_back(details_of_octants(fluxes));
     level->blocks.split.push_back(split);
     level->has_flux.push_back(has_flux);
-    cells.push_back(cell);
+    (*cells)[count++] = cell;
   }
-  return cells;
+  cells->resize(count);
 }
 
 }  // namespace
@@ -103,16 +144,19 @@ FluxTree analyze_flux(PooledFlux pooled, int top, int depth) {
   FluxTree tree;
   tree.top = top;
   tree.levels.resize(static_cast<std::size_t>(depth - top));
-  std::vector<CellFlux> cells = joined(pooled[static_cast<std::size_t>(depth)]);
+  std::vector<CellFlux> cells = std::move(pooled[static_cast<std::size_t>(depth)]);
+  join(&cells);
   for (int k = depth - 1; k >= top; --k) {
     NodeLevel& level = tree.levels[static_cast<std::size_t>(k - top)];
-    cells = add_blocks(cells, &level);
+    add_blocks(&cells, &level);
     link_blocks(&level.blocks);
     std::vector<CellFlux>& own = pooled[static_cast<std::size_t>(k)];
     if (own.empty()) continue;
     cells.insert(cells.end(), own.begin(), own.end());
-    cells = joined(cells);
+    own = {};
+    join(&cells);
   }
+  cells.shrink_to_fit();
   tree.tops = std::move(cells);
   return tree;
 }
