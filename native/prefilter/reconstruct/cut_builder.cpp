@@ -43,7 +43,11 @@ void CutBuilder::add_vertices(std::vector<Vector3> positions, std::vector<float>
 }
 
 void CutBuilder::add_triangles(std::vector<std::array<std::int64_t, 3>> triangles) {
-  triangles_.insert(triangles_.end(), triangles.begin(), triangles.end());
+  if (triangles_.empty()) {
+    triangles_ = std::move(triangles);
+  } else {
+    triangles_.insert(triangles_.end(), triangles.begin(), triangles.end());
+  }
 }
 
 void CutBuilder::add_far_places(const std::vector<FarPlace<std::int64_t>>& places) {
@@ -129,6 +133,7 @@ std::uint32_t CutBuilder::middle_of(std::int64_t a, std::int64_t b) {
 }
 
 void CutBuilder::divide_triangles() {
+  part_.triangles.reserve(triangles_.size());
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
     std::array<std::uint32_t, 3> corners;
     std::array<std::uint32_t, 3> middles;
@@ -272,11 +277,11 @@ CutPart CutBuilder::take_part(std::span<const std::int64_t> shared) {
   next_id_ += static_cast<std::int64_t>(count);
   part_.components.assign(count, -1);
   divide_triangles();
+  triangles_ = {};
   find_components();
   measure_areas();
   keep(shared);
   first_number_ += static_cast<std::int64_t>(count);
-  triangles_.clear();
   far_edges_.clear();
   far_triangles_.clear();
   cut_at_.clear();

@@ -38,6 +38,7 @@ void CutParts::add(CutPart part) {
                [&](auto* array, std::size_t) { file_->write(std::as_bytes(std::span(*array))); });
   } else {
     held_ += bytes;
+    for_arrays(&part, [](auto* array, std::size_t) { array->shrink_to_fit(); });
     entry.part = std::move(part);
   }
   parts_.push_back(std::move(entry));

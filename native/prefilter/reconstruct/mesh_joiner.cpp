@@ -24,6 +24,9 @@ void MeshJoiner::add(const SlabMesh& slab, int top) {
   std::vector<Vector3> positions;
   std::vector<float> attributes;
   std::vector<std::array<std::int64_t, 3>> triangles;
+  positions.reserve(mesh.positions.size());
+  attributes.reserve(mesh.positions.size() * attribute_count_);
+  triangles.reserve(mesh.triangles.size());
   const auto number_of = [&](std::size_t v) {
     if (numbers[v] >= 0) return numbers[v];
     const VertexPlace* place = v < slab.contour.places.size() ? &slab.contour.places[v] : nullptr;

@@ -46,7 +46,14 @@ SampleLevel coarser(SampleLevel* level, std::size_t attribute_count) {
   }
   std::vector<std::uint64_t> other;
   radix_sort(&order, kIndexBits, 64, &other);
+  other = {};
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    if (i == 0 || order[i] >> kIndexBits != order[i - 1] >> kIndexBits) ++count;
+  }
   SampleLevel result;
+  result.samples.cells.reserve(count);
+  result.samples.attributes.reserve(count * attribute_count);
   level->parents.resize(cells.size());
   for (const std::uint64_t entry : order) {
     const auto i = static_cast<std::size_t>(entry & ((std::uint64_t{1} << kIndexBits) - 1));
@@ -291,6 +298,12 @@ void find_leaves(const CloudLeaves& cloud, int finest, SampleSlab* slab) {
     }
     level.unit_area.resize(level.size());
     for (std::size_t i = 0; i < level.size(); ++i) level.unit_area[i] = unit_areas[ancestors[i]];
+  }
+  // These have told all that they are for.
+  for (SampleLevel& level : slab->levels) {
+    level.is_met = {};
+    level.around = {};
+    level.is_scattered = {};
   }
   slab->at(slab->depth()).is_split.assign(slab->at(slab->depth()).size(), 0);
   find_split(slab);

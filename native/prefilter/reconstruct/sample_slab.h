@@ -82,8 +82,8 @@ void find_split(SampleSlab* slab);
 /// The weight of the samples that do not count.
 double weight_of_outliers(const SampleLevel& finest);
 
-/// Sets `leaf`, from that of the first level, is_split, is_leaf and unit_area. `finest` is the
-/// depth of the cells that areas are measured in.
+/// Sets `leaf`, from that of the first level, is_split, is_leaf and unit_area, and drops what
+/// find_met_cells set. `finest` is the depth of the cells that areas are measured in.
 void find_leaves(const CloudLeaves& cloud, int finest, SampleSlab* slab);
 
 }  // namespace prefilter
