@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <utility>
 
 #include "prefilter/base/geometry.h"
 #include "prefilter/spatial/morton.h"
@@ -114,6 +115,13 @@ struct Pieces {
   }
 };
 
+// That a plane leaves its cell through a face, and goes on in a cell without samples.
+struct Leaving {
+  CellKey key;  // of that cell
+  const SampleCell* from;
+  int face;
+};
+
 // Sums for a cell without samples, from the planes next to it.
 struct Guess {
   CellKey key = 0;
@@ -149,10 +157,9 @@ struct CellRange {
   }
 };
 
-// Adds the sums of a cell to those of the cells next to it that its plane reaches, where these have
-// no samples.
-void add_guesses(const SampleCell& cell, const CellPolygon& polygon, const CellRange& range,
-                 Neighbors* neighbors, std::vector<Guess>* guesses) {
+// Adds where the plane of a cell goes on in the cells next to it that have no samples.
+void add_leaving(const SampleCell& cell, const CellPolygon& polygon, const CellRange& range,
+                 Neighbors* neighbors, std::vector<Leaving>* leaving) {
   const CellPosition at = cell_position(cell.key);
   for (int face = 0; face < 6; ++face) {
     const int axis = face / 2;
@@ -162,29 +169,26 @@ void add_guesses(const SampleCell& cell, const CellPolygon& polygon, const CellR
     next[axis] += is_high ? 1 : -1;
     if (!range.holds(next, axis)) continue;
     if (neighbors->has(static_cast<std::size_t>(face), cell_key(next))) continue;
-    std::array<float, 3> position = cell.position;
-    position[axis] += is_high ? -cell.weight : cell.weight;
-    guesses->push_back({cell_key(next), doubles(cell.normal), doubles(position),
-                        static_cast<double>(cell.weight)});
+    leaving->push_back({cell_key(next), &cell, face});
   }
 }
 
-// Sums the guesses of the same cell; they are left in the order of their cells.
-void merge_guesses(std::vector<Guess>* guesses) {
-  std::stable_sort(guesses->begin(), guesses->end(),
-                   [](const Guess& a, const Guess& b) { return a.key < b.key; });
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < guesses->size(); ++i) {
-    const Guess guess = (*guesses)[i];  // its place may be that of the sum
-    if (kept == 0 || (*guesses)[kept - 1].key != guess.key) (*guesses)[kept++] = {guess.key};
-    Guess& sum = (*guesses)[kept - 1];
-    sum.weight += guess.weight;
-    for (std::size_t a = 0; a < 3; ++a) {
-      sum.normal[a] += guess.normal[a];
-      sum.position[a] += guess.position[a];
-    }
+// The sums for each cell that planes go on in, in the order of these cells.
+std::vector<Guess> guesses_of(std::vector<Leaving> leaving) {
+  std::stable_sort(leaving.begin(), leaving.end(),
+                   [](const Leaving& a, const Leaving& b) { return a.key < b.key; });
+  std::vector<Guess> guesses;
+  for (const Leaving& each : leaving) {
+    if (guesses.empty() || guesses.back().key != each.key) guesses.push_back({each.key});
+    const SampleCell& cell = *each.from;
+    std::array<float, 3> position = cell.position;
+    position[each.face / 2] += (each.face & 1) != 0 ? -cell.weight : cell.weight;
+    Guess& sum = guesses.back();
+    sum.weight += static_cast<double>(cell.weight);
+    sum.normal = sum.normal + doubles(cell.normal);
+    sum.position = sum.position + doubles(position);
   }
-  guesses->resize(kept);
+  return guesses;
 }
 
 // Calls visit(level, i) for the cells of a slab and of the layers next to it, in row-major order.
@@ -238,7 +242,7 @@ void add_patches(const PatchLevels& levels, int depth, int low, int high, const 
   const Pieces pieces = {splits, flux};
   const std::vector<CellKey> keys = with_layers(below, level, above).keys;
   Neighbors neighbors(keys);
-  std::vector<Guess> guesses;
+  std::vector<Leaving> leaving;
   const CellRange range = {1 << depth, low, high};
   std::vector<CellKey> split;
   const auto visit = [&](const SampleLevel& from, std::size_t i) {
@@ -252,11 +256,10 @@ void add_patches(const PatchLevels& levels, int depth, int low, int high, const 
     if (&from == &level) {
       pieces.add_cut(morton_index(cell_position(cell.key)), depth, *plane, polygon, true);
     }
-    add_guesses(cell, polygon, range, &neighbors, &guesses);
+    add_leaving(cell, polygon, range, &neighbors, &leaving);
   };
   for_cells_and_layers(below, level, above, range, visit);
-  merge_guesses(&guesses);
-  for (const Guess& guess : guesses) {
+  for (const Guess& guess : guesses_of(std::move(leaving))) {
     if (is_others(guess.key, coarser, split)) continue;
     const std::optional<Plane> plane = plane_of(guess.normal, guess.position, guess.weight);
     if (plane) pieces.add(morton_index(cell_position(guess.key)), depth, *plane, false);

@@ -119,6 +119,11 @@ void Slabs::analyze(int s) {
   }
   const SplitCells splits = splits_in_slab(all_splits, s, top_, depth_);
   for (int k = top_; k <= depth_; ++k) {
+    // A piece for each leaf, about as many beside them, and those of the band.
+    const std::vector<std::uint8_t>& is_leaf = slot.samples.at(k).is_leaf;
+    const auto leaves = std::count(is_leaf.begin(), is_leaf.end(), std::uint8_t{1});
+    pooled[static_cast<std::size_t>(k)].reserve(2 * static_cast<std::size_t>(leaves) +
+                                                (k > top_ ? splits.at(k - 1).size() : 0));
     const auto level_of = [&](int t) {
       const SampleSlab* slab = samples(t);
       return slab == nullptr ? nullptr : &slab->at(k);
