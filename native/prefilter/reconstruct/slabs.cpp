@@ -105,7 +105,7 @@ void Slabs::find_leaves_of(int s) {
     std::vector<SupportCell>& cells =
         sparse_[static_cast<std::size_t>(s)][static_cast<std::size_t>(k - top_)];
     cells.clear();
-    add_support(slab, k, depth_, mean_weight, &cells);
+    add_support(slab, k, {0, 1 << k}, depth_, mean_weight, &cells);
   }
 }
 

@@ -52,12 +52,16 @@ SupportCell support_of(const SampleCell& sum, int k, int finest, double unit_are
   return cell;
 }
 
-// All cells of a depth that count at it or at larger ones.
-void add_met(const SampleSlab& slab, int k, int finest, double mean_weight,
-             std::vector<SupportCell>* cells) {
+bool is_at(const SampleCell& cell, const HeightRange& heights) {
+  return heights.holds(cell_position(cell.key)[2]);
+}
+
+// All cells of a depth, at some heights, that count at it or at larger ones.
+void add_met(const SampleSlab& slab, int k, const HeightRange& heights, int finest,
+             double mean_weight, std::vector<SupportCell>* cells) {
   const SampleLevel& level = slab.at(k);
   for (std::size_t i = 0; i < level.size(); ++i) {
-    if (level.leaf[i] != k) continue;
+    if (level.leaf[i] != k || !is_at(level.samples.cells[i], heights)) continue;
     const double unit_area = static_cast<double>(level.unit_area[i]);
     SupportCell cell = support_of(level.samples.cells[i], k, finest, unit_area, mean_weight);
     cell.reach = std::max(1.0F, cell.spacing);
@@ -67,34 +71,29 @@ void add_met(const SampleSlab& slab, int k, int finest, double mean_weight,
 
 }  // namespace
 
-void add_support(const SampleSlab& slab, int k, int finest, double mean_weight,
-                 std::vector<SupportCell>* cells) {
+void add_support(const SampleSlab& slab, int k, const HeightRange& heights, int finest,
+                 double mean_weight, std::vector<SupportCell>* cells) {
   const SampleLevel& level = slab.at(k);
-  std::vector<SampleCell> sums(level.size());
-  if (k == slab.depth()) {
-    for (std::size_t i = 0; i < level.size(); ++i) {
-      if (level.leaf[i] == k) sums[i] = level.samples.cells[i];
-    }
-  } else {
+  std::vector<SampleCell> sums;
+  if (k < slab.depth()) {
+    sums.resize(level.size());
     const SampleLevel& finer = slab.at(k + 1);
     for (std::size_t i = 0; i < finer.size(); ++i) {
       if (finer.leaf[i] == k) sums[finer.parents[i]].add(in_parent(finer.samples.cells[i]));
     }
   }
   for (std::size_t i = 0; i < level.size(); ++i) {
-    if (!(sums[i].weight > 0.0F)) continue;
-    sums[i].key = level.samples.cells[i].key;
+    const SampleCell& own = level.samples.cells[i];
+    const bool counts = sums.empty() ? level.leaf[i] == k : sums[i].weight > 0.0F;
+    if (!counts || !is_at(own, heights)) continue;
+    if (!sums.empty()) sums[i].key = own.key;
     const double unit_area = static_cast<double>(level.unit_area[i]);
-    cells->push_back(support_of(sums[i], k, finest, unit_area, mean_weight));
+    cells->push_back(support_of(sums.empty() ? own : sums[i], k, finest, unit_area, mean_weight));
   }
 }
 
-SupportLevel::SupportLevel(int depth, int low, int high, const std::vector<SupportCell>& cells)
-    : side_(1 << depth), low_(std::max(low, 0)), high_(std::min(high, 1 << depth)) {
-  for (const SupportCell& cell : cells) {
-    const int z = cell_position(cell.key)[2];
-    if (z >= low_ && z < high_) cells_.push_back(cell);
-  }
+SupportLevel::SupportLevel(int depth, const HeightRange& heights, std::vector<SupportCell> cells)
+    : side_(1 << depth), low_(heights.low), high_(heights.high), cells_(std::move(cells)) {
   begin_rows();
 }
 
@@ -170,43 +169,47 @@ SupportField::SupportField(const Slabs& slabs, double sign, int s)
 
 double SupportField::side(int k) const { return std::ldexp(1.0, slabs_.depth() - k); }
 
-SupportLevel SupportField::level_of(int k) const {
+HeightRange SupportField::heights_around(int k, int reach) const {
   const int shift = slabs_.depth() - k;
-  const int low = (s_ * slabs_.height() >> shift) - kExactCells;
-  const int high = (((s_ + 1) * slabs_.height() - 1) >> shift) + kExactCells + 1;
+  const int low = (s_ * slabs_.height() >> shift) - reach;
+  const int high = (((s_ + 1) * slabs_.height() - 1) >> shift) + reach + 1;
+  return {std::max(low, 0), std::min(high, 1 << k)};
+}
+
+SupportLevel SupportField::level_of(int k) const {
+  const HeightRange heights = heights_around(k, kExactCells);
   std::vector<SupportCell> cells;
   if (k < slabs_.top()) {
-    add_support(slabs_.whole, k, slabs_.depth(), slabs_.mean_weight, &cells);
+    add_support(slabs_.whole, k, heights, slabs_.depth(), slabs_.mean_weight, &cells);
   } else if (slabs_.is_sparse(k)) {
     const int height = 1 << (k - slabs_.top());
-    const int end = std::min((high - 1) / height + 1, slabs_.count());
-    for (int t = std::max(low, 0) / height; t < end; ++t) {
-      const std::vector<SupportCell>& found = slabs_.sparse(t, k);
-      cells.insert(cells.end(), found.begin(), found.end());
+    const int end = std::min((heights.high - 1) / height + 1, slabs_.count());
+    for (int t = heights.low / height; t < end; ++t) {
+      for (const SupportCell& cell : slabs_.sparse(t, k)) {
+        if (heights.holds(cell_position(cell.key)[2])) cells.push_back(cell);
+      }
     }
   } else {
     for (int t = s_ - 1; t <= s_ + 1; ++t) {
       if (slabs_.samples(t) == nullptr) continue;
-      add_support(*slabs_.samples(t), k, slabs_.depth(), slabs_.mean_weight, &cells);
+      add_support(*slabs_.samples(t), k, heights, slabs_.depth(), slabs_.mean_weight, &cells);
     }
   }
-  return {k, low, high, cells};
+  return {k, heights, std::move(cells)};
 }
 
 SupportLevel SupportField::met_level_of(int k) const {
-  const int shift = slabs_.depth() - k;
-  const int low = (s_ * slabs_.height() >> shift) - kFarCells;
-  const int high = (((s_ + 1) * slabs_.height() - 1) >> shift) + kFarCells + 1;
+  const HeightRange heights = heights_around(k, kFarCells);
   std::vector<SupportCell> cells;
   if (k <= slabs_.top()) {
-    add_met(slabs_.whole, k, slabs_.depth(), slabs_.mean_weight, &cells);
+    add_met(slabs_.whole, k, heights, slabs_.depth(), slabs_.mean_weight, &cells);
   } else {
     for (int t = s_ - 1; t <= s_ + 1; ++t) {
       if (slabs_.samples(t) == nullptr) continue;
-      add_met(*slabs_.samples(t), k, slabs_.depth(), slabs_.mean_weight, &cells);
+      add_met(*slabs_.samples(t), k, heights, slabs_.depth(), slabs_.mean_weight, &cells);
     }
   }
-  return {k, low, high, cells};
+  return {k, heights, std::move(cells)};
 }
 
 Support SupportField::at(FacingPoint point, int k) {

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
+#include "prefilter/contour/height_range.h"
 #include "prefilter/reconstruct/sample_cell.h"
 #include "prefilter/reconstruct/sample_slab.h"
 
@@ -33,10 +34,11 @@ struct SupportCell {
   float spacing = 1.0F;             // between samples, in finest cells
 };
 
-/// Adds the cells of depth `k` of a slab with samples that count at just that depth, in the order
-/// of their keys. The slab has its leaves; `finest` is the depth of finest cells.
-void add_support(const SampleSlab& slab, int k, int finest, double mean_weight,
-                 std::vector<SupportCell>* cells);
+/// Adds the cells of depth `k` of a slab, at some heights, with samples that count at just that
+/// depth, in the order of their keys. The slab has its leaves; `finest` is the depth of finest
+/// cells.
+void add_support(const SampleSlab& slab, int k, const HeightRange& heights, int finest,
+                 double mean_weight, std::vector<SupportCell>* cells);
 
 /// A point of a surface, in finest cells, and where that faces there, in any length.
 struct FacingPoint {
@@ -53,8 +55,8 @@ struct Support {
 /// The cells of one depth at some heights, by rows.
 class SupportLevel {
  public:
-  /// Cells in the order of their keys; those at other heights than `low` up to `high` are left out.
-  SupportLevel(int depth, int low, int high, const std::vector<SupportCell>& cells);
+  /// Cells in the order of their keys, all at these heights, which are within the root.
+  SupportLevel(int depth, const HeightRange& heights, std::vector<SupportCell> cells);
 
   bool is_empty() const { return cells_.empty(); }
   /// Lowers `best` to what cells up to `reach` cells away support of a point.
@@ -89,6 +91,8 @@ class SupportField {
   SupportLevel met_level_of(int k) const;
   Support far_support(const FacingPoint& point);
   double side(int k) const;
+  // Up to so many cells away from the slab.
+  HeightRange heights_around(int k, int reach) const;
 
   const Slabs& slabs_;
   double sign_;
