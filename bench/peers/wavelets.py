@@ -45,20 +45,20 @@ class Wavelets:
 
 def from_file(points: str, target: str, keywords: Mapping[str, Any]) -> Callable[[], Any]:
     """Returns the work, with reading and writing."""
-    import prefilter
+    from prefilter import reconstruct_file
 
-    return lambda: prefilter.reconstruct_file(points, target, **keywords)
+    return lambda: reconstruct_file(points, target, **keywords)
 
 
 def in_memory(points: str, keywords: Mapping[str, Any]) -> Callable[[], Any]:
     """Returns the work alone."""
     import numpy as np
-    import prefilter
+    from prefilter import reconstruct
 
     from bench.scans import ply
 
     cloud, normals = (np.ascontiguousarray(part) for part in ply.read_points(Path(points)))
-    return lambda: prefilter.reconstruct(cloud, normals, **keywords)
+    return lambda: reconstruct(cloud, normals, **keywords)
 
 
 def main() -> None:
