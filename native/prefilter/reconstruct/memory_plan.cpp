@@ -21,17 +21,18 @@ constexpr auto kFloat = static_cast<double>(sizeof(float));
 constexpr double kBytesPerPoint = 110.0;
 // Of a finest cell of the samples, with those above it, in all stages; attributes are in those of
 // all depths.
-constexpr double kBytesPerCell = 320.0;
+constexpr double kBytesPerCell = 190.0;
 // In the D4 basis, which has no solve; and the same for each cell that the surface meets.
-constexpr double kD4BytesPerCell = 120.0;
-constexpr double kD4BytesPerMetCell = 200.0;
+constexpr double kD4BytesPerCell = 100.0;
+constexpr double kD4BytesPerMetCell = 180.0;
 constexpr double kDepths = 1.4;
 // Of a triangle of a slab that is made, with its leaves, edges and vertices.
 constexpr double kBytesPerTriangle = 330.0;
 constexpr double kVerticesPerTriangle = 1.0;  // twice the half, as they are copied
 constexpr double kTrianglesPerMetCell = 2.1;
-// So many slabs to both sides of those at work are in memory: see Slabs::bring.
-constexpr int kMargin = 3;
+// So many slabs to both sides of those at work are in memory, or as much as these take: see
+// Slabs::bring.
+constexpr int kMargin = 2;
 // What does not depend on the cloud.
 constexpr double kAlways = 4.0 * kMib;
 
