@@ -28,6 +28,8 @@ constexpr double kD4BytesPerMetCell = 180.0;
 constexpr double kDepths = 1.4;
 // Of a triangle of a slab that is made, with its leaves, edges and vertices.
 constexpr double kBytesPerTriangle = 330.0;
+// While a slab's part of the mesh is simplified, one at a time.
+constexpr double kSimplifiedBytesPerTriangle = 250.0;
 constexpr double kVerticesPerTriangle = 1.0;  // twice the half, as they are copied
 constexpr double kTrianglesPerMetCell = 2.1;
 // So many slabs to both sides of those at work are in memory, or as much as these take: see
@@ -91,7 +93,12 @@ double bytes_needed(const SampleStore& store, const CloudLoad& load, bool keeps_
                           kDepths * kFloat * attributes;
   const double triangles = kTrianglesPerMetCell * met * cells_of_slabs(store, threads);
   const double per_triangle = kBytesPerTriangle + kVerticesPerTriangle * kFloat * attributes;
-  return kAlways + std::max(batch_bytes(load), kept * per_cell + triangles * per_triangle);
+  double bytes = kept * per_cell + triangles * per_triangle;
+  if (load.is_simplified) {
+    const double most = kTrianglesPerMetCell * met * cells_of_slabs(store, 1);
+    bytes += most * (kSimplifiedBytesPerTriangle + kVerticesPerTriangle * kFloat * attributes);
+  }
+  return kAlways + std::max(batch_bytes(load), bytes);
 }
 
 MemoryPlan plan_memory(const SampleStore& store, const CloudLoad& load,

@@ -16,6 +16,7 @@ struct CloudLoad {
   std::size_t points = 0;
   std::size_t attributes = 0;
   WaveletBasis basis = WaveletBasis::kHaar;
+  bool is_simplified = false;  // the mesh
 };
 
 struct MemoryPlan {

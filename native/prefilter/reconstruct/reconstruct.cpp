@@ -27,6 +27,7 @@
 #include "prefilter/reconstruct/stray_points.h"
 #include "prefilter/reconstruct/surface_cutter.h"
 #include "prefilter/reconstruct/surface_level.h"
+#include "prefilter/reconstruct/surface_simplifier.h"
 #include "prefilter/reconstruct/whole_samples.h"
 #include "prefilter/voxel/voxelize.h"
 
@@ -117,9 +118,10 @@ FunctionFindings find_function(PointSource* source, const SampleGrid& grid,
   return found;
 }
 
-// The mesh, slab by slab, to a joiner and then to a cutter, if there is one.
+// The mesh, slab by slab, to a joiner, and then to the sink: a cutter, where there is one.
 void find_mesh(const SurfaceSamples& surface, const ReconstructOptions& options,
-               const SurfaceLevel& level, Slabs* slabs, MeshJoiner* joiner, SurfaceCutter* cutter) {
+               const SurfaceLevel& level, Slabs* slabs, MeshJoiner* joiner, SurfaceCutter* cutter,
+               MeshSink* sink) {
   std::vector<SlabMesh> parts(static_cast<std::size_t>(slabs->count()));
   const auto make = [&](int s) {
     SlabMesh part = mesh_of_slab(surface, options, level, s);
@@ -133,12 +135,35 @@ void find_mesh(const SurfaceSamples& surface, const ReconstructOptions& options,
     SlabMesh& part = parts[static_cast<std::size_t>(s)];
     joiner->add(part, is_last ? (1 << slabs->depth()) + 1 : (s + 1) * slabs->height());
     part = SlabMesh();
-    if (cutter == nullptr) return;
-    cutter->add_far_places(joiner->far_places());
-    cutter->end_part(joiner->shared());
+    if (cutter != nullptr) cutter->add_far_places(joiner->far_places());
+    sink->end_part(joiner->shared());
   };
   for_slabs({SlabStage::kSolved, 1, true}, options.progress.part(0.6, 0.95), options.threads, slabs,
             make, join);
+}
+
+// The mesh, cut where it is to be.
+void hand_on_mesh(const SampleGrid& grid, const SurfaceSamples& surface,
+                  const ReconstructOptions& options, const SurfaceLevel& level, Slabs* slabs,
+                  MeshSink* sink, ReconstructReport* report) {
+  const bool is_open = !options.watertight && !options.trim;
+  const std::size_t all =
+      surface.attribute_count + (is_open || options.support ? kSupportAttributes : 0);
+  if (!is_open) {
+    MeshJoiner joiner(grid, all, sink);
+    find_mesh(surface, options, level, slabs, &joiner, nullptr, sink);
+    report->vertices = joiner.vertices();
+    report->triangles = joiner.triangles();
+    return;
+  }
+  SurfaceCutter cutter(TrimOptions(), all, grid.cell, options.support, options.memory_limit,
+                       options.folder);
+  MeshJoiner joiner(grid, all, &cutter);
+  find_mesh(surface, options, level, slabs, &joiner, &cutter, &cutter);
+  report->trimmed = cutter.finish(options.progress.part(0.95, 1.0), sink);
+  report->vertices = cutter.counts().vertices;
+  report->triangles = cutter.counts().triangles;
+  report->is_spilled = report->is_spilled || cutter.is_spilled();
 }
 
 // From samples in cells to the mesh. The memory limit is that of the mesh.
@@ -159,29 +184,24 @@ void find_surface(PointSource* source, const SampleGrid& grid, const Reconstruct
   report->is_room = level.is_reversed;
   const SurfaceSamples surface = {slabs, width, find_noise(largest, &slabs), grid.cell};
   report->residual = surface.noise.distance;
-  const bool is_open = !options.watertight && !options.trim;
-  const std::size_t all = width + (is_open || options.support ? kSupportAttributes : 0);
-  if (!is_open) {
-    MeshJoiner joiner(grid, all, sink);
-    find_mesh(surface, options, level, &slabs, &joiner, nullptr);
-    report->vertices = joiner.vertices();
-    report->triangles = joiner.triangles();
+  if (options.adaptivity == 0.0) {
+    hand_on_mesh(grid, surface, options, level, &slabs, sink, report);
     return;
   }
-  SurfaceCutter cutter(TrimOptions(), all, grid.cell, options.support, options.memory_limit,
-                       options.folder);
-  MeshJoiner joiner(grid, all, &cutter);
-  find_mesh(surface, options, level, &slabs, &joiner, &cutter);
-  report->trimmed = cutter.finish(options.progress.part(0.95, 1.0), sink);
-  report->vertices = cutter.counts().vertices;
-  report->triangles = cutter.counts().triangles;
-  report->is_spilled = report->is_spilled || cutter.is_spilled();
+  SurfaceSimplifier simplifier(
+      {options.adaptivity * grid.cell, width + (options.support ? kSupportAttributes : 0),
+       options.support, options.threads, options.progress.part(0.6, 0.6)},
+      sink);
+  hand_on_mesh(grid, surface, options, level, &slabs, &simplifier, report);
+  report->vertices = simplifier.counts().vertices;
+  report->triangles = simplifier.counts().triangles;
 }
 
 // Of a cell: coordinates with larger steps leave stairs in the surface.
 constexpr double kCoarseStep = 0.25;
 constexpr double kLargestIsovalue = 1e30;
 constexpr double kLargestTrim = 1e6;
+constexpr double kLargestAdaptivity = 1e6;
 
 void check_options(const ReconstructOptions& options) {
   if (options.depth) check_depth(*options.depth, 1, "depth");
@@ -198,6 +218,12 @@ void check_options(const ReconstructOptions& options) {
     throw_invalid("trim: " + to_text(*options.trim) +
                   "; a number of cells above 0 and up to 1e6 is needed, or none");
   }
+}
+
+void check_adaptivity(double adaptivity) {
+  if (adaptivity >= 0.0 && adaptivity <= kLargestAdaptivity) return;
+  throw_invalid("adaptivity: found " + to_text(adaptivity) + "; allowed are 0 to " +
+                to_text(kLargestAdaptivity));
 }
 
 void check_cloud(const CloudExtent& extent) {
@@ -239,10 +265,11 @@ std::vector<PointAttribute> support_attributes() {
 ReconstructReport reconstruct(PointSource* source, const ReconstructOptions& options,
                               MeshSink* sink) {
   check_options(options);
+  check_adaptivity(options.adaptivity);
   ThinnedPoints some;
   const bool is_automatic = !options.depth && !options.cell_size;
   CloudLoad load = {source->count().value_or(PointOrder::kMostPoints), source->attributes().size(),
-                    options.basis};
+                    options.basis, options.adaptivity > 0.0};
   const int width = batches_at_once(load, options);
   CloudExtent extent = measure_cloud(source, options.progress.part(0.0, 0.08), width,
                                      is_automatic ? &some : nullptr);

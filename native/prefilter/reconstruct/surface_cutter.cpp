@@ -33,6 +33,7 @@ class Cutting {
   void add_fan(const CutFan& fan);
   void cut_triangle(const std::array<std::uint32_t, 3>& triangle, std::size_t left);
   void keep();
+  std::vector<std::int64_t> shared() const;  // numbers that later parts may name
 
   const SurfaceRegions& regions_;
   double distance_;
@@ -123,6 +124,14 @@ void Cutting::keep() {
   });
 }
 
+std::vector<std::int64_t> Cutting::shared() const {
+  std::vector<std::int64_t> numbers;
+  for (const auto& [id, number] : known_) numbers.push_back(number);
+  for (const auto& [edge, number] : known_cuts_) numbers.push_back(number);
+  std::sort(numbers.begin(), numbers.end());
+  return numbers;
+}
+
 void Cutting::add_triangle(const std::array<std::uint32_t, 3>& triangle) {
   const auto left = static_cast<std::size_t>(
       std::count_if(triangle.begin(), triangle.end(), [&](std::uint32_t v) { return is_left(v); }));
@@ -172,6 +181,7 @@ void Cutting::hand_on(const CutPart& part, MeshSink* sink) {
     sink->add_vertices(std::exchange(positions_, {}), std::exchange(attributes_, {}));
   }
   if (!triangles_.empty()) sink->add_triangles(std::exchange(triangles_, {}));
+  sink->end_part(shared());
 }
 
 }  // namespace

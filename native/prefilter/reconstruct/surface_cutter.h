@@ -17,16 +17,11 @@
 #include "prefilter/mesh/mesh_sink.h"
 #include "prefilter/reconstruct/cut_builder.h"
 #include "prefilter/reconstruct/cut_parts.h"
+#include "prefilter/reconstruct/mesh_counts.h"
 #include "prefilter/reconstruct/surface_regions.h"
 #include "prefilter/reconstruct/trim_surface.h"
 
 namespace prefilter {
-
-/// How much of a mesh came out.
-struct MeshCounts {
-  std::size_t vertices = 0;
-  std::size_t triangles = 0;
-};
 
 class SurfaceCutter final : public MeshSink {
  public:
@@ -48,9 +43,11 @@ class SurfaceCutter final : public MeshSink {
   /// Has the regions cut in which these vertices of the part are, if they are far.
   void cut_at(std::vector<std::int64_t> numbers) { builder_.cut_at(std::move(numbers)); }
   /// Later parts may name those vertices that are `shared`, and no others.
-  void end_part(std::span<const std::int64_t> shared) { parts_.add(builder_.take_part(shared)); }
+  void end_part(std::span<const std::int64_t> shared) override {
+    parts_.add(builder_.take_part(shared));
+  }
 
-  /// Hands on what is left.
+  /// Hands on what is left, in parts.
   TrimReport finish(const Progress& progress, MeshSink* sink);
 
   const MeshCounts& counts() const { return counts_; }

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "prefilter/base/geometry.h"
@@ -21,6 +22,9 @@ class MeshSink {
   virtual void add_vertices(std::vector<Vector3> positions, std::vector<float> attributes) = 0;
   /// Triangles of vertices that were added before.
   virtual void add_triangles(std::vector<std::array<std::int64_t, 3>> triangles) = 0;
+  /// A part is whole: of what has come, later triangles name those vertices that are `shared`, and
+  /// no others. Not every mesh comes in parts.
+  virtual void end_part(std::span<const std::int64_t> shared) { static_cast<void>(shared); }
 };
 
 }  // namespace prefilter

@@ -55,6 +55,10 @@ struct ReconstructOptions {
   // Instead, and whatever `watertight` says: leave out triangles with a vertex that is farther from
   // all points than so many cells, above 0 and up to 1e6.
   std::optional<double> trim;
+  // How far triangles that are made larger may leave the surface, in finest cells, up to 1e6; 0:
+  // none is. Vertices that stay do not move. With support those stay that are farther from all
+  // points than TrimOptions have it.
+  double adaptivity = 0.0;
   bool support = false;  // vertices get the attributes that support_attributes() names
   // In bytes, beside what the source and the sink keep; 0: as little as can be.
   std::uint64_t memory_limit = std::numeric_limits<std::uint64_t>::max();

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// How much of a mesh came out.
+#pragma once
+
+#include <cstddef>
+
+namespace prefilter {
+
+struct MeshCounts {
+  std::size_t vertices = 0;
+  std::size_t triangles = 0;
+};
+
+}  // namespace prefilter
