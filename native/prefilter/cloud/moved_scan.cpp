@@ -4,7 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
+
+#include "prefilter/base/error.h"
+#include "prefilter/base/text.h"
 
 namespace prefilter {
 namespace {
@@ -12,6 +16,7 @@ namespace {
 constexpr std::size_t kSpacingSamples = 1000;
 constexpr std::size_t kNear = 5;  // a point and the four around it
 constexpr double kLargest = 1e150;
+constexpr int kMostIterations = 1000;
 
 bool is_usable(const Vector3& vector) {
   return std::abs(vector[0]) <= kLargest && std::abs(vector[1]) <= kLargest &&
@@ -50,6 +55,48 @@ RigidMotion small_motion(const Vector3& turn, const Vector3& shift, const Vector
   return result;
 }
 
+RigidMotion about(const RigidMotion& motion, const Vector3& origin) {
+  RigidMotion result = motion;
+  result.shift = motion.shift + (turned(motion, origin) - origin);
+  return result;
+}
+
+Box box_of(std::span<const ScanView> scans) {
+  Box box = kEmptyBox;
+  for (const ScanView& scan : scans) {
+    for (const Vector3& point : scan.positions) {
+      if (is_usable(point)) box.include(point);
+    }
+  }
+  return box.low[0] <= box.high[0] ? box : Box{};
+}
+
+Vector3 middle_of(const Box& box) {
+  return {box.low[0] + 0.5 * box.size(0), box.low[1] + 0.5 * box.size(1),
+          box.low[2] + 0.5 * box.size(2)};
+}
+
+void check_alignment(std::span<const ScanView> scans, const AlignOptions& options,
+                     std::size_t least) {
+  if (scans.size() < least) {
+    throw_invalid("scans: found " + std::to_string(scans.size()) + "; " +
+                  (least == 1 ? "one is needed" : "two are needed"));
+  }
+  for (const ScanView& scan : scans) {
+    if (scan.normals.size() != scan.positions.size()) {
+      throw_invalid("scans: " + std::to_string(scan.normals.size()) + " normals for " +
+                    std::to_string(scan.positions.size()) + " points; one for each is needed");
+    }
+  }
+  if (options.reach && !(*options.reach > 0.0 && std::isfinite(*options.reach))) {
+    throw_invalid("reach: found " + to_text(*options.reach) + "; a number above 0 is needed");
+  }
+  if (options.iterations < 1 || options.iterations > kMostIterations) {
+    throw_invalid("iterations: found " + std::to_string(options.iterations) +
+                  "; a number from 1 to " + std::to_string(kMostIterations) + " is needed");
+  }
+}
+
 MovedScan::MovedScan(const ScanView& scan, const Vector3& origin, const Progress& progress,
                      int threads)
     : MovedScan(usable(scan, origin), progress, threads) {}
@@ -73,6 +120,14 @@ MovedScan::MovedScan(std::pair<std::vector<Vector3>, std::vector<Vector3>> point
   const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
   std::nth_element(distances.begin(), middle, distances.end());
   spacing_ = *middle;
+}
+
+double MovedScan::move(const MotionStep& step) {
+  const Vector3 turn = {step[0], step[1], step[2]};
+  const Vector3 shift = {step[3], step[4], step[5]};
+  motion = then(motion, small_motion(turn, shift, moved(motion, center_)));
+  const Box box = search_.box();
+  return length(shift) + length(turn) * length(box.high - box.low);
 }
 
 std::vector<std::uint32_t> MovedScan::samples(std::size_t count) const {

@@ -5,10 +5,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "prefilter/cloud/align_scans.h"
+#include "prefilter/cloud/motion_system.h"
 #include "prefilter/spatial/nearest_neighbors.h"
 
 namespace prefilter {
@@ -16,6 +18,21 @@ namespace prefilter {
 /// A small turn by the lengths of its axis in radians, about a center, and a shift: a motion
 /// exactly, which agrees with that turn to the second order.
 RigidMotion small_motion(const Vector3& turn, const Vector3& shift, const Vector3& center);
+
+/// The same motion, of points that are told relative to an origin.
+RigidMotion about(const RigidMotion& motion, const Vector3& origin);
+
+/// Throws Error for fewer scans than `least`, and what align_scans refuses besides.
+void check_alignment(std::span<const ScanView> scans, const AlignOptions& options,
+                     std::size_t least);
+
+/// Around the points that are not left out; at 0 for none.
+Box box_of(std::span<const ScanView> scans);
+Vector3 middle_of(const Box& box);
+
+inline constexpr double kStill = 1e-4;               // a motion so small, in spacings, is none
+inline constexpr double kLeastReach = 4.0;           // in spacings
+inline constexpr std::size_t kMostSamples = 20'000;  // of a scan
 
 /// The points of a scan that have a normal, relative to an origin.
 class MovedScan {
@@ -33,6 +50,10 @@ class MovedScan {
 
   /// Some places, evenly along the curve: `count` at the most.
   std::vector<std::uint32_t> samples(std::size_t count) const;
+
+  /// Moves it on: a turn about where its center is, then a shift. Returns how far the farthest
+  /// point went, about.
+  double move(const MotionStep& step);
 
   RigidMotion motion;
 
