@@ -47,7 +47,10 @@ class Alignment:
             prefilter.Cancelled: `progress` has said so.
         """
         self._found = prefilter.align_scans(
-            self._scans, reach=self._settings.reach or None, progress=progress
+            self._scans,
+            against=self._settings.against,
+            reach=self._settings.reach or None,
+            progress=progress,
         )
 
     def write(self) -> Outcome:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from prefilter._options.choices import Choice
 from prefilter._options.scans import (
+    AGAINST,
     CLASSES,
     DIRECTIONS,
     ISOVALUES,
@@ -29,6 +30,7 @@ __all__ = (
     "CropSettings",
     "ImportSettings",
     "OutlierSettings",
+    "PaintSettings",
     "ScanSettings",
     "SubsampleSettings",
     "TrimSettings",
@@ -99,6 +101,7 @@ class CropSettings:
 class AlignSettings:
     """How `prefilter.align_scans` moves scans."""
 
+    against: str = one_of("scans", "Align To", "What scans are aligned to", AGAINST)
     reach: float = number(
         0.0,
         "Reach",
@@ -107,6 +110,24 @@ class AlignSettings:
         low=0.0,
         subtype="DISTANCE",
         display={"precision": 4, "step": 1},
+    )
+
+
+@dataclass(frozen=True)
+class PaintSettings:
+    """What texture `prefilter.paint_texture` makes."""
+
+    size: int = number(
+        2048, "Size", "Width and height of the texture, in texels", low=1, high=16384
+    )
+    smoothing: float = number(
+        0.05,
+        "Smoothing",
+        "How much smoothness counts, compared with a point in each texel. More averages noise, "
+        "less keeps detail",
+        low=0.0001,
+        high=1000.0,
+        display={"soft_max": 1.0, "precision": 3, "step": 1},
     )
 
 

@@ -17,6 +17,7 @@ from .choices import (
     CropSettings,
     ImportSettings,
     OutlierSettings,
+    PaintSettings,
     ScanSettings,
     SubsampleSettings,
     TrimSettings,
@@ -52,6 +53,7 @@ class ScanProperties(PartedSettings):
             column = body.column(align=True)
             for name in ("use_smooth", "use_fit", "use_smooth_shading"):
                 column.prop(self, name)
+            body.prop(self, "adaptivity")
             body.prop(self, "isovalue")
             if self.isovalue == "custom":
                 body.prop(self, "custom_isovalue")
@@ -140,6 +142,16 @@ class AlignProperties:
     def to_settings(self) -> AlignSettings:
         """Returns the settings."""
         return values(self, AlignSettings)
+
+
+class PaintProperties:
+    """The properties of `prefilter.paint_texture`."""
+
+    __annotations__ = properties(PaintSettings)
+
+    def to_settings(self) -> PaintSettings:
+        """Returns the settings."""
+        return values(self, PaintSettings)
 
 
 class PREFILTER_PG_reconstruct(ScanProperties, bpy.types.PropertyGroup):

@@ -11,7 +11,9 @@
 #include "convert.h"
 #include "prefilter/base/names.h"
 #include "prefilter/cloud/align_scans.h"
+#include "prefilter/cloud/align_to_surface.h"
 #include "prefilter/cloud/outliers.h"
+#include "prefilter/cloud/paint_texture.h"
 #include "prefilter/cloud/subsample.h"
 
 namespace py = pybind11;
@@ -50,20 +52,17 @@ Array<bool> bound_find_outliers(const Array<double>& points, int neighbours, dou
 
 using Scan = std::pair<Array<double>, Array<double>>;
 
-// The matrices, (scans, 4, 4), the median distances before and after, and the numbers of pairs.
-py::tuple bound_align_scans(const std::vector<Scan>& scans, std::optional<double> reach,
-                            int iterations, const py::object& callback, int threads) {
+std::vector<ScanView> views_of(const std::vector<Scan>& scans) {
   std::vector<ScanView> views;
   for (const auto& [positions, normals] : scans) {
     views.push_back({rows_of(positions), rows_of(normals)});
   }
-  const AlignOptions options{reach, iterations, to_progress(callback), threads};
-  Alignment found;
-  {
-    const py::gil_scoped_release unlocked;
-    found = align_scans(views, options);
-  }
-  const auto count = static_cast<py::ssize_t>(scans.size());
+  return views;
+}
+
+// The matrices, (scans, 4, 4), the median distances before and after, and the numbers of pairs.
+py::tuple to_tuple(const Alignment& found) {
+  const auto count = static_cast<py::ssize_t>(found.motions.size());
   Array<double> matrices({count, py::ssize_t{4}, py::ssize_t{4}});
   for (py::ssize_t s = 0; s < count; ++s) {
     const RigidMotion& motion = found.motions[static_cast<std::size_t>(s)];
@@ -79,6 +78,52 @@ py::tuple bound_align_scans(const std::vector<Scan>& scans, std::optional<double
   return py::make_tuple(std::move(matrices), found.before, found.after, py::cast(found.pairs));
 }
 
+py::tuple bound_align_scans(const std::vector<Scan>& scans, std::optional<double> reach,
+                            int iterations, const py::object& callback, int threads) {
+  const AlignOptions options{reach, iterations, to_progress(callback), threads};
+  const std::vector<ScanView> views = views_of(scans);
+  Alignment found;
+  {
+    const py::gil_scoped_release unlocked;
+    found = align_scans(views, options);
+  }
+  return to_tuple(found);
+}
+
+// `matrices` has one for each scan.
+py::tuple bound_align_to_surface(const std::vector<Scan>& scans,
+                                 const std::vector<Array<double>>& matrices,
+                                 const Array<double>& positions,
+                                 const Array<std::int32_t>& triangles, std::optional<double> reach,
+                                 int iterations, const py::object& callback, int threads) {
+  const AlignOptions options{reach, iterations, to_progress(callback), threads};
+  const std::vector<ScanView> views = views_of(scans);
+  std::vector<RigidMotion> motions;
+  for (const Array<double>& matrix : matrices) motions.push_back(motion_of(matrix));
+  Alignment found;
+  {
+    const py::gil_scoped_release unlocked;
+    found = align_to_surface(views, motions, {rows_of(positions), rows_of(triangles)}, options);
+  }
+  return to_tuple(found);
+}
+
+std::pair<Array<float>, std::size_t> bound_paint_texture(
+    const Surface& surface, const Array<double>& points, const Array<float>& values, int width,
+    int height, const WrapNames& wrap, double smoothing, std::optional<double> reach,
+    const py::object& callback, int threads) {
+  const PaintOptions options{width,     height, wrap_modes(wrap),      smoothing,
+                             reach, to_progress(callback), threads};
+  const auto channels = static_cast<int>(values.shape(1));
+  const auto span = std::span(values.data(), static_cast<std::size_t>(values.size()));
+  PaintedTexture painted;
+  {
+    const py::gil_scoped_release unlocked;
+    painted = paint_texture(surface, rows_of(points), span, channels, options);
+  }
+  return {to_array(std::move(painted.image)), painted.points};
+}
+
 }  // namespace
 
 void bind_cloud(py::module_& m) {
@@ -89,6 +134,12 @@ void bind_cloud(py::module_& m) {
         py::arg("factor"), py::arg("progress"), py::arg("threads"));
   m.def("align_scans", &bound_align_scans, py::arg("scans"), py::arg("reach"),
         py::arg("iterations"), py::arg("progress"), py::arg("threads"));
+  m.def("align_to_surface", &bound_align_to_surface, py::arg("scans"), py::arg("matrices"),
+        py::arg("positions"), py::arg("triangles"), py::arg("reach"), py::arg("iterations"),
+        py::arg("progress"), py::arg("threads"));
+  m.def("paint_texture", &bound_paint_texture, py::arg("surface"), py::arg("points"),
+        py::arg("values"), py::arg("width"), py::arg("height"), py::arg("wrap"),
+        py::arg("smoothing"), py::arg("reach"), py::arg("progress"), py::arg("threads"));
 }
 
 }  // namespace prefilter::python

@@ -55,6 +55,7 @@ void bind_reconstruct_options(py::module_& m) {
       .def_readwrite("fit", &Options::fit)
       .def_readwrite("watertight", &Options::watertight)
       .def_readwrite("trim", &Options::trim)
+      .def_readwrite("adaptivity", &Options::adaptivity)
       .def_readwrite("support", &Options::support)
       .def_readwrite("memory_limit", &Options::memory_limit)
       .def_readwrite("folder", &Options::folder);

@@ -20,7 +20,7 @@ SLACK = 8
 PROGRAM = """
 import json, os, re, sys
 import numpy as np, prefilter
-source, target, limit, threads, wavelet, depth = sys.argv[1:]
+source, target, limit, threads, depth, options = sys.argv[1:]
 ball = np.random.default_rng(0).normal(size=(500, 3))
 prefilter.reconstruct(ball, ball, depth=3)  # loads what is loaded once
 def mib(name):
@@ -30,8 +30,8 @@ with open("/proc/self/clear_refs", "w") as file:
     file.write("5")
 before = mib("VmRSS")
 report = prefilter.reconstruct_file(
-    source, target, depth=int(depth), wavelet=wavelet, threads=int(threads),
-    memory_limit=None if limit == "None" else int(limit),
+    source, target, depth=int(depth), threads=int(threads),
+    memory_limit=None if limit == "None" else int(limit), **json.loads(options),
 )
 print(json.dumps([mib("VmHWM") - before, report.is_spilled]))
 """
@@ -77,9 +77,9 @@ def least(cloud, tmp_path, **options):
     return int(re.search(r"at least (\d+) MiB are needed for \d+ cells", str(refused.value))[1])
 
 
-def peak(cloud, target, limit, threads=2, wavelet="haar"):
+def peak(cloud, target, limit, threads=2, **options):
     source, depth = cloud
-    arguments = (source, target, limit, threads, wavelet, depth)
+    arguments = (source, target, limit, threads, depth, json.dumps(options))
     done = subprocess.run(
         [sys.executable, "-c", PROGRAM, *map(str, arguments)],
         capture_output=True,
@@ -90,17 +90,25 @@ def peak(cloud, target, limit, threads=2, wavelet="haar"):
 
 
 @needs_linux
-@pytest.mark.parametrize("wavelet", ["haar", "d4"])
-def test_the_least_is_enough_and_what_is_taken(cloud, tmp_path, wavelet):
-    enough = least(cloud, tmp_path, wavelet=wavelet)
+@pytest.mark.parametrize(
+    "options",
+    [
+        {},
+        {"wavelet": "d4"},
+        {"adaptivity": 0.1},
+        {"adaptivity": 0.1, "watertight": True},
+    ],
+)
+def test_the_least_is_enough_and_what_is_taken(cloud, tmp_path, options):
+    enough = least(cloud, tmp_path, **options)
     target = tmp_path / "least.ply"
-    found, _ = peak(cloud, target, enough, wavelet=wavelet)
+    found, _ = peak(cloud, target, enough, **options)
     assert found < 1.1 * enough + SLACK
     # No more is asked for than is of use.
     assert enough < 1.5 * found + SLACK
-    if wavelet == "haar":
+    if "wavelet" not in options:
         free = tmp_path / "free.ply"
-        peak(cloud, free, None)
+        peak(cloud, free, None, **options)
         assert free.read_bytes() == target.read_bytes()
 
 

@@ -186,6 +186,60 @@ def test_scans_are_moved_back(count, noise, offset, allowed):
     assert min(found.pairs) > 100
 
 
+def farthest(scans, motions, found):
+    """How far a point is from where the first scan has it, after that."""
+    most = 0.0
+    for scan, matrix, away in zip(scans, found.matrices, motions, strict=True):
+        local = (scan.positions - away[:3, 3]) @ away[:3, :3]
+        expected = local @ motions[0][:3, :3].T + motions[0][:3, 3]
+        aligned = scan.moved(matrix).positions
+        most = max(most, np.linalg.norm(aligned - expected, axis=1).max())
+    return most
+
+
+@pytest.mark.parametrize("offset", [(0, 0, 0), (5e5, 4e6, 100)])
+def test_a_surface_brings_five_scans_back_to_a_tenth_of_a_cell(offset):
+    """They were off by a cell and more; the oracle is the motion of each."""
+    scans, motions = body_scans(5, points=20_000, noise=0.005, offset=offset)
+    report = prefilter.ReconstructionReport()
+    prefilter.reconstruct(scans, align="surface", report=report)
+    found = prefilter.align_scans(scans, against="surface")
+    assert report.alignment.after < 0.5 * report.alignment.before
+    stay = prefilter.ScanAlignment(np.array([np.eye(4)] * 5), 0, 0, (0,) * 5)
+    assert farthest(scans, motions, stay) > report.cell
+    assert farthest(scans, motions, found) < 0.1 * report.cell
+    np.testing.assert_array_equal(found.matrices[0], np.eye(4))
+    assert found.after < 0.5 * found.before
+    assert min(found.pairs) > 100
+
+
+def test_a_surface_averages_the_noise_of_all():
+    scans, motions = body_scans(5, points=20_000, noise=0.02)
+    errors = {
+        against: farthest(scans, motions, prefilter.align_scans(scans, against=against))
+        for against in ("scans", "surface")
+    }
+    assert errors["surface"] < 0.8 * errors["scans"]
+
+
+def test_normals_that_are_given_may_point_inward():
+    scans, motions = body_scans(3, points=8000)
+    turned = []
+    for scan in scans:
+        normals = prefilter.estimate_normals(scan.positions, direction="outward")
+        turned.append(prefilter.ScanPoints(scan.positions, -normals))
+    # Seen from within or from without, as long as all agree.
+    center = scans[0].positions.mean(axis=0)
+    for sign in (-1, 1):
+        seen = []
+        for scan in turned:
+            away = np.einsum("nk,nk->n", scan.normals, scan.positions - center) < 0
+            normals = np.where(away[:, None], -scan.normals, scan.normals) * sign
+            seen.append(prefilter.ScanPoints(scan.positions, normals))
+        found = prefilter.align_scans(seen, against="surface")
+        assert farthest(scans, motions, found) < 5e-3
+
+
 def test_what_only_one_scan_has_and_outliers_do_not_move_it():
     scans, motions = body_scans(2)
     random = np.random.default_rng(9)
@@ -202,10 +256,11 @@ def test_scans_apart_and_empty_ones_stay():
     far = prefilter.ScanPoints(scans[0].positions + 50.0)
     odd = prefilter.ScanPoints(np.full((5, 3), np.nan), np.zeros((5, 3)))
     none = prefilter.ScanPoints(np.empty((0, 3)))
-    found = prefilter.align_scans([scans[0], far, odd, none])
-    np.testing.assert_array_equal(found.matrices, [np.eye(4)] * 4)
-    assert found.pairs == (0, 0, 0, 0)
-    assert found.before == found.after == 0.0
+    for against in ("scans", "surface"):
+        found = prefilter.align_scans([scans[0], far, odd, none], against=against)
+        np.testing.assert_array_equal(found.matrices, [np.eye(4)] * 4)
+        assert found.pairs == (0, 0, 0, 0)
+        assert found.before == found.after == 0.0
 
 
 def test_a_plane_slides_nowhere():
@@ -239,6 +294,7 @@ def test_alignment_refuses():
     for wrong, options, message in [
         (scans[:1], {}, "scans: found 1; two are needed"),
         ([scans[0].positions] * 2, {}, "scans: a list of ScanPoints is needed"),
+        (scans, {"against": "points"}, "against: 'points'"),
         (scans, {"reach": 0.0}, "reach: found 0; a number above 0 is needed"),
         (scans, {"reach": np.inf}, "reach: found inf"),
         (scans, {"iterations": 0}, "iterations: found 0; a number from 1 to 1000 is needed"),
@@ -279,6 +335,10 @@ def test_the_same_for_any_number_of_threads(threads):
         prefilter.align_scans(scans, threads=threads).matrices,
         prefilter.align_scans(scans).matrices,
     )
+    np.testing.assert_array_equal(
+        prefilter.align_scans(scans, against="surface", threads=threads).matrices,
+        prefilter.align_scans(scans, against="surface").matrices,
+    )
 
 
 def test_canceling():
@@ -289,6 +349,7 @@ def test_canceling():
         lambda progress: prefilter.subsample_points(points, 0.01, method="grid", progress=progress),
         lambda progress: prefilter.find_outliers(points, progress=progress),
         lambda progress: prefilter.align_scans(scans, progress=progress),
+        lambda progress: prefilter.align_scans(scans, against="surface", progress=progress),
     ):
         told = []
         work(lambda done, told=told: told.append(done))

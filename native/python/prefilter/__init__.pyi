@@ -37,14 +37,15 @@ from .meshes.solids import as_solid as as_solid
 from .meshes.surface import Surface as Surface
 from .meshes.topology import MeshTopology as MeshTopology
 from .meshes.topology import mesh_topology as mesh_topology
+from .points.alignment import ScanAlignment as ScanAlignment
 from .points.choice import choose_points as choose_points
-from .points.clouds import ScanAlignment as ScanAlignment
 from .points.clouds import align_scans as align_scans
 from .points.clouds import find_outliers as find_outliers
 from .points.clouds import subsample_points as subsample_points
 from .points.normals import estimate_normals as estimate_normals
 from .points.normals import grid_normals as grid_normals
 from .points.normals import mesh_normals as mesh_normals
+from .points.painting import paint_texture as paint_texture
 from .points.reconstruction import ReconstructionReport as ReconstructionReport
 from .points.reconstruction import reconstruct as reconstruct
 from .points.reconstruction import reconstruct_file as reconstruct_file

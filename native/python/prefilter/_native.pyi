@@ -605,6 +605,28 @@ def align_scans(
     progress: ProgressCallback | None,
     threads: int,
 ) -> tuple[npt.NDArray[np.float64], float, float, list[int]]: ...
+def align_to_surface(
+    scans: list[tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]],
+    matrices: list[npt.NDArray[np.float64]],
+    positions: npt.NDArray[np.float64],
+    triangles: npt.NDArray[np.int32],
+    reach: float | None,
+    iterations: int,
+    progress: ProgressCallback | None,
+    threads: int,
+) -> tuple[npt.NDArray[np.float64], float, float, list[int]]: ...
+def paint_texture(
+    surface: Surface,
+    points: npt.NDArray[np.float64],
+    values: npt.NDArray[np.float32],
+    width: int,
+    height: int,
+    wrap: tuple[str, str],
+    smoothing: float,
+    reach: float | None,
+    progress: ProgressCallback | None,
+    threads: int,
+) -> tuple[npt.NDArray[np.float32], int]: ...
 def estimate_normals(
     points: npt.NDArray[np.float64],
     neighbours: int,
@@ -766,6 +788,7 @@ class ReconstructOptions:
     fit: bool
     watertight: bool
     trim: float | None
+    adaptivity: float
     support: bool
     memory_limit: int
     folder: bytes

@@ -19,11 +19,11 @@ RESOLUTIONS = {
     "size": Choice("Voxel Size", "Cells of at most this size, in the units of the world"),
 }
 WAVELETS = {
-    "haar": Choice("Haar", "Fastest, and needs the least memory"),
+    "haar": Choice("Haar", "Best for noise, several scans and holes, and fastest"),
     "d4": Choice(
         "D4",
-        "Each value depends on more points: smoother if Fit to Points is off. Slower, and "
-        "needs more memory",
+        "A little closer to points that are exact. Takes up to twice as long; with noise, or scans "
+        "that are a little off, the surface folds",
     ),
 }
 ISOVALUES = {
@@ -58,6 +58,12 @@ RETURNS = {
     "first": Choice("First", "The first of each pulse: roofs and the tops of trees"),
     "last": Choice("Last", "The last of each pulse: more of the ground below trees"),
     "only": Choice("Only", "Those of pulses that have no other"),
+}
+AGAINST = {
+    "scans": Choice("Scans", "To the points of the others"),
+    "surface": Choice(
+        "Surface", "Then also to a surface of all, twice: closer, as it averages their noise"
+    ),
 }
 CLASSES = (
     "Numbers of the classes that are kept, such as 2 for the ground in LAS files, separated by "
@@ -124,6 +130,16 @@ class ScanSettings:
         display={"soft_max": 20.0, "precision": 1, "step": 50},
         metavar="CELLS",
     )
+    adaptivity: float = number(
+        0.0,
+        "Adaptivity",
+        "Make triangles larger where the surface is flat or gently curved, as long as it stays "
+        "within this distance, in cells. Colors between vertices that stay are lost",
+        low=0.0,
+        high=10.0,
+        display={"soft_max": 1.0, "precision": 2, "step": 1},
+        metavar="CELLS",
+    )
     direction: str = one_of(
         "auto",
         "Normals",
@@ -168,6 +184,7 @@ class ScanSettings:
         metavar="NUMBER",
     )
     use_align: bool = switch(False, "", "Move the files onto the first of them, a little")
+    align_to: str = one_of("scans", "", "What files are aligned to", AGAINST, metavar="NAME")
     memory_limit: int = number(
         0,
         "Memory Limit",

@@ -20,6 +20,7 @@ STREAMED_TARGET = ".ply"
 _LABELS = {
     "cell_size": "Voxel Size",
     "trim": "Trim",
+    "adaptivity": "Adaptivity",
     "isovalue": "Iso-Value",
     "direction": "Normals",
     "spacing": "Spacing",
@@ -109,11 +110,12 @@ def options(settings: ScanSettings) -> dict[str, Any]:
         "fit": settings.use_fit,
         "direction": settings.direction,
         "watertight": settings.use_watertight,
+        "adaptivity": settings.adaptivity,
         "trim": settings.trim if settings.trim > 0.0 else None,
         "classes": as_classes(settings.classes),
         "returns": settings.returns,
         "box": (settings.box[:3], settings.box[3:]) if any(settings.box) else None,
-        "align": settings.use_align,
+        "align": settings.align_to if settings.use_align else False,
         "memory_limit": settings.memory_limit or None,
         "threads": settings.threads,
     }

@@ -3,7 +3,6 @@
 """Clouds of points before they become a surface: fewer, without outliers, on top of each other."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -18,10 +17,14 @@ from .._border.arguments import (
     progress_part,
 )
 from .._border.arrays import as_floats, as_threads
+from .alignment import Prepared, ScanAlignment, SurfaceRounds
 from .normals import estimate_normals
 from .scan import ScanPoints
 
 SUBSAMPLING = _native.SUBSAMPLING
+SCANS, SURFACE = "scans", "surface"
+AGAINST = (SCANS, SURFACE)
+"""What scans are aligned to."""
 
 
 def subsample_points(
@@ -98,28 +101,10 @@ def find_outliers(
     )
 
 
-@dataclass(frozen=True, eq=False)
-class ScanAlignment:
-    """How scans are moved onto each other.
-
-    Attributes:
-        matrices: (scans, 4, 4): `ScanPoints.moved` takes one. The first scan stays.
-        before: The median distance of points from the planes of those nearest to them in other
-            scans, within four times as far as points are apart.
-        after: The same with all scans moved.
-        pairs: How many points of each scan, of those looked at, have such a one afterward. A scan
-            with 0 overlaps no other.
-    """
-
-    matrices: npt.NDArray[np.float64]
-    before: float
-    after: float
-    pairs: tuple[int, ...]
-
-
 def align_scans(
     scans: Sequence[ScanPoints],
     *,
+    against: str = "scans",
     reach: float | None = None,
     iterations: int = 40,
     progress: ProgressCallback | None = None,
@@ -133,6 +118,8 @@ def align_scans(
 
     Args:
         scans: Two or more. Normals are estimated where a scan has none.
+        against: "scans": that is all. "surface": then a surface of all that overlap is made, each
+            is moved onto that by itself, and the same once more. That averages the noise of all.
         reach: How far what belongs together may be apart. None: a 20th of the diagonal of the box
             of all scans.
         iterations: At the most, 1 to 1000.
@@ -147,21 +134,24 @@ def align_scans(
         raise ValueError("scans: a list of ScanPoints is needed")
     prepared = []
     for k, scan in enumerate(scans):
-        part = progress_part(progress, 0.5 * k / len(scans), 0.5 * (k + 1) / len(scans))
+        part = progress_part(progress, 0.4 * k / len(scans), 0.4 * (k + 1) / len(scans))
         prepared.append(_with_normals(scan, part, threads))
-    matrices, before, after, pairs = _native.align_scans(
-        prepared,
-        None if reach is None else as_number("reach", reach),
-        as_int("iterations", iterations, "a whole number from 1 to 1000 is needed"),
-        progress_part(progress, 0.5, 1.0),
-        as_threads(threads),
+    is_to_surface = as_one_of("against", against, AGAINST) == SURFACE
+    most = None if reach is None else as_number("reach", reach)
+    count = as_int("iterations", iterations, "a whole number from 1 to 1000 is needed")
+    between = 0.55 if is_to_surface else 1.0
+    found = ScanAlignment.of(
+        _native.align_scans(
+            prepared, most, count, progress_part(progress, 0.4, between), as_threads(threads)
+        )
     )
-    return ScanAlignment(matrices, before, after, tuple(pairs))
+    if not is_to_surface:
+        return found
+    rounds = SurfaceRounds(scans, prepared, most, count, threads)
+    return rounds.run(found, progress_part(progress, between, 1.0))
 
 
-def _with_normals(
-    scan: ScanPoints, progress: ProgressCallback | None, threads: int
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+def _with_normals(scan: ScanPoints, progress: ProgressCallback | None, threads: int) -> Prepared:
     positions = as_floats("positions", scan.positions, ("points", 3), np.float64)
     if scan.normals is not None:
         return positions, as_floats("normals", scan.normals, ("points", 3), np.float64)

@@ -18,13 +18,15 @@ from .._border.arguments import (
     as_int,
     as_name,
     as_number,
+    as_one_of,
     as_progress,
     set_options,
 )
 from .._border.arrays import as_threads
 from .._border.staging import as_target
+from .alignment import ScanAlignment
 from .choice import Classes, as_choice
-from .clouds import ScanAlignment
+from .clouds import AGAINST, SCANS
 from .directions import as_wanted
 from .scan import AttributeArray
 from .sources import Cloud, Source, array_cloud, joined_cloud, sources_in
@@ -116,6 +118,7 @@ def reconstruct(
     fit: bool = True,
     watertight: bool = False,
     trim: float | None = None,
+    adaptivity: float = 0.0,
     direction: str = "auto",
     viewpoint: npt.ArrayLike | None = None,
     weights: npt.ArrayLike | None = None,
@@ -124,7 +127,7 @@ def reconstruct(
     classes: Classes | None = None,
     returns: str = "all",
     box: npt.ArrayLike | None = None,
-    align: bool = False,
+    align: bool | str = False,
     memory_limit: int | None = None,
     report: ReconstructionReport | None = None,
     progress: ProgressCallback | None = None,
@@ -158,6 +161,10 @@ def reconstruct(
         trim: In place of that, whatever `watertight` says: leaves out triangles with a vertex that
             is farther from all points than so many finest cells, above 0 and up to 1e6, however far
             points are from one another.
+        adaptivity: How far triangles that are made larger may leave the surface, in finest cells;
+            0: none is. Vertices that stay keep their places and attributes; what others had between
+            them, such as colors, is lost. Borders stay as they are; and, with `support`, so does
+            what is farther from all points than 1.5 times their spacing.
         direction: Where normals point. "given": as points have them, whatever that encloses. "up":
             to where z is larger. "viewpoint": to where the scanner stood, as `viewpoint` or the
             file says, or else to the origin. "outward": as those of a closed surface: those that
@@ -177,7 +184,8 @@ def reconstruct(
             follows.
         returns: See there.
         box: See there.
-        align: Files and scans are moved onto the first of them, as by `align_scans`.
+        align: Files and scans are moved onto the first of them, as by `align_scans`. "scans" and
+            "surface": against these; True is "scans".
         memory_limit: In MiB, above what is passed in and returned, points without normals among
             that; beyond it temporary files are used. It holds within a tenth and 8 MiB. What is
             less than needed is refused, with the least that would do: the cells of a few layers of
@@ -207,9 +215,10 @@ def reconstruct(
     _check_report(report)
     wanted = as_wanted(direction, viewpoint)
     choice = as_choice(classes, returns, box)
+    against = _as_against(align)
     sources = sources_in(points)
     if sources is None:
-        if choice is not None or align:
+        if choice is not None or against is not None:
             raise ValueError(
                 "classes, returns, box, align: given beside arrays; they are for files and scans"
             )
@@ -218,7 +227,7 @@ def reconstruct(
         )
     else:
         _check_sources(normals, weights, attributes)
-        cloud = joined_cloud(sources, wanted, progress, threads, choice, align)
+        cloud = joined_cloud(sources, wanted, progress, threads, choice, against)
     options.are_sides_known = cloud.are_sides_known
     positions, triangles, carried, found = _native.reconstruct(
         cloud.points, options, as_progress(cloud.rest(progress))
@@ -247,12 +256,13 @@ def reconstruct_file(
     fit: bool = True,
     watertight: bool = False,
     trim: float | None = None,
+    adaptivity: float = 0.0,
     direction: str = "auto",
     viewpoint: npt.ArrayLike | None = None,
     classes: Classes | None = None,
     returns: str = "all",
     box: npt.ArrayLike | None = None,
-    align: bool = False,
+    align: bool | str = False,
     memory_limit: int | None = None,
     progress: ProgressCallback | None = None,
     threads: int = 0,
@@ -279,6 +289,7 @@ def reconstruct_file(
         fit: See there.
         watertight: See there.
         trim: See there.
+        adaptivity: See there.
         direction: See there.
         viewpoint: See there.
         classes: See there.
@@ -306,13 +317,20 @@ def reconstruct_file(
     wanted = as_wanted(direction, viewpoint)
     sources = sources_in(source) or [cast("Source", source)]
     choice = as_choice(classes, returns, box)
-    cloud = joined_cloud(sources, wanted, progress, threads, choice, align)
+    against = _as_against(align)
+    cloud = joined_cloud(sources, wanted, progress, threads, choice, against)
     options.are_sides_known = cloud.are_sides_known
     report = ReconstructionReport()
     rest = as_progress(cloud.rest(progress))
     found = _native.reconstruct_file(cloud.points, os.fsencode(place), options, rest)
     _fill_in(report, found, cloud)
     return report
+
+
+def _as_against(align: bool | str) -> str | None:
+    if isinstance(align, str):
+        return as_one_of("align", align, AGAINST)
+    return SCANS if align else None
 
 
 def _as_isovalue(isovalue: str | float) -> str | float:
@@ -351,6 +369,7 @@ _CHECKS: dict[str, Check] = {
     "fit": bool,
     "watertight": bool,
     "trim": partial(_as_number_or_none, "trim"),
+    "adaptivity": partial(as_number, "adaptivity"),
     "memory_limit": _as_bytes,
     "threads": as_threads,
 }

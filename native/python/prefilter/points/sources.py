@@ -13,9 +13,10 @@ import numpy.typing as npt
 from .. import _native
 from .._border.arguments import ProgressCallback, progress_part
 from .._border.arrays import as_array, as_floats
+from .alignment import ScanAlignment
 from .choice import Choice
-from .clouds import ScanAlignment, align_scans
-from .directions import OUTWARD, VIEWPOINT, Viewpoints, Wanted, estimated, parts, turned
+from .clouds import align_scans
+from .directions import OUTWARD, UP, VIEWPOINT, Viewpoints, Wanted, estimated, parts, turned
 from .normals import as_viewpoints, grid_normals, mesh_normals
 from .scan import ScanPoints
 from .scan_files import (
@@ -118,7 +119,7 @@ def joined_cloud(
     progress: ProgressCallback | None,
     threads: int,
     choice: Choice | None = None,
-    align: bool = False,
+    align: str | None = None,
 ) -> Cloud:
     """Several sources as one, with normals, of which only some points may be chosen.
 
@@ -140,11 +141,12 @@ def joined_cloud(
     for k, group in enumerate(groups):
         _estimate(group, wanted, _step(progress_part(progress, 0.6, 0.9), k, len(groups)), threads)
     alignment = None
-    if align and len(scans) > 1:
+    if align is not None and len(scans) > 1:
         # What has been read is passed as it is, of all else some points are enough.
         still = progress_part(progress, 0.9, 0.9)
         some = [scan.some_points(still) for scan in scans]
-        alignment = align_scans(some, progress=progress_part(progress, 0.9, 1.0), threads=threads)
+        last = progress_part(progress, 0.9, 1.0)
+        alignment = align_scans(some, against=align, progress=last, threads=threads)
     native = tuple(scan.native() for scan in scans)
     if alignment is not None:
         pairs = zip(native, alignment.matrices, strict=True)
@@ -197,7 +199,9 @@ class _Scan:
 
     def some_points(self, progress: ProgressCallback | None) -> ScanPoints:
         """Points with normals, at most as many as tell where the scan is."""
-        if self.read is not None:
+        if self.read is not None and not (
+            self.is_to_be_turned and self.direction in (UP, VIEWPOINT)
+        ):
             return self.read
         positions, normals, *_ = _native.read_points(self.native(), _ENOUGH, progress)
         return ScanPoints(positions, normals)
