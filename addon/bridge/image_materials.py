@@ -38,6 +38,16 @@ def material_of(image: bpy.types.Image, *, is_mask: bool, is_opaque: bool) -> bp
     return made
 
 
+def show_on(obj: bpy.types.Object, image: bpy.types.Image) -> bpy.types.Material:
+    """Returns a new material that shows an image by an object's UV map, and nothing else."""
+    made = _new(obj.name)
+    tree = made.node_tree
+    surface = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
+    texture = _texture(tree, image, surface, "EXTEND")
+    tree.links.new(texture.outputs["Color"], surface.inputs["Base Color"])
+    return made
+
+
 def put_over(obj: bpy.types.Object, image: bpy.types.Image, *, is_mask: bool) -> bpy.types.Material:
     """Puts an image over the base color of an object's active material, which gets one if missing.
 

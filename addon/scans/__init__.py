@@ -9,6 +9,7 @@ from . import menus, operators, panel, properties
 MANUAL = {
     "scans": (
         *("reconstruct", "trim_reconstruction", "import_points", "drop_points"),
+        "paint_texture",
         *("subsample_points", "remove_outliers", "crop_points", "align_scans"),
     )
 }

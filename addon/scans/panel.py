@@ -11,6 +11,7 @@ from ..core.sidebar import SidebarPanel
 from .choices import ScanSettings
 from .operators.align_scans import PREFILTER_OT_align_scans
 from .operators.crop_points import PREFILTER_OT_crop_points
+from .operators.paint_texture import PREFILTER_OT_paint_texture
 from .operators.reconstruct import PREFILTER_OT_reconstruct
 from .operators.remove_outliers import PREFILTER_OT_remove_outliers
 from .operators.subsample_points import PREFILTER_OT_subsample_points
@@ -73,6 +74,7 @@ def _draw_steps(layout: bpy.types.UILayout) -> None:
 def _draw_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     _RECONSTRUCT.draw(menu.layout, context)
     menu.layout.operator(PREFILTER_OT_trim_reconstruction.bl_idname, icon="MOD_BOOLEAN")
+    menu.layout.operator(PREFILTER_OT_paint_texture.bl_idname, icon="TEXTURE")
     _draw_steps(menu.layout)
 
 

@@ -257,6 +257,17 @@ def test_align_scans():
     assert bpy.data.objects["Other"].location.length < 0.01
 
 
+def test_paint_texture():
+    points, normals = clouds.torus(5_000)
+    colors = np.column_stack([normals * 0.5 + 0.5, np.ones(len(points))])
+    clouds.scan(points, attributes={"Col": ("FLOAT_COLOR", colors)}, name="Scan")
+    mesh = bodies.cube()
+    bpy.data.objects["Scan"].select_set(True)
+    assert bpy.ops.prefilter.paint_texture(size=64) == FINISHED
+    assert mesh.data.uv_layers
+    assert tuple(bpy.data.images[f"{mesh.name}.colors"].size) == (64, 64)
+
+
 def test_drop_points(tmp_path):
     clouds.file(tmp_path / "Torus.xyz", *clouds.torus(1_000))
     named = {"directory": str(tmp_path), "files": [{"name": "Torus.xyz"}]}

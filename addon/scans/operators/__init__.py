@@ -7,6 +7,7 @@ from .align_scans import PREFILTER_OT_align_scans
 from .crop_points import PREFILTER_OT_crop_points
 from .drop_points import PREFILTER_FH_points, PREFILTER_OT_drop_points
 from .import_points import PREFILTER_OT_import_points
+from .paint_texture import PREFILTER_OT_paint_texture
 from .reconstruct import PREFILTER_OT_reconstruct
 from .remove_outliers import PREFILTER_OT_remove_outliers
 from .subsample_points import PREFILTER_OT_subsample_points
@@ -16,6 +17,7 @@ register, unregister = registration(
     classes(
         PREFILTER_OT_reconstruct,
         PREFILTER_OT_trim_reconstruction,
+        PREFILTER_OT_paint_texture,
         PREFILTER_OT_import_points,
         PREFILTER_OT_drop_points,
     ),
