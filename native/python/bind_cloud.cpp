@@ -112,8 +112,8 @@ std::pair<Array<float>, std::size_t> bound_paint_texture(
     const Surface& surface, const Array<double>& points, const Array<float>& values, int width,
     int height, const WrapNames& wrap, double smoothing, std::optional<double> reach,
     const py::object& callback, int threads) {
-  const PaintOptions options{width,     height, wrap_modes(wrap),      smoothing,
-                             reach, to_progress(callback), threads};
+  const PaintOptions options{
+      width, height, wrap_modes(wrap), smoothing, reach, to_progress(callback), threads};
   const auto channels = static_cast<int>(values.shape(1));
   const auto span = std::span(values.data(), static_cast<std::size_t>(values.size()));
   PaintedTexture painted;
