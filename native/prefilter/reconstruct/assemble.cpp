@@ -14,7 +14,7 @@ namespace {
 // Which blocks of a tree a slab needs.
 class Window {
  public:
-  // In finest cells; `octants` wide around them, but no more than `most` finest cells.
+  // In finest cells; `octants` wide around them, at least 2, but no more than `most` finest cells.
   Window(int low, int high, int depth, int octants, int most)
       : low_(low), high_(high), depth_(depth), octants_(octants), most_(most) {}
   bool holds(std::uint64_t place, int node_depth) const {
@@ -84,9 +84,9 @@ CellTree assemble_within(const Window& window, const CoarseTree& coarse, const S
 }  // namespace
 
 CellTree assemble(const CoarseTree& coarse, const SlabTrees& trees, int slab, int depth,
-                  float scale) {
+                  int octants, float scale) {
   const int shift = depth - static_cast<int>(coarse.tree.levels.size());
-  const Window window(slab << shift, (slab + 1) << shift, depth, 2, 0);
+  const Window window(slab << shift, (slab + 1) << shift, depth, octants, 1 << shift);
   CellTree result = assemble_within(window, coarse, trees, slab, depth, true, nullptr);
   result.root *= scale;
   for (TreeLevel& level : result.levels) {

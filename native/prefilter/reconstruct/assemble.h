@@ -36,10 +36,11 @@ struct CoarseTree {
 /// The slabs below, at and above the one; null where there is none.
 using SlabTrees = std::array<const FluxTree*, 3>;
 
-/// The tree of `depth` as the slab needs it: all blocks that reach within two of their octants of
-/// it, and the values times `scale`: those solved for, where there are.
+/// The tree of `depth` as the slab needs it: all blocks that reach within `octants` of their
+/// octants of it, but no farther than the slabs next to it, and the values times `scale`: those
+/// solved for, where there are.
 CellTree assemble(const CoarseTree& coarse, const SlabTrees& trees, int slab, int depth,
-                  float scale);
+                  int octants, float scale);
 
 /// The tree that a slab is solved in, of the values before: all blocks within some of their octants
 /// of it and no farther than the slabs next to it.

@@ -123,6 +123,9 @@ std::optional<LocalSurface> local_surface(const SampleIndex& index, const Vector
   }
   surface.spread = std::sqrt(variance / weight);
   surface.weight = weight * weight / squares;
+  double squares_of_cells = 0.0;
+  for (std::size_t i = 0; i < count; ++i) squares_of_cells += cells[i].weight * cells[i].weight;
+  surface.cells = weight * weight / squares_of_cells;
   return surface;
 }
 
@@ -152,12 +155,25 @@ SampleNoise measure_noise(std::span<const SampleCell> cells, const SampleIndex& 
     // The mean of a cell's samples has less noise than each.
     distances.push_back(2.0 * std::abs(surface->distance) * std::sqrt(samples));
   }
-  if (distances.empty()) return {};
+  if (distances.empty()) return {0.0, 1.0, mean_weight};
   const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
   std::nth_element(distances.begin(), middle, distances.end());
   const double cosine = pairs > 0.0 ? cosines / pairs : 1.0;
   return {*middle / kMedianOfNormal,
-          std::clamp((cosine - kNoisyCosine) / (kCleanCosine - kNoisyCosine), 0.0, 1.0)};
+          std::clamp((cosine - kNoisyCosine) / (kCleanCosine - kNoisyCosine), 0.0, 1.0),
+          mean_weight};
+}
+
+double trust_in(const LocalSurface& surface, double noise, double mean_weight) {
+  // The function's own error, in cells.
+  constexpr double kFunctionError = 0.06;
+  // As many cells as the cloud's noise counts for: a few may agree by chance.
+  constexpr double kPriorCells = 2.0;
+  const double samples_of_cell = surface.weight / mean_weight / surface.cells;
+  const double prior = noise * noise / std::max(1.0, samples_of_cell);
+  const double variance = (surface.cells * surface.spread * surface.spread + kPriorCells * prior) /
+                          (surface.cells - 1.0 + kPriorCells);
+  return 1.0 / (1.0 + variance / surface.cells / (kFunctionError * kFunctionError));
 }
 
 void SampleFit::move(int depth, const FitLine* line, Vector3* point) const {
@@ -187,6 +203,16 @@ void SampleFit::move(int depth, const FitLine* line, Vector3* point) const {
         std::clamp(now - trust * cell * surface->distance / slope, line->low, line->high);
     *point = line->start + t * line->direction;
   }
+}
+
+std::optional<LocalSurface> SampleFit::trusted(int depth, const Vector3& point) const {
+  const double shrink = std::ldexp(1.0, depth - finest_);
+  std::optional<LocalSurface> surface =
+      local_surface(index_of_(depth), shrink * point, noise_.normal_trust);
+  if (surface) {
+    surface->distance *= trust_in(*surface, noise_.distance * shrink, noise_.mean_weight);
+  }
+  return surface;
 }
 
 bool blend_attributes(const SampleIndex& index, const Vector3& point, std::span<float> attributes) {

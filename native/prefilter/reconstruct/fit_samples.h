@@ -22,6 +22,7 @@ struct LocalSurface {
   double distance = 0.0;  // of the point from the surface, along the normal
   double spread = 0.0;    // of that distance by the samples of each cell: standard deviation
   double weight = 0.0;    // of as many samples as would have the same noise, all weighted alike
+  double cells = 0.0;     // as many of these, likewise
 };
 
 /// None where there are no samples, or their normals cancel each other, or with a `normal_trust` of
@@ -38,7 +39,13 @@ std::optional<LocalSurface> local_surface(const SampleIndex& index, const Vector
 struct SampleNoise {
   double distance = 0.0;      // of a sample from the surface: the standard deviation
   double normal_trust = 1.0;  // 1 where normals of one cell agree, 0 where they hardly do
+  double mean_weight = 1.0;   // of a sample
 };
+
+/// How much the samples' distance counts beside the function's, from 0 to 1: by the variance of the
+/// one, from how much its cells differ and, where they are few, from the cloud's noise in cells of
+/// the surface's depth, and by that of the other.
+double trust_in(const LocalSurface& surface, double noise, double mean_weight);
 
 /// Of some cells of one depth, from the surface of the samples within two of their sides;
 /// `coarser` has the samples of the depth above. `mean_weight` is that of a sample.
@@ -66,6 +73,10 @@ class SampleFit {
   /// lines between the cells that they part does not fold. Without a line it moves along the
   /// normal, up to a cell of the samples at a time, for a function that was not solved for.
   void move(int depth, const FitLine* line, Vector3* point) const;
+
+  /// The surface as seen from such a point, in cells of that depth, with the distance as far as it
+  /// is to be trusted.
+  std::optional<LocalSurface> trusted(int depth, const Vector3& point) const;
 
  private:
   IndexOf index_of_;

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "prefilter/base/geometry.h"
 #include "prefilter/contour/contour_slab.h"
+#include "prefilter/reconstruct/fit_values.h"
 #include "prefilter/reconstruct/slab_support.h"
 
 namespace prefilter {
@@ -26,26 +28,6 @@ void center_occupancies(float mean, CellTree* tree) {
   }
 }
 
-ContourSlab contour_of_slab(const Slabs& slabs, const ReconstructOptions& options,
-                            const SurfaceLevel& level, int s) {
-  HeightRange heights = {s * slabs.height(), (s + 1) * slabs.height()};
-  if (s + 1 == slabs.count()) ++heights.high;
-  CellTree tree = tree_around(slabs, s, level.scale, options.smooth);
-  const bool are_occupancies = options.basis == WaveletBasis::kHaar && !options.smooth;
-  float isovalue = level.isovalue;
-  if (are_occupancies && options.isovalue == Isovalue::kMean) {
-    center_occupancies(isovalue, &tree);
-    isovalue = 0.5F;
-  }
-  ContourSlab contour = contour_slab(
-      tree, isovalue, are_occupancies ? Interpolant::kOccupancy : Interpolant::kLinear, heights);
-  const int side = 1 << slabs.depth();
-  for (Vector3& p : contour.mesh.positions) {
-    for (double& x : p) x *= side;
-  }
-  return contour;
-}
-
 // The samples of slabs at the depths that are asked for.
 class SampleDepths {
  public:
@@ -53,9 +35,8 @@ class SampleDepths {
       : slabs_(slabs), s_(s), indices_(static_cast<std::size_t>(slabs.depth()) + 1) {}
 
   const SampleIndex& at(int k) {
-    constexpr int kMargin = 3;
     auto& index = indices_[static_cast<std::size_t>(k)];
-    if (!index) index = std::make_unique<SampleIndex>(samples_around(slabs_, s_, k, kMargin));
+    if (!index) index = std::make_unique<SampleIndex>(samples_around(slabs_, s_, k, kFitOctants));
     return *index;
   }
 
@@ -64,6 +45,42 @@ class SampleDepths {
   int s_;
   std::vector<std::unique_ptr<SampleIndex>> indices_;
 };
+
+SampleFit fit_of(const SurfaceSamples& surface, SampleDepths* samples) {
+  return SampleFit([samples](int k) -> const SampleIndex& { return samples->at(k); },
+                   surface.slabs.depth(), surface.noise);
+}
+
+// The largest leaves whose values are fitted, rather than the vertices beside them: what counts for
+// these is in the slabs around.
+int largest_fitted(const Slabs& slabs, const ReconstructOptions& options) {
+  if (!options.fit || !options.smooth || slabs.middle == 0.0F) return 0;
+  return slabs.count() == 1 ? slabs.height() : std::max(1, slabs.height() / 16);
+}
+
+ContourSlab contour_of_slab(const SurfaceSamples& surface, const ReconstructOptions& options,
+                            const SurfaceLevel& level, int s, SampleDepths* samples) {
+  const Slabs& slabs = surface.slabs;
+  HeightRange heights = {s * slabs.height(), (s + 1) * slabs.height()};
+  if (s + 1 == slabs.count()) ++heights.high;
+  const int largest = largest_fitted(slabs, options);
+  CellTree tree = tree_around(slabs, s, largest > 0 ? kFitOctants : kContourOctants, level.scale,
+                              options.smooth);
+  const bool are_occupancies = options.basis == WaveletBasis::kHaar && !options.smooth;
+  float isovalue = level.isovalue;
+  if (are_occupancies && options.isovalue == Isovalue::kMean) {
+    center_occupancies(isovalue, &tree);
+    isovalue = 0.5F;
+  }
+  if (largest > 0) fit_values(fit_of(surface, samples), isovalue, {heights, largest}, &tree);
+  ContourSlab contour = contour_slab(
+      tree, isovalue, are_occupancies ? Interpolant::kOccupancy : Interpolant::kLinear, heights);
+  const int side = 1 << slabs.depth();
+  for (Vector3& p : contour.mesh.positions) {
+    for (double& x : p) x *= side;
+  }
+  return contour;
+}
 
 // Of the samples near a point in finest cells, next to leaves of depth k: of the smallest cells
 // that hold some.
@@ -99,24 +116,24 @@ FitLine line_of(const VertexPlace& place, const Vector3& position, int depth) {
   return line;
 }
 
-void follow_samples(const SurfaceSamples& surface, bool are_moved, int s, SlabMesh* slab) {
+// Moves the vertices beside leaves larger than `largest_still`, and finds attributes for all.
+void follow_samples(const SurfaceSamples& surface, std::optional<int> largest_still,
+                    SampleDepths* samples, SlabMesh* slab) {
   const bool is_solved = surface.slabs.middle != 0.0F;
   const int depth = surface.slabs.depth();
   const std::size_t width = surface.attribute_count;
   std::vector<Vector3>& positions = slab->contour.mesh.positions;
   const std::vector<VertexPlace>& places = slab->contour.places;
   slab->attributes.resize(positions.size() * width);
-  SampleDepths samples(surface.slabs, s);
-  const SampleFit fit([&](int k) -> const SampleIndex& { return samples.at(k); }, depth,
-                      surface.noise);
+  const SampleFit fit = fit_of(surface, samples);
   for (std::size_t v = 0; v < positions.size(); ++v) {
     const int k = v < places.size() ? places[v].depth : depth;
-    if (are_moved && v < places.size()) {
+    if (largest_still && v < places.size() && 1 << (depth - k) > *largest_still) {
       const FitLine line = line_of(places[v], positions[v], depth);
       fit.move(k, is_solved ? &line : nullptr, &positions[v]);
     }
     if (width > 0) {
-      find_attributes(positions[v], k, depth, &samples,
+      find_attributes(positions[v], k, depth, samples,
                       {slab->attributes.data() + v * width, width});
     }
   }
@@ -161,8 +178,12 @@ SampleNoise find_noise(int s, Slabs* slabs) {
 SlabMesh mesh_of_slab(const SurfaceSamples& surface, const ReconstructOptions& options,
                       const SurfaceLevel& level, int s) {
   SlabMesh slab;
-  slab.contour = contour_of_slab(surface.slabs, options, level, s);
-  if (options.fit || surface.attribute_count > 0) follow_samples(surface, options.fit, s, &slab);
+  SampleDepths samples(surface.slabs, s);
+  slab.contour = contour_of_slab(surface, options, level, s, &samples);
+  if (options.fit || surface.attribute_count > 0) {
+    const int largest = largest_fitted(surface.slabs, options);
+    follow_samples(surface, options.fit ? std::optional(largest) : std::nullopt, &samples, &slab);
+  }
   if (options.support || (!options.watertight && !options.trim)) {
     add_support(surface, TrimOptions().distance, level.scale < 0.0F ? -1.0 : 1.0, s, &slab);
   }

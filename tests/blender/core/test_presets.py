@@ -208,7 +208,7 @@ def test_print_ready_solid():
 
 
 def test_preview_is_coarse(tmp_path):
-    """A fraction of the triangles of a depth more, where there are points enough for it, and the points stay."""
+    """A fraction of the triangles of a depth more, as there are points for; and the points stay."""
     points = clouds.scan(*clouds.torus(200_000))
     bpy.ops.prefilter.reconstruct(preset="Preview scan")
     coarse = bpy.context.active_object
