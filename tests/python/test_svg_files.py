@@ -4,6 +4,7 @@
 
 import gzip
 import math
+import tracemalloc
 
 import numpy as np
 import prefilter
@@ -200,21 +201,70 @@ def test_a_file_that_is_refused_is_named(tmp_path):
         prefilter.read_svg(tmp_path)
 
 
-def test_what_is_large_when_unpacked_is_stopped(monkeypatch):
+def test_what_is_large_when_unpacked_is_stopped():
+    large = gzip.compress(svg(" " * (1 << 27)).encode())
+    tracemalloc.start()
+    with pytest.raises(ValueError, match="more than 64 MiB when unpacked"):
+        prefilter.read_svg(large)
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert most < 1 << 23
+
+
+def test_repeated_uses_are_counted_before_any_is_drawn(monkeypatch):
+    from prefilter.shapes._svg.drawing import Drawing
+
+    def drawn(*_):
+        raise AssertionError
+
+    monkeypatch.setattr(Drawing, "_visit", drawn)
+    with pytest.raises(ValueError, match="source: <use> repeats more than 250000 elements"):
+        prefilter.read_svg(bomb())
+
+
+def used(count, each="<rect width='9' height='9'/>"):
+    """A group that is used so many times."""
+    return f"<defs><g id='a'>{each}</g></defs>" + "<use href='#a'/>" * count
+
+
+def test_repeated_uses_up_to_a_limit(monkeypatch):
+    from prefilter.shapes._svg import limits
+
+    # Each is an element of the file, and repeats two.
+    monkeypatch.setattr(limits, "MOST_USED", 20)
+    assert len(read(used(10)).shapes) == 10
+    with pytest.raises(ValueError, match="<use> repeats more than 20 elements"):
+        read(used(30))
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "<path d='M0 0" + "h1v1" * 60 + "'/>",
+        used(3, "<path d='M0 0" + "h1v1" * 20 + "'/>"),
+        "<path fill='none' stroke='red' stroke-dasharray='1' d='M0 0H40'/>",
+        "<polygon points='" + "1 2 " * 101 + "'/>",
+    ],
+)
+def test_lines_curves_and_dashes_are_counted(monkeypatch, body):
+    from prefilter.shapes._svg import limits, outline
+
+    for module in (limits, outline):
+        monkeypatch.setattr(module, "MOST_SEGMENTS", 200)
+    assert len(read(body).shapes) > 0
+    for module in (limits, outline):
+        monkeypatch.setattr(module, "MOST_SEGMENTS", 100)
+    with pytest.raises(ValueError, match="source: more than 100 lines and curves"):
+        read(body)
+
+
+def test_elements_are_counted_while_they_are_read(monkeypatch):
     from prefilter.shapes._svg import document
 
-    monkeypatch.setattr(document, "MOST_UNPACKED", 1 << 20)
-    large = gzip.compress(svg(" " * (1 << 20)).encode())
-    with pytest.raises(ValueError, match="more than 1 MiB when unpacked"):
-        prefilter.read_svg(large)
-
-
-def test_repeated_uses_are_limited(monkeypatch):
-    from prefilter.shapes._svg import drawing
-
-    monkeypatch.setattr(drawing, "MOST_USED", 1000)
-    with pytest.raises(ValueError, match="<use> repeats more than 1000 elements"):
-        prefilter.read_svg(bomb())
+    monkeypatch.setattr(document, "MOST_ELEMENTS", 100)
+    assert read("<g/>" * 99).shapes == []
+    with pytest.raises(ValueError, match="source, line 3: more than 100 elements"):
+        read("\n" + "<g/>" * 50 + "\n" + "<g/>" * 50)
 
 
 @pytest.mark.parametrize(

@@ -110,7 +110,7 @@ def test_arcs_lie_on_their_ellipse_and_go_round_it_as_said(rotation, is_large, i
     data = f"M 20 30 A {rx} {ry} {rotation} {int(is_large)} {int(is_positive)} 47 61"
     path, is_whole = read_path(data)
     assert is_whole
-    points = points_of(path.segments)
+    points = points_of(path.segments())
     np.testing.assert_allclose(points[[0, -1]], [start, end])
     # Where the ellipse is a unit circle, its center is at a distance of 1 from all points.
     angle = math.radians(rotation)

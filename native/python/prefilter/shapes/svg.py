@@ -121,6 +121,7 @@ def read_svg(
     # Style sheets take modules that those who read no drawings need not wait for.
     from ._svg.document import read_document
     from ._svg.drawing import Drawing
+    from ._svg.limits import TooLargeError
     from ._svg.paint_servers import Colors
 
     tell = _teller(as_progress(progress))
@@ -132,6 +133,8 @@ def read_svg(
         )
     except RecursionError:
         raise ValueError(f"{document.name}: values or styles are nested too deeply") from None
+    except TooLargeError as error:
+        raise ValueError(f"{document.name}: {error}") from None
     return SvgDrawing(drawing, light, warnings.all())
 
 

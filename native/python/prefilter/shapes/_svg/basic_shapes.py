@@ -44,7 +44,7 @@ def read_shape(
         case "path":
             outline, is_whole = read_path(values.get("d", ""))
             if not is_whole:
-                effect = "drawn up to an error" if outline.segments else "left out"
+                effect = "drawn up to an error" if len(outline) else "left out"
                 warnings.broken("path data", effect, element.line)
         case "rect":
             width, height = pixels("width"), pixels("height")

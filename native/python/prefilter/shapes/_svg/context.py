@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from .document import Document, SvgElement
 from .lengths import Units, read_length
+from .limits import Budget
 from .paint_servers import Colors, PaintServers
 from .styles import Style, StyleSheets
 from .values import Length, Matrix
@@ -21,6 +22,7 @@ class Sources:
     servers: PaintServers
     colors: Colors
     warnings: Warnings
+    budget: Budget
 
     def pixels(self, element: SvgElement, name: str, default: Length, units: Units) -> float:
         """An attribute of an element, or what stands for it where there is none."""

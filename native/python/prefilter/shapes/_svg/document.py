@@ -4,8 +4,8 @@
 
 import os
 import zlib
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Iterator
+from typing import Any, TypeAlias
 from xml.etree.ElementTree import Element
 from xml.parsers import expat
 
@@ -15,10 +15,16 @@ SVG = "http://www.w3.org/2000/svg"
 XLINK_HREF = "{http://www.w3.org/1999/xlink}href"
 
 MOST_DEPTH = 256
-MOST_UNPACKED = 1 << 28
+MOST_ELEMENTS = 250_000
+MOST_UNPACKED = 1 << 26
+_UNPACKED_AT_ONCE = 1 << 20
 # What entities may add to a file: expat's own limit came with 2.4.
 _MOST_EXPANDED = 1 << 24
 _TOLD_EVERY = 1000
+
+
+Parts: TypeAlias = Callable[[], Iterator[bytes]]
+"""Returns the bytes of a file in parts, as often as it is called."""
 
 
 class _RefusedError(Exception):
@@ -49,15 +55,17 @@ class Document:
         foreign_style: The line of a reference to a style sheet in another file; 0 without.
     """
 
-    def __init__(self, data: bytes, name: str, encoding: str | None, tell: Callable[[float], None]):
+    def __init__(
+        self, parts: Parts, name: str, encoding: str | None, tell: Callable[[float], None]
+    ) -> None:
         self.name = name
         self.ids: dict[str, SvgElement] = {}
         self.count = 0
         self.foreign_style = 0
         self._open: list[SvgElement] = []
         self._root: SvgElement | None = None
-        self._references = data.count(b"&")
-        self._size = max(len(data), 1)
+        self._references = sum(part.count(b"&") for part in parts())
+        self._size = max(sum(map(len, parts())), 1)
         self._tell = tell
         parser = expat.ParserCreate(encoding, "}")
         self._parser = parser
@@ -68,7 +76,9 @@ class Document:
         parser.EntityDeclHandler = self._entity
         parser.ProcessingInstructionHandler = self._instruction
         try:
-            parser.Parse(data, True)
+            for part in parts():
+                parser.Parse(part, False)
+            parser.Parse(b"", True)
         except expat.ExpatError as error:
             what = expat.ErrorString(error.code)
             raise ValueError(
@@ -104,6 +114,8 @@ class Document:
         if "id" in element.attrib:
             self.ids.setdefault(element.attrib["id"], element)
         self.count += 1
+        if self.count > MOST_ELEMENTS:
+            raise _RefusedError(f"{self.name}, line {line}: more than {MOST_ELEMENTS} elements")
         if self.count % _TOLD_EVERY == 0:
             self._tell(self._parser.CurrentByteIndex / self._size)
 
@@ -148,21 +160,28 @@ def read_document(
             data = file.read()
     else:
         raise ValueError(f"source: {source!r}; a path, markup, or bytes are needed")
-    if data[:2] == b"\x1f\x8b":
-        data = _unpacked(data, name)
-    if not data.strip():
+
+    def parts() -> Iterator[bytes]:
+        return _unpacked(data, name) if data[:2] == b"\x1f\x8b" else iter((data,))
+
+    if not any(part.strip() for part in parts()):
         raise ValueError(f"{name} is empty")
-    return Document(data, name, encoding, tell)
+    return Document(parts, name, encoding, tell)
 
 
-def _unpacked(data: bytes, name: str) -> bytes:
+def _unpacked(data: bytes, name: str) -> Iterator[bytes]:
+    """Yields the contents bit by bit: a small file may hold any number of bytes."""
     unpacker = zlib.decompressobj(wbits=31)
-    try:
-        unpacked = unpacker.decompress(data, MOST_UNPACKED)
-    except zlib.error as error:
-        raise ValueError(f"{name}: compressed, and damaged: {error}") from None
-    if unpacker.unconsumed_tail:
-        raise ValueError(f"{name}: more than {MOST_UNPACKED >> 20} MiB when unpacked")
-    if not unpacker.eof:
-        raise ValueError(f"{name}: compressed, and ends early")
-    return unpacked
+    count = 0
+    while not unpacker.eof:
+        try:
+            part = unpacker.decompress(data, _UNPACKED_AT_ONCE)
+        except zlib.error as error:
+            raise ValueError(f"{name}: compressed, and damaged: {error}") from None
+        data = unpacker.unconsumed_tail
+        count += len(part)
+        if count > MOST_UNPACKED:
+            raise ValueError(f"{name}: more than {MOST_UNPACKED >> 20} MiB when unpacked")
+        if not part and not unpacker.eof:
+            raise ValueError(f"{name}: compressed, and ends early")
+        yield part

@@ -12,6 +12,7 @@ from .context import Context, Sources
 from .document import Document, SvgElement
 from .groups import Groups, carried
 from .lengths import Units
+from .limits import Budget, check_uses
 from .nesting import children, used, viewport
 from .outline import Outline
 from .page import read_page
@@ -23,7 +24,6 @@ from .tags import GROUPS, NOT_DRAWN
 from .values import IDENTITY, Matrix, Paint, as_transform, determinant, multiplied
 from .warnings import Warnings
 
-MOST_USED = 250_000
 # In widths or heights of the drawing. No shape may be more than 1e9 pixels away.
 _LARGEST = 1e5
 _SMALLEST_DETERMINANT = 1e-40
@@ -47,7 +47,8 @@ class Drawing:
     ) -> None:
         sheets = StyleSheets(document, warnings, lambda share: tell(0.5 * share))
         servers = PaintServers(document, sheets, colors, warnings)
-        self._sources = Sources(document, sheets, servers, colors, warnings)
+        check_uses(document)
+        self._sources = Sources(document, sheets, servers, colors, warnings, Budget(document.count))
         self._tell = tell
         self._outlines: dict[tuple[SvgElement, Units], Outline | None] = {}
         self.painted: list[Painted] = []
@@ -75,10 +76,7 @@ class Drawing:
             if count % 100 == 0:
                 # With `use` there may be more than there are elements.
                 self._tell(0.5 + 0.5 * min(count / self._sources.document.count, 0.99))
-            if count > MOST_USED + self._sources.document.count:
-                raise ValueError(
-                    f"{self._sources.document.name}: <use> repeats more than {MOST_USED} elements"
-                )
+            self._sources.budget.take_element()
             waiting.extend(reversed(list(self._visit(element, context))))
 
     def _visit(self, element: SvgElement, context: Context) -> Iterator[tuple[SvgElement, Context]]:
@@ -176,5 +174,6 @@ class Drawing:
                 f"<{element.tag}>", "left out, as it is too far away", element.line
             )
             return
+        self._sources.budget.take_segments(len(outline), stroke.dash_count if stroke else 0.0)
         self.painted.append(painted)
         self._groups.put(context.groups, box)

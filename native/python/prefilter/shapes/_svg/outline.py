@@ -4,13 +4,15 @@
 
 import math
 import re
+from array import array
 from collections.abc import Iterator
-from itertools import chain, pairwise
+from itertools import pairwise
 
 import numpy as np
 
 from ... import _native
 from ..shape import Shape
+from .limits import MOST_SEGMENTS, TooLargeError
 from .values import NUMBER, leading_numbers
 
 _COMMAND = re.compile(r"([MmZzLlHhVvCcSsQqTtAa])([^MmZzLlHhVvCcSsQqTtAa]*)")
@@ -19,37 +21,57 @@ _BLANK = re.compile(r"\s*", re.ASCII)
 _WHOLE = rf"((?>{NUMBER}))\s*,?\s*"
 _ARC = re.compile(rf"{3 * _WHOLE}([01])\s*,?\s*([01])\s*,?\s*{2 * _WHOLE}", re.ASCII)
 _ARGUMENTS = {"m": 2, "l": 2, "h": 1, "v": 1, "c": 6, "s": 4, "q": 4, "t": 2}
+# How many numbers a segment has.
+_SIZES = {"M": 2, "L": 2, "Q": 4, "C": 6, "W": 5, "Z": 0}
 
 
 class Outline:
     """Contours, as they are drawn.
 
-    Attributes:
-        segments: For each: M and its point; L and its end; Q or C and the control points behind
-            the start; W, a control point, its weight and the end, for a conic; Z.
+    Their segments are: M and its point; L and its end; Q or C and the control points behind the
+    start; W, a control point, its weight and the end, for a conic; Z.
     """
 
     def __init__(self) -> None:
-        self.segments: list[tuple[str, tuple[float, ...]]] = []
+        # Without an object for each segment: a file may have a million.
+        self._letters = bytearray()
+        self._numbers = array("d")
         self._shapes: dict[str, Shape] = {}
 
+    def __len__(self) -> int:
+        return len(self._letters)
+
+    def segments(self) -> Iterator[tuple[str, tuple[float, ...]]]:
+        """Yields each segment's letter and its numbers."""
+        at = 0
+        for letter in self._letters.decode():
+            size = _SIZES[letter]
+            yield letter, tuple(self._numbers[at : at + size])
+            at += size
+
     def move_to(self, x: float, y: float) -> None:
-        self.segments.append(("M", (x, y)))
+        self._add(b"M", (x, y))
 
     def line_to(self, x: float, y: float) -> None:
-        self.segments.append(("L", (x, y)))
+        self._add(b"L", (x, y))
 
     def quadratic_to(self, *numbers: float) -> None:
-        self.segments.append(("Q", numbers))
+        self._add(b"Q", numbers)
 
     def cubic_to(self, *numbers: float) -> None:
-        self.segments.append(("C", numbers))
+        self._add(b"C", numbers)
 
     def conic_to(self, x1: float, y1: float, weight: float, x2: float, y2: float) -> None:
-        self.segments.append(("W", (x1, y1, weight, x2, y2)))
+        self._add(b"W", (x1, y1, weight, x2, y2))
 
     def close(self) -> None:
-        self.segments.append(("Z", ()))
+        self._add(b"Z", ())
+
+    def _add(self, letter: bytes, numbers: tuple[float, ...]) -> None:
+        if len(self._letters) >= MOST_SEGMENTS:
+            raise TooLargeError(f"more than {MOST_SEGMENTS} lines and curves in a path")
+        self._letters += letter
+        self._numbers.extend(numbers)
 
     def ellipse(self, cx: float, cy: float, rx: float, ry: float) -> None:
         """A whole ellipse, from its right side on over its lower one (with y downwards)."""
@@ -151,11 +173,12 @@ class Outline:
 
     def is_box(self) -> bool:
         """Whether it is one upright rectangle."""
-        kinds = "".join(kind for kind, _ in self.segments)
-        bounds = self.bounds()
-        if bounds is None or not re.fullmatch("MLLLL?Z?", kinds):
+        if not re.fullmatch("MLLLL?Z?", self._letters.decode()):
             return False
-        points = [numbers for _, numbers in self.segments if numbers]
+        bounds = self.bounds()
+        if bounds is None:
+            return False
+        points = [numbers for _, numbers in self.segments() if numbers]
         if len(points) == 5 and points[4] != points[0]:
             return False
         turns = {(bool(a[0] - b[0]), bool(a[1] - b[1])) for a, b in pairwise(points[:4])}
@@ -166,7 +189,7 @@ class Outline:
         """How long it is at most: as long as the lines from control point to control point."""
         total = 0.0
         x, y = begin = (0.0, 0.0)
-        for kind, numbers in self.segments:
+        for kind, numbers in self.segments():
             points = numbers[:2] + numbers[3:] if kind == "W" else (numbers or begin)
             for next_x, next_y in zip(points[::2], points[1::2], strict=True):
                 total += _native.hypot(next_x - x, next_y - y) if kind != "M" else 0.0
@@ -179,9 +202,7 @@ class Outline:
         """The outline as a shape, made once."""
         if fill_rule not in self._shapes:
             shape = Shape(fill_rule=fill_rule)
-            letters = "".join(kind for kind, _ in self.segments)
-            numbers = chain.from_iterable(numbers for _, numbers in self.segments)
-            shape.add_path(letters, np.fromiter(numbers, np.float64))
+            shape.add_path(self._letters.decode(), np.array(self._numbers))
             self._shapes[fill_rule] = shape
         return self._shapes[fill_rule]
 
@@ -189,11 +210,12 @@ class Outline:
         """Ends, and points of curves where one coordinate is largest or smallest."""
         at = begin = (0.0, 0.0)
         has_begun = False
-        for index, (kind, numbers) in enumerate(self.segments):
+        following = (self._letters + b"M")[1:].decode()
+        for (kind, numbers), letter_after in zip(self.segments(), following, strict=True):
             if kind == "M":
                 at = begin = (numbers[0], numbers[1])
                 # A move that draws nothing does not count.
-                has_begun = index + 1 < len(self.segments) and self.segments[index + 1][0] != "M"
+                has_begun = letter_after != "M"
                 if has_begun:
                     yield at
                 continue

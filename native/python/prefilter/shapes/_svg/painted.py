@@ -15,7 +15,11 @@ from .values import Matrix, multiplied
 
 @dataclass(frozen=True, slots=True)
 class Stroke:
-    """How an outline is stroked, in its own units, as `Shape.stroked` takes it."""
+    """How an outline is stroked, in its own units, as `Shape.stroked` takes it.
+
+    Attributes:
+        dash_count: How many dashes there are at most.
+    """
 
     width: float
     cap: str
@@ -23,6 +27,7 @@ class Stroke:
     miter_limit: float
     dashes: tuple[float, ...]
     dash_offset: float
+    dash_count: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +57,9 @@ class Painted:
         shape = self.outline.shape(self.fill_rule)
         if self.stroke is not None:
             scale = max(_native.hypot(*whole[:2]), _native.hypot(*whole[2:4]))
-            shape = shape.stroked(**asdict(self.stroke), tolerance=tolerance / scale)
+            pen = asdict(self.stroke)
+            del pen["dash_count"]
+            shape = shape.stroked(**pen, tolerance=tolerance / scale)
         a, b, c, d, e, f = whole
         shape = shape.transformed(np.array([[a, c, e], [b, d, f]]))
         if isinstance(self.paint, Gradient):

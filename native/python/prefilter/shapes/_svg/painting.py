@@ -64,11 +64,12 @@ def stroke_of(
         sources.warnings.unsupported(f"stroke-linejoin '{join}'", "drawn as miter", element.line)
         join = "miter"
     dashes = [units.pixels(length, "stroke-dasharray") for length in style.stroke_dasharray]
-    if sum(dashes) <= 0.0:
+    count = outline.length() * len(dashes) / sum(dashes) if sum(dashes) > 0.0 else 0.0
+    if count == 0.0:
         dashes = []
-    elif outline.length() * len(dashes) > _MOST_DASHES * sum(dashes):
+    elif count > _MOST_DASHES:
         sources.warnings.broken("stroke-dasharray", "ignored: too many dashes", element.line)
-        dashes = []
+        dashes, count = [], 0.0
     elif "pathLength" in sources.sheets.declared(element):
         sources.warnings.unsupported("pathLength", "ignored", element.line)
     if len(dashes) % 2:
@@ -80,6 +81,7 @@ def stroke_of(
         style.stroke_miterlimit,
         tuple(dashes),
         units.pixels(style.stroke_dashoffset, "stroke-dashoffset"),
+        count,
     )
 
 

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""How large drawings may become, so that a small file cannot take all memory or all time."""
+
+from collections.abc import Iterator
+
+from .document import Document, SvgElement
+from .tags import NOT_DRAWN
+
+MOST_USED = 250_000
+MOST_SEGMENTS = 2_000_000
+# What a dash becomes has about so many.
+_SEGMENTS_PER_DASH = 4.0
+
+
+class TooLargeError(ValueError):
+    """A drawing has more of something than it may have; the message says of what."""
+
+
+class Budget:
+    """Counts what a drawing consists of, with all that is repeated.
+
+    Args:
+        elements: In the file.
+    """
+
+    def __init__(self, elements: int) -> None:
+        self._elements_left = elements + MOST_USED
+        self._segments_left = float(MOST_SEGMENTS)
+
+    def take_element(self) -> None:
+        """Counts an element that is drawn. Raises TooLargeError where there are too many."""
+        self._elements_left -= 1
+        if self._elements_left < 0:
+            raise TooLargeError(f"<use> repeats more than {MOST_USED} elements")
+
+    def take_segments(self, count: int, dashes: float) -> None:
+        """Counts lines and curves that are drawn, and dashes. Raises TooLargeError likewise."""
+        self._segments_left -= count + _SEGMENTS_PER_DASH * dashes
+        if self._segments_left < 0.0:
+            raise TooLargeError(
+                f"more than {MOST_SEGMENTS} lines and curves, with those that <use> repeats, "
+                f"and {_SEGMENTS_PER_DASH:g} for each dash"
+            )
+
+
+def check_uses(document: Document) -> None:
+    """Raises TooLargeError where `use` repeats too many elements, before any is drawn."""
+    counts: dict[SvgElement, int] = {}
+    waiting = [(document.root, False)]
+    while waiting:
+        element, is_done = waiting.pop()
+        if is_done:
+            counts[element] = 1 + sum(counts.get(each, 0) for each in _drawn_by(element, document))
+        elif element not in counts:
+            # It is inside of itself where it is met again before it is done.
+            counts[element] = 0
+            waiting.append((element, True))
+            waiting.extend((each, False) for each in _drawn_by(element, document))
+    if counts[document.root] > document.count + MOST_USED:
+        raise TooLargeError(f"<use> repeats more than {MOST_USED} elements")
+
+
+def _drawn_by(element: SvgElement, document: Document) -> Iterator[SvgElement]:
+    """Yields the elements that one draws."""
+    if element.tag == "use":
+        target = document.ids.get(element.href)
+        if target is not None:
+            yield target
+        return
+    for child in element:
+        assert isinstance(child, SvgElement)
+        if child.tag not in NOT_DRAWN and child.tag != "symbol":
+            yield child
