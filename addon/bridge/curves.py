@@ -3,8 +3,8 @@
 """Curve and text objects as closed contours: chains of Bezier curves, rational ones included.
 
 As Blender fills them: the closed splines of a curve fill together where they have the same
-material, and those of each letter of a text by themselves, by the even-odd rule; open splines fill
-nothing. That a curve is three-dimensional, or is not to be filled, does not count.
+material, by the even-odd rule; open splines fill nothing. Those of each letter of a text fill by
+themselves, by the nonzero rule, as fonts are made for: in variable ones contours overlap. That a curve is three-dimensional, or is not to be filled, does not count.
 """
 
 from collections.abc import Iterable
@@ -30,10 +30,12 @@ class Fill:
         contours: (segments, degree + 1, 4) homogeneous control points of Bezier curves each:
             coordinates multiplied by the weight, then the weight.
         color: Scene-linear red, green and blue, and alpha.
+        fill_rule: As `prefilter.Shape` has it.
     """
 
     contours: list[FloatArray]
     color: tuple[float, float, float, float]
+    fill_rule: str
 
 
 @dataclass
@@ -91,6 +93,7 @@ def _read(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Curves:
     matrix = np.array(shown.matrix_world, np.float64)
     found.center = matrix[:3, 3].copy()
     colors = [materials.base_color(slot.material) for slot in obj.material_slots]
+    fill_rule = "nonzero" if obj.type == "FONT" else "evenodd"
     fills: dict[tuple[int, int], Fill] = {}
     curve = shown.to_curve(depsgraph, apply_modifiers=True)
     try:
@@ -105,7 +108,7 @@ def _read(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Curves:
                 raise ValueError(f"object '{obj.name}': a control point has no finite coordinates")
             slot = min(spline.material_index, max(len(colors) - 1, 0))
             color = colors[slot] if colors else materials.WHITE
-            fill = fills.setdefault((spline.character_index, slot), Fill([], color))
+            fill = fills.setdefault((spline.character_index, slot), Fill([], color, fill_rule))
             fill.contours.append(contour @ matrix.T)
     finally:
         shown.to_curve_clear()

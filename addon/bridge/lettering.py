@@ -19,7 +19,7 @@ class Lettering:
 
     Attributes:
         letters: For each letter its contours: (segments, degree + 1, 3) homogeneous control points,
-            which are filled by the even-odd rule.
+            which are filled by the nonzero rule.
         low: Where the first letter starts along x.
         high: Where the last letter ends.
     """

@@ -56,7 +56,7 @@ def curves_source(
             if any(contour[..., 2].min() <= 0.0 for contour in contours):
                 behind[curves.name] = None
             else:
-                layers.append(Layer(contours, fill.color))
+                layers.append(Layer(contours, fill.color, fill.fill_rule))
     if behind:
         text = "left out, as it reaches behind the camera: {}"
         warnings.append(Sentence(text, listed(behind)))
@@ -69,7 +69,7 @@ def curves_source(
     frame = None
     if view.projection is not None:
         frame = whole_frame(settings.width, settings.height, (-1.0, -1.0), (1.0, 1.0))
-    return Layers(objects[0].name, layers, "evenodd", frame, usable_memory, placed), warnings
+    return Layers(objects[0].name, layers, frame, usable_memory, placed), warnings
 
 
 def uv_source(

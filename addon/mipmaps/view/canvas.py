@@ -83,13 +83,13 @@ class Canvas:
         """
         placed = np.vstack([matrix, [0.0, 0.0, 1.0]]).T
         for letter in letters:
-            shape = self._shape(color, fill_rule="evenodd")
+            shape = self._shape(color)
             for contour in letter:
                 add_contour(shape, contour @ placed)
             self._shapes.append(shape)
 
-    def _shape(self, color: Color, fill_rule: str = "nonzero") -> "prefilter.Shape":
-        shape = prefilter.Shape(fill_rule)
+    def _shape(self, color: Color) -> "prefilter.Shape":
+        shape = prefilter.Shape()
         shape.color = _light(color)
         return shape
 

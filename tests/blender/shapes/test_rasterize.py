@@ -5,6 +5,7 @@
 import math
 
 import bpy
+import fonts
 import numpy as np
 import outlines
 import pytest
@@ -59,6 +60,21 @@ def test_text_has_holes_and_its_area():
     area = sum(face.area for face in mesh.polygons)
     size = max(np.ptp([vertex.co for vertex in mesh.vertices], axis=0)[:2])
     assert alpha.sum(dtype=float) == pytest.approx(area * (56 / size) ** 2, rel=0.01)
+
+
+def test_letters_are_filled_by_the_nonzero_rule(tmp_path):
+    """Contours of variable fonts overlap."""
+    bar = [(0, 0), (0, 200), (600, 200), (600, 0)]
+    stem = [(0, 0), (0, 1000), (200, 1000), (200, 0)]
+    hole = [(50, 50), (150, 50), (150, 150), (50, 150)]
+    fonts.write_font(tmp_path / "variable.ttf", "L", [bar, stem, hole])
+    text = outlines.text("L")
+    text.data.font = bpy.data.fonts.load(str(tmp_path / "variable.ttf"))
+    alpha = pixels(rasterize(width=60, height=100, margin=0))[..., 3]
+    # Two contours wind round the corner, and one round its hole goes back.
+    expected = np.zeros((100, 60))
+    expected[:20] = expected[:, :20] = 1
+    np.testing.assert_allclose(alpha, expected, atol=1e-3)
 
 
 def test_even_odd_within_an_object():

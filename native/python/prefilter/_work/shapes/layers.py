@@ -73,6 +73,7 @@ class Layer:
 
     contours: list[FloatArray]
     color: Color
+    fill_rule: str
 
 
 @dataclass(frozen=True)
@@ -81,7 +82,6 @@ class Layers:
 
     name: str
     layers: list[Layer]
-    fill_rule: str
     frame: Frame | None
     """Where the plane is in the image; None to fit it."""
     memory: Memory = free_memory
@@ -105,7 +105,7 @@ class Layers:
         for i, layer in enumerate(self.layers):
             if i % _LAYERS_AT_ONCE == 0:
                 go_on(progress, i / len(self.layers))
-            shape = prefilter.Shape(self.fill_rule)
+            shape = prefilter.Shape(layer.fill_rule)
             shape.color = (1.0,) if is_coverage else _associated(layer.color)
             for contour in layer.contours:
                 add_contour(shape, product(contour, frame.to_pixels.T))
@@ -167,7 +167,7 @@ def uv_layers(
         contours.append(np.stack([corners, np.roll(corners, -1, axis=0)], axis=1))
     low = (float(column), float(row))
     frame = whole_frame(settings.width, settings.height, low, (low[0] + 1.0, low[1] + 1.0))
-    return Layers(name, [Layer(contours, _WHITE)], "nonzero", frame, memory)
+    return Layers(name, [Layer(contours, _WHITE, "nonzero")], frame, memory)
 
 
 def svg_drawing(
