@@ -4,7 +4,8 @@
 
 As Blender fills them: the closed splines of a curve fill together where they have the same
 material, by the even-odd rule; open splines fill nothing. Those of each letter of a text fill by
-themselves, by the nonzero rule, as fonts are made for: in variable ones contours overlap. That a curve is three-dimensional, or is not to be filled, does not count.
+themselves, by the nonzero rule, as fonts are made for: in variable ones contours overlap. That a
+curve is three-dimensional, or is not to be filled, does not count.
 """
 
 from collections.abc import Iterable

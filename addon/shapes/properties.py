@@ -61,7 +61,7 @@ class RasterizeProperties(PartedSettings):
             layout.prop(self, "background")
             if self.background == "color":
                 layout.prop(self, "background_color", text="")
-        layout.prop(self, "overlap")
+        layout.prop(self, "light" if source == "svg" else "overlap")
         if not self._is_camera(source):
             layout.prop(self, "margin")
 

@@ -4,11 +4,11 @@
 
 Usage: python3 bench/shapes/resvg_references.py [FOLDER] (--help lists the options)
 
-FOLDER holds SVG files, each beside the PNG that resvg made of it. Each file is read by
-prefilter.read_svg with light="srgb", and rasterized at the size of its PNG, with the box filter and
-overlap="cover". The difference is the mean over pixels and channels of premultiplied RGBA, in
-1/255. Files in which read_svg finds what it does not support are listed by themselves. Ends with
-status 1 if fewer than 95 % of the others agree within 2/255.
+FOLDER holds SVG files, each beside the PNG that resvg made of it. Each file is drawn by
+prefilter.rasterize_svg at the size of its PNG. The difference is the mean over pixels and channels
+of premultiplied RGBA, in 1/255. Files in which something is found that is not supported are listed
+by themselves, and so are those that are refused. Ends with status 1 if fewer than 95 % of the
+others agree within 2/255.
 """
 
 import argparse
@@ -57,19 +57,21 @@ def compared(path: Path) -> Compared:
     theirs = straight.copy()
     theirs[..., :3] *= straight[..., 3:] / 255.0
     height, width = theirs.shape[:2]
-    drawing = prefilter.read_svg(path, light="srgb")
-    shapes = drawing.shapes_for(width, height)
     ours = np.zeros((height, width, 4))
-    if shapes:
-        drawn = prefilter.rasterize(shapes, width, height, overlap="cover")
+    try:
+        drawn, warnings = prefilter.rasterize_svg(path, width, height)
         ours = 255.0 * drawn[::-1].astype(np.float64)
-    unsupported = [each for each in drawing.warnings if each.kind == "unsupported"]
+        unsupported = [
+            f"{each.name} {each.effect}" for each in warnings if each.kind == "unsupported"
+        ]
+    except ValueError as error:
+        unsupported = [f"refused: {error}"]
     difference = np.abs(ours - theirs)
     return Compared(
         path,
         float(difference.mean()),
         float(difference.max()),
-        "; ".join(f"{each.name} {each.effect}" for each in unsupported),
+        "; ".join(unsupported),
         ours,
         theirs,
     )

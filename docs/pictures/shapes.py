@@ -148,7 +148,7 @@ def abutting() -> Image.Image:
 
 def tiger(drawing: Path) -> Image.Image:
     """The drawing at 64 pixels by two filters, and large."""
-    svg = prefilter.read_svg(drawing)
+    svg = prefilter.read_svg(drawing, light="linear")
     cells = []
     for size, name in ((TIGER_SMALL, "box"), (TIGER_SMALL, "mitchell"), (TIGER_CELL, "mitchell")):
         found = prefilter.rasterize(

@@ -13,6 +13,7 @@
 #include "instances.h"
 #include "prefilter/base/error.h"
 #include "prefilter/base/names.h"
+#include "prefilter/outline/set_operations.h"
 #include "prefilter/outline/stroke.h"
 #include "prefilter/raster/rasterize.h"
 
@@ -183,6 +184,15 @@ Array<float> bound_rasterize(const std::vector<DrawnShape>& drawn, RasterOptions
   return to_array(std::move(image));
 }
 
+Outline bound_combine(const Outline& first, const std::string& first_rule, const Outline& second,
+                      const std::string& second_rule, const std::string& operation) {
+  const FillRule rule = value_named("fill_rule", first_rule, kFillRules);
+  const FillRule other = value_named("fill_rule", second_rule, kFillRules);
+  const OutlineOperation what = value_named("operation", operation, kOutlineOperations);
+  const py::gil_scoped_release unlocked;
+  return combine(first, rule, second, other, what);
+}
+
 py::object bound_bounds(const Outline& outline) {
   const Box2 box = control_box(outline);
   if (outline.empty()) return py::none();
@@ -233,6 +243,8 @@ void bind_raster(py::module_& m) {
       .def("copy", [](const Outline& outline) { return Outline(outline); })
       .def("stroked", &stroke, py::arg("options"), py::arg("tolerance"),
            py::call_guard<py::gil_scoped_release>())
+      .def("combined", &bound_combine, py::arg("fill_rule"), py::arg("other"),
+           py::arg("other_rule"), py::arg("operation"))
       .def("bounds", &bound_bounds)
       .def_property_readonly("contour_count", &Outline::contour_count);
   py::class_<Paint>(m, "Paint")

@@ -479,9 +479,9 @@ def test_every_function_is_there():
     }
     # In test_normals_of_points, test_face_normals, test_float_step, test_open_surfaces,
     # test_painting, test_scan_files, test_scan_failures, test_point_choice, test_point_clouds,
-    # test_shape_arguments and test_svg_files.
+    # test_shape_arguments, test_rasterize_svg and test_svg_files.
     elsewhere = {"estimate_normals", "file_normals", "grid_normals", "mesh_normals"}
-    elsewhere |= {"rasterize", "read_points", "read_svg", "reconstruct_file"}
+    elsewhere |= {"rasterize", "rasterize_svg", "read_points", "read_svg", "reconstruct_file"}
     elsewhere |= {"align_scans", "choose_points", "find_outliers", "subsample_points"}
     elsewhere |= {"float_step", "paint_texture", "trim"}
     elsewhere |= {"available_memory"}  # takes nothing

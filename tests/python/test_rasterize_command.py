@@ -35,9 +35,28 @@ def test_svg_to_floats_is_what_the_package_draws(logo, tmp_path, capsys):
     flags = ("--width", "64", "--height", "32", "--margin", "0", "--pixel-type", "float")
     assert run("rasterize", logo, out, *flags, "--filter", "tent") == 0
     assert "Rasterized 'logo' to" in capsys.readouterr().out
-    shapes = prefilter.read_svg(logo).shapes_for(64.0, 32.0)
-    expected = prefilter.rasterize(shapes, 64, 32, filter="tent")
+    encoded, _ = prefilter.rasterize_svg(logo, 64, 32, filter="tent")
+    alpha = encoded[..., 3:]
+    straight = np.divide(encoded, alpha, out=np.zeros_like(encoded), where=alpha > 0)[..., :3]
+    expected = np.concatenate([prefilter.to_linear(straight) * alpha, alpha], 2)
+    np.testing.assert_allclose(pixels(out, "float"), expected, atol=1e-6)
+    assert run("rasterize", logo, out, *flags, "--filter", "tent", "--light", "linear") == 0
+    expected, _ = prefilter.rasterize_svg(logo, 64, 32, filter="tent", light="linear")
     np.testing.assert_allclose(pixels(out, "float"), np.clip(expected, 0, None), atol=1e-6)
+
+
+def test_svg_mixes_with_a_background_as_in_browsers_and_ends_at_its_page(tmp_path):
+    path, out = tmp_path / "half.svg", tmp_path / "out.png"
+    path.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="8" height="4">'
+        '<rect x="-9" y="-9" width="99" height="99" opacity="0.5"/></svg>'
+    )
+    flags = ("--density", "2", "--margin", "3", "--background", "#ffffff")
+    for more, gray in (((), 127), (("--light", "linear"), 188)):
+        assert run("rasterize", path, out, *flags, *more) == 0
+        expected = np.full((14, 22, 3), 255)
+        expected[3:11, 3:19] = gray
+        np.testing.assert_array_equal(pixels(out, "uint8"), expected)
 
 
 def test_svg_to_bytes(logo, tmp_path):

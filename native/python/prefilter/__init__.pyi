@@ -75,6 +75,7 @@ from .shapes.rasterization import rasterize as rasterize
 from .shapes.shape import Shape as Shape
 from .shapes.svg import SvgDrawing as SvgDrawing
 from .shapes.svg import read_svg as read_svg
+from .shapes.svg_image import rasterize_svg as rasterize_svg
 from .textures.exr import write_exr as write_exr
 from .textures.ktx2_reader import Ktx2Info as Ktx2Info
 from .textures.ktx2_reader import read_ktx2 as read_ktx2

@@ -122,6 +122,24 @@ def test_svg(svg, tmp_path):
     assert values[6, 12, 3] == 0
 
 
+def test_svg_mixes_as_browsers_do_or_as_light_does(tmp_path):
+    path = tmp_path / "half.svg"
+    path.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="8" height="4"><rect width="8" height="4" '
+        'fill="white"/><rect x="-9" y="-9" width="99" height="99" opacity="0.5"/></svg>'
+    )
+    for more, gray in (({}, 127), ({"light": "linear"}, 188)):
+        before = set(bpy.data.images)
+        bpy.ops.prefilter.rasterize_svg(filepath=str(path), width=22, height=14, margin=3, **more)
+        (made,) = set(bpy.data.images) - before
+        values = np.rint(scenes.pixels(made.name) * 255)
+        # What leaves the page does not show in the margin.
+        expected = np.zeros((14, 22))
+        expected[3:11, 3:19] = 255
+        np.testing.assert_array_equal(values[..., 3], expected)
+        np.testing.assert_array_equal(values[3:11, 3:19, :3], np.full((8, 16, 3), gray))
+
+
 def test_failures_leave_nothing(blend, svg, tmp_path):
     before = {file.name: file.read_bytes() for file in tmp_path.iterdir()}
     target = tmp_path / "out.png"

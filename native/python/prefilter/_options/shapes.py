@@ -64,6 +64,12 @@ OVERLAPS = {
         "Add", "Colors and alpha are added. Faster, and correct if shapes do not overlap"
     ),
 }
+LIGHTS = {
+    "srgb": Choice(
+        "As in Browsers", "Colors mix as they are encoded for display, as in web browsers"
+    ),
+    "linear": Choice("Linear Light", "Colors mix as light does, as in renders"),
+}
 PIXEL_TYPES = {
     "byte": Choice("8 Bit", "Whole numbers, sRGB-encoded"),
     "half": Choice("Half Float", "16-bit floats, scene-linear"),
@@ -162,6 +168,9 @@ class RasterizeSettings:
     )
     overlap: str = one_of(
         "cover", "Overlap", "What shows where shapes overlap", OVERLAPS, metavar="MODE"
+    )
+    light: str = one_of(
+        "srgb", "Blending", "How translucent colors of an SVG file mix", LIGHTS, metavar="LIGHT"
     )
     pixel_type: str = one_of(
         "byte", "Pixel Type", "Type of the numbers in a pixel", PIXEL_TYPES, metavar="TYPE"

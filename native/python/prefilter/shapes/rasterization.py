@@ -93,19 +93,27 @@ def rasterize(
         raise ValueError(
             f"background: {len(options.background)} values; {channels}, as the shapes have"
         )
-    try:
-        is_bytes = {"float32": False, "uint8": True}[np.dtype(dtype).name]
-    except (KeyError, TypeError) as error:
-        raise ValueError(f"dtype: {dtype!r} is not one of float32, uint8") from error
+    is_bytes = as_whether_bytes(dtype)
     image = _native.rasterize(
         [(shape._outline, shape._fill_rule, shape._paint, shape._winds_once) for shape in drawn],
         options,
         as_progress(progress),
     )
-    if is_bytes:
-        levels: FloatArray = np.clip(image, 0.0, 1.0) * np.float32(255.0)
-        return np.rint(levels).astype(np.uint8)
-    return image
+    return to_bytes(image) if is_bytes else image
+
+
+def as_whether_bytes(dtype: npt.DTypeLike) -> bool:
+    """Whether pixels are bytes: uint8 rather than float32."""
+    try:
+        return {"float32": False, "uint8": True}[np.dtype(dtype).name]
+    except (KeyError, TypeError) as error:
+        raise ValueError(f"dtype: {dtype!r} is not one of float32, uint8") from error
+
+
+def to_bytes(image: FloatArray) -> npt.NDArray[np.uint8]:
+    """0 to 1 as 0 to 255, rounded."""
+    levels: FloatArray = np.clip(image, 0.0, 1.0) * np.float32(255.0)
+    return np.rint(levels).astype(np.uint8)
 
 
 def _as_depth(depth: int | None) -> int:

@@ -14,9 +14,6 @@ from .shape import Shape
 if TYPE_CHECKING:
     from ._svg.drawing import Drawing
 
-# How far the outline of a stroke may be off, in pixels: 8-bit images do not show it.
-_STROKE_TOLERANCE = 1.0 / 1024.0
-
 
 class SvgDrawing:
     """What a drawing shows, in any size. `read_svg` makes it.
@@ -26,21 +23,27 @@ class SvgDrawing:
     first three multiplied by alpha.
     """
 
-    def __init__(self, drawing: "Drawing", light: str, warnings: tuple[SvgWarning, ...]) -> None:
+    def __init__(self, name: str, drawing: "Drawing", light: str, warnings: Warnings) -> None:
+        from ._svg.flat import Flat
+        from ._svg.opening import refusing
+
+        self._name = name
         self._drawing = drawing
         self._light = light
-        self._warnings = warnings
+        with refusing(name):
+            self._painted = Flat(drawing.tree, warnings).painted
+        self._warnings = warnings.all()
         self._shapes: list[Shape] | None = None
 
     @property
     def width(self) -> float:
         """What the file says of its width, in pixels; from its view box, or 300, if nothing."""
-        return self._drawing.width
+        return self._drawing.page.width
 
     @property
     def height(self) -> float:
         """What the file says of its height, in pixels; from its view box, or 150, if nothing."""
-        return self._drawing.height
+        return self._drawing.page.height
 
     @property
     def light(self) -> str:
@@ -79,20 +82,28 @@ class SvgDrawing:
         for name, side in (("width", width), ("height", height)):
             if isinstance(side, bool) or not 0.0 < side < 1e7:
                 raise ValueError(f"{name}: {side!r}; a positive number of pixels is needed")
-        tell = _teller(as_progress(progress))
-        to_pixels = self._drawing.placement(float(width), float(height))
+        from ._svg.outlining import Outlining
+
+        tell = teller(as_progress(progress))
+        to_pixels, around = self._drawing.placement(float(width), float(height))
+        outlining = Outlining()
         shapes = []
-        for index, painted in enumerate(self._drawing.painted):
+        background = self._drawing.background_in(to_pixels)
+        if background is not None:
+            shapes.append(background)
+        for index, (item, opacity) in enumerate(self._painted):
             if index % 20 == 0:
-                tell(index / len(self._drawing.painted))
-            shapes.append(painted.shape(to_pixels, _STROKE_TOLERANCE))
+                tell(index / len(self._painted))
+            shape = outlining.shape(item, to_pixels, opacity, around)
+            if shape is not None:
+                shapes.append(shape)
         return shapes
 
 
 def read_svg(
     source: str | os.PathLike[str] | bytes,
     *,
-    light: str = "linear",
+    light: str = "srgb",
     progress: ProgressCallback | None = None,
 ) -> SvgDrawing:
     """Reads a drawing: its paths and basic shapes, with solid colors, gradients and strokes.
@@ -119,26 +130,18 @@ def read_svg(
     """
     as_one_of("light", light, ("linear", "srgb"))
     # Style sheets take modules that those who read no drawings need not wait for.
-    from ._svg.document import read_document
-    from ._svg.drawing import Drawing
-    from ._svg.limits import TooLargeError
+    from ._svg.opening import open_drawing
     from ._svg.paint_servers import Colors
 
-    tell = _teller(as_progress(progress))
-    document = read_document(source, lambda share: tell(0.3 * share))
-    warnings = Warnings()
-    try:
-        drawing = Drawing(
-            document, Colors(light == "linear"), warnings, lambda share: tell(0.3 + 0.7 * share)
-        )
-    except RecursionError:
-        raise ValueError(f"{document.name}: values or styles are nested too deeply") from None
-    except TooLargeError as error:
-        raise ValueError(f"{document.name}: {error}") from None
-    return SvgDrawing(drawing, light, warnings.all())
+    tell = teller(as_progress(progress))
+    colors = Colors(light == "linear", is_stepped=False)
+    name, drawing, warnings = open_drawing(source, colors=colors, tell=tell)
+    return SvgDrawing(name, drawing, light, warnings)
 
 
-def _teller(progress: ProgressCallback | None) -> Callable[[float], None]:
+def teller(progress: ProgressCallback | None) -> Callable[[float], None]:
+    """Returns what tells of progress, and raises Cancelled where that says so."""
+
     def tell(share: float) -> None:
         if progress is not None and progress(share) is False:
             raise Cancelled("cancelled by the progress callback")

@@ -14,6 +14,7 @@ import prefilter
 
 from ..._options.colors import Color
 from ..._options.shapes import RasterizeSettings
+from ...shapes.svg_image import SvgPicture
 from ..matrices import product
 from ..memory import Memory, free_memory
 from ..progress import Progress, go_on, share
@@ -39,6 +40,8 @@ class Drawn:
         color: Of a coverage: the color of all shapes. None where each shape has its own.
         warnings: What is not in them.
         place: Where the image is; None where that is not known.
+        draw: Returns the image of what is more than shapes, by its progress; None for shapes.
+        light: How colors of that image are: "linear", or "srgb" as they are encoded.
     """
 
     width: int
@@ -47,6 +50,8 @@ class Drawn:
     color: Color | None
     warnings: Sequence[str] = ()
     place: Any = None
+    draw: Callable[[Progress], NDArray[Any]] | None = None
+    light: str = "linear"
 
 
 class Source(Protocol):
@@ -125,25 +130,42 @@ class _Svg:
     """Returns where the image is, of half of its sides."""
 
     def drawn(self, settings: RasterizeSettings, progress: Progress) -> Drawn:
-        """Reads the file, and returns its shapes in an image."""
-        drawing = prefilter.read_svg(self.path, progress=share(progress, 0.0, 0.5))
-        box = np.array([[0.0, 0.0], [drawing.width, drawing.height]])
+        """Reads the file, and returns what draws it into an image."""
+        picture = SvgPicture(self.path, settings.light, share(progress, 0.0, 1.0))
+        box = np.array([[0.0, 0.0], [picture.width, picture.height]])
         frame = fitted_frame(box, settings)
         check_memory(frame, self.memory)
+        half = np.array([frame.width, frame.height]) / 2.0
         scale = frame.to_pixels[0, 0]
-        made = drawing.shapes_for(
-            scale * drawing.width, scale * drawing.height, progress=share(progress, 0.5, 1.0)
+        half /= scale if settings.resolution == "density" else 2.0 * half.max()
+
+        def draw(progress: Progress) -> NDArray[Any]:
+            return picture.drawn(
+                frame.width,
+                frame.height,
+                (scale, *frame.to_pixels[:2, 2].tolist()),
+                filter_name=settings.filter,
+                threads=settings.threads,
+                progress=progress,
+            )
+
+        return Drawn(
+            frame.width,
+            frame.height,
+            [],
+            None,
+            self._told(picture),
+            self.placed(half),
+            draw,
+            settings.light,
         )
-        move = np.concatenate([np.eye(2), frame.to_pixels[:2, 2:]], axis=1)
-        warnings = [str(one) for one in drawing.warnings]
+
+    def _told(self, picture: SvgPicture) -> list[str]:
+        warnings = [str(one) for one in picture.warnings]
         more = len(warnings) - _MOST_WARNINGS
         if more > 0:
             warnings[_MOST_WARNINGS:] = [f"and {more} more"]
-        told = [f"'{self.path.name}': {'; '.join(warnings)}"] if warnings else []
-        shapes = [shape.transformed(move) for shape in made]
-        half = np.array([frame.width, frame.height]) / 2.0
-        half /= scale if settings.resolution == "density" else 2.0 * half.max()
-        return Drawn(frame.width, frame.height, shapes, None, told, self.placed(half))
+        return [f"'{self.path.name}': {'; '.join(warnings)}"] if warnings else []
 
 
 def uv_layers(

@@ -15,7 +15,7 @@ import prefilter
 from ..._border import staging
 from ..._options.colors import Color
 from ..._options.shapes import RasterizeSettings
-from ..alpha import at_most_opaque, unassociated
+from ..alpha import associated, at_most_opaque, unassociated
 from ..files import pictures
 from ..progress import Progress, go_on, share
 
@@ -74,6 +74,7 @@ def finished(
     color: Color | None,
     settings: RasterizeSettings,
     *,
+    light: str,
     is_straight: bool,
     progress: Progress,
 ) -> Pixels:
@@ -84,6 +85,8 @@ def finished(
             may overshoot, as those of many filters do. What it holds afterward is undefined.
         color: What is covered, of a coverage.
         settings: Colors, background and bleeding.
+        light: How the colors of the raster are, and how they mix with a background: "linear", or
+            "srgb" as they are encoded.
         is_straight: Whether colors are not to be multiplied by alpha.
         progress: Called with the fraction done.
 
@@ -102,12 +105,18 @@ def finished(
     else:
         raster = at_most_opaque(np.maximum(raster, 0.0))
     go_on(progress, 0.3)
+    is_opaque = False
     if settings.background == "color":
         *rgb, alpha = settings.background_color
+        if light == "srgb":
+            rgb = prefilter.to_srgb(np.array([[rgb]], np.float32))[0, 0].tolist()
         behind = np.array([*(alpha * one for one in rgb), alpha], np.float32)
         raster = raster + (1.0 - raster[..., 3:]) * behind
-        if alpha == 1.0:
-            return Pixels(np.ascontiguousarray(raster[..., :3]), is_straight)
+        is_opaque = alpha == 1.0
+    if light == "srgb":
+        raster = _decoded(raster)
+    if is_opaque:
+        return Pixels(np.ascontiguousarray(raster[..., :3]), is_straight)
     if not is_straight:
         return Pixels(raster, is_straight)
     straight = unassociated(raster)
@@ -116,6 +125,13 @@ def finished(
             straight, progress=share(progress, 0.3, 1.0), threads=settings.threads
         )
     return Pixels(straight, is_straight)
+
+
+def _decoded(raster: FloatArray) -> FloatArray:
+    """Returns scene-linear colors of encoded ones, both multiplied by alpha."""
+    straight = unassociated(raster)
+    straight[..., :3] = prefilter.to_linear(straight[..., :3])
+    return associated(straight)
 
 
 def _of_one_color(

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import prefilter
 
@@ -41,8 +40,11 @@ def rasterized(
         prefilter.Cancelled: `progress` has said so.
     """
     drawn = source.drawn(settings, share(progress, 0.0, _READ))
-    if drawn.shapes:
-        raster: NDArray[Any] = prefilter.rasterize(
+    raster: Any
+    if drawn.draw is not None:
+        raster = drawn.draw(share(progress, _READ, _DRAWN))
+    elif drawn.shapes:
+        raster = prefilter.rasterize(
             drawn.shapes,
             drawn.width,
             drawn.height,
@@ -55,8 +57,9 @@ def rasterized(
         raster = np.zeros((drawn.height, drawn.width, 1), np.float32)
     made = pixels.finished(
         raster,
-        drawn.color if drawn.shapes else (1.0, 1.0, 1.0, 1.0),
+        drawn.color if drawn.shapes or drawn.draw else (1.0, 1.0, 1.0, 1.0),
         settings,
+        light=drawn.light,
         is_straight=is_straight,
         progress=share(progress, _DRAWN, 1.0),
     )

@@ -1,65 +1,89 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Clip paths: boxes are kept as such, others are told of."""
+"""Clip paths: what is seen of an element is what their shapes fill."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator
 from dataclasses import replace
 
-from .basic_shapes import BASIC_SHAPES, read_shape
+from .basic_shapes import BASIC_SHAPES
+from .bounding import object_bounds
+from .clips import clip_of
 from .context import Context, Sources
 from .document import SvgElement
-from .groups import Box, Groups, carried
+from .nesting import moved, used
 from .tags import NOT_DRAWN
-from .values import Matrix, as_paint, as_transform, multiplied
+from .tree import Clip, ClipPart
+from .values import as_paint, multiplied
 
 
-def clipped(
-    element: SvgElement,
-    declared: Mapping[str, str],
-    context: Context,
-    sources: Sources,
-    groups: Groups,
-) -> Context:
-    """The context within a clip path, if the element has one."""
-    text = declared.get("clip-path", "none")
+def clipped(element: SvgElement, context: Context, sources: Sources) -> Context | None:
+    """The context within the clip path of an element, if it has one; None where nothing shows.
+
+    `context` is that within the element.
+    """
+    text = sources.sheets.declared(element).get("clip-path", "none")
     if text.lower() == "none":
         return context
     paint = as_paint(text)
-    path = sources.document.ids.get(paint.server[1:]) if paint and paint.server else None
-    region = None
-    if path is None and paint and paint.server.startswith("#"):
+    if paint is None or not paint.server:
+        sources.warnings.unsupported("clip-path", f"ignored: {text[:40]}", element.line)
+        return context
+    path = sources.referred(text)
+    if path is None or path.tag != "clipPath":
         sources.warnings.broken("clip-path", "ignored", element.line)
         return context
-    if path is not None and path.tag == "clipPath":
-        region = _region(path, context, sources)
-    number = groups.add_clipped(element, "clip-path", region)
-    return replace(context, groups=(*context.groups, number))
+    if path in context.uses:
+        sources.warnings.broken("clip-path", "ignored, as it refers to itself", element.line)
+        return context
+    clip = _clip(path, element, context, sources)
+    if clip is None:
+        return None
+    return replace(context, clips=(*context.clips, clip))
 
 
-def _region(path: SvgElement, context: Context, sources: Sources) -> Box | None:
-    """The box that a clip path is; None where it is something else."""
-    shapes = [child for child in path if child.tag not in NOT_DRAWN]
-    target = shapes[0] if len(shapes) == 1 else None
-    matrix: Matrix | None = context.matrix
-    for each in (path, target):
-        if isinstance(each, SvgElement) and matrix is not None:
-            declared = sources.sheets.declared(each)
-            own = as_transform(declared.get("transform", ""))
-            matrix = multiplied(matrix, own) if own else None
-    if isinstance(target, SvgElement) and target.tag == "use":
-        if "x" in target.attrib or "y" in target.attrib:
+def _clip(path: SvgElement, element: SvgElement, context: Context, sources: Sources) -> Clip | None:
+    """What a clip path leaves of an element; None where that is nothing."""
+    place = replace(context, clips=(), uses=(*context.uses, path), use=None)
+    around = clipped(path, place, sources)
+    if around is None:
+        return None
+    inside = moved(path, place, sources)
+    if path.get("clipPathUnits") == "objectBoundingBox":
+        box = object_bounds(element, context, sources)
+        if box is None or box[2] <= box[0] or box[3] <= box[1]:
             return None
-        target = sources.document.ids.get(target.href)
-        if target is not None and "transform" in sources.sheets.declared(target):
-            return None
-    if not isinstance(target, SvgElement) or target.tag not in BASIC_SHAPES or matrix is None:
-        return None
-    if path.get("clipPathUnits", "userSpaceOnUse") != "userSpaceOnUse":
-        return None
-    declared = sources.sheets.declared(target)
-    is_upright = matrix[1] == matrix[2] == 0.0 or matrix[0] == matrix[3] == 0.0
-    outline = read_shape(target, declared, context.units, sources.warnings)
-    if outline is None or not is_upright or not outline.is_box() or "clip-path" in declared:
-        return None
-    box = outline.bounds()
-    return carried(box, matrix) if box else None
+        shares = (box[2] - box[0], 0.0, 0.0, box[3] - box[1], box[0], box[1])
+        inside = replace(inside, matrix=multiplied(inside.matrix, shares), viewport=(1.0, 1.0))
+    inside = replace(inside, style=sources.sheets.style(path))
+    parts: list[ClipPart] = []
+    for child in path:
+        assert isinstance(child, SvgElement)
+        if child.tag not in NOT_DRAWN:
+            parts.extend(_parts(child, inside, sources))
+    clip = clip_of(parts, around.clips)
+    return clip if clip.bounds is not None else None
+
+
+def _parts(child: SvgElement, context: Context, sources: Sources) -> Iterator[ClipPart]:
+    """Yields what a child of a clip path lets through."""
+    declared = sources.sheets.declared(child)
+    if declared.get("display", "") == "none":
+        return
+    place = clipped(child, moved(child, replace(context, clips=()), sources), sources)
+    if place is None:
+        return
+    if child.tag == "use":
+        for target, inside in used(child, place, sources):
+            if target.tag in BASIC_SHAPES or target.tag == "text":
+                for part in _parts(target, inside, sources):
+                    yield replace(part, clips=(*place.clips, *part.clips))
+        return
+    if child.tag == "text":
+        sources.warnings.unsupported("<text> in a clip path", "left out", child.line)
+    if child.tag not in BASIC_SHAPES or child.tag == "line":
+        return
+    outline = sources.outline(child, place.units)
+    if outline is None or place.style.visibility != "visible":
+        return
+    sources.budget.take_segments(len(outline), 0.0)
+    yield ClipPart(outline, place.style.clip_rule, place.matrix, place.clips)

@@ -2,33 +2,65 @@
 
 """Where an element of a drawing stands, and what all elements are read with."""
 
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
 
+from .basic_shapes import read_shape
 from .document import Document, SvgElement
 from .lengths import Units, read_length
 from .limits import Budget
+from .outline import Outline
 from .paint_servers import Colors, PaintServers
 from .styles import Style, StyleSheets
-from .values import Length, Matrix
+from .tree import Clip, Group
+from .values import Length, Matrix, Paint, as_paint
 from .warnings import Warnings
 
 
 @dataclass(frozen=True, slots=True)
 class Sources:
-    """What all elements are read with."""
+    """What all elements are read with.
+
+    Attributes:
+        folder: Where images beside the drawing are; None where there are none.
+        waiting: The elements to be drawn, of which the next one is the last.
+        outlines: Those that are known, by element.
+    """
 
     document: Document
     sheets: StyleSheets
     servers: PaintServers
-    colors: Colors
     warnings: Warnings
     budget: Budget
+    folder: Path | None = None
+    waiting: list[tuple[SvgElement, "Context"]] = field(default_factory=list)
+    outlines: dict[tuple[SvgElement, Units], Outline | None] = field(default_factory=dict)
 
     def pixels(self, element: SvgElement, name: str, default: Length, units: Units) -> float:
         """An attribute of an element, or what stands for it where there is none."""
         declared = self.sheets.declared(element)
         length = read_length(element, declared, name, self.warnings)
         return units.pixels(default if length is None else length, name)
+
+    def referred(self, text: str) -> SvgElement | None:
+        """The element that a `url(#id)` refers to."""
+        paint = as_paint(text)
+        if paint is None or not paint.server.startswith("#"):
+            return None
+        return self.document.ids.get(paint.server[1:])
+
+    def outline(self, element: SvgElement, units: Units) -> Outline | None:
+        """The outline of a basic shape; None where it has none."""
+        key = (element, units)
+        if key not in self.outlines:
+            declared = self.sheets.declared(element)
+            self.outlines[key] = read_shape(element, declared, units, self.warnings)
+        return self.outlines[key]
+
+    def draw(self, drawn: Iterable[tuple[SvgElement, "Context"]]) -> None:
+        """Has elements drawn, in their order."""
+        self.waiting.extend(reversed(list(drawn)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,22 +69,41 @@ class Context:
 
     Attributes:
         style: Of its parent.
-        matrix: From its parent's units to those of the drawing.
+        matrix: From its parent's units to those of the tree.
         viewport: Width and height of the nearest viewport, in its units.
-        opacity: Of all groups around it.
-        groups: Those of them that are seen as one, by number.
-        uses: The elements that `use` has brought here.
+        target: What it becomes a part of.
+        colors: How colors are kept.
+        clips: What it is cut off at.
+        uses: The elements that others have brought here by reference.
         use: The `use` that brought this very element.
+        paints: What `context-fill` and `context-stroke` stand for.
     """
 
     style: Style
     matrix: Matrix
     viewport: tuple[float, float]
-    opacity: float = 1.0
-    groups: tuple[int, ...] = ()
+    target: Group
+    colors: Colors
+    clips: tuple[Clip, ...] = ()
     uses: tuple[SvgElement, ...] = ()
     use: SvgElement | None = None
+    paints: Mapping[str, Paint] = field(default_factory=dict)
 
     @property
     def units(self) -> Units:
         return Units(*self.viewport, self.style.font_size)
+
+
+def paints_of(context: Context) -> dict[str, Paint]:
+    """What `context-fill` and `context-stroke` stand for in what an element brings."""
+    found = {}
+    for name, paint in (
+        ("context-fill", context.style.fill),
+        ("context-stroke", context.style.stroke),
+    ):
+        if isinstance(paint.color, str) and paint.color != "current":
+            paint = context.paints.get(paint.color, Paint(None))
+        elif paint.color == "current":
+            paint = replace(paint, color=context.style.color)
+        found[name] = paint
+    return found

@@ -5,6 +5,7 @@
 import os
 import zlib
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any, TypeAlias
 from xml.etree.ElementTree import Element
 from xml.parsers import expat
@@ -38,9 +39,14 @@ class SvgElement(Element):
     parent: "SvgElement | None" = None
 
     @property
+    def address(self) -> str:
+        """What it refers to; empty where there is nothing."""
+        return self.get("href", self.get(XLINK_HREF, "")).strip()
+
+    @property
     def href(self) -> str:
         """The id that it refers to, in this file; empty where there is none."""
-        target = self.get("href", self.get(XLINK_HREF, "")).strip()
+        target = self.address
         return target[1:] if target.startswith("#") else ""
 
 
@@ -49,6 +55,7 @@ class Document:
 
     Attributes:
         name: What messages call the file.
+        folder: Where it is; None where it is no file.
         root: The outermost `svg`.
         ids: Elements by their id, the first of each.
         count: How many there are.
@@ -59,6 +66,7 @@ class Document:
         self, parts: Parts, name: str, encoding: str | None, tell: Callable[[float], None]
     ) -> None:
         self.name = name
+        self.folder: Path | None = None
         self.ids: dict[str, SvgElement] = {}
         self.count = 0
         self.foreign_style = 0
@@ -144,7 +152,7 @@ def read_document(
     source: str | os.PathLike[str] | bytes, tell: Callable[[float], None]
 ) -> Document:
     """Reads a file, plain or compressed, or markup. See `prefilter.read_svg`."""
-    encoding = None
+    encoding = folder = None
     if isinstance(source, str) and source.lstrip("\ufeff \t\r\n").startswith("<"):
         # What the markup says of its encoding was true of its bytes.
         data, name, encoding = source.lstrip("\ufeff").encode("utf-8", "replace"), "source", "utf-8"
@@ -155,7 +163,7 @@ def read_document(
             path = as_path(source)
         except ValueError as error:
             raise ValueError(f"source{str(error).removeprefix('path')}") from None
-        name = f"'{path}'"
+        name, folder = f"'{path}'", Path(os.fsdecode(path)).parent
         with open_file(path) as file:
             data = file.read()
     else:
@@ -166,7 +174,9 @@ def read_document(
 
     if not any(part.strip() for part in parts()):
         raise ValueError(f"{name} is empty")
-    return Document(parts, name, encoding, tell)
+    document = Document(parts, name, encoding, tell)
+    document.folder = folder
+    return document
 
 
 def _unpacked(data: bytes, name: str) -> Iterator[bytes]:

@@ -1,147 +1,207 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""From elements to what is painted, in the order in which it is."""
+"""From elements to a tree of what is painted, in the order in which it is."""
 
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 
-from .basic_shapes import BASIC_SHAPES, read_shape
+from ..shape import Shape
+from .basic_shapes import BASIC_SHAPES
 from .clip_paths import clipped
+from .clips import box_clip
 from .context import Context, Sources
-from .document import Document, SvgElement
-from .groups import Groups, carried
-from .lengths import Units
+from .document import Document, SvgElement, read_document
+from .images import draw_image
 from .limits import Budget, check_uses
-from .nesting import children, used, viewport
+from .markers import MARKED, draw_markers
+from .masks import masks_of
+from .nesting import SHOWN, children, is_wanted, moved, used, viewport
 from .outline import Outline
-from .page import read_page
+from .page import Page, background_of, read_page
 from .paint_servers import Colors, PaintServers
-from .painted import Painted, Stroke
 from .painting import paint_order, resolved, stroke_of
 from .styles import UNSUPPORTED, Style, StyleSheets
 from .tags import GROUPS, NOT_DRAWN
-from .values import IDENTITY, Matrix, Paint, as_transform, determinant, multiplied
+from .tree import Clip, Group, Painted, Stroke, carried
+from .values import IDENTITY, Matrix, Paint, determinant, multiplied
 from .warnings import Warnings
+
+Tell = Callable[[float], None]
 
 # In widths or heights of the drawing. No shape may be more than 1e9 pixels away.
 _LARGEST = 1e5
 _SMALLEST_DETERMINANT = 1e-40
+_MOST_NESTED = 8
+# Of the larger side: what rounding makes of a page that fits.
+_SLACK = 1e-9
 
 
 class Drawing:
     """What a document paints.
 
     Attributes:
-        width: In pixels.
-        height: In pixels.
-        painted: First what is below.
+        page: How large it is.
+        tree: What is on it, in its units.
+        background: The color of the page; None where it has none.
     """
 
+    def __init__(self, document: Document, colors: Colors, warnings: Warnings, tell: Tell) -> None:
+        walk = Walk(document, warnings, tell, 0, Budget(document.count))
+        self.page = walk.page
+        self.tree = Group(is_isolated=True)
+        self._is_open = walk.sources.sheets.declared(document.root).get("overflow") in SHOWN
+        self.background = background_of(walk.sources, colors)
+        walk.draw_in(IDENTITY, (), self.tree, colors)
+
+    def placement(self, width: float, height: float) -> tuple[Matrix, tuple[Clip, ...]]:
+        """From the tree's units to pixels of an image, with y upwards; and what it is cut off at.
+
+        The page is all of an image that has its proportions.
+        """
+        to_pixels = self.page.placement(width, height)
+        left, low, right, high = carried(self.page.shown(), to_pixels)
+        slack = _SLACK * max(width, height)
+        if left <= slack and low <= slack and right >= width - slack and high >= height - slack:
+            return to_pixels, ()
+        return to_pixels, self._clips()
+
+    def placed(self, scale: float, x: float, y: float) -> tuple[Matrix, tuple[Clip, ...]]:
+        """The same where the lower left corner of the page is at (x, y), enlarged by a factor."""
+        to_pixels = self.page.placement(scale * self.page.width, scale * self.page.height)
+        return multiplied((1.0, 0.0, 0.0, 1.0, x, y), to_pixels), self._clips()
+
+    def _clips(self) -> tuple[Clip, ...]:
+        """What the drawing is cut off at: its page."""
+        if self._is_open:
+            return ()
+        return (box_clip(self.page.shown(), IDENTITY),)
+
+    def background_in(self, to_pixels: Matrix) -> Shape | None:
+        """The page as a shape of its color; None where it has none."""
+        if self.background is None:
+            return None
+        left, low, right, high = carried(self.page.shown(), to_pixels)
+        shape = Shape(color=self.background)
+        shape.add_polygon([(left, low), (right, low), (right, high), (left, high)])
+        return shape
+
+
+class Walk:
+    """Draws the elements of a document."""
+
     def __init__(
-        self,
-        document: Document,
-        colors: Colors,
-        warnings: Warnings,
-        tell: Callable[[float], None],
+        self, document: Document, warnings: Warnings, tell: Tell, depth: int, budget: Budget
     ) -> None:
         sheets = StyleSheets(document, warnings, lambda share: tell(0.5 * share))
-        servers = PaintServers(document, sheets, colors, warnings)
+        servers = PaintServers(document, sheets, warnings)
         check_uses(document)
-        self._sources = Sources(document, sheets, servers, colors, warnings, Budget(document.count))
+        self.sources = Sources(document, sheets, servers, warnings, budget, document.folder)
+        self.page: Page = read_page(self.sources)
         self._tell = tell
-        self._outlines: dict[tuple[SvgElement, Units], Outline | None] = {}
-        self.painted: list[Painted] = []
-        self._page = read_page(self._sources)
-        self.width, self.height = self._page.width, self._page.height
-        view = self._page.view
-        box = (view.x, view.y, view.x + view.width, view.y + view.height)
-        self._groups = Groups(box, warnings)
-        self._draw()
-        self._groups.check()
+        self._depth = depth
+        self._colors = Colors(is_linear=False, is_stepped=False)
 
-    def placement(self, width: float, height: float) -> Matrix:
-        """From the drawing's units to pixels of an image, with y upwards."""
-        return self._page.placement(width, height)
+    def draw(self, matrix: Matrix, clips: tuple[Clip, ...], target: Group) -> None:
+        """Draws a drawing in another one."""
+        self.draw_in(matrix, clips, target, self._colors)
 
-    def _draw(self) -> None:
-        root = self._sources.document.root
-        context = Context(Style(), IDENTITY, (self._page.view.width, self._page.view.height))
-        # The next one is the last.
-        waiting: list[tuple[SvgElement, Context]] = [(root, context)]
+    def draw_in(
+        self, matrix: Matrix, clips: tuple[Clip, ...], target: Group, colors: Colors
+    ) -> None:
+        """Draws all of it; the matrix leads from its units to those of the tree."""
+        sources = self.sources
+        size = (self.page.view.width, self.page.view.height)
+        root = sources.document.root
+        sources.waiting.append((root, Context(Style(), matrix, size, target, colors, clips)))
         count = 0
-        while waiting:
-            element, context = waiting.pop()
+        while sources.waiting:
+            element, context = sources.waiting.pop()
             count += 1
             if count % 100 == 0:
                 # With `use` there may be more than there are elements.
-                self._tell(0.5 + 0.5 * min(count / self._sources.document.count, 0.99))
-            self._sources.budget.take_element()
-            waiting.extend(reversed(list(self._visit(element, context))))
+                self._tell(0.5 + 0.5 * min(count / sources.document.count, 0.99))
+            sources.budget.take_element()
+            sources.draw(self._visit(element, context))
 
     def _visit(self, element: SvgElement, context: Context) -> Iterator[tuple[SvgElement, Context]]:
         """Paints an element; yields those in it."""
-        tag, declared = element.tag, self._sources.sheets.declared(element)
+        sources = self.sources
+        tag, declared = element.tag, sources.sheets.declared(element)
+        if tag == "script":
+            sources.warnings.unsupported("<script>", "not run", element.line)
         if tag in NOT_DRAWN or tag.startswith("{") or declared.get("display", "") == "none":
+            return
+        if not is_wanted(element):
             return
         if tag == "symbol" and context.use is None:
             return
-        if tag not in GROUPS and tag not in BASIC_SHAPES and tag != "use":
-            self._sources.warnings.unsupported(f"<{tag}>", "left out", element.line)
+        if tag not in GROUPS and tag not in BASIC_SHAPES and tag not in ("use", "image"):
+            sources.warnings.unsupported(f"<{tag}>", "left out", element.line)
             return
-        style = self._sources.sheets.style_below(element, context.style)
-        matrix = as_transform(declared.get("transform", ""))
-        if matrix is None:
-            self._sources.warnings.broken("transform", "ignored", element.line)
-            matrix = IDENTITY
-        context = replace(
-            context,
-            style=style,
-            matrix=multiplied(context.matrix, matrix),
-            opacity=context.opacity * style.opacity,
-        )
-        if abs(determinant(context.matrix)) < _SMALLEST_DETERMINANT or context.opacity == 0.0:
+        inside = self._within(element, moved(element, context, sources))
+        if inside is None:
             return
-        if style.opacity < 1.0:
-            number = self._groups.add_translucent(element)
-            context = replace(context, groups=(*context.groups, number))
-        context = clipped(element, declared, context, self._sources, self._groups)
+        if tag in BASIC_SHAPES:
+            self._paint(element, inside)
+        elif tag == "image":
+            read = partial(self._nested, inside)
+            draw_image(element, inside, sources, read)
+        elif tag == "use":
+            yield from used(element, inside, sources)
+        else:
+            if tag in ("svg", "symbol") and element is not sources.document.root:
+                inside = viewport(element, inside, sources)
+            if inside is not None:
+                place = replace(inside, use=None)
+                yield from ((child, place) for child in children(element))
+
+    def _within(self, element: SvgElement, context: Context) -> Context | None:
+        """The context within an element's opacity, mask and clip path; None where nothing shows."""
+        style, sources = context.style, self.sources
+        if abs(determinant(context.matrix)) < _SMALLEST_DETERMINANT or style.opacity == 0.0:
+            return None
+        declared = sources.sheets.declared(element)
         for name in declared.keys() & UNSUPPORTED.keys():
             if declared[name].lower() not in UNSUPPORTED[name]:
-                self._sources.warnings.unsupported(name, "ignored", element.line)
-        if tag in BASIC_SHAPES:
-            self._paint(element, context)
-            return
-        if tag == "use":
-            yield from used(element, context, self._sources)
-            return
-        if tag in ("svg", "symbol") and element is not self._sources.document.root:
-            inner = viewport(element, declared, context, self._sources, self._groups)
-            if inner is None:
-                return
-            context = inner
-        context = replace(context, use=None)
-        yield from ((child, context) for child in children(element))
+                sources.warnings.unsupported(name, "ignored", element.line)
+        inside = clipped(element, context, sources)
+        masks = masks_of(element, context, sources)
+        if inside is None or masks is None:
+            return None
+        is_isolated = (
+            bool(masks)
+            or style.opacity < 1.0
+            or style.mix_blend_mode != "normal"
+            or style.isolation == "isolate"
+            or inside.clips != context.clips
+        )
+        if is_isolated:
+            group = Group(
+                opacity=context.colors.opacity(style.opacity),
+                blend=style.mix_blend_mode,
+                masks=masks,
+                is_isolated=True,
+                line=element.line,
+            )
+            context.target.items.append(group)
+            inside = replace(inside, target=group)
+        return inside
 
     def _paint(self, element: SvgElement, context: Context) -> None:
         style = context.style
-        if style.visibility != "visible":
+        outline = self.sources.outline(element, context.units)
+        if outline is None or style.visibility != "visible":
             return
-        key = (element, context.units)
-        if key not in self._outlines:
-            declared = self._sources.sheets.declared(element)
-            self._outlines[key] = read_shape(
-                element, declared, context.units, self._sources.warnings
-            )
-        outline = self._outlines[key]
-        if outline is None:
-            return
-        stroke = stroke_of(element, context, outline, self._sources)
+        stroke = stroke_of(element, context, outline, self.sources)
         for part in paint_order(style.paint_order):
             if part == "fill" and element.tag != "line":
                 self._add(element, context, outline, style.fill, style.fill_opacity, None)
             elif part == "stroke" and stroke is not None:
                 self._add(element, context, outline, style.stroke, style.stroke_opacity, stroke)
+            elif part == "markers" and element.tag in MARKED:
+                draw_markers(element, context, outline, self.sources)
 
     def _add(
         self,
@@ -152,11 +212,9 @@ class Drawing:
         opacity: float,
         stroke: Stroke | None,
     ) -> None:
-        found = resolved(element, context, outline, paint, opacity * context.opacity, self._sources)
+        found = resolved(element, context, outline, paint, opacity, self.sources)
         if found is None:
             return
-        rule = context.style.fill_rule
-        painted = Painted(outline, rule, context.matrix, found, stroke)
         bounds = outline.bounds()
         assert bounds is not None
         margin = 0.0
@@ -166,14 +224,26 @@ class Drawing:
         left, top, right, bottom = bounds
         box = (left - margin, top - margin, right + margin, bottom + margin)
         box = carried(box, context.matrix)
-        if not all(
-            abs(value) < _LARGEST * max(self._page.view.width, self._page.view.height)
-            for value in box
-        ):
-            self._sources.warnings.broken(
+        view = self.page.view
+        if not all(abs(value) < _LARGEST * max(view.width, view.height) for value in box):
+            self.sources.warnings.broken(
                 f"<{element.tag}>", "left out, as it is too far away", element.line
             )
             return
-        self._sources.budget.take_segments(len(outline), stroke.dash_count if stroke else 0.0)
-        self.painted.append(painted)
-        self._groups.put(context.groups, box)
+        self.sources.budget.take_segments(len(outline), stroke.dash_count if stroke else 0.0)
+        rule = context.style.fill_rule
+        matrix, clips = context.matrix, context.clips
+        context.target.items.append(
+            Painted(outline, rule, matrix, found, stroke, clips, box, element.line)
+        )
+
+    def _nested(self, context: Context, data: bytes, name: str) -> "Walk":
+        """A drawing in this one; nothing in it comes from other files."""
+        if self._depth >= _MOST_NESTED:
+            raise ValueError(f"as drawings are nested more than {_MOST_NESTED} deep")
+        document = read_document(data, lambda _: None)
+        document.name = name
+        sources = self.sources
+        inner = Walk(document, sources.warnings, lambda _: None, self._depth + 1, sources.budget)
+        inner._colors = context.colors
+        return inner

@@ -7,11 +7,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from .document import SvgElement
-from .values import Length, UnknownUnitError, as_length
+from .values import IDENTITY, Length, Matrix, UnknownUnitError, as_length, as_origin, multiplied
 from .warnings import Warnings
 
-_ALONG_X = frozenset(("x", "x1", "x2", "cx", "fx", "rx", "width"))
-_ALONG_Y = frozenset(("y", "y1", "y2", "cy", "fy", "ry", "height"))
+_ALONG_X = frozenset(("x", "x1", "x2", "cx", "fx", "rx", "width", "refX", "markerWidth"))
+_ALONG_Y = frozenset(("y", "y1", "y2", "cy", "fy", "ry", "height", "refY", "markerHeight"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +37,16 @@ class Units:
         else:
             whole = math.sqrt((self.width * self.width + self.height * self.height) / 2.0)
         return length.pixels(whole, self.font_size)
+
+
+def about_origin(matrix: Matrix, text: str, units: Units) -> Matrix | None:
+    """A transform about the place that the property `transform-origin` holds; None if none."""
+    origin = as_origin(text)
+    if origin is None or matrix == IDENTITY:
+        return None if origin is None else matrix
+    x, y = units.pixels(origin[0], "x"), units.pixels(origin[1], "y")
+    matrix = multiplied((1.0, 0.0, 0.0, 1.0, x, y), matrix)
+    return multiplied(matrix, (1.0, 0.0, 0.0, 1.0, -x, -y))
 
 
 def read_length(

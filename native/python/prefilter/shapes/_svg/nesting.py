@@ -2,16 +2,19 @@
 
 """Elements in others: children, what `use` brings, and viewports of their own."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
 
-from .context import Context, Sources
+from .clips import box_clip
+from .context import Context, Sources, paints_of
 from .document import SvgElement
-from .groups import Groups, carried
-from .values import Length, multiplied
+from .lengths import about_origin
+from .values import IDENTITY, Length, as_transform, multiplied
 from .viewports import as_view_box, placed
 
 _ZERO, _WHOLE = Length(0.0), Length(100.0, "%")
+SHOWN = ("visible", "auto")
+"""The values of `overflow` that cut nothing off."""
 
 
 def children(element: SvgElement) -> Iterator[SvgElement]:
@@ -20,11 +23,33 @@ def children(element: SvgElement) -> Iterator[SvgElement]:
         assert isinstance(child, SvgElement)
         if element.tag != "switch":
             yield child
-        elif "requiredExtensions" not in child.attrib and not child.tag.startswith("{"):
-            languages = child.attrib.get("systemLanguage", "en").split(",")
-            if any(name.strip().lower().startswith("en") for name in languages):
-                yield child
-                return
+        elif is_wanted(child) and not child.tag.startswith("{"):
+            yield child
+            return
+
+
+def is_wanted(element: SvgElement) -> bool:
+    """Whether an element is for those who read English, and needs nothing more than SVG."""
+    if "requiredExtensions" in element.attrib:
+        return False
+    languages = element.attrib.get("systemLanguage", "en").split(",")
+    return any(name.strip().lower().startswith("en") for name in languages)
+
+
+def moved(element: SvgElement, context: Context, sources: Sources) -> Context:
+    """The context within an element: with its style, and in its units."""
+    style = sources.sheets.style_below(element, context.style)
+    declared = sources.sheets.declared(element)
+    matrix = as_transform(declared.get("transform", ""))
+    if matrix is None:
+        sources.warnings.broken("transform", "ignored", element.line)
+        matrix = IDENTITY
+    units = replace(context, style=style).units
+    turned = about_origin(matrix, declared.get("transform-origin", ""), units)
+    if turned is None:
+        sources.warnings.broken("transform-origin", "ignored", element.line)
+    matrix = matrix if turned is None else turned
+    return replace(context, style=style, matrix=multiplied(context.matrix, matrix))
 
 
 def used(
@@ -47,18 +72,14 @@ def used(
         matrix=multiplied(context.matrix, (1.0, 0.0, 0.0, 1.0, x, y)),
         uses=(*context.uses, target),
         use=element,
+        paints=paints_of(context),
     )
     yield target, context
 
 
-def viewport(
-    element: SvgElement,
-    declared: Mapping[str, str],
-    context: Context,
-    sources: Sources,
-    groups: Groups,
-) -> Context | None:
+def viewport(element: SvgElement, context: Context, sources: Sources) -> Context | None:
     """The context inside of an `svg` or `symbol`; None where nothing shows."""
+    declared = sources.sheets.declared(element)
     sizes = []
     for name in ("width", "height"):
         source = element
@@ -74,17 +95,16 @@ def viewport(
         return None
     matrix = (1.0, 0.0, 0.0, 1.0, x, y)
     size = (width, height)
-    around = context.groups
-    if declared.get("overflow", "hidden") not in ("visible", "auto"):
-        region = carried((x, y, x + width, y + height), context.matrix)
-        around = (*around, groups.add_clipped(element, "overflow", region))
+    clips = context.clips
+    if declared.get("overflow", "hidden") not in SHOWN:
+        clips = (*clips, box_clip((x, y, x + width, y + height), context.matrix))
     view = as_view_box(declared.get("viewBox"))
     if view is not None:
         fitted = placed(view, declared.get("preserveAspectRatio", ""), width, height)
         matrix = multiplied(matrix, fitted)
         size = (view.width, view.height)
     matrix = multiplied(context.matrix, matrix)
-    return replace(context, matrix=matrix, viewport=size, groups=around)
+    return replace(context, matrix=matrix, viewport=size, clips=clips)
 
 
 def _ancestors(element: SvgElement) -> Iterator[SvgElement]:

@@ -4,9 +4,13 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from .context import Sources
 from .lengths import read_length
-from .values import Length, Matrix, multiplied
+from .paint_servers import Colors
+from .tree import Box
+from .values import Length, Matrix, as_background, multiplied
 from .viewports import MOST_UNITS, ViewBox, as_view_box, placed
 
 _WHOLE = Length(100.0, "%")
@@ -32,6 +36,11 @@ class Page:
         """From the drawing's units to pixels of an image, with y upwards."""
         upwards = (1.0, 0.0, 0.0, -1.0, 0.0, height)
         return multiplied(upwards, placed(self.view, self.aspect, width, height))
+
+    def shown(self) -> Box:
+        """What the page shows, in the drawing's units: the view box, and what is beside it."""
+        a, _, _, d, e, f = placed(self.view, self.aspect, self.width, self.height)
+        return (-e / a, -f / d, (self.width - e) / a, (self.height - f) / d)
 
 
 def read_page(sources: Sources) -> Page:
@@ -65,3 +74,16 @@ def read_page(sources: Sources) -> Page:
     width, height = width or 300.0, height or 150.0
     view = view or ViewBox(0.0, 0.0, width, height)
     return Page(width, height, view, declared.get("preserveAspectRatio", ""))
+
+
+def background_of(sources: Sources, colors: Colors) -> tuple[float, ...] | None:
+    """The color that the style of the outermost element gives to the page; None where none."""
+    root = sources.document.root
+    declared = sources.sheets.declared(root)
+    color = as_background(declared.get("background-color", declared.get("background", "")))
+    if color == "current":
+        color = sources.sheets.style(root).color
+    if color is None or isinstance(color, str) or color[3] == 0.0:
+        return None
+    values = np.array([[*color[:3], colors.opacity(color[3])]])
+    return colors.premultiplied(values)[0]

@@ -11,7 +11,7 @@ import numpy as np
 from ... import _native
 from ..shape import Shape
 from .document import Document, SvgElement
-from .lengths import Units, read_length
+from .lengths import Units, about_origin, read_length
 from .styles import StyleSheets
 from .values import (
     IDENTITY,
@@ -26,7 +26,7 @@ from .values import (
 from .warnings import Warnings
 
 GRADIENTS = ("linearGradient", "radialGradient")
-_COMMON = ("gradientUnits", "gradientTransform", "spreadMethod")
+_COMMON = ("gradientUnits", "gradientTransform", "spreadMethod", "transform-origin")
 _GEOMETRY = {
     "linearGradient": ("x1", "y1", "x2", "y2"),
     "radialGradient": ("cx", "cy", "r", "fx", "fy", "fr"),
@@ -52,10 +52,16 @@ class Colors:
 
     Attributes:
         is_linear: Whether red, green and blue are decoded to scene-linear values.
+        is_stepped: Whether opacities are rounded to steps of a 255th, as browsers have them.
     """
 
-    def __init__(self, is_linear: bool) -> None:
+    def __init__(self, is_linear: bool, is_stepped: bool) -> None:
         self.is_linear = is_linear
+        self.is_stepped = is_stepped
+
+    def opacity(self, opacity: float) -> float:
+        """An opacity as it is kept."""
+        return math.floor(255.0 * opacity + 0.5) / 255.0 if self.is_stepped else opacity
 
     def premultiplied(self, colors: np.ndarray) -> list[tuple[float, ...]]:
         """Colors (n, 4) of a file, multiplied by their alpha."""
@@ -97,16 +103,17 @@ class Gradient:
     spread: str
     matrix: Matrix
 
-    def apply(self, shape: Shape, matrix: Matrix) -> None:
-        """Paints a shape which `matrix` has carried to where it is."""
+    def apply(self, shape: Shape, matrix: Matrix, opacity: float) -> None:
+        """Paints a shape which `matrix` has carried to where it is, with an opacity."""
         a, b, c, d, e, f = multiplied(matrix, self.matrix)
         transform = np.array([[a, c, e], [b, d, f]])
+        stops = [(at, tuple(opacity * value for value in color)) for at, color in self.stops]
         if self.is_radial:
             cx, cy, r, fx, fy, fr = self.numbers
             shape.radial_gradient(
                 (cx, cy),
                 r,
-                self.stops,
+                stops,
                 focus=(fx, fy),
                 focus_radius=fr,
                 spread=self.spread,
@@ -115,7 +122,7 @@ class Gradient:
         else:
             x1, y1, x2, y2 = self.numbers
             shape.linear_gradient(
-                (x1, y1), (x2, y2), self.stops, spread=self.spread, transform=transform
+                (x1, y1), (x2, y2), stops, spread=self.spread, transform=transform
             )
 
 
@@ -128,12 +135,9 @@ class Stop:
 class PaintServers:
     """The gradients of a document."""
 
-    def __init__(
-        self, document: Document, sheets: StyleSheets, colors: Colors, warnings: Warnings
-    ) -> None:
+    def __init__(self, document: Document, sheets: StyleSheets, warnings: Warnings) -> None:
         self._document = document
         self._sheets = sheets
-        self._colors = colors
         self._warnings = warnings
         self._known: dict[SvgElement, tuple[dict[str, str], list[Stop]]] = {}
 
@@ -143,6 +147,7 @@ class PaintServers:
         opacity: float,
         units: Units,
         bounds: tuple[float, float, float, float] | None,
+        colors: Colors,
     ) -> Gradient | Color | None:
         """What a gradient paints.
 
@@ -151,6 +156,7 @@ class PaintServers:
             opacity: Of the paint, in [0, 1].
             units: Where it is used.
             bounds: Of the outline to paint: left, top, right, bottom.
+            colors: How colors are kept.
 
         Returns:
             A single color where it comes to that; None where it cannot be used.
@@ -174,6 +180,7 @@ class PaintServers:
         if own is None or determinant(own) == 0.0:
             self._warnings.broken("gradientTransform", "ignored", element.line)
             own = IDENTITY
+        own = about_origin(own, attributes.get("transform-origin", ""), units) or own
         matrix = multiplied(matrix, own)
         numbers = self._numbers(element, attributes, units)
         is_radial = element.tag == "radialGradient"
@@ -187,16 +194,7 @@ class PaintServers:
         if spread not in ("pad", "reflect", "repeat"):
             self._warnings.broken("spreadMethod", "ignored", element.line)
             spread = "pad"
-        return Gradient(is_radial, numbers, list(self._pieces(stops)), spread, matrix)
-
-    def _pieces(self, stops: list[Stop]) -> Iterator[tuple[float, tuple[float, ...]]]:
-        for index, stop in enumerate(stops):
-            following = stops[index + 1] if index + 1 < len(stops) else stop
-            colors = np.array([stop.color])
-            if following.offset > stop.offset:
-                colors = self._colors.between(stop.color, following.color)[:-1]
-            for k, color in enumerate(self._colors.premultiplied(colors)):
-                yield stop.offset + (following.offset - stop.offset) * k / len(colors), color
+        return Gradient(is_radial, numbers, list(_pieces(stops, colors)), spread, matrix)
 
     def _chain(self, element: SvgElement) -> tuple[dict[str, str], list[Stop]]:
         """The attributes and stops of a gradient, and of those that it refers to."""
@@ -244,6 +242,16 @@ class PaintServers:
             # A focus is in the center, where nothing is said of it.
             found[name] = found["c" + name[1]] if length is None else units.pixels(length, name)
         return tuple(found.values())
+
+
+def _pieces(stops: list[Stop], colors: Colors) -> Iterator[tuple[float, tuple[float, ...]]]:
+    for index, stop in enumerate(stops):
+        following = stops[index + 1] if index + 1 < len(stops) else stop
+        between = np.array([stop.color])
+        if following.offset > stop.offset:
+            between = colors.between(stop.color, following.color)[:-1]
+        for k, color in enumerate(colors.premultiplied(between)):
+            yield stop.offset + (following.offset - stop.offset) * k / len(between), color
 
 
 def _with_focus_inside(numbers: tuple[float, ...]) -> tuple[float, ...]:

@@ -8,8 +8,9 @@ from .context import Context, Sources
 from .document import SvgElement
 from .outline import Outline
 from .paint_servers import GRADIENTS, Gradient
-from .painted import Stroke
+from .patterns import pattern_of
 from .tags import OTHER_PAINTS
+from .tree import Pattern, Stroke
 from .values import Color, Paint
 
 _MOST_DASHES = 100_000
@@ -22,14 +23,18 @@ def resolved(
     paint: Paint,
     opacity: float,
     sources: Sources,
-) -> tuple[float, ...] | Gradient | None:
+) -> tuple[float, ...] | Gradient | Pattern | None:
     """What to paint with; None for nothing."""
+    if isinstance(paint.color, str) and paint.color in context.paints:
+        paint = context.paints[paint.color]
     found: Gradient | Color | None = None
     is_here = paint.server.startswith("#")
     server = sources.document.ids.get(paint.server[1:]) if is_here else None
     if server is not None and server.tag in GRADIENTS:
         bounds = outline.bounds()
-        found = sources.servers.resolve(server, opacity, context.units, bounds)
+        found = sources.servers.resolve(server, opacity, context.units, bounds, context.colors)
+    elif server is not None and server.tag == "pattern":
+        return pattern_of(server, opacity, context, outline.bounds(), sources)
     elif server is not None:
         is_paint = server.tag in OTHER_PAINTS
         tell = sources.warnings.unsupported if is_paint else sources.warnings.broken
@@ -39,13 +44,14 @@ def resolved(
     if isinstance(found, Gradient):
         return found
     if found is None:
-        color = context.style.color if isinstance(paint.color, str) else paint.color
-        if color is None:
+        # What `context-fill` stands for is nothing where nothing refers to the element.
+        color = context.style.color if paint.color == "current" else paint.color
+        if color is None or isinstance(color, str):
             return None
-        found = (*color[:3], color[3] * opacity)
+        found = (*color[:3], context.colors.opacity(color[3] * opacity))
     if found[3] == 0.0:
         return None
-    return sources.colors.premultiplied(np.array([found]))[0]
+    return context.colors.premultiplied(np.array([found]))[0]
 
 
 def stroke_of(
@@ -85,7 +91,10 @@ def stroke_of(
     )
 
 
-def paint_order(text: str) -> tuple[str, str]:
-    """Which of fill and stroke comes first, by the property of that name."""
-    named = [name for name in text.split() if name in ("fill", "stroke")]
-    return ("stroke", "fill") if named[:1] == ["stroke"] else ("fill", "stroke")
+def paint_order(text: str) -> list[str]:
+    """Fill, stroke and markers in the order that the property of that name says."""
+    usual = ["fill", "stroke", "markers"]
+    named = list(dict.fromkeys(text.split()))
+    if not set(named) <= set(usual) or len(named) < len(text.split()):
+        return usual
+    return [*named, *(name for name in usual if name not in named)]

@@ -11,6 +11,7 @@ from typing import Any
 import cssselect2
 import tinycss2
 
+from .blending import BLEND_MODES
 from .document import Document, SvgElement
 from .values import (
     BLACK,
@@ -60,8 +61,17 @@ class Style:
     stroke_dasharray: tuple[Length, ...] = ()
     stroke_dashoffset: Length = _ZERO
     visibility: str = "visible"
+    clip_rule: str = "nonzero"
+    color_interpolation: str = "srgb"
+    image_rendering: str = "auto"
+    marker_start: str = "none"
+    marker_mid: str = "none"
+    marker_end: str = "none"
     # Those of the element itself.
     opacity: float = 1.0
+    mix_blend_mode: str = "normal"
+    isolation: str = "auto"
+    mask_type: str = "luminance"
     stop_color: Color | str = BLACK
     stop_opacity: float = 1.0
 
@@ -70,7 +80,7 @@ class Style:
             object.__setattr__(self, "font_size", _DEFAULT_FONT_SIZE)
 
 
-_OWN = ("opacity", "stop_color", "stop_opacity")
+_OWN = ("opacity", "mix_blend_mode", "isolation", "mask_type", "stop_color", "stop_opacity")
 
 
 def _one_of(*names: str) -> Callable[[str], str | None]:
@@ -114,7 +124,16 @@ _PARSERS: dict[str, Callable[[str], Any]] = {
     "stroke-dasharray": _dashes,
     "stroke-dashoffset": as_length,
     "visibility": _one_of("visible", "hidden", "collapse"),
+    "clip-rule": _one_of("nonzero", "evenodd"),
+    "color-interpolation": _one_of("auto", "srgb", "linearrgb"),
+    "image-rendering": lambda text: text.lower(),
+    "marker-start": lambda text: text,
+    "marker-mid": lambda text: text,
+    "marker-end": lambda text: text,
     "opacity": _share,
+    "mix-blend-mode": _one_of(*BLEND_MODES),
+    "isolation": _one_of("auto", "isolate"),
+    "mask-type": _one_of("luminance", "alpha"),
     "stop-color": as_color,
     "stop-opacity": _share,
 }
@@ -123,18 +142,15 @@ _FIELDS = {name: name.replace("-", "_") for name in (*_PARSERS, "font-size")}
 # What draws in another way than it would here, with the values that do nothing.
 UNSUPPORTED = {
     "filter": ("none",),
-    "mask": ("none",),
-    "marker": ("none",),
-    "marker-start": ("none",),
-    "marker-mid": ("none",),
-    "marker-end": ("none",),
-    "mix-blend-mode": ("normal",),
-    "transform-origin": ("0", "0 0", "0px 0px"),
     "vector-effect": ("none",),
 }
 # Attributes that are properties too, so that style sheets may set them.
 _OTHER: tuple[str, ...] = ("x", "y", "cx", "cy", "r", "rx", "ry", "width", "height")
-_OTHER += ("clip-path", "display", "overflow", "transform")
+_OTHER += ("background", "background-color", "clip-path", "display", "mask", "overflow")
+_OTHER += ("transform", "transform-origin")
+# Those that are no attributes.
+_IN_SHEETS_ONLY = frozenset(("background", "background-color", "mix-blend-mode", "isolation"))
+_MARKERS = ("marker-start", "marker-mid", "marker-end")
 _PROPERTIES = frozenset((*_PARSERS, *UNSUPPORTED, *_OTHER, "font-size"))
 
 
@@ -213,7 +229,11 @@ class StyleSheets:
 
     def _declarations(self, element: SvgElement, rules: Any) -> dict[str, str]:
         """By attributes, then by rules, then by the style; then those that are important."""
-        found = {name: value.strip() for name, value in element.attrib.items()}
+        found = {
+            name: value.strip()
+            for name, value in element.attrib.items()
+            if name not in _IN_SHEETS_ONLY
+        }
         own = _parsed_declarations(found.pop("style")) if "style" in found else ()
         if not rules and not own:
             self._report(element, found)
@@ -223,6 +243,8 @@ class StyleSheets:
                 for name, value, is_important in declarations:
                     if is_important != important:
                         continue
+                    if name == "marker":
+                        found.update(dict.fromkeys(_MARKERS, value))
                     if name in _PROPERTIES and self._is_valid(name, value, element):
                         found[name] = value
         self._report(element, found)

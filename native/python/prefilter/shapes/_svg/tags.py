@@ -5,10 +5,10 @@
 from .paint_servers import GRADIENTS
 
 GROUPS = ("g", "a", "svg", "symbol", "switch")
-OTHER_PAINTS = ("pattern", "hatch", "meshgradient", "solidcolor")
+OTHER_PAINTS = ("hatch", "meshgradient", "solidcolor")
 NOT_DRAWN = frozenset(
     (
-        *("defs", "marker", "clipPath", "mask", "filter", *GRADIENTS),
+        *("defs", "marker", "clipPath", "mask", "filter", "pattern", *GRADIENTS),
         *("title", "desc", "metadata", "style", "script", "view", "cursor"),
         *("animate", "animateColor", "animateMotion", "animateTransform", "set"),
         *("font", "font-face", "color-profile", *OTHER_PAINTS),

@@ -82,6 +82,29 @@ def as_lengths(text: str) -> tuple[Length, ...] | None:
     return tuple(each for each in found if each is not None) if None not in found else None
 
 
+_ORIGINS = {"left": 0.0, "top": 0.0, "center": 50.0, "right": 100.0, "bottom": 100.0}
+
+
+def as_origin(text: str) -> tuple[Length, Length] | None:
+    """The two lengths that the property `transform-origin` holds; None for what is none."""
+    names = text.lower().split()
+    if not names:
+        return Length(0.0), Length(0.0)
+    if len(names) > 1 and (names[0] in ("top", "bottom") or names[1] in ("left", "right")):
+        names[:2] = names[1], names[0]
+    elif len(names) == 1 and names[0] in ("top", "bottom"):
+        names.insert(0, "center")
+    try:
+        found = [
+            Length(_ORIGINS[name], "%") if name in _ORIGINS else as_length(name) for name in names
+        ]
+    except UnknownUnitError:
+        return None
+    x, y = found[0], found[1] if len(found) > 1 else Length(50.0, "%")
+    # A third one is a depth.
+    return (x, y) if x is not None and y is not None and len(found) < 4 else None
+
+
 def as_number(text: str) -> float | None:
     """A number, or a percentage as its hundredth."""
     match = _LENGTH.fullmatch(text)
@@ -109,7 +132,8 @@ class Paint:
     """What an outline is filled or stroked with.
 
     Attributes:
-        color: None paints nothing; "current" stands for the property `color`.
+        color: None paints nothing; "current" stands for the property `color`; "context-fill" and
+            "context-stroke" for what a `use` or the outline of a marker has.
         server: What url() refers to: # and the id of a gradient, usually. The color is for where
             there is none.
     """
@@ -125,6 +149,12 @@ def as_color(text: str) -> Color | str | None:
         return _color_of(tinycss2.parse_one_component_value(text, skip_comments=True))
     except ValueError:
         return None
+
+
+def as_background(text: str) -> Color | str | None:
+    """The color among the values of the property `background`, as of `as_color`."""
+    colors = [_color_of(token) for token in _tokens(text)]
+    return next((color for color in colors if color is not None), None)
 
 
 @lru_cache(maxsize=4096)
@@ -144,6 +174,8 @@ def _plain_paint(tokens: Sequence[Any]) -> Paint | None:
         return None
     if tokens[0].type == "ident" and tokens[0].lower_value == "none":
         return Paint(None)
+    if tokens[0].type == "ident" and tokens[0].lower_value in ("context-fill", "context-stroke"):
+        return Paint(tokens[0].lower_value)
     color = _color_of(tokens[0])
     return Paint(color) if color is not None else None
 
@@ -200,6 +232,14 @@ def multiplied(outer: Matrix, inner: Matrix) -> Matrix:
 
 def determinant(matrix: Matrix) -> float:
     return matrix[0] * matrix[3] - matrix[1] * matrix[2]
+
+
+def inverse(matrix: Matrix) -> Matrix:
+    """What undoes a matrix whose determinant is not 0."""
+    a, b, c, d, e, f = matrix
+    scale = 1.0 / determinant(matrix)
+    a, b, c, d = d * scale, -b * scale, -c * scale, a * scale
+    return (a, b, c, d, -(a * e + c * f), -(b * e + d * f))
 
 
 @lru_cache(maxsize=4096)
@@ -267,10 +307,10 @@ def _transform(name: str, numbers: list[float] | None) -> Matrix | None:
         case "scaley", [y]:
             return (1.0, 0.0, 0.0, y, 0.0, 0.0)
         case "rotate", [angle]:
-            return _rotation(angle)
+            return rotation(angle)
         case "rotate", [angle, x, y]:
             there, back = (1.0, 0.0, 0.0, 1.0, x, y), (1.0, 0.0, 0.0, 1.0, -x, -y)
-            return multiplied(multiplied(there, _rotation(angle)), back)
+            return multiplied(multiplied(there, rotation(angle)), back)
         case "skewx", [angle]:
             return (1.0, 0.0, _native.tan(math.radians(angle)), 1.0, 0.0, 0.0)
         case "skewy", [angle]:
@@ -278,7 +318,8 @@ def _transform(name: str, numbers: list[float] | None) -> Matrix | None:
     return None
 
 
-def _rotation(angle: float) -> Matrix:
+def rotation(angle: float) -> Matrix:
+    """By an angle in degrees."""
     # Quarters of a turn are exact, so that upright edges stay upright.
     quarters, rest = divmod(angle, 90.0)
     cos, sin = _native.cos(math.radians(angle)), _native.sin(math.radians(angle))

@@ -5,12 +5,18 @@
 
 #include <cstdint>
 
+#include "prefilter/base/names.h"
 #include "prefilter/base/outline.h"
 #include "prefilter/outline/resolve.h"
 
 namespace prefilter {
 
 enum class OutlineOperation : std::uint8_t { kUnion, kIntersection, kDifference };
+
+inline constexpr Named<OutlineOperation> kOutlineOperations[] = {
+    {"union", OutlineOperation::kUnion},
+    {"intersection", OutlineOperation::kIntersection},
+    {"difference", OutlineOperation::kDifference}};
 
 /// The boundary of a set operation of what two outlines fill by their rules, as `resolve` would
 /// have it.

@@ -1,0 +1,274 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""From a tree to an image: runs of outlines rasterized together, and layers over each other.
+
+Images are (height, width, 4) with row 0 at the bottom, colors multiplied by alpha.
+"""
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import chain
+
+import numpy as np
+import numpy.typing as npt
+
+from ... import _native
+from ...images.pixel_filters import PIXEL_FILTERS
+from ..rasterization import rasterize
+from ..shape import Shape
+from .blending import blended
+from .drawing import Drawing
+from .layering import Layering, Placed, bounds_of, is_plain, leaf_count
+from .limits import TooLargeError
+from .outlining import Outlining
+from .resampled import picture_pixels, tiled_pixels
+from .tree import Box, Clip, Group, Mask, Painted, Pattern, Picture, carried, common
+from .values import Matrix, inverse, multiplied
+
+FloatArray = npt.NDArray[np.float32]
+Window = tuple[int, int, int, int]
+"""Pixels: left, low, right, high; the last two are not in it."""
+
+# A pattern is drawn tile by tile up to so many outlines.
+_MOST_TILED = 20_000
+_MOST_TILES = 4_000
+_LARGEST_TILE = 2048
+# Layers within layers: each holds an image.
+_MOST_DEPTH = 48
+MOST_LAYER_PIXELS = 1 << 32
+# What luminance is made of, of linear colors; SVG has the same for encoded ones.
+_LUMINANCE = tuple(np.float32(share) for share in (0.2125, 0.7154, 0.0721))
+
+
+class Compositor:
+    """Draws trees.
+
+    Args:
+        filter_name: Of shapes, as of `prefilter.rasterize`.
+        threads: How many to use; 0 for all processors.
+        tell: Called with the fraction done; raises to stop.
+    """
+
+    def __init__(self, filter_name: str, threads: int, tell: Callable[[float], None]) -> None:
+        self._filter = filter_name
+        self._threads = threads
+        self._tell = tell
+        self._share = 0.0
+        self._reach = next(found.radius for found in PIXEL_FILTERS if found.name == filter_name)
+        self._layering = Layering()
+        self._outlining = Outlining()
+        self._depth = 0
+        self._pixels_left = MOST_LAYER_PIXELS
+
+    def draw(
+        self, drawing: Drawing, matrix: Matrix, size: tuple[int, int], around: tuple[Clip, ...]
+    ) -> FloatArray:
+        """Draws a drawing.
+
+        Args:
+            drawing: The drawing.
+            matrix: From its units to pixels, with y upwards.
+            size: Width and height of the image.
+            around: What all of it is cut off at.
+
+        Raises:
+            TooLargeError: It has too many layers.
+        """
+        placed = list(self._layering.placed(drawing.tree, matrix, around))
+        background = drawing.background_in(matrix)
+        below = [background] if background is not None else []
+        return self._painted(self._telling(placed), (0, 0, *size), below)
+
+    def _telling(self, placed: list[Placed]) -> Iterator[Placed]:
+        for index, each in enumerate(placed):
+            self._share = index / len(placed)
+            self._tell(self._share)
+            yield each
+
+    def _painted(
+        self, placed: Iterable[Placed], window: Window, below: Sequence[Shape] = ()
+    ) -> FloatArray:
+        """Items over each other, and over shapes."""
+        canvas = self._blank(window)
+        run = list(below)
+        for each in placed:
+            if is_plain(each.item):
+                assert isinstance(each.item, Painted)
+                shape = self._outlining.shape(each.item, each.matrix, each.opacity, each.around)
+                if shape is not None:
+                    run.append(shape)
+                continue
+            self._put_shapes(run, canvas, window)
+            run = []
+            part = self._part(each, window)
+            if part is not None:
+                layer = self._layer(each, part)
+                mode = each.item.blend if isinstance(each.item, Group) else "normal"
+                _put(canvas, window, layer, part, mode)
+        self._put_shapes(run, canvas, window)
+        return canvas
+
+    def _blank(self, window: Window) -> FloatArray:
+        width, height = window[2] - window[0], window[3] - window[1]
+        self._pixels_left -= width * height
+        if self._pixels_left < 0:
+            raise TooLargeError(f"layers of more than {MOST_LAYER_PIXELS} pixels")
+        return np.zeros((height, width, 4), np.float32)
+
+    def _put_shapes(self, shapes: list[Shape], canvas: FloatArray, window: Window) -> None:
+        boxes = [shape.bounds for shape in shapes]
+        corners = [(*box[0], *box[1]) for box in boxes if box is not None]
+        part = self._window_of(corners, window)
+        if part is not None:
+            _put(canvas, window, self._rasterized(shapes, part), part, "normal")
+
+    def _rasterized(self, shapes: list[Shape], window: Window) -> FloatArray:
+        left, low, right, high = window
+        move = [[1.0, 0.0, -left], [0.0, 1.0, -low]]
+        if left or low:
+            shapes = [shape.transformed(move) for shape in shapes]
+        found = rasterize(
+            shapes,
+            right - left,
+            high - low,
+            filter=self._filter,
+            progress=self._go_on,
+            threads=self._threads,
+        )
+        assert found.dtype == np.float32
+        return found  # type: ignore[return-value]
+
+    def _go_on(self, _: float) -> bool:
+        self._tell(self._share)
+        return True
+
+    def _coverage(self, shape: Shape, window: Window) -> FloatArray:
+        shape = shape._with(shape._outline, shape._paint)
+        shape.color = (1.0,)
+        return self._rasterized([shape], window)
+
+    def _part(self, placed: Placed, window: Window) -> Window | None:
+        """The part of a window that an item shows in."""
+        boxes: list[Box] = []
+        for box in bounds_of(placed.item):
+            shown: Box | None = box
+            for clip in placed.around:
+                shown = common(shown, clip.bounds) if shown and clip.bounds else None
+            if shown is not None:
+                boxes.append(carried(shown, placed.matrix))
+        return self._window_of(boxes, window)
+
+    def _window_of(self, boxes: list[Box], window: Window) -> Window | None:
+        """The pixels that see something of boxes."""
+        if not boxes:
+            return None
+        lefts, lows, rights, highs = zip(*boxes, strict=True)
+        reach = self._reach + 1.0
+        box = (min(lefts) - reach, min(lows) - reach, max(rights) + reach, max(highs) + reach)
+        seen = common(box, (*map(float, window),))  # type: ignore[arg-type]
+        if seen is None:
+            return None
+        return (
+            math.floor(seen[0]),
+            math.floor(seen[1]),
+            math.ceil(seen[2]),
+            math.ceil(seen[3]),
+        )
+
+    def _layer(self, placed: Placed, window: Window) -> FloatArray:
+        """A group, a picture, or an outline with a pattern."""
+        item = placed.item
+        if isinstance(item, Group):
+            return self._group(item, placed, window)
+        if isinstance(item, Painted):
+            shape = self._outlining.shape(item, placed.matrix, 1.0, placed.around)
+        else:
+            shape = self._outlining.frame(item, placed.matrix, placed.around)
+        if shape is None:
+            return self._blank(window)
+        opacity = placed.opacity
+        if isinstance(item, Picture):
+            layer = self._picture(item, placed.matrix, window)
+        else:
+            assert isinstance(item.paint, Pattern)
+            layer = self._pattern(item.paint, multiplied(placed.matrix, item.matrix), window)
+            opacity *= item.paint.opacity
+        layer *= np.float32(opacity) * self._coverage(shape, window)
+        return layer
+
+    def _group(self, group: Group, placed: Placed, window: Window) -> FloatArray:
+        inside = self._layering.placed(group, placed.matrix, placed.around)
+        layer = self._nested(inside, window)
+        for mask in group.masks:
+            layer *= self._mask(mask, placed.matrix, window)
+        opacity = placed.opacity * group.opacity
+        if opacity < 1.0:
+            layer *= np.float32(opacity)
+        return layer
+
+    def _nested(self, placed: Iterable[Placed], window: Window) -> FloatArray:
+        if self._depth >= _MOST_DEPTH:
+            raise TooLargeError(f"layers are nested more than {_MOST_DEPTH} deep")
+        self._depth += 1
+        layer = self._painted(placed, window)
+        self._depth -= 1
+        return layer
+
+    def _mask(self, mask: Mask, matrix: Matrix, window: Window) -> FloatArray:
+        layer = self._nested(self._layering.placed(mask.group, matrix), window)
+        if mask.is_luminance:
+            red, green, blue = (layer[..., k] * _LUMINANCE[k] for k in range(3))
+            found: FloatArray = red + green + blue
+        else:
+            found = layer[..., 3]
+        return found.clip(0.0, 1.0)[..., None]
+
+    def _picture(self, picture: Picture, matrix: Matrix, window: Window) -> FloatArray:
+        left, low, right, high = window
+        moved = multiplied((1.0, 0.0, 0.0, 1.0, -left, -low), matrix)
+        return picture_pixels(picture, moved, right - left, high - low, self._threads)
+
+    def _pattern(self, pattern: Pattern, matrix: Matrix, window: Window) -> FloatArray:
+        """A pattern all over a window; the matrix leads from the outline's units to pixels."""
+        whole = multiplied(matrix, pattern.matrix)
+        left, top, right, bottom = pattern.tile
+        width, height = right - left, bottom - top
+        box = carried((*map(float, window),), inverse(whole))  # type: ignore[arg-type]
+        columns = range(math.floor((box[0] - left) / width), math.ceil((box[2] - left) / width))
+        rows = range(math.floor((box[1] - top) / height), math.ceil((box[3] - top) / height))
+        tiles = (columns.stop - columns.start) * (rows.stop - rows.start)
+        if tiles > _MOST_TILES or tiles * leaf_count(pattern.group.items) > _MOST_TILED:
+            return self._tiled(pattern, whole, window)
+        return self._nested(
+            chain.from_iterable(
+                self._layering.placed(
+                    pattern.group,
+                    multiplied(whole, (1.0, 0.0, 0.0, 1.0, column * width, row * height)),
+                )
+                for row in rows
+                for column in columns
+            ),
+            window,
+        )
+
+    def _tiled(self, pattern: Pattern, whole: Matrix, window: Window) -> FloatArray:
+        """The same by one tile as an image."""
+        left, top, right, bottom = pattern.tile
+        columns, rows = (
+            min(max(math.ceil(_native.hypot(*axis) * side), 1), _LARGEST_TILE)
+            for axis, side in ((whole[:2], right - left), (whole[2:4], bottom - top))
+        )
+        scale = (columns / (right - left), 0.0, 0.0, rows / (bottom - top), 0.0, 0.0)
+        to_tile = multiplied(scale, (1.0, 0.0, 0.0, 1.0, -left, -top))
+        tile = self._nested(self._layering.placed(pattern.group, to_tile), (0, 0, columns, rows))
+        moved = multiplied(to_tile, inverse(whole))
+        moved = multiplied(moved, (1.0, 0.0, 0.0, 1.0, window[0], window[1]))
+        size = window[2] - window[0], window[3] - window[1]
+        return tiled_pixels(tile, moved, *size, self._threads)
+
+
+def _put(canvas: FloatArray, window: Window, layer: FloatArray, part: Window, mode: str) -> None:
+    """Puts a layer over a part of a canvas."""
+    rows = slice(part[1] - window[1], part[3] - window[1])
+    columns = slice(part[0] - window[0], part[2] - window[0])
+    canvas[rows, columns] = blended(canvas[rows, columns], layer, mode)

@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Images in drawings: those that are embedded, and files beside the drawing."""
+
+import base64
+import binascii
+from collections.abc import Callable
+from typing import Protocol
+from urllib.parse import unquote, unquote_to_bytes, urlsplit
+
+import numpy as np
+import numpy.typing as npt
+
+from .clips import box_clip
+from .context import Context, Sources
+from .document import SvgElement
+from .nesting import SHOWN
+from .page import Page
+from .pictures import PictureError, read_picture
+from .tree import Clip, Group, Picture, carried
+from .values import Length, Matrix, multiplied
+from .viewports import ViewBox, placed
+
+_ZERO, _AUTO = Length(0.0), Length(-1.0)
+_PIXELATED = ("pixelated", "crisp-edges", "optimizespeed", "-moz-crisp-edges")
+_SIGNATURES = (b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff")
+MOST_BYTES = 1 << 28
+
+
+class Inner(Protocol):
+    """A drawing in a drawing."""
+
+    @property
+    def page(self) -> Page:
+        """How large it is."""
+
+    def draw(self, matrix: Matrix, clips: tuple[Clip, ...], target: Group) -> None:
+        """Draws it; the matrix leads from its units to those of the tree."""
+
+
+Read = Callable[[bytes, str], Inner]
+"""Reads a drawing in a drawing, of its bytes and its name."""
+
+
+class UnusableError(Exception):
+    """An image that cannot be shown; the message says why."""
+
+
+class ElsewhereError(Exception):
+    """An image that others may show; the message says why it is not shown here."""
+
+
+def draw_image(element: SvgElement, context: Context, sources: Sources, read: Read) -> None:
+    """Draws an `image`."""
+    if context.style.visibility != "visible":
+        return
+    try:
+        data, name = _contents(element, sources)
+        _draw(element, data, name, context, sources, read)
+    except ElsewhereError as error:
+        sources.warnings.unsupported("<image>", f"left out, {error}", element.line)
+    except (UnusableError, PictureError, ValueError) as error:
+        sources.warnings.broken("<image>", f"left out, {error}", element.line)
+
+
+def _draw(
+    element: SvgElement, data: bytes, name: str, context: Context, sources: Sources, read: Read
+) -> None:
+    declared = sources.sheets.declared(element)
+    is_raster = data.startswith(_SIGNATURES)
+    texels: npt.NDArray[np.uint8] | None = None
+    inner: Inner | None = None
+    if is_raster:
+        texels = read_picture(data)
+        own_width, own_height = float(texels.shape[1]), float(texels.shape[0])
+    elif data.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"<" or data[:2] == b"\x1f\x8b":
+        inner = read(data, name)
+        own_width, own_height = inner.page.width, inner.page.height
+    else:
+        raise ElsewhereError("as it is neither PNG, JPEG nor SVG")
+    x, y = (sources.pixels(element, key, _ZERO, context.units) for key in ("x", "y"))
+    width, height = (
+        sources.pixels(element, key, _AUTO, context.units) for key in ("width", "height")
+    )
+    if width < 0.0 or height < 0.0:
+        # What is not said follows from the proportions of the image.
+        ratio = own_width / own_height
+        if width < 0.0 and height < 0.0:
+            width, height = own_width, own_height
+        width = height * ratio if width < 0.0 else width
+        height = width / ratio if height < 0.0 else height
+    if width == 0.0 or height == 0.0:
+        return
+    aspect = declared.get("preserveAspectRatio", "")
+    page = ViewBox(0.0, 0.0, own_width, own_height)
+    fitted = multiplied((1.0, 0.0, 0.0, 1.0, x, y), placed(page, aspect, width, height))
+    matrix = multiplied(context.matrix, fitted)
+    clips = context.clips
+    if declared.get("overflow", "hidden") not in SHOWN and aspect.strip().endswith("slice"):
+        clips = (*clips, box_clip((x, y, x + width, y + height), context.matrix))
+    if texels is not None:
+        unit = multiplied(matrix, (own_width, 0.0, 0.0, own_height, 0.0, 0.0))
+        context.target.items.append(
+            Picture(
+                texels,
+                unit,
+                context.style.image_rendering in _PIXELATED,
+                context.colors.is_linear,
+                clips,
+                carried((0.0, 0.0, 1.0, 1.0), unit),
+                element.line,
+            )
+        )
+    elif inner is not None:
+        group = Group(is_isolated=True, line=element.line)
+        context.target.items.append(group)
+        clips = (*clips, box_clip((0.0, 0.0, own_width, own_height), matrix))
+        fitted = placed(inner.page.view, inner.page.aspect, own_width, own_height)
+        inner.draw(multiplied(matrix, fitted), clips, group)
+
+
+def _contents(element: SvgElement, sources: Sources) -> tuple[bytes, str]:
+    """The bytes that an image refers to, and what messages call it."""
+    address = element.address
+    if not address or address.startswith("#"):
+        raise UnusableError("as it refers to no image")
+    if address[:5].lower() == "data:":
+        return _embedded(address), "<image>"
+    parts = urlsplit(address)
+    if parts.scheme or parts.netloc:
+        raise ElsewhereError("as it is neither in the file nor in its folder")
+    if sources.folder is None:
+        raise ElsewhereError("as it is not in the file, and that has no folder")
+    folder = sources.folder.resolve()
+    path = (folder / unquote(parts.path)).resolve()
+    if not path.is_relative_to(folder):
+        raise ElsewhereError("as it is neither in the file nor in its folder")
+    if not path.is_file():
+        raise UnusableError(f"as there is no file '{unquote(parts.path)}'")
+    if path.stat().st_size > MOST_BYTES:
+        raise UnusableError(f"as it is larger than {MOST_BYTES >> 20} MiB")
+    return path.read_bytes(), path.name
+
+
+def _embedded(address: str) -> bytes:
+    head, comma, body = address[5:].partition(",")
+    if not comma:
+        raise UnusableError("as its data are damaged")
+    data = unquote_to_bytes(body)
+    if head.strip().lower().endswith("base64"):
+        try:
+            data = base64.b64decode(b"".join(data.split()))
+        except binascii.Error:
+            raise UnusableError("as its data are damaged") from None
+    return data

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Masks: what is seen of an element follows from the luminance or alpha of others."""
+
+from dataclasses import replace
+
+from .bounding import object_bounds
+from .clips import box_clip
+from .context import Context, Sources
+from .document import SvgElement
+from .lengths import Units
+from .nesting import children
+from .paint_servers import Colors
+from .tree import Box, Group, Mask
+from .values import Length, Matrix, multiplied
+
+_DEFAULTS = {"x": -10.0, "y": -10.0, "width": 120.0, "height": 120.0}
+
+
+def masks_of(
+    element: SvgElement, context: Context, sources: Sources, box: Box | None = None
+) -> tuple[Mask, ...] | None:
+    """The masks of an element; None where they let nothing through.
+
+    `context` is that within the element. For a mask `box` is that of what it masks.
+    """
+    text = sources.sheets.declared(element).get("mask", "none")
+    if text.lower() == "none":
+        return ()
+    mask = sources.referred(text)
+    if mask is None or mask.tag != "mask":
+        sources.warnings.broken("mask", "ignored", element.line)
+        return ()
+    if mask in context.uses:
+        sources.warnings.broken("mask", "ignored, as it refers to itself", element.line)
+        return ()
+    if element.tag != "mask":
+        box = object_bounds(element, context, sources)
+    region, matrix = box_in_units(mask, "maskUnits", _DEFAULTS, box, context, sources)
+    if region is None:
+        return None
+    style = sources.sheets.style(mask)
+    group = Group(is_isolated=True, line=mask.line)
+    clips = (*context.clips, box_clip(region, multiplied(context.matrix, matrix)))
+    # Masks are as bright as they look.
+    place = replace(
+        context,
+        style=style,
+        target=group,
+        colors=Colors(style.color_interpolation == "linearrgb", context.colors.is_stepped),
+        clips=clips,
+        uses=(*context.uses, mask),
+        use=None,
+    )
+    if mask.get("maskContentUnits") == "objectBoundingBox":
+        shares = shares_of(box)
+        if shares is None:
+            return None
+        place = replace(place, matrix=multiplied(context.matrix, shares), viewport=(1.0, 1.0))
+    around = masks_of(mask, replace(context, uses=place.uses), sources, box)
+    if around is None:
+        return None
+    sources.draw((child, place) for child in children(mask))
+    made = Mask(group, style.mask_type == "luminance", place.colors.is_linear)
+    return (made, *around)
+
+
+def shares_of(box: Box | None) -> Matrix | None:
+    """From shares of a box to its units; None where it has no area."""
+    if box is None or box[2] <= box[0] or box[3] <= box[1]:
+        return None
+    return (box[2] - box[0], 0.0, 0.0, box[3] - box[1], box[0], box[1])
+
+
+def box_in_units(
+    element: SvgElement,
+    name: str,
+    defaults: dict[str, float],
+    box: Box | None,
+    context: Context,
+    sources: Sources,
+) -> tuple[Box | None, Matrix]:
+    """The region that x, y, width and height of an element make, and what its units are.
+
+    Args:
+        element: The element.
+        name: Of the attribute that says what the units are; by default shares of a box.
+        defaults: Of the four, in percent.
+        box: The box.
+        context: Of what refers to the element.
+        sources: What it is read with.
+    """
+    is_share = element.get(name, "objectBoundingBox") != "userSpaceOnUse"
+    matrix = shares_of(box) if is_share else (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
+    if matrix is None:
+        return None, (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
+    units = Units(1.0, 1.0, context.style.font_size) if is_share else context.units
+    x, y, width, height = (
+        sources.pixels(element, key, Length(value, "%"), units) for key, value in defaults.items()
+    )
+    if width <= 0.0 or height <= 0.0:
+        return None, matrix
+    return (x, y, x + width, y + height), matrix

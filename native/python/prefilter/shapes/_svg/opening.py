@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""From a file to a drawing."""
+
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from .document import read_document
+from .drawing import Drawing
+from .limits import TooLargeError
+from .paint_servers import Colors
+from .warnings import Warnings
+
+
+def open_drawing(
+    source: str | os.PathLike[str] | bytes,
+    *,
+    colors: Colors,
+    tell: Callable[[float], None],
+) -> tuple[str, Drawing, Warnings]:
+    """Reads a drawing. See `prefilter.read_svg`.
+
+    Returns:
+        What messages call it, the drawing, and what is wrong with it.
+    """
+    document = read_document(source, lambda share: tell(0.3 * share))
+    warnings = Warnings()
+    with refusing(document.name):
+        drawing = Drawing(document, colors, warnings, lambda share: tell(0.3 + 0.7 * share))
+    return document.name, drawing, warnings
+
+
+@contextmanager
+def refusing(name: str) -> Iterator[None]:
+    """Has what is too large or too deep refused as a ValueError that names the drawing."""
+    try:
+        yield
+    except RecursionError:
+        raise ValueError(f"{name}: values, styles or groups are nested too deeply") from None
+    except TooLargeError as error:
+        raise ValueError(f"{name}: {error}") from None

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Outlines of a tree as shapes in pixels, cut off exactly at what they are clipped by."""
+
+from collections.abc import Sequence
+from dataclasses import asdict
+
+import numpy as np
+
+from ... import _native
+from ..shape import Shape
+from .paint_servers import Gradient
+from .tree import Box, Clip, Painted, Picture, common, holds
+from .values import Matrix, determinant, multiplied
+
+# How far the outline of a stroke may be off, in pixels: 8-bit images do not show it.
+_STROKE_TOLERANCE = 1.0 / 1024.0
+
+
+class Outlining:
+    """Makes shapes, and keeps what clips let through."""
+
+    def __init__(self) -> None:
+        self._regions: dict[tuple[Clip, Matrix], Shape] = {}
+
+    def shape(
+        self, painted: Painted, matrix: Matrix, opacity: float, around: Sequence[Clip] = ()
+    ) -> Shape | None:
+        """An outline with its paint; white for a pattern. None where nothing of it shows.
+
+        Args:
+            painted: The outline.
+            matrix: From the tree's units to pixels, with y upwards.
+            opacity: Multiplies the paint.
+            around: What it is cut off at beside its own clips.
+        """
+        box, clips = painted.box, (*around, *painted.clips)
+        if any(clip.bounds is None or common(box, clip.bounds) is None for clip in clips):
+            return None
+        whole = multiplied(matrix, painted.matrix)
+        if determinant(whole) == 0.0:
+            return None
+        shape = painted.outline.shape(painted.fill_rule)
+        if painted.stroke is not None:
+            scale = max(_native.hypot(*whole[:2]), _native.hypot(*whole[2:4]))
+            pen = asdict(painted.stroke)
+            del pen["dash_count"]
+            shape = shape.stroked(**pen, tolerance=_STROKE_TOLERANCE / scale)
+        shape = shape.transformed(_rows(whole))
+        if isinstance(painted.paint, Gradient):
+            painted.paint.apply(shape, whole, opacity)
+        elif isinstance(painted.paint, tuple):
+            shape.color = tuple(opacity * value for value in painted.paint)
+        return self.clipped(shape, box, clips, matrix)
+
+    def frame(self, picture: Picture, matrix: Matrix, around: Sequence[Clip]) -> Shape | None:
+        """What shows of a picture, likewise; None for nothing."""
+        clips = (*around, *picture.clips)
+        whole = multiplied(matrix, picture.matrix)
+        hidden = any(clip.bounds is None or not common(picture.box, clip.bounds) for clip in clips)
+        if hidden or determinant(whole) == 0.0:
+            return None
+        shape = Shape()
+        shape.add_polygon([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
+        return self.clipped(shape.transformed(_rows(whole)), picture.box, clips, matrix)
+
+    def clipped(self, shape: Shape, box: Box, clips: Sequence[Clip], matrix: Matrix) -> Shape:
+        """What clips leave of a shape that lies within a box of the tree."""
+        for clip in clips:
+            if clip.is_box and clip.bounds is not None and holds(clip.bounds, box):
+                continue
+            shape = _combined(shape, self._region(clip, matrix), "intersection")
+        return shape
+
+    def _region(self, clip: Clip, matrix: Matrix) -> Shape:
+        """What a clip lets through."""
+        key = (clip, matrix)
+        if key not in self._regions:
+            region: Shape | None = None
+            for part in clip.parts:
+                whole = multiplied(matrix, part.matrix)
+                if determinant(whole) == 0.0:
+                    continue
+                shape = part.outline.shape(part.fill_rule).transformed(_rows(whole))
+                for inner in part.clips:
+                    shape = _combined(shape, self._region(inner, matrix), "intersection")
+                region = shape if region is None else _combined(region, shape, "union")
+            region = Shape() if region is None else region
+            for outer in clip.clips:
+                region = _combined(region, self._region(outer, matrix), "intersection")
+            self._regions[key] = region
+        return self._regions[key]
+
+
+def _combined(first: Shape, second: Shape, operation: str) -> Shape:
+    """A set operation of what two shapes fill, with the paint of the first."""
+    outline = first._outline.combined(first.fill_rule, second._outline, second.fill_rule, operation)
+    made = first._with(outline, first._paint)
+    made._fill_rule, made._winds_once = "nonzero", True
+    return made
+
+
+def _rows(matrix: Matrix) -> np.ndarray:
+    a, b, c, d, e, f = matrix
+    return np.array([[a, c, e], [b, d, f]])

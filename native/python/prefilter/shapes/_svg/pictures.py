@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""PNG and JPEG pictures, read by Pillow or by OpenImageIO, whichever there is."""
+
+import io
+import tempfile
+from importlib import import_module
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+Texels = npt.NDArray[np.uint8]
+
+MOST_TEXELS = 1 << 26
+
+
+class PictureError(Exception):
+    """A picture that cannot be read; the message says why."""
+
+
+def read_picture(data: bytes) -> Texels:
+    """The texels of a PNG or JPEG file.
+
+    Returns:
+        (height, width, 4): red, green, blue and alpha, not multiplied by it; the top row first.
+
+    Raises:
+        PictureError: It cannot be read.
+    """
+    width, height = _size(data)
+    if width * height > MOST_TEXELS:
+        raise PictureError(f"as it has {width} x {height} pixels; the limit is {MOST_TEXELS}")
+    try:
+        pillow = import_module("PIL.Image")
+    except ImportError:
+        return _by_openimageio(data)
+    try:
+        with pillow.open(io.BytesIO(data), formats=("PNG", "JPEG")) as file:
+            # Pillow cuts 16 bits off where it should round them.
+            if file.mode.startswith("I"):
+                gray = np.rint(np.asarray(file, np.float64) / 257.0).clip(0.0, 255.0)
+                return _as_rgba(gray.astype(np.uint8)[..., None])
+            return np.array(file.convert("RGBA"), np.uint8)
+    except (OSError, ValueError, SyntaxError, MemoryError) as error:
+        raise PictureError(f"as it cannot be read: {error}") from None
+
+
+def _by_openimageio(data: bytes) -> Texels:
+    from ..._work import openimageio
+
+    ending = ".png" if data.startswith(b"\x89PNG") else ".jpg"
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / f"image{ending}"
+            path.write_bytes(data)
+            values, _ = openimageio.read_pixels(path)
+    except (OSError, ValueError) as error:
+        raise PictureError(f"as it cannot be read: {error}") from None
+    if values.dtype != np.uint8:
+        values = np.rint(values / 257.0).clip(0.0, 255.0).astype(np.uint8)
+    return _as_rgba(values)
+
+
+def _as_rgba(values: Texels) -> Texels:
+    """Four channels of one to four."""
+    height, width, channels = values.shape
+    found = np.full((height, width, 4), 255, np.uint8)
+    found[..., :3] = values[..., :3] if channels > 2 else values[..., :1]
+    if channels in (2, 4):
+        found[..., 3] = values[..., -1]
+    return found
+
+
+def _size(data: bytes) -> tuple[int, int]:
+    """The width and height that a file says it has, before anything of it is unpacked."""
+    if data.startswith(b"\x89PNG"):
+        return int.from_bytes(data[16:20], "big"), int.from_bytes(data[20:24], "big")
+    at = 2
+    while at + 9 <= len(data) and data[at] == 0xFF:
+        kind, length = data[at + 1], int.from_bytes(data[at + 2 : at + 4], "big")
+        if 0xC0 <= kind <= 0xCF and kind not in (0xC4, 0xC8, 0xCC):
+            height, width = data[at + 5 : at + 7], data[at + 7 : at + 9]
+            return int.from_bytes(width, "big"), int.from_bytes(height, "big")
+        at += 1 if kind == 0xFF else 2 + length
+    return 0, 0

@@ -1,0 +1,551 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Whole drawings as images: what closed forms say, and other ways to draw the same."""
+
+import base64
+import math
+
+import numpy as np
+import prefilter
+import pytest
+from drawings import SIZE, image, same, svg
+from prefilter._work.files import png
+
+HALF = 128 / 255
+RED, GREEN = (1.0, 0.0, 0.0), (0.0, 128 / 255, 0.0)
+
+
+def drawn(body, size=SIZE, attributes='viewBox="0 0 100 100"', **options):
+    """A drawing without warnings, the top row first."""
+    made, warnings = prefilter.rasterize_svg(svg(body, attributes), size, size, **options)
+    assert warnings == ()
+    return made[::-1]
+
+
+def box(left, top, right, bottom, rest=""):
+    return f'<rect x="{left}" y="{top}" width="{right - left}" height="{bottom - top}" {rest}/>'
+
+
+def by_hand(*boxes, size=SIZE):
+    """Boxes (left, top, right, bottom, color with alpha not multiplied) over each other."""
+    shapes = []
+    for left, top, right, bottom, color in boxes:
+        alpha = color[3] if len(color) > 3 else 1.0
+        shape = prefilter.Shape(color=(*(alpha * value for value in color[:3]), alpha))
+        low, high = SIZE - bottom, SIZE - top
+        shape.add_polygon([(left, low), (right, low), (right, high), (left, high)])
+        shapes.append(shape.transformed([[size / SIZE, 0, 0], [0, size / SIZE, 0]]))
+    return image(shapes, size, size)[::-1]
+
+
+def test_half_black_over_white_is_127():
+    ways = [
+        'fill-opacity="0.5"',
+        'opacity="0.5"',
+        'fill="rgba(0,0,0,.5)"',
+        'fill="#00000080"',
+        'opacity="0.5" stroke="black"',
+    ]
+    for rest in ways:
+        body = box(0, 0, 100, 100, 'fill="white"') + box(-50, -50, 150, 150, rest)
+        made, _ = prefilter.rasterize_svg(svg(body), 8, 8, dtype=np.uint8)
+        assert (made == (127, 127, 127, 255)).all()
+        light = drawn(body, light="linear")
+        # Light halved, and encoded for display; #80 is a little more than half.
+        encoded = np.rint(prefilter.to_srgb(light[50:51, 50, :3]) * 255)
+        assert (encoded == (187 if "#" in rest else 188)).all()
+
+
+def test_what_is_plain_is_as_its_shapes():
+    body = (
+        '<linearGradient id="g"><stop stop-color="red"/><stop offset="1"/></linearGradient>'
+        '<circle cx="40" cy="40" r="31" fill="url(#g)"/><path d="M9 9L90 33 40 95z" fill="#123"/>'
+        '<path d="M9 90L70 33" stroke="green" stroke-width="7" stroke-linecap="round"/>'
+    )
+    for light in ("srgb", "linear"):
+        for name in ("box", "lanczos3"):
+            shapes = prefilter.read_svg(svg(body), light=light).shapes_for(60, 40)
+            expected = prefilter.rasterize(shapes, 60, 40, filter=name)
+            made, _ = prefilter.rasterize_svg(svg(body), 60, 40, light=light, filter=name)
+            same(made, expected)
+
+
+def test_a_group_is_translucent_as_a_whole():
+    inner = box(10.5, 10, 50, 50, 'fill="red"') + box(30, 30, 70, 70.5, 'fill="green"')
+    expected = by_hand((10.5, 10, 50, 50, RED), (30, 30, 70, 70.5, GREEN)) * np.float32(HALF)
+    same(drawn(f'<g opacity="0.5">{inner}</g>'), expected)
+    # The same where it is an element with a fill and a stroke.
+    rest = 'fill="red" stroke="green" stroke-width="10"'
+    opaque = drawn(box(20, 20, 60, 60, rest))
+    same(drawn(box(20, 20, 60, 60, f'{rest} opacity="0.5"')), opaque * np.float32(HALF))
+    same(drawn(f'<g opacity="0.5"><g opacity="0.5">{inner}</g></g>'), expected * np.float32(HALF))
+    # Before something else.
+    behind = box(0, 0, 100, 40, 'fill="blue"')
+    below = by_hand((0, 0, 100, 40, (0, 0, 1)))
+    same(
+        drawn(behind + f'<g opacity="0.5">{inner}</g>'), expected + below * (1 - expected[..., 3:])
+    )
+
+
+def test_what_does_not_overlap_needs_no_layer():
+    """Where two halves meet within a pixel, nothing shows through."""
+    inner = box(10, 10, 30.5, 50, 'fill="red"') + box(30.5, 10, 50, 50, 'fill="red"')
+    same(drawn(f'<g opacity="0.5">{inner}</g>'), by_hand((10, 10, 50, 50, (*RED, HALF))))
+
+
+@pytest.mark.parametrize(
+    ("clip", "element", "expected"),
+    [
+        # Cut off at its own edge, a shape is what it was: coverage is not squared.
+        (box(10.5, 10.5, 50.5, 50.5), box(10.5, 10.5, 50.5, 50.5, "{}"), (10.5, 10.5, 50.5, 50.5)),
+        (box(20.25, 0, 90, 90), box(10, 10.5, 50, 50, "{}"), (20.25, 10.5, 50, 50)),
+        (box(20, 20, 60, 60), f"<g {{}}>{box(0, 0, 99, 30)}</g>", (20, 20, 60, 30)),
+        (
+            box(0, 0, 10, 10, 'transform="translate(5.5 5)"'),
+            box(0, 0, 99, 99, "{}"),
+            (5.5, 5, 15.5, 15),
+        ),
+        # Two that overlap let through what either does.
+        (box(0, 0, 30, 30) + box(20, 0, 60, 30), box(10, 10, 50, 50, "{}"), (10, 10, 50, 30)),
+        # A child that is cut off itself, and one that is used.
+        (box(0, 0, 90, 90, 'clip-path="url(#d)"'), box(10, 10, 60, 60, "{}"), (10, 10, 40, 40)),
+        ('<use href="#r" x="5"/>', box(0, 0, 99, 99, "{}"), (7, 3, 17, 13)),
+        (
+            '<path clip-rule="evenodd" d="M0 0H99V99H0zM50 0H99V99H50z"/>',
+            box(9, 9, 99, 20, "{}"),
+            (9, 9, 50, 20),
+        ),
+    ],
+)
+def test_clip_paths_cut_exactly(clip, element, expected):
+    defs = (
+        f"<defs>{box(2, 3, 12, 13, 'id=' + chr(34) + 'r' + chr(34))}</defs>"
+        f'<clipPath id="d">{box(0, 0, 40, 40)}</clipPath>'
+    )
+    body = f'{defs}<clipPath id="c">{clip}</clipPath>' + element.format('clip-path="url(#c)"')
+    same(drawn(body), by_hand((*expected, (0, 0, 0))))
+    shapes = prefilter.read_svg(svg(body)).shapes_for(SIZE, SIZE)
+    same(image(shapes)[::-1], by_hand((*expected, (0, 0, 0))))
+
+
+def test_a_clip_path_of_curves_has_its_area():
+    """Two discs of radius r at a distance d have a lens in common."""
+    r, d = 30.0, 25.0
+    lens = 2 * r * r * math.acos(d / (2 * r)) - d / 2 * math.sqrt(4 * r * r - d * d)
+    body = (
+        '<clipPath id="c"><circle cx="40" cy="50" r="30"/></clipPath>'
+        '<circle cx="65" cy="50" r="30" clip-path="url(#c)"/>'
+    )
+    assert drawn(body)[..., 3].sum(dtype=float) == pytest.approx(lens, rel=1e-6)
+
+
+def test_clip_paths_in_units_of_a_box():
+    clip = f'<clipPath id="c" clipPathUnits="objectBoundingBox">{box(0, 0, 0.5, 0.5)}</clipPath>'
+    inner = box(20, 20, 40, 40) + box(60, 60, 80, 80) + box(0, 0, 99, 99, 'display="none"')
+    expected = by_hand((20, 20, 40, 40, (0, 0, 0)))
+    same(drawn(f'{clip}<g clip-path="url(#c)">{inner}</g>'), expected)
+    # Nothing is in a clip path without children, nor in shares of nothing.
+    assert not drawn(f'<clipPath id="c"/><g clip-path="url(#c)">{inner}</g>').any()
+    assert not drawn(f'{clip}<g clip-path="url(#c)"/>').any()
+
+
+def test_a_drawing_is_cut_off_at_its_page():
+    page = 'width="40" height="20"'
+    body = box(-50, -50, 150, 150, 'stroke="black"')
+    expected = np.zeros((40, 40, 4), np.float32)
+    expected[10:30, :, 3] = 1
+    # Of other proportions, with a border around it.
+    made, _ = prefilter.rasterize_svg(svg(body, f'{page} viewBox="0 0 40 20"'), 40, 40)
+    same(made, expected)
+    shapes = prefilter.read_svg(svg(body, f'{page} viewBox="0 0 40 20"')).shapes_for(40, 40)
+    same(image(shapes, 40, 40), expected)
+    made, _ = prefilter.rasterize_svg(
+        svg(body, f'{page} viewBox="0 0 40 20" overflow="visible"'), 40, 40
+    )
+    same(made[..., 3], np.ones((40, 40)))
+    # A page may show more than the view box.
+    made, _ = prefilter.rasterize_svg(svg(body, f'{page} viewBox="0 0 10 10"'), 40, 20)
+    same(made[..., 3], np.ones((20, 40)))
+
+
+def test_viewports_cut_off():
+    inner = box(-50, -50, 150, 150)
+    for attributes, expected in (
+        ("", (10.5, 20, 40, 50)),
+        ('overflow="hidden"', (10.5, 20, 40, 50)),
+        ('overflow="visible"', (0, 0, 100, 100)),
+        ('viewBox="0 0 5 5"', (10.5, 20, 40, 50)),
+    ):
+        body = f'<svg x="10.5" y="20" width="29.5" height="30" {attributes}>{inner}</svg>'
+        same(drawn(body), by_hand((*expected, (0, 0, 0))))
+    symbol = f'<symbol id="s" viewBox="0 0 10 10">{inner}</symbol>'
+    same(
+        drawn(f'{symbol}<use href="#s" x="5" y="5" width="20" height="20"/>'),
+        by_hand((5, 5, 25, 25, (0, 0, 0))),
+    )
+
+
+@pytest.mark.parametrize(
+    ("style", "color"),
+    [
+        ("background:#ff0000", (1, 0, 0, 1)),
+        ("background-color: rgb(0 255 0 / 50%)", (0, HALF, 0, HALF)),
+        ("color:#00f;background: no-repeat currentColor", (0, 0, 1, 1)),
+        ("background: none", (0, 0, 0, 0)),
+    ],
+)
+def test_the_page_has_a_background(style, color):
+    made = drawn("", attributes=f'viewBox="0 0 100 100" style="{style}"')
+    same(made, np.broadcast_to(np.float32(color), made.shape))
+    half, _ = prefilter.rasterize_svg(svg("", f'viewBox="0 0 9 9" style="{style}"'), 20, 10)
+    same(half[5, [0, 10, 19]], np.float32([(0, 0, 0, 0), color, (0, 0, 0, 0)]))
+
+
+def formula(mode, b, s):
+    """Of one channel, as the recommendation has it."""
+    match mode:
+        case "multiply":
+            return b * s
+        case "screen":
+            return 1 - (1 - b) * (1 - s)
+        case "overlay":
+            return formula("hard-light", s, b)
+        case "darken":
+            return min(b, s)
+        case "lighten":
+            return max(b, s)
+        case "color-dodge":
+            return 0 if b == 0 else 1 if s == 1 else min(1, b / (1 - s))
+        case "color-burn":
+            return 1 if b == 1 else 0 if s == 0 else 1 - min(1, (1 - b) / s)
+        case "hard-light":
+            return 2 * b * s if s <= 0.5 else 1 - 2 * (1 - b) * (1 - s)
+        case "soft-light":
+            if s <= 0.5:
+                return b - (1 - 2 * s) * b * (1 - b)
+            d = ((16 * b - 12) * b + 4) * b if b <= 0.25 else math.sqrt(b)
+            return b + (2 * s - 1) * (d - b)
+        case "difference":
+            return abs(b - s)
+        case "exclusion":
+            return b + s - 2 * b * s
+        case "normal":
+            return s
+    raise AssertionError
+
+
+SEPARABLE = ("normal", "multiply", "screen", "overlay", "darken", "lighten", "color-dodge")
+SEPARABLE += ("color-burn", "hard-light", "soft-light", "difference", "exclusion")
+
+
+@pytest.mark.parametrize("mode", SEPARABLE)
+def test_blend_modes_are_as_their_formulas(mode):
+    below, above = (0, 255, 51), (255, 153, 25)
+    for first, second in ((below, above), (above, below), ((20, 100, 200), (70, 140, 20))):
+        for alpha_b, alpha_s in ((255, 255), (128, 51), (51, 204)):
+            colors = [
+                "#" + "".join(f"{value:02x}" for value in (*color, alpha))
+                for color, alpha in ((first, alpha_b), (second, alpha_s))
+            ]
+            body = box(0, 0, 99, 99, f'fill="{colors[0]}"')
+            body += box(0, 0, 99, 99, f'fill="{colors[1]}" style="mix-blend-mode:{mode}"')
+            made = drawn(body)[50, 50]
+            b_alpha, s_alpha = alpha_b / 255, alpha_s / 255
+            for channel, (b, s) in enumerate(zip(first, second, strict=True)):
+                mixed = (1 - b_alpha) * s / 255 + b_alpha * formula(mode, b / 255, s / 255)
+                expected = (1 - s_alpha) * b_alpha * b / 255 + s_alpha * mixed
+                assert made[channel] == pytest.approx(expected, abs=2e-6), (mode, b, s)
+            assert made[3] == pytest.approx(b_alpha + s_alpha - b_alpha * s_alpha, abs=1e-6)
+
+
+def luminosity(color):
+    return 0.3 * color[0] + 0.59 * color[1] + 0.11 * color[2]
+
+
+def test_blend_modes_of_whole_colors_keep_what_they_say():
+    colors = [(220, 40, 90), (30, 160, 200), (128, 128, 128), (250, 250, 20), (5, 60, 0)]
+    for b in colors:
+        for s in colors:
+            made = {}
+            for mode in ("hue", "saturation", "color", "luminosity"):
+                body = box(0, 0, 99, 99, f'fill="rgb{b}"')
+                body += box(0, 0, 99, 99, f'fill="rgb{s}" style="mix-blend-mode:{mode}"')
+                made[mode] = drawn(body)[50, 50, :3].astype(float) * 255
+            for mode in ("hue", "saturation", "color"):
+                assert luminosity(made[mode]) == pytest.approx(luminosity(b), abs=0.01)
+            assert luminosity(made["luminosity"]) == pytest.approx(luminosity(s), abs=0.01)
+            for found in made.values():
+                assert found.min() >= -0.001
+                assert found.max() <= 255.001
+    gray = box(0, 0, 99, 99, 'fill="rgb(220,40,90)"') + box(
+        0, 0, 99, 99, 'fill="#777" style="mix-blend-mode:saturation"'
+    )
+    assert np.ptp(drawn(gray)[50, 50, :3]) < 1e-6
+
+
+def test_what_is_isolated_is_mixed_with_nothing_below():
+    blending = box(20, 20, 80, 80, 'fill="#808080" style="mix-blend-mode:multiply"')
+    behind = box(0, 0, 100, 100, 'fill="red"')
+    mixed = drawn(f"{behind}<g>{blending}</g>")[50, 50]
+    np.testing.assert_allclose(mixed, (HALF, 0, 0, 1), atol=1e-6)
+    for rest in ('style="isolation:isolate"', 'clip-path="url(#c)"', 'opacity="0.999999"'):
+        clip = f'<clipPath id="c">{box(0, 0, 99, 99)}</clipPath>'
+        alone = drawn(f"{behind}{clip}<g {rest}>{blending}</g>")[50, 50]
+        np.testing.assert_allclose(alone, (HALF, HALF, HALF, 1), atol=1e-5)
+
+
+def test_masks_let_through_what_is_bright():
+    green = box(0, 0, 100, 100, 'fill="green" mask="url(#m)"')
+
+    def masked(attributes, inner, element=green):
+        return drawn(f'<mask id="m" {attributes}>{inner}</mask>{element}')
+
+    white = box(10, 10, 50.5, 50, 'fill="white"')
+    same(masked("", white), by_hand((10, 10, 50.5, 50, GREEN)))
+    for color, share in (("red", 0.2125), ("lime", 0.7154), ("blue", 0.0721), ("black", 0.0)):
+        made = masked("", box(10, 10, 50.5, 50, f'fill="{color}"'))
+        same(made, by_hand((10, 10, 50.5, 50, GREEN)) * np.float32(share))
+    by_alpha = masked('mask-type="alpha"', box(10, 10, 50.5, 50, 'opacity="0.5"'))
+    same(by_alpha, by_hand((10, 10, 50.5, 50, (*GREEN, HALF))))
+    by_alpha = masked('style="mask-type:alpha"', box(10, 10, 50.5, 50))
+    same(by_alpha, by_hand((10, 10, 50.5, 50, GREEN)))
+    # It ends at its region: a tenth beside the element, or what it says.
+    region = 'maskUnits="userSpaceOnUse" x="20" y="20" width="10" height="10"'
+    same(masked(region, white), by_hand((20, 20, 30, 30, GREEN)))
+    shares = 'x="0" y="0" width="0.25" height="1" maskContentUnits="objectBoundingBox"'
+    made = masked(shares, box(0, 0, 1, 0.5, 'fill="white"'))
+    same(made, by_hand((0, 0, 25, 50, GREEN)))
+    gray = masked("", box(10, 10, 50, 50, 'fill="#808080"'))[30, 30, 3]
+    assert gray == pytest.approx(HALF, abs=1e-5)
+    linear = masked('color-interpolation="linearRGB"', box(10, 10, 50, 50, 'fill="#808080"'))
+    assert linear[30, 30, 3] == pytest.approx(float(prefilter.to_linear([[HALF]])[0, 0]), abs=1e-5)
+
+
+def test_a_pattern_is_what_its_tiles_are():
+    pattern = (
+        '<pattern id="p" x="3" y="2" width="20" height="10" patternUnits="userSpaceOnUse">'
+        f"{box(0, 0, 7.5, 4, 'fill=' + chr(34) + 'red' + chr(34))}</pattern>"
+    )
+    tiles = [
+        (left, top, left + 7.5, top + 4, RED)
+        for left in range(3, 100, 20)
+        for top in range(2, 100, 10)
+    ]
+    made = drawn(pattern + box(0, 0, 100, 100, 'fill="url(#p)"'))
+    same(made[5:95, 5:95], by_hand(*tiles)[5:95, 5:95])
+    # In an outline, half opaque, in shares of its box, and turned.
+    made = drawn(pattern + box(20, 20, 60, 60, 'fill="url(#p)" fill-opacity="0.5"'))
+    same(made[20:60, 20:60], by_hand(*tiles)[20:60, 20:60] * np.float32(0.5))
+    assert not made[:20].any()
+    shares = (
+        '<pattern id="p" width="0.5" height="1" patternContentUnits="objectBoundingBox">'
+        f"{box(0, 0, 0.25, 1, 'fill=' + chr(34) + 'red' + chr(34))}</pattern>"
+    )
+    made = drawn(shares + box(20, 20, 60, 60, 'fill="url(#p)"'))
+    same(made, by_hand((20, 20, 30, 60, RED), (40, 20, 50, 60, RED)))
+    turned = pattern.replace("patternUnits", 'patternTransform="rotate(90)" patternUnits')
+    same(
+        drawn(turned + box(0, 0, 100, 100, 'fill="url(#p)"')),
+        drawn(turned + box(-9, -9, 109, 109, 'fill="url(#p)"')),
+    )
+
+
+def test_patterns_finer_than_pixels_are_their_mean():
+    pattern = (
+        '<pattern id="p" width="0.01" height="0.02" patternUnits="userSpaceOnUse">'
+        '<rect width="0.01" height="0.005" fill="red"/></pattern>'
+    )
+    made = drawn(pattern + box(20, 20, 60, 60, 'fill="url(#p)"'))
+    np.testing.assert_allclose(
+        made[25:55, 25:55], np.broadcast_to((0.25, 0, 0, 0.25), (30, 30, 4)), atol=1e-3
+    )
+
+
+def test_markers_are_at_corners_and_turn_with_them():
+    marker = (
+        '<marker id="m" refX="2" refY="1" markerWidth="4" markerHeight="2" orient="{}">'
+        '<rect width="4" height="2" fill="green"/></marker>'
+    )
+    line = '<path d="M20 20H60V80" fill="none" stroke-width="5" {}="url(#m)"/>'
+
+    def at(orient, name):
+        return drawn(marker.format(orient) + line.format(name))
+
+    same(at("0", "marker-start"), by_hand((10, 15, 30, 25, GREEN)))
+    same(at("0", "marker-end"), by_hand((50, 75, 70, 85, GREEN)))
+    same(at("auto", "marker-end"), by_hand((55, 70, 65, 90, GREEN)))
+    same(at("90deg", "marker-mid"), by_hand((55, 10, 65, 30, GREEN)))
+    middle = drawn(
+        '<rect x="-10" y="-5" width="20" height="10" fill="green" '
+        'transform="translate(60 20) rotate(45)"/>'
+    )
+    same(at("auto", "marker-mid"), middle)
+    # What is outside of a marker does not show, and strokes may lend it their color.
+    lent = marker.replace('fill="green"', 'x="-9" width="99" fill="context-stroke"').replace(
+        ' width="4" height="2" x', ' height="2" x'
+    )
+    made = drawn(lent.format("0") + line.format('stroke="green" marker-start'))
+    same(made[:, :18], by_hand((10, 15, 30, 25, GREEN))[:, :18])
+
+
+def data_url(texels, kind="png"):
+    return f"data:image/{kind};base64,{base64.b64encode(png.encoded(texels[::-1])).decode()}"
+
+
+def test_images_of_as_many_pixels_are_as_they_are():
+    random = np.random.default_rng(1)
+    texels = random.integers(0, 256, (SIZE, SIZE, 4), np.uint8)
+    expected = texels / np.float32(255)
+    expected[..., :3] *= expected[..., 3:]
+    element = f'<image width="100" height="100" href="{data_url(texels)}"/>'
+    np.testing.assert_allclose(drawn(element), expected, atol=2e-3)
+    linear = prefilter.to_linear(texels[..., :3] / np.float32(255)) * expected[..., 3:]
+    np.testing.assert_allclose(drawn(element, light="linear")[..., :3], linear, atol=2e-3)
+
+
+def test_where_images_are():
+    flat = np.full((2, 4, 4), 255, np.uint8)
+    href = data_url(flat)
+    for rest, expected in (
+        ('x="10" y="20.5" width="40" height="20"', (10, 20.5, 50, 40.5)),
+        ('width="40" height="40"', (0, 10, 40, 30)),
+        ('width="40" height="40" preserveAspectRatio="xMinYMax"', (0, 20, 40, 40)),
+        ('width="40" height="40" preserveAspectRatio="none"', (0, 0, 40, 40)),
+        ('width="40" height="40" preserveAspectRatio="xMidYMid slice"', (0, 0, 40, 40)),
+        ('width="40"', (0, 0, 40, 20)),
+        ("", (0, 0, 4, 2)),
+    ):
+        made = drawn(f'<image {rest} href="{href}"/>')
+        np.testing.assert_allclose(made, by_hand((*expected, (1, 1, 1))), atol=1e-5)
+    blocks = np.zeros((1, 2, 4), np.uint8)
+    blocks[...] = [[(255, 0, 0, 255), (0, 128, 0, 255)]]
+    rest = 'width="40" height="20" image-rendering="pixelated"'
+    made = drawn(f'<image {rest} href="{data_url(blocks)}"/>')
+    same(made, by_hand((0, 0, 20, 20, RED), (20, 0, 40, 20, GREEN)))
+
+
+def test_drawings_in_drawings():
+    inner = svg(box(-9, -9, 50, 99, 'fill="red"'), 'width="20" height="10" viewBox="0 0 100 50"')
+    href = "data:image/svg+xml;base64," + base64.b64encode(inner.encode()).decode()
+    made = drawn(f'<image x="10" y="10" width="40" height="40" href="{href}"/>')
+    same(made, by_hand((10, 20, 30, 40, RED)))
+    plain = "data:image/svg+xml," + "".join(f"%{byte:02x}" for byte in inner.encode())
+    same(drawn(f'<image x="10" y="10" width="40" height="40" href="{plain}"/>'), made)
+
+
+def test_images_come_from_the_folder_of_the_drawing_only(tmp_path):
+    folder = tmp_path / "folder"
+    (folder / "deeper").mkdir(parents=True)
+    picture = png.encoded(np.full((2, 2, 4), 255, np.uint8))
+    for path in (folder / "a b.png", folder / "deeper/c.png", tmp_path / "d.png"):
+        path.write_bytes(picture)
+    (folder / "link.png").symlink_to(tmp_path / "d.png")
+    path = folder / "drawing.svg"
+    for href, is_shown in (
+        ("a%20b.png", True),
+        ("deeper/c.png", True),
+        ("../d.png", False),
+        (str(tmp_path / "d.png"), False),
+        ((tmp_path / "d.png").as_uri(), False),
+        ("link.png", False),
+        ("none.png", False),
+        ("http://localhost/a.png", False),
+        ("//localhost/a.png", False),
+    ):
+        path.write_text(svg(f'<image width="100" height="100" href="{href}"/>'))
+        made, warnings = prefilter.rasterize_svg(path, 4, 4)
+        assert (made[..., 3] == 1).all() == is_shown, href
+        assert [warning.name for warning in warnings] == ([] if is_shown else ["<image>"])
+    # Nor does a drawing in a drawing reach out of it.
+    (folder / "inner.svg").write_text(path.read_text().replace("//localhost/a", "a%20b"))
+    path.write_text(svg('<image width="100" height="100" href="inner.svg"/>'))
+    made, warnings = prefilter.rasterize_svg(path, 4, 4)
+    assert len(warnings) == 1
+    assert not made.any()
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        '<mask id="m"><g mask="url(#m)"><rect width="9" height="9"/></g></mask><g mask="url(#m)"/>',
+        '<clipPath id="c" clip-path="url(#c)"/><rect width="9" height="9" clip-path="url(#c)"/>',
+        '<pattern id="p" width="1" height="1"><rect width="9" height="9" fill="url(#p)"/></pattern>'
+        '<rect width="9" height="9" fill="url(#p)"/>',
+        '<marker id="m"><path d="M0 0H9" marker-end="url(#m)"/></marker>'
+        '<path d="M0 0H9" marker-end="url(#m)"/>',
+        '<clipPath id="c" transform="scale(0)"><rect width="9" height="9"/></clipPath>'
+        '<rect width="9" height="9" clip-path="url(#c)"/>',
+        '<clipPath id="c"><rect width="1e300" height="1e300"/></clipPath>'
+        '<rect width="9" height="9" clip-path="url(#c)"/>',
+        '<mask id="m" width="1e300"><rect/></mask><rect width="9" height="9" mask="url(#m)"/>',
+        '<pattern id="p" width="1e-300" height="1e300"><rect width="9" height="9"/></pattern>'
+        '<rect width="9" height="9" fill="url(#p)"/>',
+        '<pattern id="p" width="1e-9" height="1e-9" patternUnits="userSpaceOnUse">'
+        '<rect width="9" height="9"/></pattern><rect width="9" height="9" fill="url(#p)"/>',
+        '<image width="1e300" height="1" href="data:image/svg+xml,&lt;svg/&gt;"/>',
+        '<image width="9" height="9" href="data:image/svg+xml,&lt;svg"/>',
+        '<image width="9" height="9" href="data:image/png;base64,iVBORw0KGgoAAAAA"/>',
+        '<image width="9" height="9" href="data:image/jpeg;base64,/9j/4AAQ"/>',
+        '<image width="9" height="9" href="data:"/><image width="9" height="9" href="%"/>',
+        '<marker id="m" markerWidth="1e300" viewBox="0 0 1e-9 1"><rect width="1" height="1"/>'
+        '</marker><path d="M0 0H9V9ZZZM3 3" marker-mid="url(#m)" marker-end="url(#m)"/>',
+        '<g style="mix-blend-mode:hue" opacity="0.5"/><g opacity="nan" style="isolation:x"/>',
+        '<use href="#none" opacity="0.5"/><g mask="none" clip-path="url()"/>',
+    ],
+    ids=lambda body: body[:40],
+)
+def test_odd_drawings_are_drawn(body):
+    for light in ("srgb", "linear"):
+        made, _ = prefilter.rasterize_svg(svg(body), 16, 16, light=light)
+        assert np.isfinite(made).all()
+
+
+def test_layers_have_limits(monkeypatch):
+    inner = box(0, 0, 50, 50) + box(20, 20, 70, 70)
+    deep = '<g opacity="0.9">' * 60 + inner + "</g>" * 60
+    # Each has one group in it, and becomes a layer.
+    with pytest.raises(ValueError, match="source: layers are nested more than 48 deep"):
+        prefilter.rasterize_svg(svg(deep), 8, 8)
+    from prefilter.shapes._svg import compositing
+
+    monkeypatch.setattr(compositing, "MOST_LAYER_PIXELS", 1000)
+    wide = f'<g opacity="0.5">{inner}</g>' * 20
+    with pytest.raises(ValueError, match="source: layers of more than 1000 pixels"):
+        prefilter.rasterize_svg(svg(wide), 16, 16)
+
+
+LAYERED = (
+    f'<mask id="m">{box(0, 0, 60, 60, "fill=" + chr(34) + "#ccc" + chr(34))}</mask>'
+    f'<g mask="url(#m)" opacity="0.4">{box(5, 5, 50.5, 50)}<circle cx="40" cy="40" r="31"/></g>'
+    '<circle cx="60" cy="60" r="30" fill="red" style="mix-blend-mode:soft-light"/>'
+)
+
+
+def test_the_same_bits_by_any_number_of_threads():
+    one, many = (drawn(LAYERED, 200, threads=threads) for threads in (1, 4))
+    np.testing.assert_array_equal(one, many)
+
+
+def test_progress_and_canceling():
+    told = []
+    drawn(LAYERED, progress=told.append)
+    assert told == sorted(told)
+    assert 0.0 <= told[0] <= told[-1] <= 1.0
+    for limit in (0.1, 0.5):
+        with pytest.raises(prefilter.Cancelled):
+            drawn(LAYERED, progress=lambda share, limit=limit: share < limit)
+
+
+def test_bad_arguments():
+    with pytest.raises(ValueError, match="light: 'both' is not one of linear, srgb"):
+        drawn("", light="both")
+    with pytest.raises(ValueError, match="filter: 'sharp' is not one of box"):
+        drawn("", filter="sharp")
+    with pytest.raises(ValueError, match="dtype"):
+        drawn("", dtype=np.uint16)
+    with pytest.raises(ValueError, match="threads: -1"):
+        drawn("", threads=-1)
+    with pytest.raises(ValueError, match="width: 0"):
+        prefilter.rasterize_svg(svg(""), 0, 9)
+    with pytest.raises(ValueError, match="source: no SVG drawing"):
+        prefilter.rasterize_svg("<html/>", 9, 9)
