@@ -20,7 +20,8 @@ CLIP = "<clipPath id='c' transform='scale(2)'><rect x='5' width='15' height='50'
     [
         ("<text>A</text>", "<text>"),
         ("<foreignObject/>", "<foreignObject>"),
-        ('<rect width="9" height="9" filter="url(#f)"/>', "filter"),
+        (f'<filter id="f"><feTile/></filter><g filter="url(#f)">{BOX}</g>', "filter with <feTile>"),
+        (f'<filter id="f"><feOffset/></filter><g filter="url(#f)">{BOX}</g>', "filter"),
         ('<image width="9" height="9" href="http://example.org/a.png"/>', "<image>"),
         ('<rect width="9" height="9" clip-path="circle(4px)"/>', "clip-path"),
         ('<rect width="9" height="9" vector-effect="non-scaling-stroke"/>', "vector-effect"),
@@ -55,6 +56,7 @@ def test_what_is_not_supported(body, name):
         ('<image width="9" height="9" href="data:image/png;base64,iVBORw0KGgoAAAAA"/>', "<image>"),
         ('<image width="9" height="9" href="#a"/>', "<image>"),
         ('<g mask="url(#none)"/>', "mask"),
+        ('<rect width="9" height="9" filter="url(#f)"/>', "filter"),
         ('<path d="M 0 0 H 9" marker-end="url(#none)"/>', "marker"),
         ('<g transform-origin="middle"/>', "transform-origin"),
         ('<rect width="9" height="9" fill="#12"/>', "fill '#12'"),

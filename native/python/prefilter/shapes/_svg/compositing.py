@@ -18,11 +18,12 @@ from ..rasterization import rasterize
 from ..shape import Shape
 from .blending import blended
 from .drawing import Drawing
+from .filtering import filtered, reach_of
 from .layering import Layering, Placed, bounds_of, is_plain, leaf_count
 from .limits import TooLargeError
 from .outlining import Outlining
 from .resampled import picture_pixels, tiled_pixels
-from .tree import Box, Clip, Group, Mask, Painted, Pattern, Picture, carried, common
+from .tree import Box, Clip, Filter, Group, Mask, Painted, Pattern, Picture, carried, common
 from .values import Matrix, inverse, multiplied
 
 FloatArray = npt.NDArray[np.float32]
@@ -198,12 +199,43 @@ class Compositor:
 
     def _group(self, group: Group, placed: Placed, window: Window) -> FloatArray:
         inside = self._layering.placed(group, placed.matrix, placed.around)
-        layer = self._nested(inside, window)
+        if group.filter is not None:
+            layer = self._filtered(group, group.filter, placed, window)
+        else:
+            layer = self._nested(inside, window)
         for mask in group.masks:
             layer *= self._mask(mask, placed.matrix, window)
         opacity = placed.opacity * group.opacity
         if opacity < 1.0:
             layer *= np.float32(opacity)
+        return layer
+
+    def _filtered(
+        self, group: Group, filter_: Filter, placed: Placed, window: Window
+    ) -> FloatArray:
+        """A group after its filter, cut off at its clips after that."""
+        # What is farther away than half a side is left out: it would take too much memory.
+        most = max(window[2] - window[0], window[3] - window[1]) / 2.0
+        reach = math.ceil(min(reach_of(filter_, placed.matrix), most))
+        around = (window[0] - reach, window[1] - reach, window[2] + reach, window[3] + reach)
+        region = self._window_of([carried(filter_.region, placed.matrix)], around)
+        if region is None:
+            return self._blank(window)
+        source = self._nested(self._layering.placed(group, placed.matrix), region)
+        made = filtered(source, filter_, placed.matrix, region[:2])
+        layer = self._blank(window)
+        shared = common((*map(float, window),), (*map(float, region),))  # type: ignore[arg-type]
+        if shared is not None:
+            left, low, right, high = map(int, shared)
+            rows = slice(low - region[1], high - region[1])
+            columns = slice(left - region[0], right - region[0])
+            _put(layer, window, made[rows, columns], (left, low, right, high), "normal")
+        clips = (*placed.around, *group.clips)
+        shape = self._outlining.region(filter_.region, clips, placed.matrix)
+        if shape is None:
+            return self._blank(window)
+        if clips:
+            layer *= self._coverage(shape, window)
         return layer
 
     def _nested(self, placed: Iterable[Placed], window: Window) -> FloatArray:

@@ -13,6 +13,7 @@ from .clip_paths import clipped
 from .clips import box_clip
 from .context import Context, Sources
 from .document import Document, SvgElement, read_document
+from .filters import filter_of
 from .images import draw_image
 from .limits import Budget, check_uses
 from .markers import MARKED, draw_markers
@@ -167,11 +168,13 @@ class Walk:
             if declared[name].lower() not in UNSUPPORTED[name]:
                 sources.warnings.unsupported(name, "ignored", element.line)
         inside = clipped(element, context, sources)
+        filter_ = filter_of(element, context, sources)
         masks = masks_of(element, context, sources)
         if inside is None or masks is None:
             return None
         is_isolated = (
             bool(masks)
+            or filter_ is not None
             or style.opacity < 1.0
             or style.mix_blend_mode != "normal"
             or style.isolation == "isolate"
@@ -182,11 +185,14 @@ class Walk:
                 opacity=context.colors.opacity(style.opacity),
                 blend=style.mix_blend_mode,
                 masks=masks,
+                filter=filter_,
+                clips=inside.clips if filter_ is not None else (),
                 is_isolated=True,
                 line=element.line,
             )
             context.target.items.append(group)
-            inside = replace(inside, target=group)
+            clips = () if filter_ is not None else inside.clips
+            inside = replace(inside, target=group, clips=clips)
         return inside
 
     def _paint(self, element: SvgElement, context: Context) -> None:

@@ -42,6 +42,8 @@ class Flat:
                 yield item, placed.opacity
 
     def _tell(self, group: Group) -> None:
+        if group.filter is not None:
+            self._warnings.unsupported("filter", "ignored", group.line)
         if group.masks:
             self._warnings.unsupported("mask", "ignored", group.line)
         if group.blend != "normal":

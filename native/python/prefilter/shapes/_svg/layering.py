@@ -48,6 +48,7 @@ class Layering:
         if group not in self._known:
             self._known[group] = (
                 bool(group.masks)
+                or group.filter is not None
                 or group.blend != "normal"
                 or (group.opacity < 1.0 and self._is_overlapping(group))
                 or (group.is_isolated and self._is_mixing(group))
@@ -82,12 +83,19 @@ def is_plain(item: Item) -> bool:
 
 def bounds_of(item: Item) -> Iterator[Box]:
     """Yields boxes, in the tree's units, that hold what shows of an item."""
-    for leaf in leaves(item) if isinstance(item, Group) else (item,):
-        box: Box | None = leaf.box
-        for clip in leaf.clips:
-            box = common(box, clip.bounds) if box and clip.bounds else None
-        if box is not None:
-            yield box
+    box: Box | None
+    if not isinstance(item, Group):
+        box = item.box
+    elif item.filter is not None:
+        box = item.filter.region
+    else:
+        for inner in item.items:
+            yield from bounds_of(inner)
+        return
+    for clip in item.clips:
+        box = common(box, clip.bounds) if box and clip.bounds else None
+    if box is not None:
+        yield box
 
 
 def leaf_count(items: Sequence[Item]) -> int:

@@ -2,6 +2,7 @@
 
 """Outlines of a tree as shapes in pixels, cut off exactly at what they are clipped by."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import asdict
 
@@ -10,7 +11,7 @@ import numpy as np
 from ... import _native
 from ..shape import Shape
 from .paint_servers import Gradient
-from .tree import Box, Clip, Painted, Picture, common, holds
+from .tree import Box, Clip, Painted, Picture, carried, common, holds
 from .values import Matrix, determinant, multiplied
 
 # How far the outline of a stroke may be off, in pixels: 8-bit images do not show it.
@@ -63,6 +64,19 @@ class Outlining:
         shape = Shape()
         shape.add_polygon([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
         return self.clipped(shape.transformed(_rows(whole)), picture.box, clips, matrix)
+
+    def region(self, box: Box, clips: Sequence[Clip], matrix: Matrix) -> Shape | None:
+        """What clips leave of the pixels around a box of the tree; None for nothing."""
+        if any(clip.bounds is None or not common(box, clip.bounds) for clip in clips):
+            return None
+        left, low, right, high = carried(box, matrix)
+        shape = Shape()
+        # Pixels at the edges of a filter's region are whole.
+        shape.add_polygon(
+            [(left - 2, low - 2), (right + 2, low - 2), (right + 2, high + 2), (left - 2, high + 2)]
+        )
+        # It is larger than the box.
+        return self.clipped(shape, (-math.inf, -math.inf, math.inf, math.inf), clips, matrix)
 
     def clipped(self, shape: Shape, box: Box, clips: Sequence[Clip], matrix: Matrix) -> Shape:
         """What clips leave of a shape that lies within a box of the tree."""

@@ -63,6 +63,7 @@ class Style:
     visibility: str = "visible"
     clip_rule: str = "nonzero"
     color_interpolation: str = "srgb"
+    color_interpolation_filters: str = "linearrgb"
     image_rendering: str = "auto"
     marker_start: str = "none"
     marker_mid: str = "none"
@@ -126,6 +127,7 @@ _PARSERS: dict[str, Callable[[str], Any]] = {
     "visibility": _one_of("visible", "hidden", "collapse"),
     "clip-rule": _one_of("nonzero", "evenodd"),
     "color-interpolation": _one_of("auto", "srgb", "linearrgb"),
+    "color-interpolation-filters": _one_of("auto", "srgb", "linearrgb"),
     "image-rendering": lambda text: text.lower(),
     "marker-start": lambda text: text,
     "marker-mid": lambda text: text,
@@ -141,12 +143,12 @@ _FIELDS = {name: name.replace("-", "_") for name in (*_PARSERS, "font-size")}
 
 # What draws in another way than it would here, with the values that do nothing.
 UNSUPPORTED = {
-    "filter": ("none",),
     "vector-effect": ("none",),
 }
 # Attributes that are properties too, so that style sheets may set them.
 _OTHER: tuple[str, ...] = ("x", "y", "cx", "cy", "r", "rx", "ry", "width", "height")
-_OTHER += ("background", "background-color", "clip-path", "display", "mask", "overflow")
+_OTHER += ("background", "background-color", "clip-path", "display", "filter", "mask", "overflow")
+_OTHER += ("flood-color", "flood-opacity")
 _OTHER += ("transform", "transform-origin")
 # Those that are no attributes.
 _IN_SHEETS_ONLY = frozenset(("background", "background-color", "mix-blend-mode", "isolation"))

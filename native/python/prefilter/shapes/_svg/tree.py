@@ -145,6 +145,43 @@ class Mask:
     is_linear: bool
 
 
+@dataclass(frozen=True, slots=True)
+class Step:
+    """A step of a filter: an element such as `feOffset`.
+
+    Attributes:
+        kind: The element's name.
+        inputs: The names of other results; empty for the one before.
+        result: What its own is called.
+        numbers: What it needs; lengths are those of the tree.
+        name: Of its operator or mode.
+        is_linear: Whether it takes decoded colors.
+        region: Where it ends, in the tree's units; None for that of the filter.
+    """
+
+    kind: str
+    inputs: tuple[str, ...]
+    result: str
+    numbers: tuple[float, ...]
+    name: str
+    is_linear: bool
+    region: Box | None
+
+
+@dataclass(frozen=True, slots=True)
+class Filter:
+    """What becomes of a group's pixels.
+
+    Attributes:
+        region: Where it is applied, in the tree's units.
+        is_linear: Whether the group's colors are decoded.
+    """
+
+    steps: tuple[Step, ...]
+    region: Box
+    is_linear: bool
+
+
 @dataclass(slots=True, eq=False)
 class Group:
     """What belongs together.
@@ -153,7 +190,9 @@ class Group:
         items: First what is below.
         opacity: Of the whole.
         blend: How it is mixed with what is below it, by the name of `mix-blend-mode`.
-        mask: What lets it through.
+        masks: What lets it through.
+        filter: What becomes of its pixels before that.
+        clips: With a filter: what it is cut off at, which things in it are not.
         is_isolated: Whether what is in it is mixed with nothing below it.
         line: Where it is in the file.
     """
@@ -162,6 +201,8 @@ class Group:
     opacity: float = 1.0
     blend: str = "normal"
     masks: tuple[Mask, ...] = ()
+    filter: Filter | None = None
+    clips: tuple[Clip, ...] = ()
     is_isolated: bool = False
     line: int = 0
 
