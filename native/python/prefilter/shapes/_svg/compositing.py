@@ -119,7 +119,7 @@ class Compositor:
     def _put_shapes(self, shapes: list[Shape], canvas: FloatArray, window: Window) -> None:
         boxes = [shape.bounds for shape in shapes]
         corners = [(*box[0], *box[1]) for box in boxes if box is not None]
-        part = self._window_of(corners, window)
+        part = window_of(corners, window, self._reach)
         if part is not None:
             _put(canvas, window, self._rasterized(shapes, part), part, "normal")
 
@@ -157,24 +157,7 @@ class Compositor:
                 shown = common(shown, clip.bounds) if shown and clip.bounds else None
             if shown is not None:
                 boxes.append(carried(shown, placed.matrix))
-        return self._window_of(boxes, window)
-
-    def _window_of(self, boxes: list[Box], window: Window) -> Window | None:
-        """The pixels that see something of boxes."""
-        if not boxes:
-            return None
-        lefts, lows, rights, highs = zip(*boxes, strict=True)
-        reach = self._reach + 1.0
-        box = (min(lefts) - reach, min(lows) - reach, max(rights) + reach, max(highs) + reach)
-        seen = common(box, (*map(float, window),))  # type: ignore[arg-type]
-        if seen is None:
-            return None
-        return (
-            math.floor(seen[0]),
-            math.floor(seen[1]),
-            math.ceil(seen[2]),
-            math.ceil(seen[3]),
-        )
+        return window_of(boxes, window, self._reach)
 
     def _layer(self, placed: Placed, window: Window) -> FloatArray:
         """A group, a picture, or an outline with a pattern."""
@@ -218,7 +201,7 @@ class Compositor:
         most = max(window[2] - window[0], window[3] - window[1]) / 2.0
         reach = math.ceil(min(reach_of(filter_, placed.matrix), most))
         around = (window[0] - reach, window[1] - reach, window[2] + reach, window[3] + reach)
-        region = self._window_of([carried(filter_.region, placed.matrix)], around)
+        region = window_of([carried(filter_.region, placed.matrix)], around, self._reach)
         if region is None:
             return self._blank(window)
         source = self._nested(self._layering.placed(group, placed.matrix), region)
@@ -297,6 +280,20 @@ class Compositor:
         moved = multiplied(moved, (1.0, 0.0, 0.0, 1.0, window[0], window[1]))
         size = window[2] - window[0], window[3] - window[1]
         return tiled_pixels(tile, moved, *size, self._threads)
+
+
+def window_of(boxes: Sequence[Box], window: Window, reach: float) -> Window | None:
+    """The pixels of a window that see something of boxes; None where none does."""
+    if not boxes:
+        return None
+    lefts, lows, rights, highs = zip(*boxes, strict=True)
+    more = reach + 1.0
+    box = (min(lefts) - more, min(lows) - more, max(rights) + more, max(highs) + more)
+    seen = common(box, (*map(float, window),))  # type: ignore[arg-type]
+    if seen is None:
+        return None
+    left, low, right, high = seen
+    return math.floor(left), math.floor(low), math.ceil(right), math.ceil(high)
 
 
 def _put(canvas: FloatArray, window: Window, layer: FloatArray, part: Window, mode: str) -> None:

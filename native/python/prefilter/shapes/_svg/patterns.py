@@ -2,13 +2,16 @@
 
 """Patterns: what outlines are painted with again and again."""
 
+from collections.abc import Mapping
+
 from .clips import box_clip
 from .context import Context, Sources
 from .document import SvgElement
 from .lengths import Units, about_origin, read_length
+from .masks import shares_of
 from .nesting import SHOWN, children
 from .tree import Box, Clip, Group, Pattern
-from .values import IDENTITY, Length, as_transform, determinant, multiplied
+from .values import IDENTITY, Length, Matrix, as_transform, determinant, multiplied
 from .viewports import MOST_UNITS, as_view_box, placed
 
 _NAMES = ("x", "y", "width", "height")
@@ -32,45 +35,18 @@ def pattern_of(
         sources.warnings.broken("<pattern>", "left out, as it is inside of itself", element.line)
         return None
     attributes, contents = _chain(element, sources)
-    is_share = attributes.get("patternUnits") != "userSpaceOnUse"
-    units = context.units
-    if is_share:
-        units = Units(1.0, 1.0, units.font_size)
-    x, y, width, height = (
-        units.pixels(read_length(element, attributes, name, sources.warnings) or Length(0.0), name)
-        for name in _NAMES
-    )
-    has_area = bounds is not None and bounds[2] > bounds[0] and bounds[3] > bounds[1]
-    if is_share and bounds is not None and has_area:
-        left, top, right, bottom = bounds
-        x, y = left + x * (right - left), top + y * (bottom - top)
-        width, height = width * (right - left), height * (bottom - top)
-    elif is_share:
-        return None
+    tile = _tile(element, attributes, context, bounds, sources)
     own = as_transform(attributes.get("patternTransform", ""))
     if own is None:
         sources.warnings.broken("patternTransform", "ignored", element.line)
         own = IDENTITY
     own = about_origin(own, attributes.get("transform-origin", ""), context.units) or own
-    if contents is None or width <= 0.0 or height <= 0.0 or determinant(own) == 0.0:
+    if contents is None or tile is None or determinant(own) == 0.0:
         return None
-    if not all(1.0 / MOST_UNITS < side < MOST_UNITS for side in (width, height)):
-        sources.warnings.broken("<pattern>", "left out, for its size", element.line)
+    found = _contents_place(attributes, tile, bounds)
+    if found is None:
         return None
-    matrix, size = IDENTITY, context.viewport
-    view = as_view_box(attributes.get("viewBox"))
-    if view is not None:
-        fitted = placed(view, attributes.get("preserveAspectRatio", ""), width, height)
-        matrix = multiplied((1.0, 0.0, 0.0, 1.0, x, y), fitted)
-        size = (view.width, view.height)
-    else:
-        matrix = (1.0, 0.0, 0.0, 1.0, x, y)
-        if attributes.get("patternContentUnits") == "objectBoundingBox":
-            if bounds is None or not has_area:
-                return None
-            scale = (bounds[2] - bounds[0], 0.0, 0.0, bounds[3] - bounds[1], 0.0, 0.0)
-            matrix, size = multiplied(matrix, scale), (1.0, 1.0)
-    tile = (x, y, x + width, y + height)
+    matrix, size = found
     group = Group(is_isolated=True, line=element.line)
     clips: tuple[Clip, ...] = ()
     if attributes.get("overflow", "hidden") not in SHOWN:
@@ -78,7 +54,7 @@ def pattern_of(
     place = Context(
         sources.sheets.style(contents),
         matrix,
-        size,
+        size or context.viewport,
         group,
         context.colors,
         clips,
@@ -86,6 +62,53 @@ def pattern_of(
     )
     sources.draw((child, place) for child in children(contents))
     return Pattern(group, tile, own, opacity)
+
+
+def _tile(
+    element: SvgElement,
+    attributes: Mapping[str, str],
+    context: Context,
+    bounds: Box | None,
+    sources: Sources,
+) -> Box | None:
+    """What is repeated, in the units of the outline; None where it is nothing."""
+    is_share = attributes.get("patternUnits") != "userSpaceOnUse"
+    units = Units(1.0, 1.0, context.units.font_size) if is_share else context.units
+    x, y, width, height = (
+        units.pixels(read_length(element, attributes, name, sources.warnings) or Length(0.0), name)
+        for name in _NAMES
+    )
+    if is_share:
+        shares = shares_of(bounds)
+        if shares is None:
+            return None
+        a, _, _, d, e, f = shares
+        x, y, width, height = e + x * a, f + y * d, width * a, height * d
+    if width <= 0.0 or height <= 0.0:
+        return None
+    if not all(1.0 / MOST_UNITS < side < MOST_UNITS for side in (width, height)):
+        sources.warnings.broken("<pattern>", "left out, for its size", element.line)
+        return None
+    return x, y, x + width, y + height
+
+
+def _contents_place(
+    attributes: Mapping[str, str], tile: Box, bounds: Box | None
+) -> tuple[Matrix, tuple[float, float] | None] | None:
+    """From the units of what is in a pattern to those of the outline, and its own viewport."""
+    matrix: Matrix = (1.0, 0.0, 0.0, 1.0, tile[0], tile[1])
+    view = as_view_box(attributes.get("viewBox"))
+    if view is not None:
+        aspect = attributes.get("preserveAspectRatio", "")
+        fitted = placed(view, aspect, tile[2] - tile[0], tile[3] - tile[1])
+        return multiplied(matrix, fitted), (view.width, view.height)
+    if attributes.get("patternContentUnits") == "objectBoundingBox":
+        shares = shares_of(bounds)
+        if shares is None:
+            return None
+        scale = (shares[0], 0.0, 0.0, shares[3], 0.0, 0.0)
+        return multiplied(matrix, scale), (1.0, 1.0)
+    return matrix, None
 
 
 def _chain(element: SvgElement, sources: Sources) -> tuple[dict[str, str], SvgElement | None]:
