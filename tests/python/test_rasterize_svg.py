@@ -510,8 +510,59 @@ def test_layers_have_limits(monkeypatch):
 
     monkeypatch.setattr(compositing, "MOST_LAYER_PIXELS", 1000)
     wide = f'<g opacity="0.5">{inner}</g>' * 20
-    with pytest.raises(ValueError, match="source: layers of more than 1000 pixels"):
+    with pytest.raises(ValueError, match="source: more than 50000 layers, or of more than 1000"):
         prefilter.rasterize_svg(svg(wide), 16, 16)
+    monkeypatch.undo()
+    monkeypatch.setattr(compositing, "MOST_LAYERS", 10)
+    with pytest.raises(ValueError, match="source: more than 10 layers"):
+        prefilter.rasterize_svg(svg(wide), 16, 16)
+
+
+def test_boxes_of_groups_in_groups_are_counted(monkeypatch):
+    from prefilter.shapes._svg import limits
+
+    clip = f'<clipPath id="c" clipPathUnits="objectBoundingBox">{box(0, 0, 1, 1)}</clipPath>'
+    body = clip + '<g clip-path="url(#c)">' * 20 + box(0, 0, 50, 50) * 20 + "</g>" * 20
+    same(drawn(body), by_hand((0, 0, 50, 50, (0, 0, 0))))
+    monkeypatch.setattr(limits, "MOST_MEASURED", 500)
+    with pytest.raises(ValueError, match="source: boxes around groups of more than 500 elements"):
+        drawn(body)
+
+
+def test_patterns_in_patterns_end():
+    patterns = "".join(
+        f'<pattern id="p{k}" width="1" height="1" patternUnits="userSpaceOnUse">'
+        f'<rect width="0.5" height="1" fill="{f"url(#p{k - 1})" if k else "red"}"/></pattern>'
+        for k in range(8)
+    )
+    made = drawn(patterns + box(20, 20, 60, 60, 'fill="url(#p1)"'))
+    # Half of the columns, of which red is half.
+    np.testing.assert_allclose(made[25:55, 25:55, 3].mean(), 0.5, atol=0.01)
+    assert np.isfinite(drawn(patterns + box(20, 20, 60, 60, 'fill="url(#p7)"'))).all()
+
+
+def test_garbled_drawings_are_drawn_or_refused():
+    random = np.random.default_rng(6)
+    good = svg(
+        '<mask id="m"><rect width="60" height="60" fill="white"/></mask><filter id="f">'
+        '<feGaussianBlur stdDeviation="2"/><feOffset dx="3"/></filter><clipPath id="c">'
+        '<circle r="50"/></clipPath><pattern id="p" width="9" height="9" '
+        'patternUnits="userSpaceOnUse"><rect width="5" height="5"/></pattern><marker id="k" orient="auto"><path d="M0 0H3V3"/>'
+        '</marker><g opacity=".5" mask="url(#m)" filter="url(#f)"><path d="M5 5L50 9 20 70z" '
+        'fill="url(#p)" stroke="red" marker-mid="url(#k)"/></g><g clip-path="url(#c)" '
+        'style="mix-blend-mode:hue"><rect width="40" height="40" transform="rotate(9)"/></g>'
+    )
+    letters = np.frombuffer(b'<>"0123456789.eE-+ ()#%;:,zaMQ', np.uint8)
+    for _ in range(150):
+        data = np.frombuffer(good.encode(), np.uint8).copy()
+        places = random.integers(120, len(data), random.integers(1, 6))
+        data[places] = random.choice(letters, len(places))
+        try:
+            made, _ = prefilter.rasterize_svg(data.tobytes(), 12, 12)
+        except ValueError as error:
+            assert str(error).startswith("source")  # noqa: PT017
+        else:
+            assert np.isfinite(made).all()
 
 
 LAYERED = (

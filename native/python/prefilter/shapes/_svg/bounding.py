@@ -13,7 +13,6 @@ from .tree import Box, carried, joined
 from .values import IDENTITY, Length
 
 _ZERO = Length(0.0)
-_MOST_VISITED = 10_000
 
 
 def object_bounds(element: SvgElement, context: Context, sources: Sources) -> Box | None:
@@ -26,9 +25,8 @@ def object_bounds(element: SvgElement, context: Context, sources: Sources) -> Bo
     """
     waiting = [(element, replace(context, matrix=IDENTITY))]
     found: Box | None = None
-    for _ in range(_MOST_VISITED):
-        if not waiting:
-            break
+    while waiting:
+        sources.budget.take_measured()
         each, place = waiting.pop()
         found = joined(found, _own_bounds(each, place, sources))
         waiting.extend(_inner(each, place, sources, is_outermost=each is element))

@@ -33,10 +33,13 @@ Window = tuple[int, int, int, int]
 # A pattern is drawn tile by tile up to so many outlines.
 _MOST_TILED = 20_000
 _MOST_TILES = 4_000
-_LARGEST_TILE = 2048
+_SMALLEST_TILE, _LARGEST_TILE = 16, 2048
 # Layers within layers: each holds an image.
 _MOST_DEPTH = 48
 MOST_LAYER_PIXELS = 1 << 32
+MOST_LAYERS = 50_000
+# A pattern with layers in it is drawn tile by tile up to so many tiles.
+_MOST_LAYERED_TILES = 64
 # What luminance is made of, of linear colors; SVG has the same for encoded ones.
 _LUMINANCE = tuple(np.float32(share) for share in (0.2125, 0.7154, 0.0721))
 
@@ -60,6 +63,7 @@ class Compositor:
         self._outlining = Outlining()
         self._depth = 0
         self._pixels_left = MOST_LAYER_PIXELS
+        self._layers_left = MOST_LAYERS
 
     def draw(
         self, drawing: Drawing, matrix: Matrix, size: tuple[int, int], around: tuple[Clip, ...]
@@ -112,8 +116,11 @@ class Compositor:
     def _blank(self, window: Window) -> FloatArray:
         width, height = window[2] - window[0], window[3] - window[1]
         self._pixels_left -= width * height
-        if self._pixels_left < 0:
-            raise TooLargeError(f"layers of more than {MOST_LAYER_PIXELS} pixels")
+        self._layers_left -= 1
+        if self._pixels_left < 0 or self._layers_left < 0:
+            raise TooLargeError(
+                f"more than {MOST_LAYERS} layers, or of more than {MOST_LAYER_PIXELS} pixels"
+            )
         return np.zeros((height, width, 4), np.float32)
 
     def _put_shapes(self, shapes: list[Shape], canvas: FloatArray, window: Window) -> None:
@@ -252,7 +259,10 @@ class Compositor:
         columns = range(math.floor((box[0] - left) / width), math.ceil((box[2] - left) / width))
         rows = range(math.floor((box[1] - top) / height), math.ceil((box[3] - top) / height))
         tiles = (columns.stop - columns.start) * (rows.stop - rows.start)
-        if tiles > _MOST_TILES or tiles * leaf_count(pattern.group.items) > _MOST_TILED:
+        most = min(_MOST_TILES, _MOST_TILED // max(leaf_count(pattern.group), 1))
+        if not all(is_plain(each.item) for each in self._layering.placed(pattern.group, whole)):
+            most = min(most, _MOST_LAYERED_TILES)
+        if tiles > most:
             return self._tiled(pattern, whole, window)
         return self._nested(
             chain.from_iterable(
@@ -270,7 +280,7 @@ class Compositor:
         """The same by one tile as an image."""
         left, top, right, bottom = pattern.tile
         columns, rows = (
-            min(max(math.ceil(_native.hypot(*axis) * side), 1), _LARGEST_TILE)
+            min(max(math.ceil(_native.hypot(*axis) * side), _SMALLEST_TILE), _LARGEST_TILE)
             for axis, side in ((whole[:2], right - left), (whole[2:4], bottom - top))
         )
         scale = (columns / (right - left), 0.0, 0.0, rows / (bottom - top), 0.0, 0.0)

@@ -2,7 +2,7 @@
 
 """Which groups of a tree need a layer of their own, and which show the same item by item."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from .tree import Box, Clip, Group, Item, Painted, Pattern, common, leaves
@@ -98,6 +98,6 @@ def bounds_of(item: Item) -> Iterator[Box]:
         yield box
 
 
-def leaf_count(items: Sequence[Item]) -> int:
+def leaf_count(group: Group) -> int:
     """How many outlines and pictures there are."""
-    return sum(sum(1 for _ in leaves(item)) if isinstance(item, Group) else 1 for item in items)
+    return sum(1 for _ in leaves(group))

@@ -9,6 +9,7 @@ from .tags import NOT_DRAWN
 
 MOST_USED = 250_000
 MOST_SEGMENTS = 2_000_000
+MOST_MEASURED = 1_000_000
 # What a dash becomes has about so many.
 _SEGMENTS_PER_DASH = 4.0
 
@@ -27,12 +28,19 @@ class Budget:
     def __init__(self, elements: int) -> None:
         self._elements_left = elements + MOST_USED
         self._segments_left = float(MOST_SEGMENTS)
+        self._measured_left = MOST_MEASURED
 
     def take_element(self) -> None:
         """Counts an element that is drawn. Raises TooLargeError where there are too many."""
         self._elements_left -= 1
         if self._elements_left < 0:
             raise TooLargeError(f"<use> repeats more than {MOST_USED} elements")
+
+    def take_measured(self) -> None:
+        """Counts an element whose box is needed, for another one. Raises TooLargeError likewise."""
+        self._measured_left -= 1
+        if self._measured_left < 0:
+            raise TooLargeError(f"boxes around groups of more than {MOST_MEASURED} elements")
 
     def take_segments(self, count: int, dashes: float) -> None:
         """Counts lines and curves that are drawn, and dashes. Raises TooLargeError likewise."""
