@@ -547,8 +547,9 @@ def test_garbled_drawings_are_drawn_or_refused():
         '<mask id="m"><rect width="60" height="60" fill="white"/></mask><filter id="f">'
         '<feGaussianBlur stdDeviation="2"/><feOffset dx="3"/></filter><clipPath id="c">'
         '<circle r="50"/></clipPath><pattern id="p" width="9" height="9" '
-        'patternUnits="userSpaceOnUse"><rect width="5" height="5"/></pattern><marker id="k" orient="auto"><path d="M0 0H3V3"/>'
-        '</marker><g opacity=".5" mask="url(#m)" filter="url(#f)"><path d="M5 5L50 9 20 70z" '
+        'patternUnits="userSpaceOnUse"><rect width="5" height="5"/></pattern>'
+        '<marker id="k" orient="auto"><path d="M0 0H3V3"/></marker>'
+        '<g opacity=".5" mask="url(#m)" filter="url(#f)"><path d="M5 5L50 9 20 70z" '
         'fill="url(#p)" stroke="red" marker-mid="url(#k)"/></g><g clip-path="url(#c)" '
         'style="mix-blend-mode:hue"><rect width="40" height="40" transform="rotate(9)"/></g>'
     )
