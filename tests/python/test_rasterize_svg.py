@@ -424,6 +424,54 @@ def test_where_images_are():
     same(made, by_hand((0, 0, 20, 20, RED), (20, 0, 40, 20, GREEN)))
 
 
+@pytest.mark.parametrize("channels", [1, 3, 4])
+def test_pictures_are_the_same_by_either_library(monkeypatch, channels):
+    pytest.importorskip("PIL")
+    pytest.importorskip("OpenImageIO")
+    from prefilter.shapes._svg import pictures
+
+    random = np.random.default_rng(2)
+    for kind in (np.uint8, np.uint16):
+        values = random.integers(0, np.iinfo(kind).max, (5, 7, channels), kind)
+        data = png.encoded(values)
+        first = pictures.read_picture(data)
+        with monkeypatch.context() as patched:
+            patched.setattr(pictures, "import_module", missing)
+            second = pictures.read_picture(data)
+        # Pillow cuts colors of 16 bits off, which are rounded elsewhere.
+        assert np.abs(first.astype(int) - second).max() <= (kind is np.uint16)
+        expected = np.rint(values / (1 if kind is np.uint8 else 257)).astype(np.uint8)[::-1]
+        np.testing.assert_array_equal(second[..., 0], expected[..., 0])
+        alpha = expected[..., 3] if channels == 4 else 255
+        np.testing.assert_array_equal(second[..., 3], np.broadcast_to(alpha, (5, 7)))
+
+
+def missing(name):
+    raise ImportError(name)
+
+
+def test_images_are_read_once_and_counted(monkeypatch):
+    from prefilter.shapes._svg import images, limits
+
+    href = data_url(np.full((4, 4, 4), 255, np.uint8))
+    body = f'<defs><image id="i" width="9" height="9" href="{href}"/></defs>'
+    body += '<use href="#i"/>' * 5
+    count = 0
+
+    def counted(data):
+        nonlocal count
+        count += 1
+        return images_read(data)
+
+    images_read = images.read_picture
+    monkeypatch.setattr(images, "read_picture", counted)
+    same(drawn(body), by_hand((0, 0, 9, 9, (1, 1, 1))))
+    assert count == 1
+    monkeypatch.setattr(limits, "MOST_TEXELS", 15)
+    with pytest.raises(ValueError, match="source: images of more than 15 pixels"):
+        drawn(body)
+
+
 def test_drawings_in_drawings():
     inner = svg(box(-9, -9, 50, 99, 'fill="red"'), 'width="20" height="10" viewBox="0 0 100 50"')
     href = "data:image/svg+xml;base64," + base64.b64encode(inner.encode()).decode()

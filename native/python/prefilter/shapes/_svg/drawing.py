@@ -5,7 +5,6 @@
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from functools import partial
 
 from ..shape import Shape
 from .basic_shapes import BASIC_SHAPES
@@ -14,7 +13,7 @@ from .clips import box_clip
 from .context import Context, Sources
 from .document import Document, SvgElement, read_document
 from .filters import filter_of
-from .images import draw_image
+from .images import Images, draw_image
 from .limits import Budget, check_uses
 from .markers import MARKED, draw_markers
 from .masks import masks_of
@@ -102,11 +101,7 @@ class Walk:
         self.page: Page = read_page(self.sources)
         self._tell = tell
         self._depth = depth
-        self._colors = Colors(is_linear=False, is_stepped=False)
-
-    def draw(self, matrix: Matrix, clips: tuple[Clip, ...], target: Group) -> None:
-        """Draws a drawing in another one."""
-        self.draw_in(matrix, clips, target, self._colors)
+        self._images = Images(self._nested)
 
     def draw_in(
         self, matrix: Matrix, clips: tuple[Clip, ...], target: Group, colors: Colors
@@ -147,8 +142,7 @@ class Walk:
         if tag in BASIC_SHAPES:
             self._paint(element, inside)
         elif tag == "image":
-            read = partial(self._nested, inside)
-            draw_image(element, inside, sources, read)
+            draw_image(element, inside, sources, self._images)
         elif tag == "use":
             yield from used(element, inside, sources)
         else:
@@ -243,13 +237,11 @@ class Walk:
             Painted(outline, rule, matrix, found, stroke, clips, box, element.line)
         )
 
-    def _nested(self, context: Context, data: bytes, name: str) -> "Walk":
+    def _nested(self, data: bytes, name: str) -> "Walk":
         """A drawing in this one; nothing in it comes from other files."""
         if self._depth >= _MOST_NESTED:
             raise ValueError(f"as drawings are nested more than {_MOST_NESTED} deep")
         document = read_document(data, lambda _: None)
         document.name = name
         sources = self.sources
-        inner = Walk(document, sources.warnings, lambda _: None, self._depth + 1, sources.budget)
-        inner._colors = context.colors
-        return inner
+        return Walk(document, sources.warnings, lambda _: None, self._depth + 1, sources.budget)

@@ -14,9 +14,11 @@ import numpy.typing as npt
 from .clips import box_clip
 from .context import Context, Sources
 from .document import SvgElement
+from .limits import TooLargeError
 from .nesting import SHOWN
 from .page import Page
-from .pictures import PictureError, read_picture
+from .paint_servers import Colors
+from .pictures import PictureError, read_picture, size_of
 from .tree import Clip, Group, Picture, carried
 from .values import Length, Matrix, multiplied
 from .viewports import ViewBox, placed
@@ -27,21 +29,6 @@ _SIGNATURES = (b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff")
 MOST_BYTES = 1 << 28
 
 
-class Inner(Protocol):
-    """A drawing in a drawing."""
-
-    @property
-    def page(self) -> Page:
-        """How large it is."""
-
-    def draw(self, matrix: Matrix, clips: tuple[Clip, ...], target: Group) -> None:
-        """Draws it; the matrix leads from its units to those of the tree."""
-
-
-Read = Callable[[bytes, str], Inner]
-"""Reads a drawing in a drawing, of its bytes and its name."""
-
-
 class UnusableError(Exception):
     """An image that cannot be shown; the message says why."""
 
@@ -50,34 +37,78 @@ class ElsewhereError(Exception):
     """An image that others may show; the message says why it is not shown here."""
 
 
-def draw_image(element: SvgElement, context: Context, sources: Sources, read: Read) -> None:
+class Inner(Protocol):
+    """A drawing in a drawing."""
+
+    @property
+    def page(self) -> Page:
+        """How large it is."""
+
+    def draw_in(
+        self, matrix: Matrix, clips: tuple[Clip, ...], target: Group, colors: Colors
+    ) -> None:
+        """Draws it; the matrix leads from its units to those of the tree."""
+
+
+Read = Callable[[bytes, str], Inner]
+"""Reads a drawing in a drawing, of its bytes and its name."""
+Contents = npt.NDArray[np.uint8] | Inner
+
+
+class Images:
+    """The images of a drawing, each of which is read once.
+
+    Args:
+        read: Reads a drawing in this one.
+    """
+
+    def __init__(self, read: Read) -> None:
+        self._read = read
+        self._known: dict[SvgElement, Contents | Exception] = {}
+
+    def contents(self, element: SvgElement, sources: Sources) -> Contents:
+        """The texels of an image, or a drawing. Raises what says why there are none."""
+        if element not in self._known:
+            try:
+                self._known[element] = self._contents(element, sources)
+            except (ElsewhereError, UnusableError, PictureError, ValueError) as error:
+                self._known[element] = error
+        found = self._known[element]
+        if isinstance(found, Exception):
+            raise found
+        return found
+
+    def _contents(self, element: SvgElement, sources: Sources) -> Contents:
+        data, name = _bytes_of(element, sources)
+        if data.startswith(_SIGNATURES):
+            width, height = size_of(data)
+            sources.budget.take_texels(width * height)
+            return read_picture(data)
+        if data.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"<" or data[:2] == b"\x1f\x8b":
+            return self._read(data, name)
+        raise ElsewhereError("as it is neither PNG, JPEG nor SVG")
+
+
+def draw_image(element: SvgElement, context: Context, sources: Sources, images: Images) -> None:
     """Draws an `image`."""
     if context.style.visibility != "visible":
         return
     try:
-        data, name = _contents(element, sources)
-        _draw(element, data, name, context, sources, read)
+        _draw(element, images.contents(element, sources), context, sources)
+    except TooLargeError:
+        raise
     except ElsewhereError as error:
         sources.warnings.unsupported("<image>", f"left out, {error}", element.line)
     except (UnusableError, PictureError, ValueError) as error:
         sources.warnings.broken("<image>", f"left out, {error}", element.line)
 
 
-def _draw(
-    element: SvgElement, data: bytes, name: str, context: Context, sources: Sources, read: Read
-) -> None:
+def _draw(element: SvgElement, contents: Contents, context: Context, sources: Sources) -> None:
     declared = sources.sheets.declared(element)
-    is_raster = data.startswith(_SIGNATURES)
-    texels: npt.NDArray[np.uint8] | None = None
-    inner: Inner | None = None
-    if is_raster:
-        texels = read_picture(data)
-        own_width, own_height = float(texels.shape[1]), float(texels.shape[0])
-    elif data.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"<" or data[:2] == b"\x1f\x8b":
-        inner = read(data, name)
-        own_width, own_height = inner.page.width, inner.page.height
+    if isinstance(contents, np.ndarray):
+        own_width, own_height = float(contents.shape[1]), float(contents.shape[0])
     else:
-        raise ElsewhereError("as it is neither PNG, JPEG nor SVG")
+        own_width, own_height = contents.page.width, contents.page.height
     x, y = (sources.pixels(element, key, _ZERO, context.units) for key in ("x", "y"))
     width, height = (
         sources.pixels(element, key, _AUTO, context.units) for key in ("width", "height")
@@ -98,11 +129,11 @@ def _draw(
     clips = context.clips
     if declared.get("overflow", "hidden") not in SHOWN and aspect.strip().endswith("slice"):
         clips = (*clips, box_clip((x, y, x + width, y + height), context.matrix))
-    if texels is not None:
+    if isinstance(contents, np.ndarray):
         unit = multiplied(matrix, (own_width, 0.0, 0.0, own_height, 0.0, 0.0))
         context.target.items.append(
             Picture(
-                texels,
+                contents,
                 unit,
                 context.style.image_rendering in _PIXELATED,
                 context.colors.is_linear,
@@ -111,15 +142,15 @@ def _draw(
                 element.line,
             )
         )
-    elif inner is not None:
+    else:
         group = Group(is_isolated=True, line=element.line)
         context.target.items.append(group)
         clips = (*clips, box_clip((0.0, 0.0, own_width, own_height), matrix))
-        fitted = placed(inner.page.view, inner.page.aspect, own_width, own_height)
-        inner.draw(multiplied(matrix, fitted), clips, group)
+        fitted = placed(contents.page.view, contents.page.aspect, own_width, own_height)
+        contents.draw_in(multiplied(matrix, fitted), clips, group, context.colors)
 
 
-def _contents(element: SvgElement, sources: Sources) -> tuple[bytes, str]:
+def _bytes_of(element: SvgElement, sources: Sources) -> tuple[bytes, str]:
     """The bytes that an image refers to, and what messages call it."""
     address = element.address
     if not address or address.startswith("#"):

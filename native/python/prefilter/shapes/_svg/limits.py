@@ -10,6 +10,7 @@ from .tags import NOT_DRAWN
 MOST_USED = 250_000
 MOST_SEGMENTS = 2_000_000
 MOST_MEASURED = 1_000_000
+MOST_TEXELS = 1 << 26
 # What a dash becomes has about so many.
 _SEGMENTS_PER_DASH = 4.0
 
@@ -29,6 +30,7 @@ class Budget:
         self._elements_left = elements + MOST_USED
         self._segments_left = float(MOST_SEGMENTS)
         self._measured_left = MOST_MEASURED
+        self._texels_left = MOST_TEXELS
 
     def take_element(self) -> None:
         """Counts an element that is drawn. Raises TooLargeError where there are too many."""
@@ -41,6 +43,12 @@ class Budget:
         self._measured_left -= 1
         if self._measured_left < 0:
             raise TooLargeError(f"boxes around groups of more than {MOST_MEASURED} elements")
+
+    def take_texels(self, count: int) -> None:
+        """Counts texels of images. Raises TooLargeError likewise."""
+        self._texels_left -= count
+        if self._texels_left < 0:
+            raise TooLargeError(f"images of more than {MOST_TEXELS} pixels")
 
     def take_segments(self, count: int, dashes: float) -> None:
         """Counts lines and curves that are drawn, and dashes. Raises TooLargeError likewise."""

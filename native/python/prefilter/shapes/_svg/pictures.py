@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 Texels = npt.NDArray[np.uint8]
 
-MOST_TEXELS = 1 << 26
+MOST_TEXELS = 1 << 25
 
 
 class PictureError(Exception):
@@ -28,7 +28,7 @@ def read_picture(data: bytes) -> Texels:
     Raises:
         PictureError: It cannot be read.
     """
-    width, height = _size(data)
+    width, height = size_of(data)
     if width * height > MOST_TEXELS:
         raise PictureError(f"as it has {width} x {height} pixels; the limit is {MOST_TEXELS}")
     try:
@@ -72,7 +72,7 @@ def _as_rgba(values: Texels) -> Texels:
     return found
 
 
-def _size(data: bytes) -> tuple[int, int]:
+def size_of(data: bytes) -> tuple[int, int]:
     """The width and height that a file says it has, before anything of it is unpacked."""
     if data.startswith(b"\x89PNG"):
         return int.from_bytes(data[16:20], "big"), int.from_bytes(data[20:24], "big")
