@@ -577,6 +577,27 @@ def test_boxes_of_groups_in_groups_are_counted(monkeypatch):
         drawn(body)
 
 
+@pytest.mark.parametrize(
+    "group",
+    [
+        '<g mask="url(#m{})"><rect/></g>',
+        '<rect fill="url(#m{})"/>',
+        '<path marker-mid="url(#m{})"/>',
+    ],
+)
+def test_what_masks_and_others_repeat_is_counted_before_it_is_drawn(monkeypatch, group):
+    from prefilter.shapes._svg.drawing import Walk
+
+    def visited(*_):
+        raise AssertionError
+
+    monkeypatch.setattr(Walk, "_visit", visited)
+    tag = "mask" if "mask=" in group else "pattern" if "fill" in group else "marker"
+    bombs = "".join(f'<{tag} id="m{k}">{group.format(k - 1) * 3}</{tag}>' for k in range(1, 20))
+    with pytest.raises(ValueError, match="masks, patterns and markers repeat more than 250000"):
+        prefilter.rasterize_svg(svg(bombs + group.format(19)), 9, 9)
+
+
 def test_patterns_in_patterns_end():
     patterns = "".join(
         f'<pattern id="p{k}" width="1" height="1" patternUnits="userSpaceOnUse">'

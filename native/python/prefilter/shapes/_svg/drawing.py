@@ -96,7 +96,7 @@ class Walk:
     ) -> None:
         sheets = StyleSheets(document, warnings, lambda share: tell(0.5 * share))
         servers = PaintServers(document, sheets, warnings)
-        check_uses(document)
+        check_uses(document, sheets)
         self.sources = Sources(document, sheets, servers, warnings, budget, document.folder)
         self.page: Page = read_page(self.sources)
         self._tell = tell

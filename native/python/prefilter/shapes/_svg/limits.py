@@ -5,12 +5,16 @@
 from collections.abc import Iterator
 
 from .document import Document, SvgElement
+from .styles import StyleSheets
 from .tags import NOT_DRAWN
+from .values import as_paint
 
 MOST_USED = 250_000
 MOST_SEGMENTS = 2_000_000
 MOST_MEASURED = 1_000_000
 MOST_TEXELS = 1 << 26
+_TOO_MANY_USED = "<use>, masks, patterns and markers repeat more than {} elements"
+_REFERRING = {"mask", "fill", "stroke", "marker-start", "marker-mid", "marker-end"}
 # What a dash becomes has about so many.
 _SEGMENTS_PER_DASH = 4.0
 
@@ -36,7 +40,7 @@ class Budget:
         """Counts an element that is drawn. Raises TooLargeError where there are too many."""
         self._elements_left -= 1
         if self._elements_left < 0:
-            raise TooLargeError(f"<use> repeats more than {MOST_USED} elements")
+            raise TooLargeError(_TOO_MANY_USED.format(MOST_USED))
 
     def take_measured(self) -> None:
         """Counts an element whose box is needed, for another one. Raises TooLargeError likewise."""
@@ -60,25 +64,35 @@ class Budget:
             )
 
 
-def check_uses(document: Document) -> None:
-    """Raises TooLargeError where `use` repeats too many elements, before any is drawn."""
+def check_uses(document: Document, sheets: StyleSheets) -> None:
+    """Raises TooLargeError where `use`, masks and others that elements refer to repeat too many
+    elements, before any is drawn.
+    """
     counts: dict[SvgElement, int] = {}
     waiting = [(document.root, False)]
     while waiting:
         element, is_done = waiting.pop()
         if is_done:
-            counts[element] = 1 + sum(counts.get(each, 0) for each in _drawn_by(element, document))
+            counts[element] = 1 + sum(
+                counts.get(each, 0) for each in _drawn_by(element, document, sheets)
+            )
         elif element not in counts:
             # It is inside of itself where it is met again before it is done.
             counts[element] = 0
             waiting.append((element, True))
-            waiting.extend((each, False) for each in _drawn_by(element, document))
+            waiting.extend((each, False) for each in _drawn_by(element, document, sheets))
     if counts[document.root] > document.count + MOST_USED:
-        raise TooLargeError(f"<use> repeats more than {MOST_USED} elements")
+        raise TooLargeError(_TOO_MANY_USED.format(MOST_USED))
 
 
-def _drawn_by(element: SvgElement, document: Document) -> Iterator[SvgElement]:
+def _drawn_by(element: SvgElement, document: Document, sheets: StyleSheets) -> Iterator[SvgElement]:
     """Yields the elements that one draws."""
+    declared = sheets.declared(element)
+    for name in _REFERRING & declared.keys():
+        paint = as_paint(declared[name])
+        brought = document.ids.get(paint.server[1:]) if paint is not None else None
+        if brought is not None and brought.tag in ("mask", "pattern", "marker"):
+            yield brought
     if element.tag == "use":
         target = document.ids.get(element.href)
         if target is not None:
