@@ -135,7 +135,7 @@ def read_svg(
 
     tell = teller(as_progress(progress))
     colors = Colors(light == "linear", is_stepped=False)
-    name, drawing, warnings = open_drawing(source, colors=colors, tell=tell)
+    name, drawing, warnings = open_drawing(source, colors=colors, reads_files=False, tell=tell)
     return SvgDrawing(name, drawing, light, warnings)
 
 

@@ -85,7 +85,7 @@ class SvgPicture:
 
         colors = Colors(light == "linear", is_stepped=light == "srgb")
         self._name, self._drawing, warnings = open_drawing(
-            source, colors=colors, tell=teller(progress)
+            source, colors=colors, reads_files=True, tell=teller(progress)
         )
         self.warnings = warnings.all()
 

@@ -17,14 +17,17 @@ def open_drawing(
     source: str | os.PathLike[str] | bytes,
     *,
     colors: Colors,
+    reads_files: bool,
     tell: Callable[[float], None],
 ) -> tuple[str, Drawing, Warnings]:
-    """Reads a drawing. See `prefilter.read_svg`.
+    """Reads a drawing, and images beside it if it is to. See `prefilter.read_svg`.
 
     Returns:
         What messages call it, the drawing, and what is wrong with it.
     """
     document = read_document(source, lambda share: tell(0.3 * share))
+    if not reads_files:
+        document.folder = None
     warnings = Warnings()
     with refusing(document.name):
         drawing = Drawing(document, colors, warnings, lambda share: tell(0.3 + 0.7 * share))
