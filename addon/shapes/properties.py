@@ -62,6 +62,8 @@ class RasterizeProperties(PartedSettings):
             if self.background == "color":
                 layout.prop(self, "background_color", text="")
         layout.prop(self, "light" if source == "svg" else "overlap")
+        if source == "svg":
+            layout.prop(self, "font_folder")
         if not self._is_camera(source):
             layout.prop(self, "margin")
 

@@ -75,6 +75,7 @@ SAME_IN_ANY_PYTHON = {
     "test_svg_paint.py",
     "test_svg_references.py",
     "test_svg_strokes.py",
+    "test_svg_text.py",
     "test_texture_use.py",
     "test_thickness.py",
     "test_voxel_laws.py",

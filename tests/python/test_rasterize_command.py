@@ -5,6 +5,7 @@
 import numpy as np
 import prefilter
 import pytest
+from box_fonts import make_font
 from command_files import fails, run, write_quad
 
 oiio = pytest.importorskip("OpenImageIO", reason="scripts/decoders.txt is not installed")
@@ -71,6 +72,21 @@ def test_svg_to_bytes(logo, tmp_path):
     found = pixels(out, "uint8")
     assert found.shape == (10, 18, 3)
     assert found[0, 0].tolist() == [255, 255, 255]
+
+
+def test_text_has_the_fonts_of_a_folder(tmp_path):
+    make_font(tmp_path / "boxes.ttf")
+    drawing = tmp_path / "text.svg"
+    drawing.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="40" height="20">'
+        '<text x="5" y="15" font-family="Boxes" font-size="20">A</text></svg>'
+    )
+    out = tmp_path / "out.png"
+    more = ("--fonts", tmp_path, "--density", "1", "--margin", "0")
+    assert run("rasterize", drawing, out, *more) == 0
+    covered = np.zeros((20, 40))
+    covered[5:15, 5:17] = 255
+    np.testing.assert_array_equal(pixels(out, "uint8")[..., 3], covered)
 
 
 def test_mask_of_a_uv_map(tmp_path):

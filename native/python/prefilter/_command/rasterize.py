@@ -25,7 +25,8 @@ _SVG = ".svg"
 _SOURCES = (_SVG, *mesh_endings.ENDINGS)
 FLAGS = (
     *("filter", "side", "width", "height", "density", "margin", "tile", "color"),
-    *("background_color", "overlap", "light", "pixel_type", "alpha", "use_bleed", "threads"),
+    *("background_color", "overlap", "light", "font_folder", "pixel_type", "alpha", "use_bleed"),
+    "threads",
 )
 """The options that need no Blender."""
 _NOTES = """\

@@ -92,6 +92,14 @@ class RasterizeSettings:
     filepath: str = text(
         "", "SVG File", "File for the source SVG File", subtype="FILE_PATH", flag=""
     )
+    font_folder: str = text(
+        "",
+        "Fonts",
+        "Folder with the fonts for text in SVG files. If empty, the fonts of the system",
+        subtype="DIR_PATH",
+        flag="--fonts",
+        metavar="FOLDER",
+    )
     filter: str = one_of(
         "box",
         "Filter",

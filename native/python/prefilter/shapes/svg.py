@@ -3,7 +3,7 @@
 """SVG drawings as shapes."""
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
 from .._border.arguments import ProgressCallback, as_one_of, as_progress
@@ -104,12 +104,13 @@ def read_svg(
     source: str | os.PathLike[str] | bytes,
     *,
     light: str = "srgb",
+    fonts: Iterable[str | os.PathLike[str]] | None = None,
     progress: ProgressCallback | None = None,
 ) -> SvgDrawing:
-    """Reads a drawing: its paths and basic shapes, with solid colors, gradients and strokes.
+    """Reads a drawing: its paths, basic shapes and text, with colors, gradients and strokes.
 
-    Text, images and patterns are left out, markers, filters, masks and clip paths ignored; the
-    `warnings` of the result tell of them. Arcs, circles and ellipses stay exact.
+    Letters are outlines of their fonts. What needs layers, pictures, patterns and filters is left
+    out or ignored; the `warnings` of the result tell of it. Arcs, circles and ellipses stay exact.
 
     Args:
         source: The path of a file, plain (.svg) or compressed (.svgz); or markup, as text that
@@ -117,6 +118,8 @@ def read_svg(
         light: SVG blends colors as they are encoded for display. "linear": they are decoded, and
             gradients look as in a browser; what is translucent blends as light does. "srgb": they
             stay encoded, so that all looks as in a browser; so is an image of them.
+        fonts: Files and folders of fonts for text, the best first: only these, so that the drawing
+            is the same on every system. None: the fonts of the system.
         progress: Called with the share that is done; False stops.
 
     Returns:
@@ -135,7 +138,9 @@ def read_svg(
 
     tell = teller(as_progress(progress))
     colors = Colors(light == "linear", is_stepped=False)
-    name, drawing, warnings = open_drawing(source, colors=colors, reads_files=False, tell=tell)
+    name, drawing, warnings = open_drawing(
+        source, colors=colors, reads_files=False, tell=tell, fonts=fonts
+    )
     return SvgDrawing(name, drawing, light, warnings)
 
 

@@ -3,6 +3,7 @@
 """Images of whole SVG drawings."""
 
 import os
+from collections.abc import Iterable
 
 import numpy as np
 import numpy.typing as npt
@@ -23,6 +24,7 @@ def rasterize_svg(
     *,
     filter: str = "box",
     light: str = "srgb",
+    fonts: Iterable[str | os.PathLike[str]] | None = None,
     dtype: npt.DTypeLike = np.float32,
     progress: ProgressCallback | None = None,
     threads: int = 0,
@@ -42,6 +44,8 @@ def rasterize_svg(
         filter: As of `rasterize`. Images have a filter of their own.
         light: "srgb": colors are mixed as they are encoded for display, as in browsers, opacities
             in steps of a 255th. "linear": as light is.
+        fonts: Files and folders of fonts for text, the best first: only these, so that the image
+            is the same on every system. None: the fonts of the system.
         dtype: float32, or uint8 for values from 0 to 1 as 0 to 255, rounded.
         progress: Called with the fraction done; False stops.
         threads: 0 means all processors. The result does not depend on it.
@@ -64,7 +68,7 @@ def rasterize_svg(
     count = as_threads(threads)
     is_bytes = as_whether_bytes(dtype)
     tell = as_progress(progress)
-    picture = SvgPicture(source, light, part_of(tell, 0.0, _READ))
+    picture = SvgPicture(source, light, fonts, part_of(tell, 0.0, _READ))
     image = picture.drawn(
         *size, None, filter_name=filter, threads=count, progress=part_of(tell, _READ, 1.0)
     )
@@ -78,6 +82,7 @@ class SvgPicture:
         self,
         source: str | os.PathLike[str] | bytes,
         light: str,
+        fonts: Iterable[str | os.PathLike[str]] | None,
         progress: ProgressCallback | None,
     ) -> None:
         from ._svg.opening import open_drawing
@@ -85,7 +90,7 @@ class SvgPicture:
 
         colors = Colors(light == "linear", is_stepped=light == "srgb")
         self._name, self._drawing, warnings = open_drawing(
-            source, colors=colors, reads_files=True, tell=teller(progress)
+            source, colors=colors, reads_files=True, tell=teller(progress), fonts=fonts
         )
         self.warnings = warnings.all()
 

@@ -131,7 +131,8 @@ class _Svg:
 
     def drawn(self, settings: RasterizeSettings, progress: Progress) -> Drawn:
         """Reads the file, and returns what draws it into an image."""
-        picture = SvgPicture(self.path, settings.light, share(progress, 0.0, 1.0))
+        fonts = [settings.font_folder] if settings.font_folder else None
+        picture = SvgPicture(self.path, settings.light, fonts, share(progress, 0.0, 1.0))
         box = np.array([[0.0, 0.0], [picture.width, picture.height]])
         frame = fitted_frame(box, settings)
         check_memory(frame, self.memory)

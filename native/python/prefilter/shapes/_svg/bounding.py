@@ -38,6 +38,12 @@ def _own_bounds(element: SvgElement, context: Context, sources: Sources) -> Box 
         outline = sources.outline(element, context.units)
         box = outline.bounds() if outline is not None else None
         return carried(box, context.matrix) if box is not None else None
+    if element.tag == "text":
+        # Fonts take modules that those who draw no text need not wait for.
+        from .text import drawn_text
+
+        box = drawn_text(element, context, sources).bounds
+        return carried(box, context.matrix) if box is not None else None
     if element.tag == "image":
         x, y, width, height = (
             sources.pixels(element, name, _ZERO, context.units)

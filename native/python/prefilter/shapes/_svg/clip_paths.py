@@ -79,7 +79,12 @@ def _parts(child: SvgElement, context: Context, sources: Sources) -> Iterator[Cl
                     yield replace(part, clips=(*place.clips, *part.clips))
         return
     if child.tag == "text":
-        sources.warnings.unsupported("<text> in a clip path", "left out", child.line)
+        # Fonts take modules that those who draw no text need not wait for.
+        from .text import drawn_text
+
+        for piece in drawn_text(child, place, sources).pieces:
+            sources.budget.take_segments(len(piece.outline), 0.0)
+            yield ClipPart(piece.outline, "nonzero", place.matrix, place.clips)
     if child.tag not in BASIC_SHAPES or child.tag == "line":
         return
     outline = sources.outline(child, place.units)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from .basic_shapes import read_shape
 from .document import Document, SvgElement
+from .font_places import FontPlaces
 from .lengths import Units, read_length
 from .limits import Budget
 from .outline import Outline
@@ -23,6 +24,7 @@ class Sources:
     """What all elements are read with.
 
     Attributes:
+        fonts: Those for text.
         folder: Where images beside the drawing are; None where there are none.
         waiting: The elements to be drawn, of which the next one is the last.
         outlines: Those that are known, by element.
@@ -33,6 +35,7 @@ class Sources:
     servers: PaintServers
     warnings: Warnings
     budget: Budget
+    fonts: FontPlaces
     folder: Path | None = None
     waiting: list[tuple[SvgElement, "Context"]] = field(default_factory=list)
     outlines: dict[tuple[SvgElement, Units], Outline | None] = field(default_factory=dict)

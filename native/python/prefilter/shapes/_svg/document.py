@@ -71,6 +71,7 @@ class Document:
         self.count = 0
         self.foreign_style = 0
         self._open: list[SvgElement] = []
+        self._texts = 0
         self._root: SvgElement | None = None
         self._references = sum(part.count(b"&") for part in parts())
         self._size = max(sum(map(len, parts())), 1)
@@ -119,6 +120,7 @@ class Document:
         else:
             self._root = element
         self._open.append(element)
+        self._texts += element.tag == "text"
         if "id" in element.attrib:
             self.ids.setdefault(element.attrib["id"], element)
         self.count += 1
@@ -128,11 +130,16 @@ class Document:
             self._tell(self._parser.CurrentByteIndex / self._size)
 
     def _end(self, name: str) -> None:
-        self._open.pop()
+        self._texts -= self._open.pop().tag == "text"
 
     def _text(self, text: str) -> None:
-        if self._open and self._open[-1].tag == "style":
-            self._open[-1].text = (self._open[-1].text or "") + text
+        if not self._open or not (self._texts or self._open[-1].tag == "style"):
+            return
+        element = self._open[-1]
+        if len(element):
+            element[-1].tail = (element[-1].tail or "") + text
+        else:
+            element.text = (element.text or "") + text
 
     def _entity(self, name: str, parameter: bool, value: str | None, *rest: Any) -> None:
         if value is None:

@@ -4,7 +4,7 @@
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from ..shape import Shape
 from .basic_shapes import BASIC_SHAPES
@@ -13,6 +13,7 @@ from .clips import box_clip
 from .context import Context, Sources
 from .document import Document, SvgElement, read_document
 from .filters import filter_of
+from .font_places import FontPlaces
 from .images import Images, draw_image
 from .limits import Budget, check_uses
 from .markers import MARKED, draw_markers
@@ -24,7 +25,7 @@ from .paint_servers import Colors, PaintServers
 from .painting import paint_order, resolved, stroke_of
 from .styles import UNSUPPORTED, Style, StyleSheets
 from .tags import GROUPS, NOT_DRAWN
-from .tree import Clip, Group, Painted, Stroke, carried
+from .tree import Box, Clip, Group, Painted, Stroke, carried
 from .values import IDENTITY, Matrix, Paint, determinant, multiplied
 from .warnings import Warnings
 
@@ -34,8 +35,23 @@ Tell = Callable[[float], None]
 _LARGEST = 1e5
 _SMALLEST_DETERMINANT = 1e-40
 _MOST_NESTED = 8
+_OTHER_DRAWN = ("use", "image", "text")
 # Of the larger side: what rounding makes of a page that fits.
 _SLACK = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class _Drawn:
+    """An outline that is painted.
+
+    Attributes:
+        box: Around it.
+        bounds: The box that shares of it are of; None where there is none.
+    """
+
+    outline: Outline
+    box: Box
+    bounds: Box | None
 
 
 class Drawing:
@@ -47,8 +63,15 @@ class Drawing:
         background: The color of the page; None where it has none.
     """
 
-    def __init__(self, document: Document, colors: Colors, warnings: Warnings, tell: Tell) -> None:
-        walk = Walk(document, warnings, tell, 0, Budget(document.count))
+    def __init__(
+        self,
+        document: Document,
+        colors: Colors,
+        warnings: Warnings,
+        tell: Tell,
+        fonts: FontPlaces,
+    ) -> None:
+        walk = Walk(document, warnings, tell, 0, Budget(document.count), fonts)
         self.page = walk.page
         self.tree = Group(is_isolated=True)
         self._is_open = walk.sources.sheets.declared(document.root).get("overflow") in SHOWN
@@ -92,12 +115,18 @@ class Walk:
     """Draws the elements of a document."""
 
     def __init__(
-        self, document: Document, warnings: Warnings, tell: Tell, depth: int, budget: Budget
+        self,
+        document: Document,
+        warnings: Warnings,
+        tell: Tell,
+        depth: int,
+        budget: Budget,
+        fonts: FontPlaces,
     ) -> None:
         sheets = StyleSheets(document, warnings, lambda share: tell(0.5 * share))
         servers = PaintServers(document, sheets, warnings)
         check_uses(document, sheets)
-        self.sources = Sources(document, sheets, servers, warnings, budget, document.folder)
+        self.sources = Sources(document, sheets, servers, warnings, budget, fonts, document.folder)
         self.page: Page = read_page(self.sources)
         self._tell = tell
         self._depth = depth
@@ -133,7 +162,7 @@ class Walk:
             return
         if tag == "symbol" and context.use is None:
             return
-        if tag not in GROUPS and tag not in BASIC_SHAPES and tag not in ("use", "image"):
+        if tag not in GROUPS and tag not in BASIC_SHAPES and tag not in _OTHER_DRAWN:
             sources.warnings.unsupported(f"<{tag}>", "left out", element.line)
             return
         inside = self._within(element, moved(element, context, sources))
@@ -141,6 +170,8 @@ class Walk:
             return
         if tag in BASIC_SHAPES:
             self._paint(element, inside)
+        elif tag == "text":
+            self._paint_text(element, inside)
         elif tag == "image":
             draw_image(element, inside, sources, self._images)
         elif tag == "use":
@@ -190,16 +221,29 @@ class Walk:
         return inside
 
     def _paint(self, element: SvgElement, context: Context) -> None:
-        style = context.style
         outline = self.sources.outline(element, context.units)
-        if outline is None or style.visibility != "visible":
-            return
+        box = outline.bounds() if outline is not None else None
+        if outline is not None and box is not None and context.style.visibility == "visible":
+            self._paint_outline(element, context, _Drawn(outline, box, box))
+
+    def _paint_text(self, element: SvgElement, context: Context) -> None:
+        # Fonts take modules that those who draw no text need not wait for.
+        from .text import drawn_text
+
+        drawn = drawn_text(element, context, self.sources)
+        for piece in drawn.pieces:
+            place = replace(context, style=piece.style)
+            outline = _Drawn(piece.outline, piece.box, drawn.bounds)
+            self._paint_outline(piece.element, place, outline)
+
+    def _paint_outline(self, element: SvgElement, context: Context, drawn: _Drawn) -> None:
+        style, outline = context.style, drawn.outline
         stroke = stroke_of(element, context, outline, self.sources)
         for part in paint_order(style.paint_order):
             if part == "fill" and element.tag != "line":
-                self._add(element, context, outline, style.fill, style.fill_opacity, None)
+                self._add(element, context, drawn, style.fill, style.fill_opacity, None)
             elif part == "stroke" and stroke is not None:
-                self._add(element, context, outline, style.stroke, style.stroke_opacity, stroke)
+                self._add(element, context, drawn, style.stroke, style.stroke_opacity, stroke)
             elif part == "markers" and element.tag in MARKED:
                 draw_markers(element, context, outline, self.sources)
 
@@ -207,21 +251,20 @@ class Walk:
         self,
         element: SvgElement,
         context: Context,
-        outline: Outline,
+        drawn: _Drawn,
         paint: Paint,
         opacity: float,
         stroke: Stroke | None,
     ) -> None:
-        found = resolved(element, context, outline, paint, opacity, self.sources)
+        found = resolved(element, context, drawn.bounds, paint, opacity, self.sources)
         if found is None:
             return
-        bounds = outline.bounds()
-        assert bounds is not None
+        outline = drawn.outline
         margin = 0.0
         if stroke is not None:
             longest = stroke.miter_limit if stroke.join == "miter" else 1.0
             margin = 0.5 * stroke.width * max(longest, math.sqrt(2.0))
-        left, top, right, bottom = bounds
+        left, top, right, bottom = drawn.box
         box = (left - margin, top - margin, right + margin, bottom + margin)
         box = carried(box, context.matrix)
         view = self.page.view
@@ -244,4 +287,11 @@ class Walk:
         document = read_document(data, lambda _: None)
         document.name = name
         sources = self.sources
-        return Walk(document, sources.warnings, lambda _: None, self._depth + 1, sources.budget)
+        return Walk(
+            document,
+            sources.warnings,
+            lambda _: None,
+            self._depth + 1,
+            sources.budget,
+            sources.fonts,
+        )

@@ -15,6 +15,7 @@ MOST_MEASURED = 1_000_000
 MOST_TEXELS = 1 << 26
 _TOO_MANY_USED = "<use>, masks, patterns and markers repeat more than {} elements"
 _REFERRING = {"mask", "fill", "stroke", "marker-start", "marker-mid", "marker-end"}
+MOST_CHARACTERS = 100_000
 # What a dash becomes has about so many.
 _SEGMENTS_PER_DASH = 4.0
 
@@ -35,6 +36,7 @@ class Budget:
         self._segments_left = float(MOST_SEGMENTS)
         self._measured_left = MOST_MEASURED
         self._texels_left = MOST_TEXELS
+        self._characters_left = MOST_CHARACTERS
 
     def take_element(self) -> None:
         """Counts an element that is drawn. Raises TooLargeError where there are too many."""
@@ -53,6 +55,14 @@ class Budget:
         self._texels_left -= count
         if self._texels_left < 0:
             raise TooLargeError(f"images of more than {MOST_TEXELS} pixels")
+
+    def take_characters(self, count: int) -> None:
+        """Counts characters of text. Raises TooLargeError likewise."""
+        self._characters_left -= count
+        if self._characters_left < 0:
+            raise TooLargeError(
+                f"more than {MOST_CHARACTERS} characters of text, with those that <use> repeats"
+            )
 
     def take_segments(self, count: int, dashes: float) -> None:
         """Counts lines and curves that are drawn, and dashes. Raises TooLargeError likewise."""

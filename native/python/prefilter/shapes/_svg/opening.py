@@ -3,11 +3,12 @@
 """From a file to a drawing."""
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 
 from .document import read_document
 from .drawing import Drawing
+from .font_places import FontPlaces
 from .limits import TooLargeError
 from .paint_servers import Colors
 from .warnings import Warnings
@@ -19,18 +20,20 @@ def open_drawing(
     colors: Colors,
     reads_files: bool,
     tell: Callable[[float], None],
+    fonts: Iterable[str | os.PathLike[str]] | None,
 ) -> tuple[str, Drawing, Warnings]:
     """Reads a drawing, and images beside it if it is to. See `prefilter.read_svg`.
 
     Returns:
         What messages call it, the drawing, and what is wrong with it.
     """
+    places = FontPlaces(fonts)
     document = read_document(source, lambda share: tell(0.3 * share))
     if not reads_files:
         document.folder = None
     warnings = Warnings()
     with refusing(document.name):
-        drawing = Drawing(document, colors, warnings, lambda share: tell(0.3 + 0.7 * share))
+        drawing = Drawing(document, colors, warnings, lambda share: tell(0.3 + 0.7 * share), places)
     return document.name, drawing, warnings
 
 

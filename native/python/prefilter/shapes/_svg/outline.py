@@ -67,6 +67,13 @@ class Outline:
     def close(self) -> None:
         self._add(b"Z", ())
 
+    def extend(self, letters: bytes, numbers: "array[float]") -> None:
+        """Adds segments, a letter for each, and the numbers of all of them."""
+        if len(self._letters) + len(letters) > MOST_SEGMENTS:
+            raise TooLargeError(f"more than {MOST_SEGMENTS} lines and curves in a path")
+        self._letters += letters
+        self._numbers.extend(numbers)
+
     def _add(self, letter: bytes, numbers: tuple[float, ...]) -> None:
         if len(self._letters) >= MOST_SEGMENTS:
             raise TooLargeError(f"more than {MOST_SEGMENTS} lines and curves in a path")

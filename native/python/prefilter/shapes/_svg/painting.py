@@ -10,7 +10,7 @@ from .outline import Outline
 from .paint_servers import GRADIENTS, Gradient
 from .patterns import pattern_of
 from .tags import OTHER_PAINTS
-from .tree import Pattern, Stroke
+from .tree import Box, Pattern, Stroke
 from .values import Color, Paint
 
 _MOST_DASHES = 100_000
@@ -19,7 +19,7 @@ _MOST_DASHES = 100_000
 def resolved(
     element: SvgElement,
     context: Context,
-    outline: Outline,
+    bounds: Box | None,
     paint: Paint,
     opacity: float,
     sources: Sources,
@@ -31,10 +31,9 @@ def resolved(
     is_here = paint.server.startswith("#")
     server = sources.document.ids.get(paint.server[1:]) if is_here else None
     if server is not None and server.tag in GRADIENTS:
-        bounds = outline.bounds()
         found = sources.servers.resolve(server, opacity, context.units, bounds, context.colors)
     elif server is not None and server.tag == "pattern":
-        return pattern_of(server, opacity, context, outline.bounds(), sources)
+        return pattern_of(server, opacity, context, bounds, sources)
     elif server is not None:
         is_paint = server.tag in OTHER_PAINTS
         tell = sources.warnings.unsupported if is_paint else sources.warnings.broken

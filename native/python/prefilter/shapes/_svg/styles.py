@@ -13,6 +13,15 @@ import tinycss2
 
 from .blending import BLEND_MODES
 from .document import Document, SvgElement
+from .text_style import (
+    NO_ATTRIBUTES,
+    OWN_PROPERTIES,
+    PROPERTIES,
+    USUAL_TEXT,
+    TextStyle,
+    expanded_font,
+    text_style_below,
+)
 from .values import (
     BLACK,
     Color,
@@ -68,6 +77,7 @@ class Style:
     marker_start: str = "none"
     marker_mid: str = "none"
     marker_end: str = "none"
+    text: TextStyle = USUAL_TEXT
     # Those of the element itself.
     opacity: float = 1.0
     mix_blend_mode: str = "normal"
@@ -151,9 +161,13 @@ _OTHER += ("background", "background-color", "clip-path", "display", "filter", "
 _OTHER += ("flood-color", "flood-opacity")
 _OTHER += ("transform", "transform-origin")
 # Those that are no attributes.
-_IN_SHEETS_ONLY = frozenset(("background", "background-color", "mix-blend-mode", "isolation"))
+_IN_SHEETS_ONLY = frozenset(
+    ("background", "background-color", "mix-blend-mode", "isolation", *NO_ATTRIBUTES)
+)
 _MARKERS = ("marker-start", "marker-mid", "marker-end")
-_PROPERTIES = frozenset((*_PARSERS, *UNSUPPORTED, *_OTHER, "font-size"))
+_PROPERTIES = frozenset(
+    (*_PARSERS, *UNSUPPORTED, *_OTHER, *PROPERTIES, *OWN_PROPERTIES, "font-size")
+)
 
 
 class StyleSheets:
@@ -207,6 +221,9 @@ class StyleSheets:
         declared = self._declared[element]
         if "font-size" in declared:
             changed["font_size"] = self._font_size(declared["font-size"], parent, element)
+        if declared.keys() & PROPERTIES.keys():
+            size = changed.get("font_size", parent.font_size)
+            changed["text"] = text_style_below(declared, parent.text, size)
         for name in declared.keys() & _PARSERS.keys():
             field, text = _FIELDS[name], declared[name]
             value = getattr(parent, field) if text == "inherit" else _parsed(name, text)
@@ -220,6 +237,8 @@ class StyleSheets:
     def _font_size(self, text: str, parent: Style, element: SvgElement) -> float:
         if text.lower() in _FONT_SIZES:
             return _FONT_SIZES[text.lower()]
+        if text.lower() in ("larger", "smaller"):
+            return parent.font_size * (1.2 if text.lower() == "larger" else 1.0 / 1.2)
         try:
             length = as_length(text)
         except UnknownUnitError as error:
@@ -247,6 +266,8 @@ class StyleSheets:
                         continue
                     if name == "marker":
                         found.update(dict.fromkeys(_MARKERS, value))
+                    if name == "font":
+                        found.update(expanded_font(value))
                     if name in _PROPERTIES and self._is_valid(name, value, element):
                         found[name] = value
         self._report(element, found)

@@ -1,0 +1,263 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Which font a text gets: by family, width, slant and weight, as CSS chooses."""
+
+import os
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+from .faces import Face, UnreadableFontError, faces_in
+from .folders import files_in, system_folders
+from .font import Font
+
+# What stands for a generic family, and for well-known ones where they are missing: the first that
+# is there. The first ones of each have the same advances.
+_SERIF: tuple[str, ...] = ("times new roman", "times", "liberation serif", "tinos", "nimbus roman")
+_SERIF += ("dejavu serif", "noto serif", "georgia")
+_SANS: tuple[str, ...] = ("arial", "helvetica", "liberation sans", "arimo", "nimbus sans")
+_SANS += ("dejavu sans", "bitstream vera sans", "verdana", "noto sans", "inter", "roboto")
+_SANS += ("segoe ui", "helvetica neue", "open sans", "tahoma", "trebuchet ms", "ubuntu", "lato")
+_MONO: tuple[str, ...] = ("courier new", "courier", "liberation mono", "cousine", "nimbus mono ps")
+_MONO += ("dejavu sans mono", "noto sans mono", "noto mono", "menlo", "consolas")
+_CURSIVE = ("comic sans ms", "yellowtail", "apple chancery", "z003")
+_GENERIC: Mapping[str, Sequence[str]] = {
+    "serif": _SERIF,
+    "sans-serif": _SANS,
+    "monospace": _MONO,
+    "cursive": (*_CURSIVE, *_SERIF),
+    "fantasy": ("impact", "papyrus", "sedgwick ave display", *_SANS),
+    "system-ui": ("segoe ui", "cantarell", *_SANS),
+    "ui-sans-serif": _SANS,
+    "ui-serif": _SERIF,
+    "ui-monospace": _MONO,
+}
+# The first that is there stands for each of them.
+_ALIKE = (("calibri", "carlito", *_SANS), ("cambria", "caladea", *_SERIF), _SANS, _SERIF, _MONO)
+# Of a slanted face that is made: that of browsers.
+_SKEW = 0.25
+_MOST_TRIED = 400
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What a text asks for.
+
+    Attributes:
+        families: Names, the best first; generic ones among them.
+        weight: From 1 to 1000.
+        stretch: In percent of the normal width.
+        slant: "normal", "italic" or "oblique".
+        variations: Values of axes beside these.
+        size: In pixels, for fonts that have other letters where they are small.
+    """
+
+    families: tuple[str, ...]
+    weight: float = 400.0
+    stretch: float = 100.0
+    slant: str = "normal"
+    variations: tuple[tuple[str, float], ...] = ()
+    size: float = 16.0
+
+
+class Fonts:
+    """Fonts in files and folders.
+
+    Args:
+        places: Files and folders; None for those of the system, looked for once they are needed.
+
+    Raises:
+        ValueError: A file is no font that can be read, or there is no such file or folder.
+    """
+
+    def __init__(self, places: Iterable[str | os.PathLike[str]] | None) -> None:
+        self._places = None if places is None else tuple(Path(each) for each in places)
+        self._faces = None if self._places is None else tuple(_listed(self._places))
+        self._families: dict[str, list[Face]] = {}
+        self._first: dict[Wanted, tuple[list[Font], list[str]]] = {}
+        self._others: dict[tuple[int, Wanted], Font | None] = {}
+        self._opened: dict[tuple[Path, int, tuple[tuple[str, float], ...], float], Font | None] = {}
+
+    @property
+    def faces(self) -> tuple[Face, ...]:
+        """All of them."""
+        if self._faces is None:
+            self._faces = _system_faces()
+        return self._faces
+
+    def first(self, wanted: Wanted) -> tuple[list[Font], list[str]]:
+        """The fonts of the families that are there, best first, and the names of those missing.
+
+        Names behind the first family that is there are not missed. Where none is there, there is
+        a font that stands for the first of them.
+        """
+        if wanted not in self._first:
+            self._first[wanted] = self._of_families(wanted)
+        return self._first[wanted]
+
+    def _of_families(self, wanted: Wanted) -> tuple[list[Font], list[str]]:
+        found: list[Font] = []
+        missing: list[str] = []
+        for name in wanted.families:
+            faces = self._of_family(name)
+            font = self._open(faces, wanted) if faces else None
+            if font is not None:
+                found.append(font)
+            elif not found and name.lower() not in _GENERIC:
+                missing.append(name)
+        if not found:
+            font = self._open(self._stand_in(missing[:1]), wanted)
+            found = [font] if font is not None else []
+        return found, missing
+
+    def with_character(self, code: int, wanted: Wanted) -> Font | None:
+        """A font that shows a character, of any family; None where none does."""
+        key = (code, wanted)
+        if key not in self._others:
+            self._others[key] = self._found_with(code, wanted)
+        return self._others[key]
+
+    def _found_with(self, code: int, wanted: Wanted) -> Font | None:
+        seen: set[str] = set()
+        for face in self.faces:
+            if face.family in seen:
+                continue
+            seen.add(face.family)
+            if len(seen) > _MOST_TRIED:
+                break
+            font = self._open(self._of_family(face.family), wanted)
+            if font is not None and code in font.characters:
+                return font
+        return None
+
+    def _of_family(self, name: str) -> list[Face]:
+        if not self._families:
+            for face in self.faces:
+                for family in face.families:
+                    self._families.setdefault(family, []).append(face)
+        for each in _GENERIC.get(name.lower(), (name.lower(),)):
+            if each in self._families:
+                return self._families[each]
+        return []
+
+    def _stand_in(self, missing: Sequence[str]) -> Sequence[Face]:
+        """What is most like the families that are missing: as wide, or else with serifs."""
+        for name in missing:
+            for group in _ALIKE:
+                if name.lower() in group:
+                    for each in group:
+                        if faces := self._of_family(each):
+                            return faces
+        for name in ("serif", "sans-serif"):
+            if faces := self._of_family(name):
+                return faces
+        return self._of_family(self.faces[0].family) if self.faces else ()
+
+    def _open(self, faces: Sequence[Face], wanted: Wanted) -> Font | None:
+        """The font of a family that is nearest to what is wanted; None where none can be read."""
+        left = list(faces)
+        while left:
+            face = nearest(left, wanted)
+            location = _location(face, wanted)
+            is_slanted = face.slant != "normal" or any(
+                location.get(tag, 0.0) != 0.0 for tag in ("slnt", "ital")
+            )
+            skew = _SKEW if wanted.slant != "normal" and not is_slanted else 0.0
+            key = (face.path, face.index, tuple(sorted(location.items())), skew)
+            if key not in self._opened:
+                try:
+                    self._opened[key] = Font(face, location, skew)
+                except Exception:
+                    self._opened[key] = None
+            font = self._opened[key]
+            if font is not None:
+                return font
+            left.remove(face)
+        return None
+
+
+def nearest(faces: Sequence[Face], wanted: Wanted) -> Face:
+    """The face that CSS chooses of a family: by width, then slant, then weight.
+
+    See "Matching font styles" in CSS Fonts, level 4.
+    """
+    left = list(faces)
+    widths = {face: _width_rank(face.stretch, wanted.stretch) for face in left}
+    left = [face for face in left if widths[face] == min(widths.values())]
+    slants = {
+        "normal": ("normal", "oblique", "italic"),
+        "italic": ("italic", "oblique", "normal"),
+        "oblique": ("oblique", "italic", "normal"),
+    }[wanted.slant]
+    best = min(slants.index(face.slant) for face in left)
+    left = [face for face in left if slants.index(face.slant) == best]
+    return min(left, key=lambda face: _weight_rank(face.weight, wanted.weight))
+
+
+def _width_rank(span: tuple[float, float], wanted: float) -> tuple[int, float]:
+    low, high = span
+    if low <= wanted <= high:
+        return 0, 0.0
+    is_narrower = high < wanted
+    distance = wanted - high if is_narrower else low - wanted
+    return (1 if is_narrower == (wanted <= 100.0) else 2), distance
+
+
+def _weight_rank(span: tuple[float, float], wanted: float) -> tuple[int, float]:
+    low, high = span
+    if low <= wanted <= high:
+        return 0, 0.0
+    below = high < wanted
+    distance = wanted - high if below else low - wanted
+    if wanted < 400.0 or wanted > 500.0:
+        return (1 if below == (wanted < 400.0) else 2), distance
+    # What is usual: heavier ones up to 500 first, then lighter ones.
+    if not below and low <= 500.0:
+        return 1, distance
+    return (2 if below else 3), distance
+
+
+def _location(face: Face, wanted: Wanted) -> dict[str, float]:
+    asked = {"wght": wanted.weight, "wdth": wanted.stretch, "opsz": wanted.size}
+    if wanted.slant == "italic" and "ital" in face.axes:
+        asked["ital"] = 1.0
+    elif wanted.slant != "normal" and "slnt" in face.axes:
+        asked["slnt"] = -14.0
+    asked.update(wanted.variations)
+    return {
+        tag: min(max(asked.get(tag, usual), low), high)
+        for tag, (low, usual, high) in face.axes.items()
+    }
+
+
+def _listed(places: Sequence[Path]) -> Iterator[Face]:
+    """Yields the faces in files, which must be fonts, and folders, which may hold others."""
+    for place in places:
+        if place.is_dir():
+            yield from _faces_of(files_in(place))
+            continue
+        try:
+            found = faces_in(place)
+        except UnreadableFontError as error:
+            raise ValueError(f"fonts: '{place}' is no font that can be read: {error}") from None
+        except FileNotFoundError:
+            raise ValueError(f"fonts: there is no file or folder '{place}'") from None
+        if not found:
+            raise ValueError(f"fonts: '{place}' has no outlines")
+        yield from found
+
+
+def _faces_of(files: Iterable[Path]) -> Iterator[Face]:
+    for file in files:
+        try:
+            yield from faces_in(file)
+        except (UnreadableFontError, OSError):
+            continue
+
+
+@lru_cache(maxsize=1)
+def _system_faces() -> tuple[Face, ...]:
+    """Those of the system, looked for once."""
+    files = dict.fromkeys(file for folder in system_folders() for file in files_in(folder))
+    return tuple(_faces_of(files))

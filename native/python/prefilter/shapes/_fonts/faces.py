@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""What the tables of a font file say of its faces, without their glyphs."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from fontTools.ttLib import TTCollection, TTFont
+
+# In percent of the normal width, by usWidthClass.
+_WIDTHS = (100.0, 50.0, 62.5, 75.0, 87.5, 100.0, 112.5, 125.0, 150.0, 200.0)
+_FAMILY_NAMES = (16, 1, 21)
+_OUTLINES = ("glyf", "CFF ", "CFF2")
+_MOST_FACES = 256
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Face:
+    """A font in a file.
+
+    Attributes:
+        path: The file.
+        index: Which of its fonts.
+        family: As messages call it.
+        families: All names of its family, in small letters.
+        weight: The lowest and the highest.
+        stretch: Likewise, in percent of the normal width.
+        slant: "normal", "italic" or "oblique".
+        axes: What varies: the lowest, usual and highest value, by tag.
+    """
+
+    path: Path
+    index: int
+    family: str
+    families: frozenset[str]
+    weight: tuple[float, float]
+    stretch: tuple[float, float]
+    slant: str
+    axes: Mapping[str, tuple[float, float, float]]
+
+
+class UnreadableFontError(ValueError):
+    """A file holds no font that can be read; the message says why."""
+
+
+@lru_cache(maxsize=65536)
+def _faces_as_of(path: Path, stamp: tuple[int, int]) -> tuple[Face, ...]:
+    """`stamp` is the time and size of the file: what is new is read again."""
+    try:
+        with path.open("rb") as file:
+            is_collection = file.read(4) == b"ttcf"
+        count = 1
+        if is_collection:
+            with TTCollection(str(path), lazy=True) as collection:
+                count = len(collection.fonts)
+        found = (_face(path, index) for index in range(min(count, _MOST_FACES)))
+        return tuple(face for face in found if face is not None)
+    except OSError:
+        raise
+    except ImportError:
+        raise UnreadableFontError("WOFF 2 needs the Python package brotli") from None
+    except Exception as error:
+        raise UnreadableFontError(str(error)[:200] or type(error).__name__) from None
+
+
+def faces_in(path: Path) -> tuple[Face, ...]:
+    """The fonts in a file that have outlines.
+
+    Raises:
+        UnreadableFontError: It is no font, or damaged.
+        OSError: It cannot be read.
+    """
+    about = path.stat()
+    return _faces_as_of(path, (about.st_mtime_ns, about.st_size))
+
+
+def _face(path: Path, index: int) -> Face | None:
+    with TTFont(str(path), fontNumber=index, lazy=True) as font:
+        if not any(tag in font for tag in _OUTLINES) or "cmap" not in font:
+            return None
+        names = _family_names(font["name"]) if "name" in font else []
+        family = names[0] if names else path.stem
+        axes = {}
+        if "fvar" in font:
+            axes = {
+                axis.axisTag: (axis.minValue, axis.defaultValue, axis.maxValue)
+                for axis in font["fvar"].axes
+            }
+        os2, bits = font.get("OS/2"), font["head"].macStyle
+        weight = float(os2.usWeightClass) if os2 else 700.0 if bits & 1 else 400.0
+        stretch = _WIDTHS[os2.usWidthClass if os2 and os2.usWidthClass < len(_WIDTHS) else 0]
+        selection = os2.fsSelection if os2 else 0
+        is_italic, is_oblique = bool(selection & 1 or bits & 2), bool(selection & (1 << 9))
+        return Face(
+            path,
+            index,
+            family,
+            frozenset(name.lower() for name in (*names, path.stem if not names else family)),
+            _span(axes, "wght", weight),
+            _span(axes, "wdth", stretch),
+            "oblique" if is_oblique else "italic" if is_italic else "normal",
+            axes,
+        )
+
+
+def _family_names(table: Any) -> list[str]:
+    """The names of a family, the English one that groups all its weights first."""
+    found: list[str] = []
+    for number in _FAMILY_NAMES:
+        english = table.getDebugName(number)
+        others = [
+            record.toUnicode(errors="replace") for record in table.names if record.nameID == number
+        ]
+        found.extend(name.strip() for name in ([english] if english else []) + others)
+    return list(dict.fromkeys(name for name in found if name))
+
+
+def _span(
+    axes: Mapping[str, tuple[float, float, float]], tag: str, value: float
+) -> tuple[float, float]:
+    return (axes[tag][0], axes[tag][2]) if tag in axes else (value, value)

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Glyphs of a font, as fontTools reads them."""
+
+from array import array
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from fontTools.pens.basePen import BasePen
+from fontTools.ttLib import TTFont
+
+from .faces import Face
+
+# Of a glyph: components of components may be many.
+_MOST_SEGMENTS = 200_000
+
+
+@dataclass(frozen=True, slots=True)
+class Glyph:
+    """What a glyph fills, in units of its font, y upwards.
+
+    Attributes:
+        letters: M, L, Q, C and Z, a byte for each segment.
+        numbers: Coordinates of the points of all segments.
+    """
+
+    letters: bytes
+    numbers: "array[float]"
+
+
+@dataclass(frozen=True, slots=True)
+class Metrics:
+    """Of a font, in shares of its size, upwards from the baseline."""
+
+    ascent: float
+    descent: float
+    x_height: float
+    underline: float
+    underline_thickness: float
+    strikeout: float
+    strikeout_thickness: float
+    subscript: float
+    superscript: float
+
+
+class Font:
+    """A face, with the values of what varies in it.
+
+    Attributes:
+        face: Where it is.
+        location: Values by the tags of axes.
+        skew: How far it is to be slanted, where its family has no slanted face.
+    """
+
+    def __init__(self, face: Face, location: Mapping[str, float], skew: float = 0.0) -> None:
+        self.face = face
+        self.location = dict(location)
+        self.skew = skew
+        # Not lazy: a file stays closed, and may change.
+        self._file = TTFont(str(face.path), fontNumber=face.index, lazy=True)
+        self.units_per_em = float(max(self._file["head"].unitsPerEm, 1))
+        self._order = self._file.getGlyphOrder()
+        self._glyphs = self._file.getGlyphSet(location=self.location or None)
+        self._drawn: dict[int, Glyph] = {}
+
+    @cached_property
+    def characters(self) -> Mapping[int, int]:
+        """Glyphs by what they show: a character's code."""
+        names = self._file.getBestCmap() or {}
+        numbers = self._file.getReverseGlyphMap()
+        return {code: numbers[name] for code, name in names.items() if name in numbers}
+
+    @cached_property
+    def tables(self) -> Any:
+        """The tables of the file."""
+        return self._file
+
+    @cached_property
+    def metrics(self) -> Metrics:
+        """How high letters are, and where lines go."""
+        em = self.units_per_em
+        file = self._file
+        hhea, os2, post = file.get("hhea"), file.get("OS/2"), file.get("post")
+        ascent = hhea.ascent if hhea else 0.8 * em
+        descent = hhea.descent if hhea else -0.2 * em
+        if os2 and (os2.fsSelection & (1 << 7) or (ascent == 0 and descent == 0)):
+            ascent, descent = os2.sTypoAscender, os2.sTypoDescender
+        thickness = (post.underlineThickness if post else 0) or 0.05 * em
+        x_height = getattr(os2, "sxHeight", 0) if os2 else 0
+        x_height = x_height if x_height > 0 else 0.45 * (ascent - descent)
+        return Metrics(
+            ascent=ascent / em,
+            descent=descent / em,
+            x_height=x_height / em,
+            underline=((post.underlinePosition if post else 0) or -0.1 * em) / em,
+            underline_thickness=thickness / em,
+            strikeout=((os2.yStrikeoutPosition if os2 else 0) or 0.5 * x_height) / em,
+            strikeout_thickness=((os2.yStrikeoutSize if os2 else 0) or thickness) / em,
+            subscript=(os2.ySubscriptYOffset if os2 else 0.2 * em) / em,
+            superscript=(os2.ySuperscriptYOffset if os2 else 0.4 * em) / em,
+        )
+
+    def advance(self, number: int) -> float:
+        """How far a glyph leads, in units of the font."""
+        return float(self._glyphs[self._order[number]].width)
+
+    def glyph(self, number: int) -> Glyph:
+        """The outline of a glyph, read once; an empty one where it is damaged."""
+        if number not in self._drawn:
+            pen = _Pen(self._glyphs)
+            try:
+                self._glyphs[self._order[number]].draw(pen)
+            except Exception:
+                pen = _Pen(self._glyphs)
+            self._drawn[number] = Glyph(bytes(pen.letters), pen.numbers)
+        return self._drawn[number]
+
+
+class _Pen(BasePen):  # type: ignore[misc]
+    """Keeps what a glyph draws, its components in place."""
+
+    def __init__(self, glyphs: Any) -> None:
+        super().__init__(glyphs)
+        self.letters = bytearray()
+        self.numbers = array("d")
+
+    def _add(self, letter: bytes, *points: tuple[float, float]) -> None:
+        if len(self.letters) >= _MOST_SEGMENTS:
+            raise ValueError("too many segments")
+        self.letters += letter
+        for point in points:
+            self.numbers.extend(point)
+
+    def _moveTo(self, pt: tuple[float, float]) -> None:  # noqa: N802 - fontTools calls it so
+        self._add(b"M", pt)
+
+    def _lineTo(self, pt: tuple[float, float]) -> None:  # noqa: N802
+        self._add(b"L", pt)
+
+    def _qCurveToOne(  # noqa: N802
+        self, pt1: tuple[float, float], pt2: tuple[float, float]
+    ) -> None:
+        self._add(b"Q", pt1, pt2)
+
+    def _curveToOne(  # noqa: N802
+        self, pt1: tuple[float, float], pt2: tuple[float, float], pt3: tuple[float, float]
+    ) -> None:
+        self._add(b"C", pt1, pt2, pt3)
+
+    def _closePath(self) -> None:  # noqa: N802
+        self._add(b"Z")
+
+    def _endPath(self) -> None:  # noqa: N802
+        self._add(b"Z")

@@ -1,0 +1,388 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Text in drawings: letters are boxes of a font made here, so that all places are known."""
+
+import itertools
+import unicodedata
+
+import numpy as np
+import prefilter
+import pytest
+from box_fonts import KERNING, UNITS, WIDTHS, make_font, make_variable
+from drawings import SIZE, read, svg
+
+
+@pytest.fixture(scope="module")
+def font(tmp_path_factory):
+    return make_font(tmp_path_factory.mktemp("fonts") / "boxes.ttf")
+
+
+@pytest.fixture
+def boxes(font):
+    """Returns the boxes of a drawing's shapes: left, top, right, bottom, with y downwards."""
+
+    def found(body, fonts=None):
+        drawing = read(body, fonts=[font] if fonts is None else fonts)
+        assert drawing.warnings == ()
+        result = []
+        for shape in drawing.shapes_for(SIZE, SIZE):
+            (left, low), (right, high) = shape.bounds
+            result.append((left, SIZE - high, right, SIZE - low))
+        return result
+
+    return found
+
+
+def text(content, more="", size=10):
+    return f'<text font-family="Boxes" font-size="{size}" x="20" y="50" {more}>{content}</text>'
+
+
+def near(found, expected):
+    np.testing.assert_allclose(found, expected, atol=1e-4)
+
+
+def advance(letters, size=10, kerning=True):
+    total = sum(WIDTHS[letter] for letter in letters)
+    pairs = sum(KERNING.get(pair, 0) for pair in itertools.pairwise(letters)) if kerning else 0
+    return (total + pairs) * size / UNITS
+
+
+@pytest.mark.parametrize("is_cff", [False, True])
+def test_letters_are_where_the_advances_of_their_font_lead(tmp_path, boxes, is_cff):
+    path = make_font(tmp_path / "font.otf", is_cff=is_cff)
+    (one,) = boxes(text("AiV A"), [path])
+    near(one, (20, 45, 20 + advance("AiV A"), 50))
+
+
+def test_pairs_are_kerned(boxes):
+    near(boxes(text("AV"))[0][2], 20 + 9.0)
+    near(boxes(text("AV", 'style="font-kerning: none"'))[0][2], 20 + 10.0)
+
+
+def test_without_harfbuzz_pairs_are_kerned_too(boxes, monkeypatch):
+    from prefilter.shapes._fonts import shaping
+
+    monkeypatch.setattr(shaping, "uharfbuzz", None)
+    near(boxes(text("AV"))[0][2], 20 + 9.0)
+    near(boxes(text("AiA"))[0][2], 20 + 14.0)
+
+
+@pytest.mark.parametrize(("anchor", "share"), [("start", 0.0), ("middle", 0.5), ("end", 1.0)])
+def test_anchors(boxes, anchor, share):
+    ((left, _, right, _),) = boxes(text("AiA", f'text-anchor="{anchor}"'))
+    near((left, right), (20 - 14 * share, 34 - 14 * share))
+
+
+def test_each_position_in_a_list_begins_anew_and_has_an_anchor_of_its_own(boxes):
+    (one,) = boxes('<text font-family="Boxes" font-size="10" y="50 60" x="20 70">AA</text>')
+    near(one, (20, 45, 76, 60))
+    (one,) = boxes(
+        '<text font-family="Boxes" font-size="10" x="20 70" y="50" text-anchor="middle">AA</text>'
+    )
+    near(one, (17, 45, 73, 50))
+
+
+def test_distances_add_up(boxes):
+    (one,) = boxes(text("AA", 'dx="5 10" dy="1 2"'))
+    near(one, (25, 46, 47, 53))
+
+
+def test_positions_of_inner_elements_win_and_lists_count_what_is_inside(boxes):
+    first, second = boxes(text('A<tspan fill="red" x="60">A</tspan>', 'dx="0 3"'))
+    near(first, (20, 45, 26, 50))
+    near(second, (63, 45, 69, 50))
+
+
+def test_letters_are_turned_by_the_last_angle_of_a_list(boxes):
+    (one,) = boxes(text("iii", 'rotate="0 90"'))
+    # Turned to the right: what was above the baseline is to the right of it.
+    near(one, (20, 45, 29, 52))
+
+
+def test_spacing_is_between_letters_and_at_spaces(boxes):
+    near(boxes(text("AiA", 'letter-spacing="4"'))[0][2], 20 + 14 + 8)
+    near(boxes(text("A A", 'word-spacing="1em"'))[0][2], 20 + 14.5 + 10)
+    # Letters in the middle of the page, so that there is no space behind the last one.
+    ((left, _, right, _),) = boxes(text("AA", 'letter-spacing="4" text-anchor="middle"'))
+    near(left + right, 40)
+
+
+@pytest.mark.parametrize(("adjust", "width"), [("spacing", 6), ("spacingAndGlyphs", 6 * 30 / 14)])
+def test_text_is_as_long_as_it_says(boxes, adjust, width):
+    drawn = boxes(text('A<tspan fill="red">iA</tspan>', f'textLength="30" lengthAdjust="{adjust}"'))
+    near((drawn[0][0], drawn[0][2], drawn[1][2]), (20, 20 + width, 50))
+
+
+@pytest.mark.parametrize(
+    ("baseline", "down"),
+    [
+        *(("alphabetic", 0.0), ("middle", 2.0), ("central", 3.0), ("hanging", 6.4)),
+        *(("text-before-edge", 8.0), ("text-after-edge", -2.0), ("mathematical", 4.0)),
+    ],
+)
+def test_baselines(boxes, baseline, down):
+    near(boxes(text("A", f'dominant-baseline="{baseline}"'))[0], (20, 45 + down, 26, 50 + down))
+
+
+@pytest.mark.parametrize(
+    ("shift", "up"), [("super", 3.0), ("sub", -1.0), ("4", 4.0), ("-50%", -5.0), ("baseline", 0.0)]
+)
+def test_baseline_shift(boxes, shift, up):
+    outer, inner = boxes(text(f'A<tspan fill="red" baseline-shift="{shift}">A</tspan>'))
+    near((outer[3], inner[3]), (50, 50 - up))
+
+
+def test_shifts_of_nested_elements_add_up(boxes):
+    inner = '<tspan baseline-shift="2"><tspan baseline-shift="3">A</tspan></tspan>'
+    near(boxes(text(inner))[0][3], 45)
+
+
+@pytest.mark.parametrize(
+    ("line", "top", "bottom"),
+    [("underline", 50.75, 51.25), ("overline", 42.0, 42.5), ("line-through", 47.25, 47.75)],
+)
+def test_lines(boxes, line, top, bottom):
+    drawn = boxes(text("A A", f'text-decoration="{line}"'))
+    letters, drawn_line = drawn if line == "line-through" else drawn[::-1]
+    near(letters, (20, 45, 34.5, 50))
+    near(drawn_line, (20, top, 34.5, bottom))
+
+
+def test_a_line_has_the_paint_of_the_element_that_wants_it(font):
+    body = text('<tspan fill="lime">A</tspan>', 'text-decoration="underline" fill="red"')
+    line, letters = read(body, fonts=[font]).shapes
+    assert line.color == (1.0, 0.0, 0.0, 1.0)
+    assert letters.color == (0.0, 1.0, 0.0, 1.0)
+
+
+def test_text_runs_along_a_path(boxes):
+    path = '<path id="p" fill="none" d="M 10 20 V 90"/>'
+    (one,) = boxes(
+        path + '<text font-family="Boxes" font-size="10">'
+        '<textPath href="#p" startOffset="50%">Ai</textPath></text>'
+    )
+    # Downwards, from the middle of the path; letters are to its right.
+    near(one, (10, 55, 15, 63))
+
+
+def test_text_around_a_circle_has_the_angles_of_its_arcs(boxes):
+    body = '<path id="p" fill="none" d="M 20 50 A 30 30 0 0 1 80 50"/>'
+    (one,) = boxes(
+        body + '<text font-family="Boxes" font-size="10" text-anchor="middle">'
+        '<textPath href="#p" startOffset="50%">A</textPath></text>'
+    )
+    # At the top of the circle, level, on the outside.
+    near(one, (47, 15, 53, 20))
+
+
+def test_what_does_not_fit_on_a_path_is_not_drawn(boxes):
+    body = '<path id="p" fill="none" d="M 0 50 H 8"/><text font-family="Boxes" font-size="10">'
+    (one,) = boxes(body + '<textPath href="#p">iiAAAAAAAA</textPath></text>')
+    # The middle of the first A is at 7, that of the second one at 13.
+    near(one, (0, 45, 10, 50))
+
+
+@pytest.mark.parametrize(
+    ("content", "more", "letters"),
+    [
+        ("  A \n\t A  ", "", "A A"),
+        (" A  A ", 'xml:space="preserve"', "  A  A"),
+        ("A\nA", 'style="white-space: pre"', "A A"),
+    ],
+)
+def test_spaces(boxes, content, more, letters):
+    lead = advance(letters[: len(letters) - len(letters.lstrip())])
+    if more.startswith("xml"):
+        lead = advance(" ")
+        letters = " A  A"
+    ((left, _, right, _),) = boxes(text(content, more))
+    near((left, right), (20 + lead, 20 + advance(letters)))
+
+
+def test_letters_of_hebrew_go_to_the_left(font):
+    # aleph (300), bet (500): the first one is on the right. Their boxes differ by color.
+    body = text('<tspan fill="red">\u05d0</tspan><tspan fill="lime">\u05d1</tspan>')
+    first, second = (shape.bounds for shape in read(body, fonts=[font]).shapes)
+    near((second[0][0], second[1][0], first[0][0], first[1][0]), (20, 25, 25, 28))
+
+
+def test_text_from_right_to_left_begins_on_the_right(boxes):
+    ((left, _, right, _),) = boxes(text("\u05d0\u05d1", 'direction="rtl"'))
+    near((left, right), (12, 20))
+
+
+def test_weights_widths_and_slants_are_matched_as_css_does(tmp_path):
+    high = {}
+    fonts = []
+    for number, (weight, italic, stretch) in enumerate(
+        [(300, False, 5), (400, False, 5), (700, False, 5), (400, True, 5), (400, False, 3)]
+    ):
+        high[weight, italic, stretch] = 100 * (number + 1)
+        path = tmp_path / f"{number}.ttf"
+        fonts.append(
+            make_font(path, weight=weight, italic=italic, stretch=stretch, high=100 * (number + 1))
+        )
+
+    def chosen(**style):
+        more = " ".join(f'{name.replace("_", "-")}="{value}"' for name, value in style.items())
+        (shape,) = read(text("A", more), fonts=fonts).shapes_for(SIZE, SIZE)
+        return round((shape.bounds[1][1] - shape.bounds[0][1]) * 100)
+
+    assert chosen() == high[400, False, 5]
+    assert chosen(font_weight="500") == high[400, False, 5]
+    assert chosen(font_weight="600") == high[700, False, 5]
+    assert chosen(font_weight="100") == high[300, False, 5]
+    assert chosen(font_style="oblique") == high[400, True, 5]
+    assert chosen(font_style="italic", font_weight="bold") == high[400, True, 5]
+    assert chosen(font_stretch="condensed") == high[400, False, 3]
+    assert chosen(font_stretch="expanded") == high[400, False, 5]
+    bolder = text('<tspan font-weight="bolder">A</tspan>')
+    (shape,) = read(bolder, fonts=fonts).shapes_for(SIZE, SIZE)
+    assert round((shape.bounds[1][1] - shape.bounds[0][1]) * 100) == high[700, False, 5]
+
+
+def test_a_missing_font_is_replaced_and_named(font):
+    drawing = read('<text font-family="Nowhere, \'Not There\'" y="50">A</text>', fonts=[font])
+    assert len(drawing.shapes) == 1
+    assert [warning.name for warning in drawing.warnings] == ["font 'Nowhere'", "font 'Not There'"]
+    assert drawing.warnings[0].effect == "drawn in Boxes"
+
+
+def test_a_font_with_the_letter_is_found_and_what_no_font_has_is_named(tmp_path, font):
+    other = make_font(tmp_path / "other.ttf", family="Other", widths={"Q": 700})
+    drawing = read(text("AQ\u4e00"), fonts=[font, other])
+    assert [(one.name, one.effect) for one in drawing.warnings] == [
+        ("character U+4E00", "left out, as no font has it")
+    ]
+    (left, _), (right, _) = drawing.shapes_for(SIZE, SIZE)[0].bounds
+    near((left, right), (20, 33))
+
+
+def test_gradients_of_text_are_shares_of_the_cells_of_its_letters(font):
+    gradient = '<linearGradient id="g" x2="0" y2="1"><stop stop-color="#000"/>'
+    gradient += '<stop offset="1" stop-color="#fff"/></linearGradient>'
+    drawing = read(gradient + text("A", 'fill="url(#g)"', size=20), fonts=[font])
+    image = prefilter.rasterize(drawing.shapes_for(SIZE, SIZE), SIZE, SIZE)[::-1]
+    # The cell is 20 high, from 34 to 54; the letter is in it from 40 to 50.
+    rows = np.arange(41, 49)
+    near(image[rows, 25, 0], (rows + 0.5 - 34.0) / 20.0)
+
+
+def test_text_clips_and_is_clipped(font):
+    body = f'<clipPath id="c">{text("AA", size=40)}</clipPath>'
+    body += '<rect width="100" height="100" fill="red" clip-path="url(#c)"/>'
+    image, warnings = prefilter.rasterize_svg(svg(body), SIZE, SIZE, fonts=[font])
+    assert warnings == ()
+    near(image[..., 3].sum(), 48 * 20)
+    body = '<clipPath id="c"><rect x="20" y="40" width="3" height="20"/></clipPath>'
+    body += text("A", 'clip-path="url(#c)"')
+    image, warnings = prefilter.rasterize_svg(svg(body), SIZE, SIZE, fonts=[font])
+    near(image[..., 3].sum(), 3 * 5)
+
+
+def test_variable_fonts_have_the_weight_that_is_asked_for(tmp_path):
+    path = make_variable(tmp_path / "variable.ttf")
+    for weight, width in ((100, 200), (400, 400), (900, 900), (650, 650), (1000, 900)):
+        (shape,) = read(text("A", f'font-weight="{weight}"'), fonts=[path]).shapes_for(SIZE, SIZE)
+        near(shape.bounds[1][0] - shape.bounds[0][0], width / 100.0)
+    more = "style=\"font-variation-settings: 'wght' 900\""
+    (shape,) = read(text("A", more), fonts=[path]).shapes_for(SIZE, SIZE)
+    near(shape.bounds[1][0] - shape.bounds[0][0], 9.0)
+
+
+def test_too_much_text_is_refused(font):
+    body = f'<defs><text id="t">{"A" * 1000}</text></defs>' + '<use href="#t"/>' * 300
+    with pytest.raises(ValueError, match="more than 100000 characters"):
+        read(body, fonts=[font])
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "<text/>",
+        "<text>   </text>",
+        '<text font-size="0">A</text>',
+        '<text x="nan" y="1e999" dx="q">A</text>',
+        '<text rotate="x">A</text>',
+        '<text textLength="-5">A</text>',
+        '<text textLength="0" lengthAdjust="spacingAndGlyphs">A</text>',
+        '<text><textPath href="#nowhere">A</textPath></text>',
+        '<text><textPath path="M 0 0">A</textPath></text>',
+        '<path id="p" d="M 5 5 H 5"/><text><textPath href="#p">A</textPath></text>',
+        "<text>" + "<tspan>" * 240 + "A" + "</tspan>" * 240 + "</text>",
+        '<text font-family=", ,">A</text>',
+        '<text font-size="1e30">A</text>',
+        "<text>\ud83d\ude00\u200d\u0301</text>",
+        '<text letter-spacing="-1000">AAA</text>',
+    ],
+)
+def test_nasty_text_is_drawn_or_left_out(font, body):
+    drawing = read(body, fonts=[font])
+    prefilter.rasterize(drawing.shapes_for(SIZE, SIZE), SIZE, SIZE)
+
+
+@pytest.mark.parametrize("fonts", ["no list", 5, [5], ["/not/there.ttf"]])
+def test_fonts_that_are_none_are_refused(fonts):
+    with pytest.raises(ValueError, match="fonts: "):
+        read("<g/>", fonts=fonts)
+
+
+def test_files_that_are_no_fonts_are_refused_and_those_in_folders_are_not_read(tmp_path, font):
+    bad = tmp_path / "bad.ttf"
+    bad.write_bytes(b"\0\1\0\0" + b"\xff" * 100)
+    with pytest.raises(ValueError, match=r"fonts: '.*bad\.ttf' is no font that can be read"):
+        read("<g/>", fonts=[bad])
+    (tmp_path / "good.ttf").write_bytes(font.read_bytes())
+    assert len(read(text("A"), fonts=[tmp_path]).shapes) == 1
+
+
+def test_without_fonts_text_is_left_out_with_a_warning():
+    (warning,) = read(text("AA"), fonts=[]).warnings
+    assert str(warning) == "<text>: left out, as there are no fonts (in line 1)"
+
+
+@pytest.mark.parametrize(
+    ("letters", "base", "shown"),
+    [
+        # By the rules of UAX #9: capitals stand for Hebrew, with aleph as A and bet as B.
+        ("ab AB cd", 0, "ab BA cd"),
+        ("ab AB cd", 1, "cd BA ab"),
+        ("AB 12 AB", 0, "BA 12 BA"),
+        ("AB 1,2 a", 1, "a 1,2 BA"),
+        ("a (AB) b", 0, "a (BA) b"),
+        ("AB (a) AB", 0, "BA (a) BA"),
+        ("AB+12%", 1, "12%+BA"),
+        ("a.", 1, ".a"),
+        ("A\u0301\u0302", 0, "\u0302\u0301A"),
+    ],
+)
+def test_letters_are_ordered_by_the_rules_of_unicode(letters, base, shown):
+    from prefilter.shapes._fonts.bidi import levels_of, visual_order
+
+    hebrew = letters.translate(str.maketrans("AB", "\u05d0\u05d1"))
+    assert "".join(letters[k] for k in visual_order(levels_of(hebrew, base))) == shown
+
+
+def test_directions_are_those_of_another_program():
+    bidi = pytest.importorskip("bidi")
+    from prefilter.shapes._fonts.bidi import levels_of, visual_order
+
+    rng = np.random.default_rng(31)
+    letters = "aB \u05d0\u0627\u0661\u06f11,.+%$-()[]!\u0300"
+    for _ in range(3000):
+        sample = "".join(rng.choice(list(letters), rng.integers(1, 12))).strip()
+        for base, name in ((0, "L"), (1, "R")):
+            levels = levels_of(sample, base)
+            order = visual_order(levels)
+            found = "".join(sample[k] for k in order)
+            assert found == bidi.get_display(sample, base_dir=name), (sample, base)
+
+
+def test_marks_are_placed_without_harfbuzz(tmp_path, monkeypatch):
+    from prefilter.shapes._fonts import shaping
+
+    monkeypatch.setattr(shaping, "uharfbuzz", None)
+    path = make_font(tmp_path / "marks.ttf", widths={"A": 600, "\u0301": 200})
+    assert unicodedata.combining("\u0301")
+    (shape,) = read(text("A\u0301"), fonts=[path]).shapes_for(SIZE, SIZE)
+    near((shape.bounds[0][0], shape.bounds[1][0]), (20, 26))
