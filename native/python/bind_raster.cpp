@@ -193,6 +193,15 @@ Outline bound_combine(const Outline& first, const std::string& first_rule, const
   return combine(first, rule, second, other, what);
 }
 
+// What a stroke covers, and whether its contours wind once.
+std::pair<Outline, bool> bound_stroke(const Outline& outline, const StrokeOptions& options,
+                                      double tolerance) {
+  const py::gil_scoped_release unlocked;
+  bool winds_once = false;
+  Outline covered = stroke_soon(outline, options, tolerance, &winds_once);
+  return {std::move(covered), winds_once};
+}
+
 py::object bound_bounds(const Outline& outline) {
   const Box2 box = control_box(outline);
   if (outline.empty()) return py::none();
@@ -241,8 +250,7 @@ void bind_raster(py::module_& m) {
           },
           py::arg("matrix"))
       .def("copy", [](const Outline& outline) { return Outline(outline); })
-      .def("stroked", &stroke, py::arg("options"), py::arg("tolerance"),
-           py::call_guard<py::gil_scoped_release>())
+      .def("stroked", &bound_stroke, py::arg("options"), py::arg("tolerance"))
       .def("combined", &bound_combine, py::arg("fill_rule"), py::arg("other"),
            py::arg("other_rule"), py::arg("operation"))
       .def("bounds", &bound_bounds)

@@ -104,10 +104,21 @@ bool Arrangement::follows(const PieceId& a, const PieceId& b) const {
           (b.piece == 0 && a.piece + 1 == contours_.contours()[a.contour].pieces));
 }
 
-bool Arrangement::collect_sites(const Progress& progress, SiteList* list) const {
+std::size_t Arrangement::most_steps(ArrangementEffort effort) const {
+  if (effort == ArrangementEffort::kAny) return SIZE_MAX;
+  constexpr std::size_t kLeast = 1 << 16;
+  constexpr std::size_t kStepsPerPiece = 16;
+  std::size_t pieces = 0;
+  for (const auto& contour : contours_.contours()) pieces += contour.pieces;
+  return kLeast + kStepsPerPiece * pieces;
+}
+
+CutOutcome Arrangement::collect_sites(std::size_t most_steps, const Progress& progress,
+                                      SiteList* list) const {
   std::vector<std::pair<PieceId, PieceId>> pairs;
-  tree_.append_pairs(&pairs);
+  if (!tree_.append_pairs(most_steps, &pairs)) return CutOutcome::kTooMany;
   std::vector<Meeting> meetings;
+  std::size_t steps = 0;
   constexpr std::size_t kPairsPerReport = 1 << 12;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     if (i % kPairsPerReport == 0) {
@@ -122,14 +133,18 @@ bool Arrangement::collect_sites(const Progress& progress, SiteList* list) const 
     if (follows(a, b) ? are_apart_but_for_joint(first, second)
                       : are_apart(first, second, precision_))
       continue;
+    // Of curves they take more steps than of lines.
+    constexpr std::size_t kStepsOfCurves = 8;
+    steps += first.curve.degree() == 1 && second.curve.degree() == 1 ? 1 : kStepsOfCurves;
+    if (steps > most_steps) return CutOutcome::kTooMany;
     meetings.clear();
-    if (!append_meetings(first, second, precision_, &meetings)) return false;
+    if (!append_meetings(first, second, precision_, &meetings)) return CutOutcome::kUnclear;
     for (const Meeting& meeting : meetings) {
       list->add_meeting(site_at(a, first_piece, meeting.a, meeting.point),
                         site_at(b, second_piece, meeting.b, meeting.point));
     }
   }
-  return true;
+  return CutOutcome::kCut;
 }
 
 // Sites that are near each other become one vertex.
@@ -188,9 +203,10 @@ void Arrangement::merge_sites(Pulse* pulse, SiteList* list) {
   }
 }
 
-bool Arrangement::cut(const Progress& progress) {
+CutOutcome Arrangement::cut(ArrangementEffort effort, const Progress& progress) {
   SiteList list(contours_);
-  if (!collect_sites(progress, &list)) return false;
+  const CutOutcome outcome = collect_sites(most_steps(effort), progress, &list);
+  if (outcome != CutOutcome::kCut) return outcome;
   Pulse pulse(progress);
   merge_sites(&pulse, &list);
   std::sort(cuts_.begin(), cuts_.end(), [&](const Cut& a, const Cut& b) {
@@ -203,7 +219,7 @@ bool Arrangement::cut(const Progress& progress) {
   cuts_.erase(last, cuts_.end());
   make_chains(&pulse);
   group_chains(&pulse);
-  return true;
+  return CutOutcome::kCut;
 }
 
 void Arrangement::make_chains(Pulse* pulse) {

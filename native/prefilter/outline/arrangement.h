@@ -34,6 +34,16 @@ struct BoundaryChain {
   bool reversed = false;
 };
 
+/// Steps that an arrangement may take.
+enum class ArrangementEffort : std::uint8_t {
+  kAny,  // the square of the number of curves, and more, where all of them cross
+  /// In proportion to that number: what outlines take that mostly lie beside each other.
+  kBounded,
+};
+
+/// Whether contours could be cut where they meet.
+enum class CutOutcome : std::uint8_t { kCut, kUnclear, kTooMany };
+
 class Arrangement {
  public:
   /// Points closer than `precision` times the size of the outlines, whose layers their indices are,
@@ -42,8 +52,10 @@ class Arrangement {
   Arrangement(const Arrangement&) = delete;
   Arrangement& operator=(const Arrangement&) = delete;
 
-  /// Cuts contours where they meet. Returns false where that cannot be told.
-  bool cut(const Progress& progress = {});
+  /// Cuts contours where they meet, if that can be told within the effort.
+  CutOutcome cut(ArrangementEffort effort, const Progress& progress = {});
+  /// How many steps what follows a cut may take.
+  std::size_t most_steps(ArrangementEffort effort) const;
 
   /// Whether all contours are apart from each other and from themselves, after `cut`.
   bool all_whole() const { return cuts_.empty(); }
@@ -78,7 +90,7 @@ class Arrangement {
 
   CurvePiece curve_piece(const MonotonePiece& piece, std::uint32_t contour) const;
   bool follows(const PieceId& a, const PieceId& b) const;
-  bool collect_sites(const Progress& progress, SiteList* list) const;
+  CutOutcome collect_sites(std::size_t most_steps, const Progress& progress, SiteList* list) const;
   Site site_at(const PieceId& id, const MonotonePiece& piece, double parameter,
                const Point2& point) const;
   void merge_sites(Pulse* pulse, SiteList* list);

@@ -223,41 +223,52 @@ std::uint32_t RunTree::build_runs(std::uint32_t first, std::uint32_t count, bool
   return index;
 }
 
-void RunTree::append_pairs(Pairs* pairs) const {
-  if (!nodes_.empty()) pairs_within(0, pairs);
+// Where that many are found or looked at, no more are.
+struct RunTree::FoundPairs {
+  Pairs* pairs = nullptr;
+  std::size_t most = 0;
+  std::size_t looked_at = 0;
+
+  bool look() { return ++looked_at <= most && pairs->size() <= most; }
+};
+
+bool RunTree::append_pairs(std::size_t most, Pairs* pairs) const {
+  FoundPairs found = {pairs, most};
+  if (!nodes_.empty()) pairs_within(0, &found);
+  return found.looked_at <= most && pairs->size() <= most;
 }
 
-void RunTree::pairs_within(std::uint32_t index, Pairs* pairs) const {
+void RunTree::pairs_within(std::uint32_t index, FoundPairs* found) const {
   const Node& node = nodes_[index];
   if (node.second_child != 0) {
-    pairs_within(index + 1, pairs);
-    pairs_within(node.second_child, pairs);
-    pairs_between(index + 1, node.second_child, pairs);
+    pairs_within(index + 1, found);
+    pairs_within(node.second_child, found);
+    pairs_between(index + 1, node.second_child, found);
     return;
   }
   for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-    for (std::uint32_t j = i + 1; j < node.first + node.count; ++j) {
-      append_run_pairs(contours_.runs()[i], contours_.runs()[j], precision_, pairs);
+    for (std::uint32_t j = i + 1; j < node.first + node.count && found->look(); ++j) {
+      append_run_pairs(contours_.runs()[i], contours_.runs()[j], precision_, found->pairs);
     }
   }
 }
 
-void RunTree::pairs_between(std::uint32_t a, std::uint32_t b, Pairs* pairs) const {
+void RunTree::pairs_between(std::uint32_t a, std::uint32_t b, FoundPairs* found) const {
   const Node& first = nodes_[a];
   const Node& second = nodes_[b];
-  if (!meet(first.box, second.box, precision_)) return;
+  if (!meet(first.box, second.box, precision_) || !found->look()) return;
   if (first.second_child == 0 && second.second_child == 0) {
     for (std::uint32_t i = first.first; i < first.first + first.count; ++i) {
-      for (std::uint32_t j = second.first; j < second.first + second.count; ++j) {
-        append_run_pairs(contours_.runs()[i], contours_.runs()[j], precision_, pairs);
+      for (std::uint32_t j = second.first; j < second.first + second.count && found->look(); ++j) {
+        append_run_pairs(contours_.runs()[i], contours_.runs()[j], precision_, found->pairs);
       }
     }
   } else if (second.second_child == 0 || (first.second_child != 0 && first.count >= second.count)) {
-    pairs_between(a + 1, b, pairs);
-    pairs_between(first.second_child, b, pairs);
+    pairs_between(a + 1, b, found);
+    pairs_between(first.second_child, b, found);
   } else {
-    pairs_between(a, b + 1, pairs);
-    pairs_between(a, second.second_child, pairs);
+    pairs_between(a, b + 1, found);
+    pairs_between(a, second.second_child, found);
   }
 }
 

@@ -51,8 +51,9 @@ class RunTree {
   RunTree(const MonotoneContours& contours, double precision);
 
   /// Appends pairs of pieces whose boxes meet, each pair once. Neighbors along a run cannot meet
-  /// elsewhere than at their joint, and are left out.
-  void append_pairs(std::vector<std::pair<PieceId, PieceId>>* pairs) const;
+  /// elsewhere than at their joint, and are left out. Returns false where there are more than
+  /// `most`.
+  bool append_pairs(std::size_t most, std::vector<std::pair<PieceId, PieceId>>* pairs) const;
 
   /// Adds to `windings` what the pieces on the ray from a point upward in x,
   /// or in y, contribute to the winding numbers at that point. `excluded` are left out: those that
@@ -71,9 +72,9 @@ class RunTree {
 
   std::uint32_t build_contours(std::span<const std::uint32_t> order);
   std::uint32_t build_runs(std::uint32_t first, std::uint32_t count, bool is_whole);
-  void pairs_within(std::uint32_t node, std::vector<std::pair<PieceId, PieceId>>* pairs) const;
-  void pairs_between(std::uint32_t a, std::uint32_t b,
-                     std::vector<std::pair<PieceId, PieceId>>* pairs) const;
+  struct FoundPairs;
+  void pairs_within(std::uint32_t node, FoundPairs* found) const;
+  void pairs_between(std::uint32_t a, std::uint32_t b, FoundPairs* found) const;
   template <RayAxis axis>
   void add_on_ray(const Point2& point, std::span<const PieceId> excluded,
                   LayerWindings* windings) const;

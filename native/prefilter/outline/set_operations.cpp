@@ -35,7 +35,7 @@ Outline combine(const Outline& first, FillRule first_rule, const Outline& second
   };
   for (const double precision : kPrecisions) {
     Arrangement arrangement(outlines, precision);
-    if (!arrangement.cut()) continue;
+    if (arrangement.cut(ArrangementEffort::kAny) != CutOutcome::kCut) continue;
     std::vector<BoundaryChain> boundary;
     arrangement.visit(
         0, arrangement.chain_count(),

@@ -16,6 +16,7 @@
 #include "prefilter/base/error.h"
 #include "prefilter/base/text.h"
 #include "prefilter/outline/dashes.h"
+#include "prefilter/outline/resolve_soon.h"
 #include "prefilter/outline/stroke_pieces.h"
 #include "prefilter/outline/stroke_sides.h"
 
@@ -115,7 +116,10 @@ std::vector<StrokePath> dashes_of(StrokePath path, std::span<const double> patte
 
 }  // namespace
 
-Outline stroke(const Outline& outline, const StrokeOptions& options, double tolerance) {
+namespace {
+
+// Its parts, of which winding numbers are nowhere negative.
+Outline covered_by_parts(const Outline& outline, const StrokeOptions& options, double tolerance) {
   check(options);
   Outline covered;
   if (options.width == 0.0) return covered;
@@ -136,7 +140,20 @@ Outline stroke(const Outline& outline, const StrokeOptions& options, double tole
       }
     }
   }
-  std::optional<Outline> united = resolved(covered, FillRule::kNonzero, tolerance);
+  return covered;
+}
+
+}  // namespace
+
+Outline stroke(const Outline& outline, const StrokeOptions& options, double tolerance) {
+  return resolve(covered_by_parts(outline, options, tolerance), FillRule::kNonzero, tolerance);
+}
+
+Outline stroke_soon(const Outline& outline, const StrokeOptions& options, double tolerance,
+                    bool* winds_once) {
+  Outline covered = covered_by_parts(outline, options, tolerance);
+  std::optional<Outline> united;
+  *winds_once = resolve_soon(covered, FillRule::kNonzero, {}, &united);
   return united ? std::move(*united) : covered;
 }
 

@@ -67,22 +67,36 @@ class Arrangement::Tracer {
   }
 
  private:
+  // Where a chain begins and ends as a part of the boundary.
   std::uint32_t vertex(std::uint32_t i, bool at_end) const {
     const OutlineChain& chain = arrangement_.chains_[boundary_[i].chain];
     const bool end_cut = at_end != boundary_[i].reversed;
     return arrangement_.cuts_[end_cut ? chain.end_cut : chain.begin_cut].vertex;
   }
+  // Its number among those of the boundary.
+  std::size_t number_of(std::uint32_t vertex) const {
+    return static_cast<std::size_t>(std::lower_bound(vertices_.begin(), vertices_.end(), vertex) -
+                                    vertices_.begin());
+  }
 
   // Sorts the chains by the vertex that they begin at; false where not as many end there.
   bool index_chains() {
-    const std::size_t vertices = arrangement_.vertices_.size();
     used_.assign(boundary_.size(), false);
+    for (std::uint32_t i = 0; i < boundary_.size(); ++i) {
+      if (!is_whole(i)) vertices_.push_back(vertex(i, false));
+    }
+    std::sort(vertices_.begin(), vertices_.end());
+    vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
+    const std::size_t vertices = vertices_.size();
     first_.assign(vertices + 1, 0);
-    std::vector<std::uint32_t> ends(vertices, 0);
+    std::vector<std::uint32_t> ends(vertices + 1, 0);
     for (std::uint32_t i = 0; i < boundary_.size(); ++i) {
       if (is_whole(i)) continue;
-      ++first_[vertex(i, false) + 1];
-      ++ends[vertex(i, true)];
+      ++first_[number_of(vertex(i, false)) + 1];
+      const std::uint32_t end = vertex(i, true);
+      const std::size_t number = number_of(end);
+      if (number == vertices || vertices_[number] != end) return false;
+      ++ends[number];
     }
     for (std::size_t v = 0; v < vertices; ++v) {
       if (first_[v + 1] != ends[v]) return false;
@@ -91,7 +105,7 @@ class Arrangement::Tracer {
     leaving_.resize(first_[vertices]);
     std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
     for (std::uint32_t i = 0; i < boundary_.size(); ++i) {
-      if (!is_whole(i)) leaving_[next[vertex(i, false)]++] = i;
+      if (!is_whole(i)) leaving_[next[number_of(vertex(i, false))]++] = i;
     }
     return true;
   }
@@ -102,7 +116,7 @@ class Arrangement::Tracer {
 
   // At each vertex the sharpest turn to the left, so that contours touch there and do not cross.
   std::uint32_t next_of(std::uint32_t i) const {
-    const std::uint32_t at = vertex(i, true);
+    const std::size_t at = number_of(vertex(i, true));
     std::uint32_t best = OutlineChain::kNone;
     double best_turn = HUGE_VAL;
     double back = 0.0;
@@ -214,7 +228,8 @@ class Arrangement::Tracer {
   const Arrangement& arrangement_;
   std::span<const BoundaryChain> boundary_;
   std::vector<bool> used_;
-  std::vector<std::uint32_t> first_;  // of every vertex, in leaving_
+  std::vector<std::uint32_t> vertices_;
+  std::vector<std::uint32_t> first_;  // of each of these, in leaving_
   std::vector<std::uint32_t> leaving_;
   std::vector<Stretch> chain_stretches_;
   std::vector<Stretch> loop_;

@@ -6,13 +6,12 @@
 #include "prefilter/outline/visible_pieces.h"
 
 #include <algorithm>
+#include <atomic>
 #include <compare>
+#include <utility>
 
 #include "prefilter/base/parallel.h"
-#include "prefilter/outline/arrangement.h"
 #include "prefilter/outline/fill_rule.h"
-#include "prefilter/outline/polygon_clipper.h"
-#include "prefilter/outline/set_operations.h"
 
 namespace prefilter {
 namespace {
@@ -49,10 +48,20 @@ void find_views(std::span<const CoveringLayer> layers, const LayerWindings& wind
   }
 }
 
-// Boundaries of all views: edges of the same one in a row.
-std::vector<ViewEdge> find_edges(const Arrangement& arrangement,
-                                 std::span<const CoveringLayer> layers, int threads,
-                                 const Progress& progress) {
+// What comparing the views on both sides of a chain takes.
+std::size_t steps_of(const std::vector<View>& views) {
+  std::size_t steps = 1;
+  for (const View& view : views) steps += 1 + view.veils.size();
+  return steps;
+}
+
+// Boundaries of all views: edges of the same one in a row. Nothing where that takes more steps than
+// `most`, in the sum of all chains, in whatever order threads come to them.
+std::optional<std::vector<ViewEdge>> find_edges(const Arrangement& arrangement,
+                                                std::span<const CoveringLayer> layers,
+                                                std::size_t most, int threads,
+                                                const Progress& progress) {
+  std::atomic<std::size_t> steps = 0;
   const auto count = static_cast<std::int64_t>(arrangement.chain_count());
   std::vector<std::vector<ViewEdge>> parts(range_count(count, kChainsPerRange));
   parallel_ranges(
@@ -69,15 +78,19 @@ std::vector<ViewEdge> find_edges(const Arrangement& arrangement,
             }
           }
         };
+        if (steps > most) return;
         arrangement.visit(
             begin, end,
             [&](std::uint32_t chain, const LayerWindings& right, const LayerWindings& left) {
+              if (steps > most) return;
               find_views(layers, right, &touched, &on_right);
               find_views(layers, left, &touched, &on_left);
+              steps += touched.size() + steps_of(on_right) + steps_of(on_left);
               append(on_left, on_right, chain, false);
               append(on_right, on_left, chain, true);
             });
       });
+  if (steps > most) return std::nullopt;
   std::vector<ViewEdge> all;
   for (const auto& edges : parts) all.insert(all.end(), edges.begin(), edges.end());
   std::stable_sort(all.begin(), all.end(),
@@ -85,91 +98,41 @@ std::vector<ViewEdge> find_edges(const Arrangement& arrangement,
   return all;
 }
 
-// One layer's pieces by polygons: the layers over it divide them, one after the other.
-std::vector<VisiblePiece> pieces_by_polygons(std::span<const CoveringLayer> layers,
-                                             std::size_t index, double tolerance) {
-  constexpr FillRule kRule = FillRule::kNonzero;
-  const auto polygons_of = [&](std::size_t layer) {
-    const Outline& outline = *layers[layer].outline;
-    return flattened(combine_polygons(flattened(outline, tolerance), layers[layer].fill_rule, {},
-                                      layers[layer].fill_rule, OutlineOperation::kUnion),
-                     tolerance);
-  };
-  const Box2 box = control_box(*layers[index].outline);
-  std::vector<VisiblePiece> pieces = {{index, {}, {}}};
-  for (const Polygon& polygon : polygons_of(index)) {
-    pieces[0].outline.move_to(polygon[0]);
-    for (std::size_t i = 1; i < polygon.size(); ++i) pieces[0].outline.line_to(polygon[i]);
-    pieces[0].outline.close();
-  }
-  for (std::size_t above = index + 1; above < layers.size(); ++above) {
-    const Box2 other = control_box(*layers[above].outline);
-    if (!(box.low.x <= other.high.x && other.low.x <= box.high.x && box.low.y <= other.high.y &&
-          other.low.y <= box.high.y)) {
-      continue;
-    }
-    const std::vector<Polygon> cover = polygons_of(above);
-    std::vector<VisiblePiece> divided;
-    for (const VisiblePiece& piece : pieces) {
-      const std::vector<Polygon> polygons = flattened(piece.outline, tolerance);
-      divided.push_back(
-          {index, piece.veils,
-           combine_polygons(polygons, kRule, cover, kRule, OutlineOperation::kDifference)});
-      if (layers[above].is_opaque) continue;
-      divided.push_back(
-          {index, piece.veils,
-           combine_polygons(polygons, kRule, cover, kRule, OutlineOperation::kIntersection)});
-      divided.back().veils.push_back(static_cast<std::uint32_t>(above));
-    }
-    std::erase_if(divided, [](const VisiblePiece& piece) { return piece.outline.empty(); });
-    pieces = std::move(divided);
-  }
-  return pieces;
-}
-
 }  // namespace
 
-std::vector<VisiblePiece> visible_pieces(std::span<const CoveringLayer> layers, int threads,
-                                         const Progress& progress, double tolerance) {
+std::optional<std::vector<VisiblePiece>> visible_pieces(std::span<const CoveringLayer> layers,
+                                                        ArrangementEffort effort, int threads,
+                                                        const Progress& progress) {
   std::vector<const Outline*> outlines;
   for (const CoveringLayer& layer : layers) outlines.push_back(layer.outline);
   Arrangement arrangement(outlines, kPrecisions[0]);
-  std::vector<std::vector<VisiblePiece>> pieces(layers.size());
-  std::vector<ViewEdge> edges;
-  std::vector<std::size_t> starts;  // of the edges of a layer, and their end
-  if (arrangement.cut(progress.part(0.0, 0.4))) {
-    edges = find_edges(arrangement, layers, threads, progress.part(0.4, 0.8));
-    for (std::uint32_t layer = 0; layer <= layers.size(); ++layer) {
-      const auto first =
-          std::partition_point(edges.begin(), edges.end(),
-                               [&](const ViewEdge& edge) { return edge.view.layer < layer; });
-      starts.push_back(static_cast<std::size_t>(first - edges.begin()));
-    }
+  if (arrangement.cut(effort, progress.part(0.0, 0.4)) != CutOutcome::kCut) return std::nullopt;
+  constexpr std::size_t kStepsPerStep = 8;
+  const std::size_t most = arrangement.most_steps(effort);
+  const auto edges =
+      find_edges(arrangement, layers, most > SIZE_MAX / kStepsPerStep ? most : kStepsPerStep * most,
+                 threads, progress.part(0.4, 0.8));
+  if (!edges) return std::nullopt;
+  std::vector<std::size_t> starts;  // of the edges of a piece, and their end
+  for (std::size_t i = 0; i < edges->size(); ++i) {
+    if (i == 0 || !((*edges)[i].view == (*edges)[i - 1].view)) starts.push_back(i);
   }
-  parallel_for(static_cast<std::int64_t>(layers.size()), threads, progress.part(0.8, 1.0),
+  std::vector<VisiblePiece> pieces(starts.size());
+  starts.push_back(edges->size());
+  std::atomic<bool> is_clear = true;
+  parallel_for(static_cast<std::int64_t>(pieces.size()), threads, progress.part(0.8, 1.0),
                [&](std::int64_t index) {
-                 const auto layer = static_cast<std::size_t>(index);
-                 bool is_clear = !starts.empty();
+                 const auto i = static_cast<std::size_t>(index);
+                 const auto own = std::span(*edges).subspan(starts[i], starts[i + 1] - starts[i]);
+                 const View& view = own.front().view;
+                 pieces[i] = {view.layer, {view.veils.rbegin(), view.veils.rend()}, {}};
                  std::vector<BoundaryChain> boundary;
-                 for (std::size_t i = is_clear ? starts[layer] : 0;
-                      is_clear && i < starts[layer + 1];) {
-                   const View& view = edges[i].view;
-                   VisiblePiece piece = {layer, {view.veils.rbegin(), view.veils.rend()}, {}};
-                   boundary.clear();
-                   for (; i < starts[layer + 1] && edges[i].view == view; ++i) {
-                     boundary.push_back(edges[i].chain);
-                   }
-                   is_clear = arrangement.trace(boundary, &piece.outline);
-                   pieces[layer].push_back(std::move(piece));
-                 }
-                 if (!is_clear) pieces[layer] = pieces_by_polygons(layers, layer, tolerance);
+                 for (const ViewEdge& edge : own) boundary.push_back(edge.chain);
+                 if (!arrangement.trace(boundary, &pieces[i].outline)) is_clear = false;
                });
-  std::vector<VisiblePiece> all;
-  for (std::vector<VisiblePiece>& some : pieces) {
-    std::move(some.begin(), some.end(), std::back_inserter(all));
-  }
   progress.report(1.0);
-  return all;
+  if (!is_clear) return std::nullopt;
+  return pieces;
 }
 
 }  // namespace prefilter

@@ -5,12 +5,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "prefilter/base/outline.h"
 #include "prefilter/base/progress.h"
-#include "prefilter/outline/resolve.h"
+#include "prefilter/outline/arrangement.h"
 
 namespace prefilter {
 
@@ -34,9 +35,10 @@ struct VisiblePiece {
 /// one over the other, show there; colors are premultiplied. Pieces beside each other share their
 /// curves, bit for bit, so that no seam is left.
 ///
-/// Only layers that rounding leaves unclear become lines, off by `tolerance` at the most.
-std::vector<VisiblePiece> visible_pieces(std::span<const CoveringLayer> layers, int threads = 0,
-                                         const Progress& progress = {},
-                                         double tolerance = kOutlineTolerance);
+/// Nothing where rounding leaves unclear what crosses what, or where that takes more than an effort
+/// allows.
+std::optional<std::vector<VisiblePiece>> visible_pieces(std::span<const CoveringLayer> layers,
+                                                        ArrangementEffort effort, int threads = 0,
+                                                        const Progress& progress = {});
 
 }  // namespace prefilter

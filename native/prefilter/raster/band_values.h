@@ -24,6 +24,8 @@ class BandValues {
     is_changed_.assign(rows, 0);
   }
 
+  int channels() const { return channels_; }
+
   /// The values of a row, to be added to.
   double* row(int row) {
     double* values = values_.data() + row_begin(row);

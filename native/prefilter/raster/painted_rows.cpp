@@ -2,8 +2,7 @@
 
 #include "prefilter/raster/painted_rows.h"
 
-#include <algorithm>
-#include <cmath>
+#include <span>
 
 namespace prefilter {
 namespace {
@@ -13,50 +12,8 @@ constexpr double kMomentUnit = 1.0 / (1 << kMomentBits);
 }  // namespace
 
 template <int N>
-PaintedRows<N>::PaintedRows(const CellFilter& filter, int width) : filter_(filter), width_(width) {
-  const int count = filter.degree + 1;
-  const auto along = [&](int tap, int power) {
-    double sum = 0.0;
-    for (int a = 0; a < count; ++a) {
-      sum += filter.along[tap * count + a] * mean_power(a + power);
-    }
-    return sum;
-  };
-  for (int oy = 0; oy < filter.taps; ++oy) {
-    for (int ox = 0; ox < filter.taps; ++ox) {
-      ColorPowers full{};
-      for (std::size_t k = 0; k < full.size(); ++k) {
-        const auto [m, n] = kColorExponents[k];
-        if (filter.is_separable) {
-          full[k] = along(ox, m) * along(oy, n);
-          continue;
-        }
-        const double* piece = filter.table.data() + (oy * filter.taps + ox) * count * count;
-        for (int b = 0; b < count; ++b) {
-          for (int a = 0; a < count; ++a) {
-            full[k] += piece[b * count + a] * mean_power(a + m) * mean_power(b + n);
-          }
-        }
-      }
-      full_.push_back(full);
-    }
-  }
-}
-
-// Calls use(pixel x, row of the band, ox, oy) for the pixels that weigh a cell.
-template <int N>
-template <typename Use>
-void PaintedRows<N>::for_pixels_over(int column, int row, const Use& use) const {
-  const int begin_x = std::max(0, filter_.first_pixel_over(column));
-  const int end_x = std::min(width_, filter_.last_pixel_over(column) + 1);
-  const int begin_y = std::max(first_row_, filter_.first_pixel_over(row));
-  const int end_y = std::min(end_row_, filter_.last_pixel_over(row) + 1);
-  for (int y = begin_y; y < end_y; ++y) {
-    for (int x = begin_x; x < end_x; ++x) {
-      use(x, y - first_row_, column - filter_.first_cell(x), row - filter_.first_cell(y));
-    }
-  }
-}
+PaintedRows<N>::PaintedRows(const CellFilter& filter, int width)
+    : filter_(filter), pixels_(filter, width) {}
 
 template <int N>
 void PaintedRows<N>::add_cell(int column, int row, const Moments& moments,
@@ -67,60 +24,35 @@ void PaintedRows<N>::add_cell(int column, int row, const Moments& moments,
   const int channels = color.channels();
   for (int c = 0; c < channels; ++c) {
     // The moments of the color: of the color's powers and the filter's together.
-    Moments colored{};
+    std::array<double, (N + 1) * (N + 1)> colored{};
     for (std::size_t k = 0; k < powers[c].size(); ++k) {
       const auto [m, n] = kColorExponents[k];
       if (m + n > color.degree()) continue;
       for (int a = 0; a < count; ++a) {
-        for (int b = 0; b < count; ++b) colored[a][b] += powers[c][k] * moments[a + m][b + n];
+        for (int b = 0; b < count; ++b) {
+          colored[a * count + b] += powers[c][k] * moments[a + m][b + n];
+        }
       }
     }
-    for_pixels_over(column, row, [&](int x, int y, int ox, int oy) {
-      double sum = 0.0;
-      if (filter_.is_separable) {
-        const double* along_x = filter_.along.data() + ox * count;
-        const double* along_y = filter_.along.data() + oy * count;
-        for (int a = 0; a < count; ++a) {
-          double line = 0.0;
-          for (int b = 0; b < count; ++b) line += along_y[b] * colored[a][b];
-          sum += along_x[a] * line;
-        }
-      } else {
-        const double* piece = filter_.table.data() + (oy * filter_.taps + ox) * count * count;
-        for (int b = 0; b < count; ++b) {
-          for (int a = 0; a < count; ++a) sum += piece[b * count + a] * colored[a][b];
-        }
-      }
-      values_->row(y)[x * channels + c] += sum;
-    });
+    pixels_.add(column, row, c, colored);
   }
 }
 
 template <int N>
 void PaintedRows<N>::add_full_cells(int begin, int end, int row, double share,
                                     const LocalColor& color) {
-  const int channels = color.channels();
   std::array<ColorPowers, kMaxChannels> powers;
+  const auto channels = static_cast<std::size_t>(color.channels());
   for (int column = begin; column < end; ++column) {
     color.powers(column, row, &powers);
-    for_pixels_over(column, row, [&](int x, int y, int ox, int oy) {
-      const ColorPowers& full = full_[oy * filter_.taps + ox];
-      double* out = values_->row(y) + x * channels;
-      for (int c = 0; c < channels; ++c) {
-        double sum = 0.0;
-        for (std::size_t k = 0; k < full.size(); ++k) sum += full[k] * powers[c][k];
-        out[c] += share * sum;
-      }
-    });
+    pixels_.add_full(column, row, share, std::span(powers).first(channels));
   }
 }
 
 template <int N>
 void PaintedRows<N>::add_values(const MomentCells<N>& cells, const LocalColor& color, int first_row,
                                 int end_row, BandValues* values) {
-  first_row_ = first_row;
-  end_row_ = end_row;
-  values_ = values;
+  pixels_.begin(first_row, end_row, values);
   const int end_column = cells.window().end_column;
   for (int row = cells.window().first_row; row < cells.window().end_row; ++row) {
     cells.columns_of(row, &columns_);

@@ -7,6 +7,7 @@
 
 #include "prefilter/raster/band_values.h"
 #include "prefilter/raster/cell_filter.h"
+#include "prefilter/raster/cell_pixels.h"
 #include "prefilter/raster/local_color.h"
 #include "prefilter/raster/moment_cells.h"
 
@@ -30,16 +31,10 @@ class PaintedRows {
 
   void add_cell(int column, int row, const Moments& moments, const LocalColor& color);
   void add_full_cells(int begin, int end, int row, double share, const LocalColor& color);
-  template <typename Use>
-  void for_pixels_over(int column, int row, const Use& use) const;
 
   const CellFilter& filter_;
-  int width_;
-  int first_row_ = 0;
-  int end_row_ = 0;
-  BandValues* values_ = nullptr;
+  CellPixels pixels_;
   std::vector<int> columns_;
-  std::vector<ColorPowers> full_;  // of taps (oy, ox): the integrals of the color's powers
 };
 
 extern template class PaintedRows<1>;

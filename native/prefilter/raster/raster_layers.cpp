@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "prefilter/base/parallel.h"
-#include "prefilter/outline/resolve.h"
+#include "prefilter/outline/resolve_soon.h"
 #include "prefilter/outline/visible_pieces.h"
 #include "prefilter/raster/gradient_strips.h"
 
@@ -143,7 +143,12 @@ RasterLayers make_layers(std::span<const Shape> shapes, const RasterOptions& opt
     for (const Shape& shape : shapes) {
       layers.push_back({&shape.outline, shape.fill_rule, is_opaque(shape.paint)});
     }
-    for (VisiblePiece& piece : visible_pieces(layers, options.threads, progress)) {
+    auto pieces = visible_pieces(layers, ArrangementEffort::kBounded, options.threads, progress);
+    if (!pieces) {
+      out.stacks.push_back(stack_of(shapes));
+      return out;
+    }
+    for (VisiblePiece& piece : *pieces) {
       std::vector<Paint> veils;
       for (const std::uint32_t veil : piece.veils) veils.push_back(shapes[veil].paint);
       maker.add_veiled(maker.keep(std::move(piece.outline)), paints[piece.layer], veils);
@@ -153,16 +158,21 @@ RasterLayers make_layers(std::span<const Shape> shapes, const RasterOptions& opt
   // Only the thread that called reports, which one shape by itself stays on.
   const Progress within = shapes.size() == 1 ? progress : Progress();
   std::vector<std::optional<Outline>> changed(shapes.size());
+  std::vector<std::uint8_t> is_stacked(shapes.size(), 0);
   parallel_for(
       static_cast<std::int64_t>(shapes.size()), options.threads, progress, [&](std::int64_t i) {
         if (shapes[i].winds_once) return;
         if (options.method == RasterMethod::kWavelet && is_left_open(shapes[i].outline)) {
           return;
         }
-        changed[i] = resolved(shapes[i].outline, shapes[i].fill_rule, kOutlineTolerance, within);
+        is_stacked[i] = !resolve_soon(shapes[i].outline, shapes[i].fill_rule, within, &changed[i]);
       });
   for (std::size_t i = 0; i < shapes.size(); ++i) {
-    maker.add(changed[i] ? maker.keep(*std::move(changed[i])) : shapes[i].outline, paints[i]);
+    if (is_stacked[i] != 0) {
+      out.stacks.push_back(stack_of(shapes.subspan(i, 1)));
+    } else {
+      maker.add(changed[i] ? maker.keep(*std::move(changed[i])) : shapes[i].outline, paints[i]);
+    }
   }
   return out;
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "prefilter/raster/edge_list.h"
+#include "prefilter/raster/layer_stack.h"
 #include "prefilter/raster/rasterize.h"
 
 namespace prefilter {
@@ -27,6 +28,7 @@ inline bool is_constant(const RasterLayer& layer) {
 
 struct RasterLayers {
   std::vector<RasterLayer> layers;
+  std::deque<LayerStack> stacks;  // to be added too
   ChannelValues background{};
   int channels = 1;
   std::deque<Outline> outlines;  // what the edges are of

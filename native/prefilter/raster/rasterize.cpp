@@ -11,6 +11,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <utility>
 
 #include "prefilter/base/error.h"
 #include "prefilter/base/memory.h"
@@ -23,6 +24,7 @@
 #include "prefilter/raster/moment_rows.h"
 #include "prefilter/raster/painted_rows.h"
 #include "prefilter/raster/raster_layers.h"
+#include "prefilter/raster/stack_rows.h"
 #include "prefilter/raster/wavelet_image.h"
 
 namespace prefilter {
@@ -103,6 +105,13 @@ class BandMaker {
         add_painted(layer, &curved_);
       }
     }
+    for (const LayerStack& stack : job_.stacks) {
+      if (stack.is_constant) {
+        add_stack<N>(stack);
+      } else {
+        add_stack<N + 2>(stack);
+      }
+    }
     for (int row = first_row; row < end_row; ++row) {
       values_.store(row - first_row, image_->texel(0, row));
     }
@@ -164,6 +173,13 @@ class BandMaker {
   }
 
   template <int M>
+  void add_stack(const LayerStack& stack) {
+    StackRows<M> rows(stack, filter_, job_.background, job_.channels, image_->width,
+                      image_->height);
+    rows.add_values(first_row_, end_row_, &values_);
+  }
+
+  template <int M>
   void add_painted(const RasterLayer& layer, std::unique_ptr<Painted<M>>* painted) {
     if (*painted == nullptr) {
       *painted = std::make_unique<Painted<M>>(filter_, image_->width);
@@ -193,12 +209,68 @@ template <int N>
 void make_bands(const RasterLayers& job, const CellFilter& filter, const RasterOptions& options,
                 Image* image) {
   constexpr int kBandValues = 1 << 17;
-  const int rows = std::clamp(kBandValues / (options.width * job.channels), 16, 256);
+  // The arcs of stacks are held for a band: it has few rows.
+  constexpr int kLeastRows = 16;
+  const int rows = job.stacks.empty()
+                       ? std::clamp(kBandValues / (options.width * job.channels), kLeastRows, 256)
+                       : kLeastRows;
   parallel_ranges(options.height, rows, options.threads, options.progress.part(kLayersShare, 1.0),
                   [&](std::int64_t begin, std::int64_t end) {
                     BandMaker<N> maker(job, filter, image);
                     maker.make(static_cast<int>(begin), static_cast<int>(end));
                   });
+}
+
+void make_all_bands(const RasterLayers& job, const CellFilter& filter, const RasterOptions& options,
+                    Image* image) {
+  switch (filter.degree) {
+    case 0:
+      make_bands<0>(job, filter, options, image);
+      break;
+    case 1:
+      make_bands<1>(job, filter, options, image);
+      break;
+    case 2:
+      make_bands<2>(job, filter, options, image);
+      break;
+    case 3:
+      make_bands<3>(job, filter, options, image);
+      break;
+    default:
+      make_bands<Kernel::kMostDegree>(job, filter, options, image);
+      break;
+  }
+}
+
+// Adds stacks to an image whose cells are squares of 2^cell_depth pixels: the means of pixels.
+void add_stack_means(const RasterLayers& stacks, int cell_depth, RasterOptions options,
+                     Image* image) {
+  const int side = 1 << cell_depth;
+  const int columns = (image->width - 1) / side + 1;
+  options.width = columns * side;
+  options.height = ((image->height - 1) / side + 1) * side;
+  check_memory("width, height: the cells of an image",
+               4.0 * options.width * options.height * stacks.channels);
+  Image pixels(options.width, options.height, stacks.channels);
+  make_all_bands(stacks, *find_cell_filter("box"), options, &pixels);
+  std::vector<ChannelValues> sums;
+  for (int first = 0; first < image->height; first += side) {
+    sums.assign(columns, {});
+    for (int y = first; y < first + side; ++y) {
+      for (int x = 0; x < options.width; ++x) {
+        for (int c = 0; c < stacks.channels; ++c) {
+          sums[x / side][c] += pixels.texel(x, y)[c] - stacks.background[c];
+        }
+      }
+    }
+    for (int y = first; y < std::min(first + side, image->height); ++y) {
+      for (int x = 0; x < image->width; ++x) {
+        for (int c = 0; c < stacks.channels; ++c) {
+          image->texel(x, y)[c] += static_cast<float>(sums[x / side][c] / side / side);
+        }
+      }
+    }
+  }
 }
 
 }  // namespace
@@ -215,30 +287,22 @@ Image rasterize(std::span<const Shape> shapes, const RasterOptions& options) {
     throw_invalid("depth: found " + std::to_string(options.depth) +
                   "; only the method wavelet has depths");
   }
-  const RasterLayers job = make_layers(shapes, options);
+  RasterLayers job = make_layers(shapes, options);
   Image image(options.width, options.height, job.channels);
   if (is_wavelet) {
     const int depth =
         options.depth < 0 ? wavelet_depth(options.width, options.height) : options.depth;
     add_up_wavelets(job, depth, options.threads, options.progress.part(kLayersShare, 1.0), &image);
-    return image;
-  }
-  switch (filter->degree) {
-    case 0:
-      make_bands<0>(job, *filter, options, &image);
-      break;
-    case 1:
-      make_bands<1>(job, *filter, options, &image);
-      break;
-    case 2:
-      make_bands<2>(job, *filter, options, &image);
-      break;
-    case 3:
-      make_bands<3>(job, *filter, options, &image);
-      break;
-    default:
-      make_bands<Kernel::kMostDegree>(job, *filter, options, &image);
-      break;
+    if (!job.stacks.empty()) {
+      const int cell_depth = wavelet_depth(options.width, options.height) - depth;
+      RasterLayers stacks;
+      stacks.channels = job.channels;
+      stacks.background = job.background;
+      stacks.stacks = std::move(job.stacks);
+      add_stack_means(stacks, cell_depth, options, &image);
+    }
+  } else {
+    make_all_bands(job, *filter, options, &image);
   }
   return image;
 }

@@ -59,7 +59,8 @@ class Scene {
 
   void expect_pieces(double clearance = 1e-2) {
     for (const Outline& outline : outlines_) chains_.push_back(fine_chains(outline, 150));
-    const std::vector<VisiblePiece> pieces = visible_pieces(layers(), 2);
+    const std::vector<VisiblePiece> pieces =
+        visible_pieces(layers(), ArrangementEffort::kAny, 2).value();
     std::vector<std::vector<Chain>> piece_chains;
     for (const VisiblePiece& piece : pieces)
       piece_chains.push_back(fine_chains(piece.outline, 150));
@@ -117,14 +118,14 @@ TEST(VisiblePieces, WhatIsCoveredIsLeftOut) {
   const Outline small = circle({0, 0}, 1.0);
   const Outline large = circle({0.1, 0}, 2.0);
   const std::vector<CoveringLayer> layers = {{&small}, {&large}};
-  const std::vector<VisiblePiece> pieces = visible_pieces(layers);
+  const std::vector<VisiblePiece> pieces = visible_pieces(layers, ArrangementEffort::kAny).value();
   ASSERT_EQ(pieces.size(), 1u);
   EXPECT_EQ(pieces[0].layer, 1u);
   EXPECT_TRUE(pieces[0].veils.empty());
   ASSERT_EQ(pieces[0].outline.points().size(), large.points().size());
   EXPECT_TRUE(
       std::equal(large.points().begin(), large.points().end(), pieces[0].outline.points().begin()));
-  EXPECT_TRUE(visible_pieces({}).empty());
+  EXPECT_TRUE(visible_pieces({}, ArrangementEffort::kAny).value().empty());
 }
 
 TEST(VisiblePieces, AreTheSameForAnyNumberOfThreads) {
@@ -133,14 +134,16 @@ TEST(VisiblePieces, AreTheSameForAnyNumberOfThreads) {
   for (int i = 0; i < 20; ++i) outlines.push_back(blob(&random));
   std::vector<CoveringLayer> layers;
   for (const Outline& outline : outlines) layers.push_back({&outline});
-  const auto one = visible_pieces(layers, 1);
-  const auto four = visible_pieces(layers, 4);
+  const auto one = visible_pieces(layers, ArrangementEffort::kAny, 1).value();
+  const auto four = visible_pieces(layers, ArrangementEffort::kAny, 4).value();
   ASSERT_EQ(one.size(), four.size());
   for (std::size_t i = 0; i < one.size(); ++i) {
     EXPECT_TRUE(std::equal(one[i].outline.points().begin(), one[i].outline.points().end(),
                            four[i].outline.points().begin(), four[i].outline.points().end()));
   }
-  EXPECT_THROW(visible_pieces(layers, 2, Progress([](double) { return false; })), Error);
+  EXPECT_THROW(
+      visible_pieces(layers, ArrangementEffort::kAny, 2, Progress([](double) { return false; })),
+      Error);
 }
 
 TEST(SetOperations, AreasAddUp) {

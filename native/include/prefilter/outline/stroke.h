@@ -47,4 +47,10 @@ struct StrokeOptions {
 Outline stroke(const Outline& outline, const StrokeOptions& options,
                double tolerance = kOutlineTolerance);
 
+/// The same, but where so much of it overlaps that it would take more steps than some for every
+/// curve, the parts that it is put together from: they overlap, and by the non-zero rule fill the
+/// same. Sets `winds_once` to whether they do not.
+Outline stroke_soon(const Outline& outline, const StrokeOptions& options, double tolerance,
+                    bool* winds_once);
+
 }  // namespace prefilter

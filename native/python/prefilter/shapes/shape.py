@@ -220,8 +220,9 @@ class Shape(Contours):
         reach = as_number("tolerance", tolerance)
         if not 0.0 < reach < np.inf:
             raise ValueError(f"tolerance: {tolerance!r}; a finite number above 0 is needed")
-        drawn = self._with(self._outline.stroked(pen, reach), self._paint)
-        drawn._fill_rule, drawn._winds_once = "nonzero", True
+        outline, winds_once = self._outline.stroked(pen, reach)
+        drawn = self._with(outline, self._paint)
+        drawn._fill_rule, drawn._winds_once = "nonzero", winds_once
         return drawn
 
     def _with(self, outline: _native.Outline, paint: _native.Paint) -> "Shape":

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "prefilter/raster/cell_colors.h"
+
+#include <algorithm>
+
+namespace prefilter {
+namespace {
+
+// What is behind so much does not show in a float.
+constexpr double kLeastPassing = 1e-9;
+
+}  // namespace
+
+void CellColors::append_color(const Paint& paint, std::vector<ChannelValues>* colors) const {
+  if (stack_.is_constant) {
+    colors->push_back(paint.constant);
+    return;
+  }
+  const double scale = 1.0 / filter_.cells_per_pixel;
+  for (std::size_t i = 0; i < kColorNodes; ++i) {
+    colors->push_back(paint.kind == Paint::Kind::kConstant
+                          ? paint.constant
+                          : paint.at(center_ + scale * color_node(i)));
+  }
+}
+
+// What is full below `end`, and over `behind`. Returns whether something passes.
+bool CellColors::append_full(std::uint32_t end, std::uint32_t behind, const LayerSet& full) {
+  const std::size_t first = full_.size();
+  full_.resize(first + nodes());
+  double most_passing = 1.0;
+  for (std::uint32_t layer = full.highest_below(end);
+       layer != LayerSet::kNone && (behind == LayerSet::kNone || layer > behind);
+       layer = full.highest_below(layer)) {
+    behind_.clear();
+    append_color(*stack_.layers[layer].paint, &behind_);
+    most_passing = 0.0;
+    for (std::size_t i = 0; i < nodes(); ++i) {
+      Veil& veil = full_[first + i];
+      veil.put_behind(behind_[i], opacity(behind_[i]), channels_);
+      most_passing = std::max(most_passing, veil.passing);
+    }
+    if (most_passing < kLeastPassing) return false;
+  }
+  return true;
+}
+
+void CellColors::begin_cell(int column, int row, std::span<const CellLayer> layers,
+                            const LayerSet& full) {
+  center_ = {filter_.to_pixel(column + 0.5), filter_.to_pixel(row + 0.5)};
+  full_.clear();
+  colors_.clear();
+  layers_ = layers;
+  all_full_ = &full;
+  looked_below_ = static_cast<std::uint32_t>(stack_.layers.size());
+  seen_ = 0;
+  is_at_end_ = false;
+  look_at(0);
+}
+
+std::size_t CellColors::look_at(std::size_t count) {
+  while (!is_at_end_) {
+    const std::size_t next = full_.size() / nodes();
+    if (next > count) break;
+    if (next > 0) {
+      append_color(*stack_.layers[layers_[seen_].layer].paint, &colors_);
+      ++seen_;
+    }
+    const bool is_last = seen_ == layers_.size();
+    const std::uint32_t behind = is_last ? LayerSet::kNone : layers_[seen_].layer;
+    is_at_end_ = !append_full(looked_below_, behind, *all_full_) || is_last;
+    looked_below_ = behind;
+  }
+  return std::min(count, seen_);
+}
+
+void CellColors::compose(std::uint64_t present, ChannelValues* out) const {
+  for (std::size_t i = 0; i < nodes(); ++i) {
+    Veil veil;
+    for (std::size_t layer = 0; layer <= seen_; ++layer) {
+      const Veil& next = full_[layer * nodes() + i];
+      veil.put_behind(next.color, 1.0 - next.passing, channels_);
+      if (layer < seen_ && (present >> layer & 1) != 0) {
+        const ChannelValues& color = colors_[layer * nodes() + i];
+        veil.put_behind(color, opacity(color), channels_);
+      }
+    }
+    out[i] = veil.color;
+    for (int c = 0; c < channels_; ++c) out[i][c] -= (1.0 - veil.passing) * background_[c];
+  }
+}
+
+void CellColors::powers(std::span<const ChannelValues> at_nodes,
+                        std::array<ColorPowers, kMaxChannels>* out) const {
+  for (int c = 0; c < channels_; ++c) (*out)[c] = {};
+  if (at_nodes.size() == 1) {
+    for (int c = 0; c < channels_; ++c) (*out)[c][0] = at_nodes[0][c];
+    return;
+  }
+  for (std::size_t i = 0; i < kColorNodes; ++i) {
+    add_color_node(i, at_nodes[i], channels_, out);
+  }
+}
+
+}  // namespace prefilter

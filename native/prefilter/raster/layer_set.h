@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Some of the layers of a stack, found from the top.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace prefilter {
+
+/// A set of numbers below a count. Words of bits, over which words tell which of those are not 0.
+class LayerSet {
+ public:
+  static constexpr std::uint32_t kNone = UINT32_MAX;
+
+  explicit LayerSet(std::size_t count) {
+    do {
+      count = count / 64 + 1;
+      levels_.emplace_back(count, 0);
+    } while (count > 1);
+  }
+
+  void insert(std::uint32_t layer) {
+    for (auto& words : levels_) {
+      words[layer / 64] |= std::uint64_t{1} << layer % 64;
+      layer /= 64;
+    }
+  }
+  void erase(std::uint32_t layer) {
+    for (auto& words : levels_) {
+      std::uint64_t& word = words[layer / 64];
+      word &= ~(std::uint64_t{1} << layer % 64);
+      if (word != 0) return;
+      layer /= 64;
+    }
+  }
+  /// The highest one below `end`, or kNone.
+  std::uint32_t highest_below(std::uint32_t end) const {
+    for (std::size_t level = 0; level < levels_.size(); ++level) {
+      std::uint32_t at = end / 64;
+      std::uint64_t bits = levels_[level][at] & ((std::uint64_t{1} << end % 64) - 1);
+      if (bits == 0) {
+        end = at;
+        continue;
+      }
+      at = 64 * at + highest(bits);
+      while (level > 0) at = 64 * at + highest(levels_[--level][at]);
+      return at;
+    }
+    return kNone;
+  }
+
+ private:
+  static std::uint32_t highest(std::uint64_t bits) {
+    return static_cast<std::uint32_t>(std::bit_width(bits)) - 1;
+  }
+
+  std::vector<std::vector<std::uint64_t>> levels_;
+};
+
+}  // namespace prefilter

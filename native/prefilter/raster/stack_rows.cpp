@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Along a row of cells those between two that arcs pass show the same. In a cell with arcs, what it
+// shows is the sum, over the parts of arcs, of what is to the right of a part, times the color
+// there less that to its left.
+#include "prefilter/raster/stack_rows.h"
+
+#include <algorithm>
+#include <array>
+
+namespace prefilter {
+namespace {
+
+constexpr double kMomentUnit = 1.0 / (1 << kMomentBits);
+// For an image, of a sweep and of samples: a second or so of a processor each.
+constexpr std::size_t kSweepSteps = std::size_t{1} << 25;
+constexpr std::size_t kSampleSteps = std::size_t{1} << 31;
+// With more arcs a cell is not swept: moments hold 31 regions to the right of some, one over
+// another.
+constexpr std::size_t kMostArcs = 60;
+
+// About the steps of a sweep, of arcs of which some cross.
+constexpr std::size_t steps_of(std::size_t arcs) { return 3 * arcs * arcs; }
+
+// A row of a number of steps for all rows.
+std::size_t share_of_row(std::size_t steps, int height) {
+  return steps / static_cast<std::size_t>(std::max(height, 64));
+}
+
+// How many layers of a cell are seen one behind another, until less than a millionth passes: each
+// covers half of it, as good as it gets.
+std::size_t layers_seen(const LayerStack& stack, int channels) {
+  constexpr double kMost = 4096.0;
+  double opacity = 0.0;
+  for (const StackLayer& layer : stack.layers) {
+    const Paint& paint = *layer.paint;
+    const bool lets_through = channels == kMaxChannels && paint.kind == Paint::Kind::kConstant;
+    opacity += lets_through ? paint.constant[kMaxChannels - 1] : 1.0;
+  }
+  const double mean = opacity / static_cast<double>(std::max<std::size_t>(1, stack.layers.size()));
+  return static_cast<std::size_t>(std::min(kMost, 28.0 / std::max(mean, 1e-3)));
+}
+
+}  // namespace
+
+template <int N>
+StackRows<N>::StackRows(const LayerStack& stack, const CellFilter& filter,
+                        const ChannelValues& background, int channels, int width, int height)
+    : stack_(stack),
+      filter_(filter),
+      channels_(channels),
+      width_(width),
+      sweep_steps_(share_of_row(kSweepSteps, height)),
+      sample_steps_(share_of_row(kSampleSteps, height)),
+      most_layers_(layers_seen(stack, channels)),
+      layers_(stack),
+      colors_(stack, filter, background, channels),
+      sweep_(arcs_),
+      samples_(arcs_, channels, N > 0),
+      pixels_(filter, width) {}
+
+// Says up to how many arcs cells are swept, and how finely the others are sampled.
+template <int N>
+void StackRows<N>::plan_row(std::span<const StackArc> arcs) {
+  struct Cells {
+    std::size_t count = 0;
+    std::size_t layers = 0;
+    std::size_t arcs = 0;
+  };
+  std::array<Cells, kMostArcs + 2> cells{};  // by arcs; the last are those of more
+  for (std::size_t i = 0; i < arcs.size();) {
+    const std::size_t first = i;
+    std::size_t layers = 0;
+    for (; i < arcs.size() && arcs[i].column == arcs[first].column; ++i) {
+      if (i == first || arcs[i].layer != arcs[i - 1].layer) ++layers;
+    }
+    Cells& alike = cells[std::min(i - first, kMostArcs + 1)];
+    ++alike.count;
+    alike.layers += std::min(layers, most_layers_);
+    alike.arcs += layers == 1 ? i - first : std::min(i - first, 2 * most_layers_);
+  }
+  std::size_t steps = 0;
+  for (most_arcs_ = 0; most_arcs_ < kMostArcs; ++most_arcs_) {
+    steps += cells[most_arcs_ + 1].count * steps_of(most_arcs_ + 1);
+    if (steps > sweep_steps_) break;
+  }
+  Cells sampled;
+  for (std::size_t count = most_arcs_ + 1; count < cells.size(); ++count) {
+    sampled.layers += cells[count].layers;
+    sampled.arcs += cells[count].arcs;
+  }
+  // Where each sample keeps its color, that is more to do.
+  const std::size_t values = N > 0 ? 1 + static_cast<std::size_t>(channels_) : 1;
+  const auto steps_by = [&](int rows) {
+    return sampled.layers * values * CellSamples::count_of(rows) +
+           sampled.arcs * static_cast<std::size_t>(rows);
+  };
+  sample_rows_ = CellSamples::kMostRows;
+  while (sample_rows_ > CellSamples::kLeastRows && steps_by(sample_rows_) > sample_steps_) {
+    sample_rows_ /= 2;
+  }
+}
+
+template <int N>
+void StackRows<N>::add_values(int first_row, int end_row, BandValues* values) {
+  pixels_.begin(first_row, end_row, values);
+  arcs_.gather(stack_, filter_, width_, first_row, end_row);
+  for (int row = arcs_.window().first_row; row < arcs_.window().end_row; ++row) add_row(row);
+}
+
+template <int N>
+void StackRows<N>::add_row(int row) {
+  const std::span<const StackArc> arcs = arcs_.in_row(row);
+  if (arcs.empty()) return;
+  plan_row(arcs);
+  const GridWindow& window = arcs_.window();
+  layers_.begin_row();
+  int column = window.first_column - 1;
+  bool goes_on = false;
+  for (std::size_t i = 0; i < arcs.size() || goes_on;) {
+    if (!goes_on) {
+      add_run(column, arcs[i].column, row);
+      column = arcs[i].column;
+    }
+    if (column >= window.end_column) return;
+    const std::size_t first = i;
+    while (i < arcs.size() && arcs[i].column == column) ++i;
+    layers_.enter(arcs.subspan(first, i - first));
+    if (column >= window.first_column) add_cell(column, row);
+    goes_on = layers_.leave();
+    ++column;
+  }
+  add_run(column, window.end_column, row);
+}
+
+template <int N>
+void StackRows<N>::add_run(int begin, int end, int row) {
+  begin = std::max(begin, arcs_.window().first_column);
+  if (begin >= end || layers_.full().highest_below(
+                          static_cast<std::uint32_t>(stack_.layers.size())) == LayerSet::kNone) {
+    return;
+  }
+  step_.resize(colors_.nodes());
+  if (stack_.is_constant) {
+    colors_.begin_cell(begin, row, {}, layers_.full());
+    colors_.compose(0, step_.data());
+    pixels_.add_constant(begin, end, row, {step_[0].data(), static_cast<std::size_t>(channels_)});
+    return;
+  }
+  std::array<ColorPowers, kMaxChannels> powers;
+  for (int column = begin; column < end; ++column) {
+    colors_.begin_cell(column, row, {}, layers_.full());
+    colors_.compose(0, step_.data());
+    colors_.powers(step_, &powers);
+    pixels_.add_full(column, row, 1.0,
+                     std::span(powers).first(static_cast<std::size_t>(channels_)));
+  }
+}
+
+template <int N>
+void StackRows<N>::add_cell(int column, int row) {
+  const auto layers = layers_.layers();
+  colors_.begin_cell(column, row, layers, layers_.full());
+  const auto seen = layers.first(colors_.look_at(CellSweep::kMostLayers + 1));
+  std::size_t arcs = 0;
+  for (const CellLayer& layer : seen) arcs += layer.arcs.size();
+  if (arcs <= most_arcs_ && seen.size() <= CellSweep::kMostLayers &&
+      sweep_.sweep(column, row, seen, 16 * steps_of(arcs) + 256)) {
+    ++work_.swept_cells;
+    work_.swept_steps += sweep_.work();
+    add_swept(column, row);
+    return;
+  }
+  ++work_.sampled_cells;
+  add_sampled(column, row);
+}
+
+template <int N>
+void StackRows<N>::add_sampled(int column, int row) {
+  samples_.compose(column, row, layers_.layers(), sample_rows_, &colors_);
+  const int degree = filter_.degree;
+  for (int c = 0; c < channels_; ++c) {
+    sums_[c].resize(static_cast<std::size_t>(degree + 1) * (degree + 1));
+    samples_.moments(c, degree, sums_[c].data());
+    pixels_.add(column, row, c, sums_[c]);
+  }
+}
+
+// Adds a part to the moments of a place.
+template <int N>
+void StackRows<N>::integrate(const SweptPart& part, int column, int row, std::int32_t place) {
+  if (part.arc == SweptPart::kLeftSide) {
+    batch_.add_line({-0.5, part.low}, {-0.5, part.high}, 1, place, &moments_);
+    return;
+  }
+  const StackArc& arc = sweep_.arc(part);
+  const Point2 low = sweep_.point_at(arc, part.low);
+  const Point2 high = sweep_.point_at(arc, part.high);
+  if (arc.curve == StackArc::kLine) {
+    batch_.add_line(low, high, 1, place, &moments_);
+    return;
+  }
+  const StackCurve& curve = arcs_.curve(arc);
+  const Point2 center{column + 0.5, row + 0.5};
+  const MonotoneCurve& piece = arcs_.piece(curve);
+  const bool rises = piece.begin.y < piece.end.y;
+  const auto parameter = [&](double y) {
+    if (y <= arc.low.y) return rises ? curve.t_begin : curve.t_end;
+    if (y >= arc.high.y) return rises ? curve.t_end : curve.t_begin;
+    return sweep_.parameter_at(arc, y);
+  };
+  CellArc cell_arc{parameter(part.low), parameter(part.high), low + center, high + center};
+  if (!rises) {
+    std::swap(cell_arc.t_begin, cell_arc.t_end);
+    std::swap(cell_arc.begin, cell_arc.end);
+  }
+  batch_.add_curve(piece.curve, cell_arc, center, rises ? 1 : -1, place, &moments_);
+}
+
+// Adds what lies right of arcs, times the color that is there more than to their left.
+template <int N>
+void StackRows<N>::add_place(const ArcMoments<N>& moments, std::span<const ChannelValues> step) {
+  std::array<std::array<double, N + 1>, N + 1> powers;
+  for (int a = 0; a <= N; ++a) {
+    auto& line = powers[a];
+    for (int b = 0; b <= N; ++b) {
+      line[b] = kMomentUnit * (at_high_end(a) * moments.across(b) - moments.inside(a, b));
+    }
+    for (int b = 1; b <= N; ++b) line[b] += mean_power(b) * line[0];
+  }
+  const int degree = filter_.degree;
+  std::array<ColorPowers, kMaxChannels> colors;
+  colors_.powers(step, &colors);
+  const std::size_t terms = stack_.is_constant ? 1 : kColorExponents.size();
+  for (int c = 0; c < channels_; ++c) {
+    for (std::size_t k = 0; k < terms; ++k) {
+      const auto [m, n] = kColorExponents[k];
+      for (int a = 0; a <= degree; ++a) {
+        for (int b = 0; b <= degree; ++b) {
+          sums_[c][a * (degree + 1) + b] += colors[c][k] * powers[a + m][b + n];
+        }
+      }
+    }
+  }
+}
+
+template <int N>
+void StackRows<N>::add_swept(int column, int row) {
+  const std::size_t nodes = colors_.nodes();
+  const std::size_t states = sweep_.state_count();
+  state_colors_.assign(states * nodes, {});
+  for (std::uint32_t state = 1; state < states; ++state) {
+    colors_.compose(sweep_.present_in(state), state_colors_.data() + state * nodes);
+  }
+  const auto color_of = [&](std::uint64_t state) {
+    return std::span<const ChannelValues>(state_colors_).subspan(state * nodes, nodes);
+  };
+  places_.clear();
+  moments_.clear();
+  for (const SweptPart& part : sweep_.parts()) {
+    if (std::ranges::equal(color_of(part.left), color_of(part.right))) continue;
+    const std::uint32_t place =
+        places_.number_of(static_cast<std::uint64_t>(part.left) << 32 | part.right);
+    if (place == moments_.size()) moments_.emplace_back();
+    integrate(part, column, row, static_cast<std::int32_t>(place));
+  }
+  batch_.flush(&moments_);
+  const int degree = filter_.degree;
+  for (int c = 0; c < channels_; ++c) {
+    sums_[c].assign(static_cast<std::size_t>(degree + 1) * (degree + 1), 0.0);
+  }
+  step_.resize(nodes);
+  for (std::size_t place = 0; place < moments_.size(); ++place) {
+    const std::uint64_t key = places_.keys()[place];
+    const auto before = color_of(key >> 32);
+    const auto after = color_of(key & UINT32_MAX);
+    for (std::size_t i = 0; i < nodes; ++i) {
+      for (int c = 0; c < channels_; ++c) step_[i][c] = after[i][c] - before[i][c];
+    }
+    add_place(moments_[place], step_);
+  }
+  for (int c = 0; c < channels_; ++c) pixels_.add(column, row, c, sums_[c]);
+}
+
+template class StackRows<0>;
+template class StackRows<1>;
+template class StackRows<2>;
+template class StackRows<3>;
+template class StackRows<4>;
+template class StackRows<5>;
+template class StackRows<7>;
+template class StackRows<9>;
+
+}  // namespace prefilter

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// The values of pixels under a stack of layers, cell by cell.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "prefilter/moments/arc_moments.h"
+#include "prefilter/raster/band_values.h"
+#include "prefilter/raster/cell_colors.h"
+#include "prefilter/raster/cell_pixels.h"
+#include "prefilter/raster/cell_samples.h"
+#include "prefilter/raster/cell_sweep.h"
+#include "prefilter/raster/layer_stack.h"
+#include "prefilter/raster/row_layers.h"
+#include "prefilter/raster/stack_arcs.h"
+
+namespace prefilter {
+
+/// What there is to do in a cell, in steps of a sweep, and what it took.
+struct StackWork {
+  std::size_t swept_cells = 0;
+  std::size_t swept_steps = 0;
+  std::size_t sampled_cells = 0;
+};
+
+/// N is the filter's degree and that of the colors together: 2 where these are not constant.
+///
+/// Cells are swept, which is exact, as far as their number of arcs lets a row of an image be made
+/// within a number of steps; those with more arcs are sampled, as finely as another number of steps
+/// lets them. Which they are depends on the row alone.
+template <int N>
+class StackRows {
+ public:
+  /// All must outlive it.
+  StackRows(const LayerStack& stack, const CellFilter& filter, const ChannelValues& background,
+            int channels, int width, int height);
+
+  /// Adds to `values`, those of the pixel rows [first_row, end_row), what the stack shows less the
+  /// background.
+  void add_values(int first_row, int end_row, BandValues* values);
+  const StackWork& work() const { return work_; }
+
+ private:
+  void add_row(int row);
+  void add_run(int begin, int end, int row);
+  void add_cell(int column, int row);
+  void add_swept(int column, int row);
+  void add_sampled(int column, int row);
+  void integrate(const SweptPart& part, int column, int row, std::int32_t place);
+  void add_place(const ArcMoments<N>& moments, std::span<const ChannelValues> step);
+  void plan_row(std::span<const StackArc> arcs);
+
+  const LayerStack& stack_;
+  const CellFilter& filter_;
+  int channels_;
+  int width_;
+  std::size_t sweep_steps_;   // for a row
+  std::size_t sample_steps_;  // likewise
+  std::size_t most_layers_;   // one behind another that are sampled, mostly
+  std::size_t most_arcs_ = 0;
+  int sample_rows_ = CellSamples::kMostRows;
+  StackArcs arcs_;
+  RowLayers layers_;
+  CellColors colors_;
+  CellSweep sweep_;
+  CellSamples samples_;
+  CellPixels pixels_;
+  StackWork work_;
+  KeyNumbers places_;
+  std::vector<ArcMoments<N>> moments_;
+  ArcBatch<N> batch_;
+  std::vector<ChannelValues> state_colors_;
+  std::vector<ChannelValues> step_;
+  std::array<std::vector<double>, kMaxChannels> sums_;  // of x^a y^b
+};
+
+extern template class StackRows<0>;
+extern template class StackRows<1>;
+extern template class StackRows<2>;
+extern template class StackRows<3>;
+extern template class StackRows<4>;
+extern template class StackRows<5>;
+extern template class StackRows<7>;
+extern template class StackRows<9>;
+
+}  // namespace prefilter

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Stacks of layers against what is resolved as outlines, and where too much crosses for that,
+// against points by brute force.
+#include "prefilter/raster/stack_rows.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+#include <random>
+#include <string_view>
+#include <vector>
+
+#include "outline/outline_oracle.h"
+#include "prefilter/outline/resolve_soon.h"
+#include "prefilter/outline/visible_pieces.h"
+#include "prefilter/raster/rasterize.h"
+
+namespace prefilter {
+namespace {
+
+using namespace outline_oracle;
+
+constexpr ChannelValues kBackground = {0.25, 0.5, 0.125, 1.0};
+
+struct Drawn {
+  std::vector<double> values;  // of all channels
+  StackWork work;
+};
+
+template <int N>
+Drawn drawn(const std::vector<Shape>& shapes, std::string_view filter, int width, int height) {
+  const LayerStack stack = stack_of(shapes);
+  const int channels = shapes.front().paint.channels;
+  StackRows<N> rows(stack, *find_cell_filter(filter), kBackground, channels, width, height);
+  BandValues values;
+  values.reset(width, height, channels, kBackground);
+  rows.add_values(0, height, &values);
+  Drawn out{{}, rows.work()};
+  for (int row = 0; row < height; ++row) {
+    const double* begin = values.row(row);
+    out.values.insert(out.values.end(), begin, begin + width * channels);
+  }
+  return out;
+}
+
+Paint painted(std::mt19937* random, double alpha) {
+  std::uniform_real_distribution<double> unit(0.0, alpha);
+  Paint paint;
+  paint.channels = 4;
+  paint.constant = {unit(*random), unit(*random), unit(*random), alpha};
+  return paint;
+}
+
+// Curves all over a square.
+Outline tangle(std::mt19937* random, int curves, double side) {
+  std::uniform_real_distribution<double> place(-0.1 * side, 1.1 * side);
+  const auto point = [&] { return Point2{place(*random), place(*random)}; };
+  Outline outline;
+  outline.move_to(point());
+  for (int i = 0; i < curves; ++i) {
+    switch (i % 3) {
+      case 0:
+        outline.line_to(point());
+        break;
+      case 1:
+        outline.curve_to(std::vector<Point2>{point(), point(), point()});
+        break;
+      default:
+        outline.conic_to(point(), 0.7, point());
+        break;
+    }
+  }
+  outline.close();
+  return outline;
+}
+
+std::vector<Shape> tangles(int count, int curves, double side, double alpha, unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<Shape> shapes;
+  for (int i = 0; i < count; ++i) {
+    const FillRule rule = i % 2 == 0 ? FillRule::kNonzero : FillRule::kEvenOdd;
+    shapes.push_back({tangle(&random, curves, side), rule, painted(&random, alpha)});
+  }
+  return shapes;
+}
+
+// What is seen at a point, by winding numbers from the top.
+class Points {
+ public:
+  explicit Points(const std::vector<Shape>& shapes) : shapes_(shapes) {
+    for (const Shape& shape : shapes) chains_.push_back(fine_chains(shape.outline, 60));
+  }
+
+  // The means over a pixel.
+  ChannelValues means(int x, int y, int count) const {
+    ChannelValues sums{};
+    for (int i = 0; i < count; ++i) {
+      // No rows and columns, which edges along them would pass all at once.
+      const double u = (i + 0.5) / count;
+      const double v = std::fmod(i * 0.6180339887498949 + 0.25, 1.0);
+      const ChannelValues value = at({x + u, y + v});
+      for (std::size_t c = 0; c < sums.size(); ++c) sums[c] += value[c] / count;
+    }
+    return sums;
+  }
+
+ private:
+  ChannelValues at(const Point2& point) const {
+    ChannelValues value{};
+    double passing = 1.0;
+    for (std::size_t i = shapes_.size(); i-- > 0 && passing > 1e-9;) {
+      if (!filled(winding(chains_[i], point), shapes_[i].fill_rule)) continue;
+      const ChannelValues& color = shapes_[i].paint.constant;
+      for (std::size_t c = 0; c < value.size(); ++c) value[c] += passing * color[c];
+      passing *= 1.0 - color[3];
+    }
+    for (std::size_t c = 0; c < value.size(); ++c) value[c] += passing * kBackground[c];
+    return value;
+  }
+
+  const std::vector<Shape>& shapes_;
+  std::vector<std::vector<Chain>> chains_;
+};
+
+template <int N>
+void expect_like_outlines(const std::vector<Shape>& shapes, std::string_view filter, int side) {
+  RasterOptions options;
+  options.width = side;
+  options.height = side;
+  options.filter = filter;
+  options.background = {kBackground.begin(), kBackground.end()};
+  std::vector<CoveringLayer> layers;
+  for (const Shape& shape : shapes) layers.push_back({&shape.outline, shape.fill_rule, true});
+  ASSERT_TRUE(visible_pieces(layers, ArrangementEffort::kBounded));
+  const Image expected = rasterize(shapes, options);
+  const Drawn found = drawn<N>(shapes, filter, side, side);
+  EXPECT_EQ(found.work.sampled_cells, 0u);
+  EXPECT_GT(found.work.swept_cells, 0u);
+  for (std::size_t i = 0; i < found.values.size(); ++i) {
+    ASSERT_NEAR(found.values[i], expected.texel(0, 0)[i], 1e-6) << filter << " " << i;
+  }
+}
+
+TEST(StackRows, SweptCellsAreWhatOutlinesAre) {
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    const double alpha = seed % 2 == 0 ? 1.0 : 0.4;
+    const std::vector<Shape> shapes = tangles(4, 6, 40.0, alpha, seed);
+    expect_like_outlines<0>(shapes, "box", 40);
+    expect_like_outlines<1>(shapes, "tent", 40);
+    expect_like_outlines<3>(shapes, "mitchell", 40);
+    expect_like_outlines<7>(shapes, "radial2", 40);
+  }
+}
+
+TEST(StackRows, LinearColorsAreExact) {
+  std::vector<Shape> shapes = tangles(3, 5, 30.0, 1.0, 9);
+  for (Shape& shape : shapes) {
+    shape.paint.kind = Paint::Kind::kLinear;
+    shape.paint.along_x = {0.01, -0.005, 0.002, 0.0};
+    shape.paint.along_y = {-0.003, 0.004, 0.006, 0.0};
+  }
+  expect_like_outlines<2>(shapes, "box", 30);
+  expect_like_outlines<5>(shapes, "mitchell", 30);
+}
+
+TEST(StackRows, SampledCellsAreCloseToPoints) {
+  for (const double alpha : {1.0, 0.2}) {
+    // All of it within a few pixels.
+    const std::vector<Shape> shapes = tangles(60, 9, 3.0, alpha, 5);
+    const Drawn found = drawn<0>(shapes, "box", 3, 3);
+    EXPECT_GT(found.work.sampled_cells, 4u);
+    const Points points(shapes);
+    for (int i = 0; i < 9; ++i) {
+      const ChannelValues means = points.means(i % 3, i / 3, 4096);
+      for (int c = 0; c < 4; ++c) {
+        EXPECT_NEAR(found.values[4 * i + c], means[c], 1.0 / 255.0)
+            << alpha << " pixel " << i << " channel " << c;
+      }
+    }
+  }
+}
+
+TEST(StackRows, SampledMomentsServeOtherFilters) {
+  const std::vector<Shape> shapes = tangles(60, 9, 6.0, 0.6, 5);
+  const Drawn box = drawn<0>(shapes, "box", 6, 6);
+  const Drawn tent = drawn<1>(shapes, "tent", 6, 6);
+  EXPECT_GT(tent.work.sampled_cells, 4u);
+  double box_sum = 0.0;
+  double tent_sum = 0.0;
+  for (int y = 1; y < 5; ++y) {
+    for (int x = 1; x < 5; ++x) {
+      box_sum += box.values[4 * (6 * y + x)];
+      tent_sum += tent.values[4 * (6 * y + x)];
+    }
+  }
+  EXPECT_NEAR(box_sum / 16.0, tent_sum / 16.0, 0.02);
+}
+
+// The bounds are of steps, which no machine changes.
+TEST(StackRows, WorkIsBounded) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> place(0.0, 64.0);
+  for (const int count : {1000, 2000}) {
+    Outline lines;
+    for (int i = 0; i < count; ++i) {
+      lines.move_to({place(random), place(random)});
+      lines.line_to({place(random), place(random)});
+      lines.line_to({place(random), place(random)});
+      lines.close();
+    }
+    std::optional<Outline> changed;
+    EXPECT_FALSE(resolve_soon(lines, FillRule::kNonzero, {}, &changed));
+    Paint paint;
+    const Drawn found = drawn<0>({{lines, FillRule::kNonzero, paint}}, "box", 64, 64);
+    EXPECT_GT(found.work.sampled_cells, 100u);
+    EXPECT_LT(found.work.swept_steps, std::size_t{1} << 29);
+  }
+}
+
+TEST(StackRows, EqualContoursAreOne) {
+  std::mt19937 random(8);
+  const Outline once = tangle(&random, 5, 8.0);
+  Outline many;
+  for (int i = 0; i < 101; ++i) many.append(once);
+  Paint paint;
+  for (const FillRule rule : {FillRule::kNonzero, FillRule::kEvenOdd}) {
+    const Drawn expected = drawn<0>({{once, rule, paint}}, "box", 8, 8);
+    const Drawn found = drawn<0>({{many, rule, paint}}, "box", 8, 8);
+    EXPECT_EQ(found.work.sampled_cells, 0u);
+    for (std::size_t i = 0; i < found.values.size(); ++i) {
+      ASSERT_NEAR(found.values[i], expected.values[i], 1e-6);
+    }
+  }
+}
+
+TEST(StackRows, ThreadsDoNotMatter) {
+  const std::vector<Shape> shapes = tangles(60, 9, 40.0, 0.5, 4);
+  RasterOptions options;
+  options.width = 40;
+  options.height = 36;
+  options.filter = "mitchell";
+  options.threads = 1;
+  const Image one = rasterize(shapes, options);
+  options.threads = 5;
+  const Image five = rasterize(shapes, options);
+  for (int i = 0; i < 40 * 36 * 4; ++i) ASSERT_EQ(one.texel(0, 0)[i], five.texel(0, 0)[i]) << i;
+}
+
+TEST(LayerSet, FindsTheHighest) {
+  LayerSet set(10000);
+  EXPECT_EQ(set.highest_below(10000), LayerSet::kNone);
+  for (const std::uint32_t layer : {0u, 63u, 64u, 4095u, 4096u, 9999u}) set.insert(layer);
+  EXPECT_EQ(set.highest_below(10000), 9999u);
+  EXPECT_EQ(set.highest_below(9999), 4096u);
+  EXPECT_EQ(set.highest_below(4096), 4095u);
+  set.erase(4095);
+  EXPECT_EQ(set.highest_below(4096), 64u);
+  EXPECT_EQ(set.highest_below(64), 63u);
+  EXPECT_EQ(set.highest_below(63), 0u);
+  EXPECT_EQ(set.highest_below(0), LayerSet::kNone);
+}
+
+}  // namespace
+}  // namespace prefilter
