@@ -74,15 +74,21 @@ void CellSamples::add_arc(const StackArc& arc) {
     add_winding(arc.low, arc.high, arc.winding);
     return;
   }
-  constexpr int kLines = 8;
   const StackCurve& curve = stack_arcs_.curve(arc);
   const ParametricCurve& whole = stack_arcs_.piece(curve).curve;
+  // A line where the middle of the arc is closer to it than a sample to the next.
+  constexpr int kMostLines = 8;
+  const Point2 middle = whole.at(0.5 * (curve.t_begin + curve.t_end)) - center_;
+  const Point2 way = arc.high - arc.low;
+  const double off = std::fabs(cross(way, middle - arc.low));
+  const bool is_straight = off * 16.0 * columns_ < std::max(std::fabs(way.x), way.y);
+  const int lines = is_straight ? 1 : kMostLines;
   const bool rises = whole.at(curve.t_begin).y < whole.at(curve.t_end).y;
   Point2 low = arc.low;
-  for (int i = 1; i <= kLines; ++i) {
-    const double share = static_cast<double>(rises ? i : kLines - i) / kLines;
+  for (int i = 1; i <= lines; ++i) {
+    const double share = static_cast<double>(rises ? i : lines - i) / lines;
     Point2 high = arc.high;
-    if (i < kLines) {
+    if (i < lines) {
       high = whole.at(curve.t_begin + share * (curve.t_end - curve.t_begin)) - center_;
       high.y = std::clamp(high.y, low.y, arc.high.y);
     }

@@ -209,11 +209,11 @@ template <int N>
 void make_bands(const RasterLayers& job, const CellFilter& filter, const RasterOptions& options,
                 Image* image) {
   constexpr int kBandValues = 1 << 17;
-  // The arcs of stacks are held for a band: it has few rows.
   constexpr int kLeastRows = 16;
-  const int rows = job.stacks.empty()
-                       ? std::clamp(kBandValues / (options.width * job.channels), kLeastRows, 256)
-                       : kLeastRows;
+  int rows = std::clamp(kBandValues / (options.width * job.channels), kLeastRows, 256);
+  // The arcs of stacks are held for a band, and those of the cells that two bands have in common
+  // are made for both.
+  if (!job.stacks.empty()) rows = filter.taps == 1 ? kLeastRows / 2 : kLeastRows;
   parallel_ranges(options.height, rows, options.threads, options.progress.part(kLayersShare, 1.0),
                   [&](std::int64_t begin, std::int64_t end) {
                     BandMaker<N> maker(job, filter, image);
