@@ -14,7 +14,7 @@ namespace {
 constexpr double kMomentUnit = 1.0 / (1 << kMomentBits);
 // For an image, of a sweep and of samples: a second or so of a processor each.
 constexpr std::size_t kSweepSteps = std::size_t{1} << 25;
-constexpr std::size_t kSampleSteps = std::size_t{1} << 31;
+constexpr std::size_t kSampleSteps = std::size_t{1} << 30;
 // With more arcs a cell is not swept: moments hold 31 regions to the right of some, one over
 // another.
 constexpr std::size_t kMostArcs = 60;
