@@ -29,7 +29,7 @@ constexpr double kDepths = 1.4;
 // Of a triangle of a slab that is made, with its leaves, edges and vertices.
 constexpr double kBytesPerTriangle = 330.0;
 // While a slab's part of the mesh is simplified, one at a time.
-constexpr double kSimplifiedBytesPerTriangle = 250.0;
+constexpr double kSimplifiedBytesPerTriangle = 170.0;
 constexpr double kVerticesPerTriangle = 1.0;  // twice the half, as they are copied
 constexpr double kTrianglesPerMetCell = 2.1;
 // So many slabs to both sides of those at work are in memory, or as much as these take: see
