@@ -208,4 +208,8 @@ def test_grids_and_faces_count_before_points_are_chosen(tmp_path):
         [path], depth=4, trim=2.0, box=[(5, 5, -1), (15, 15, 1)], report=report
     )
     assert report.points == 11 * 11
-    assert np.abs(found[:, 2]).max() < 0.5
+    # The plane is where its points are, and bends by less than a cell where they end.
+    inside = np.abs(found[:, :2] - 10).max(axis=1) < 3.5
+    assert inside.sum() > 50
+    assert np.abs(found[inside, 2]).max() < 1e-4
+    assert np.abs(found[:, 2]).max() < 0.8

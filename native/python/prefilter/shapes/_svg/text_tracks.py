@@ -13,6 +13,11 @@ _MOST_STEPS = 1_000_000
 _FloatArray = npt.NDArray[np.float64]
 
 
+def _turned(points: _FloatArray, turn: _FloatArray) -> _FloatArray:
+    # A product of matrices may round differently on other processors.
+    return points[..., :1] * turn[0] + points[..., 1:] * turn[1]
+
+
 class Track:
     """An outline by its length.
 
@@ -57,11 +62,11 @@ def _chords(
     at = begin = np.zeros(2)
     for kind, numbers in outline.segments():
         if kind == "M":
-            at = begin = np.array(numbers) @ turn + move
+            at = begin = _turned(np.array(numbers), turn) + move
             continue
         weight = numbers[2] if kind == "W" else 1.0
         values = numbers[:2] + numbers[3:] if kind == "W" else numbers
-        inner = np.array(values).reshape(-1, 2) @ turn + move if values else begin[None]
+        inner = _turned(np.array(values).reshape(-1, 2), turn) + move if values else begin[None]
         controls = np.concatenate([at[None], inner])
         if kind in "LZ":
             points, slopes = controls, np.repeat(controls[1:] - controls[:1], 2, axis=0)
