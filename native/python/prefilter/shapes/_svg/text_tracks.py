@@ -15,7 +15,8 @@ _FloatArray = npt.NDArray[np.float64]
 
 def _turned(points: _FloatArray, turn: _FloatArray) -> _FloatArray:
     # A product of matrices may round differently on other processors.
-    return points[..., :1] * turn[0] + points[..., 1:] * turn[1]
+    turned: _FloatArray = points[..., :1] * turn[0] + points[..., 1:] * turn[1]
+    return turned
 
 
 class Track:
