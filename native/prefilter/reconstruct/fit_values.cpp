@@ -11,6 +11,7 @@
 #include "prefilter/contour/contour_tree.h"
 #include "prefilter/contour/root_frame.h"
 #include "prefilter/contour/surface_vertices.h"
+#include "prefilter/reconstruct/tree_leaf.h"
 
 namespace prefilter {
 namespace {
@@ -24,9 +25,9 @@ constexpr int kReach = 3;
 // hardly cross it would move it without end.
 constexpr float kStill = 0.05F;
 
+// A leaf, and how high it lies, in sides of it.
 struct Leaf {
-  int depth;
-  std::size_t cell;  // on level depth - 1: 8 * block + octant
+  TreeLeaf place;
   std::int32_t height;
 };
 
@@ -35,17 +36,8 @@ std::optional<Leaf> find_leaf(const CellTree& tree, int depth, const CellCoordin
   for (const std::int32_t x : at) {
     if (x < 0 || x >= 1 << depth) return std::nullopt;
   }
-  std::size_t block = 0;
-  for (int k = 1;; ++k) {
-    const int shift = depth - k;
-    const int o =
-        ((at[0] >> shift) & 1) | ((at[1] >> shift) & 1) << 1 | ((at[2] >> shift) & 1) << 2;
-    const TreeLevel& level = tree.levels[static_cast<std::size_t>(k - 1)];
-    if (!level.is_split(block, o)) {
-      return Leaf{k, 8 * block + static_cast<std::size_t>(o), at[2] >> shift};
-    }
-    block = level.child(block, o);
-  }
+  const TreeLeaf found = leaf_at(tree, depth, at);
+  return Leaf{found, at[2] >> (depth - found.depth)};
 }
 
 // How a leaf's value is to change, by the lines from its center to those of its neighbors: those
@@ -90,13 +82,11 @@ class ValueFit {
   float& value(std::size_t level, std::size_t cell) {
     return tree_->levels[level].blocks[cell / 8][cell % 8];
   }
-  float& value(const Leaf& leaf) {
-    return value(static_cast<std::size_t>(leaf.depth - 1), leaf.cell);
-  }
+  float& value(const Leaf& leaf) { return value(leaf.place.level(), leaf.place.cell); }
 
   // Whether the value of a leaf counts for the heights, now or in a later round.
   bool counts(const Leaf& leaf) const {
-    const int size = 1 << (tree_->depth() - leaf.depth);
+    const int size = 1 << (tree_->depth() - leaf.place.depth);
     const int low = leaf.height * size;
     return size <= range_.largest && low + (reach_ + 1) * size >= range_.heights.low &&
            low - reach_ * size <= range_.heights.high;
@@ -111,7 +101,7 @@ class ValueFit {
     const std::optional<Leaf> far = find_leaf(*tree_, place.depth, beyond);
     if (!near || !far || !(counts(*near) || counts(*far))) return;
     // Where holes are filled, much smaller leaves may be farther away than values are known.
-    if (near->depth - far->depth > 1) return;
+    if (near->place.depth - far->place.depth > 1) return;
     const std::optional<LocalSurface> surface = fit_.trusted(place.depth, vertex);
     if (!surface) return;
     // The surface moves by -distance along its normal, which is -distance / slope along the line,
@@ -119,8 +109,8 @@ class ValueFit {
     const float derivative = is_high ? value(*far) - value(*near) : value(*near) - value(*far);
     const auto slope = static_cast<float>(surface->normal[axis]);
     for (const Leaf& leaf : {*near, *far}) {
-      Change& change = changes_[static_cast<std::size_t>(leaf.depth - 1)][leaf.cell];
       if (!counts(leaf)) continue;
+      Change& change = changes_[leaf.place.level()][leaf.place.cell];
       change.sum += derivative * slope * static_cast<float>(surface->distance);
       change.weight += slope * slope;
     }

@@ -7,6 +7,7 @@
 
 #include "prefilter/reconstruct/assemble.h"
 #include "prefilter/reconstruct/slab_walk.h"
+#include "prefilter/reconstruct/tree_leaf.h"
 #include "prefilter/wavelet/smooth.h"
 
 namespace prefilter {
@@ -95,15 +96,8 @@ CellTree tree_around(const Slabs& slabs, int s, int octants, float scale, bool i
 }
 
 float leaf_value(const CellTree& tree, int depth, const CellPosition& at) {
-  std::size_t block = 0;
-  for (int k = 0;; ++k) {
-    const int shift = depth - k - 1;
-    const int o =
-        ((at[0] >> shift) & 1) | ((at[1] >> shift) & 1) << 1 | ((at[2] >> shift) & 1) << 2;
-    const TreeLevel& level = tree.levels[static_cast<std::size_t>(k)];
-    if (!level.is_split(block, o)) return level.blocks[block][static_cast<std::size_t>(o)];
-    block = level.child(block, o);
-  }
+  const TreeLeaf leaf = leaf_at(tree, depth, at);
+  return tree.levels[leaf.level()].blocks[leaf.cell / 8][leaf.cell % 8];
 }
 
 }  // namespace prefilter
