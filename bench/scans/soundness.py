@@ -25,7 +25,7 @@ from scipy.spatial import cKDTree
 from bench.scans import ply
 from bench.scans.measure import HIGH, manifold_kind
 from bench.scans.sets import Model
-from bench.voxels.measures import edges, self_intersections
+from bench.voxels.measures import edges, folds, self_intersections, sharp_edges
 from bench.voxels.meshes import Triangles
 
 SAMPLES = 200_000
@@ -33,6 +33,10 @@ FAR = 3.0  # Cells: what is farther is lost, or invented.
 SPARSE = 3.0  # Spacings: as far may a surface be from the points of a real scan.
 NEIGHBOR = 4  # Whose distance is the spacing.
 FOLD = 90.0  # Degrees.
+CREASE = (
+    70.0  # Degrees: edges of a box, which turn by a little over 90 here and there, are no folds.
+)
+NEAR_CREASE = 2.0  # Cells.
 Floats = NDArray[np.float64]
 
 
@@ -42,7 +46,8 @@ class Soundness:
 
     Attributes:
         triangles: How many there are.
-        folded: The share of edges that turn by more than 90 degrees [%].
+        folded: The share of edges that turn by more than 90 degrees, and are not those of the truth
+            [%].
         cut: Triangles that cut others.
         parts: Pieces that hang together.
         genus: Of all pieces together; -1 where the surface is not closed.
@@ -70,18 +75,19 @@ def soundness(
 ) -> Soundness:
     """Measures a surface."""
     surface = ply.read_mesh(made)
-    _, _, turns = edges(surface.positions, surface.triangles)
+    shape = None if truth is None else Model.read(truth)
+    folded = folded_share(surface, None if shape is None else shape.mesh, cell)
     _, cut, _, _ = self_intersections(surface.positions, surface.triangles)
     parts, genus = topology(surface)
-    if truth is None:
+    if shape is None:
         there, back, angles = beside_points(surface, ply.read_points(points), samples)
         distances = back / cell
     else:
-        there, back, angles = beside_truth(surface, Model.read(truth), samples, FAR * cell)
+        there, back, angles = beside_truth(surface, shape, samples, FAR * cell)
         distances = np.concatenate([there, back]) / cell
     return Soundness(
         len(surface.triangles),
-        100 * float((turns > FOLD).mean()),
+        100 * folded,
         cut,
         parts,
         genus,
@@ -91,6 +97,14 @@ def soundness(
         float(np.percentile(distances, HIGH)),
         float(angles.mean()) if len(angles) else 90.0,
     )
+
+
+def folded_share(surface: Triangles, truth: Triangles | None, cell: float) -> float:
+    """Returns the share of edges that turn by more than `FOLD`, away from the truth's creases."""
+    _, _, turns = edges(surface.positions, surface.triangles)
+    creases = None if truth is None else sharp_edges(truth.positions, truth.triangles, CREASE)
+    found = folds(surface.positions, surface.triangles, FOLD, creases, NEAR_CREASE * cell)
+    return found / len(turns)
 
 
 def topology(surface: Triangles) -> tuple[int, int]:

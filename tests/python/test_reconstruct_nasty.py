@@ -139,9 +139,11 @@ def test_only_the_ratios_of_weights_count(scale):
     weights = np.random.default_rng(4).uniform(0.5, 1.0, len(CLOUD.points))
     expected = _rebuilt(CLOUD.points, weights=weights)
     found = _rebuilt(CLOUD.points, weights=scale * weights)
-    np.testing.assert_array_equal(found[1], expected[1])
-    # Values are solved for in single precision; where they are nearly level, vertices tell.
-    np.testing.assert_allclose(found[0], expected[0], atol=1e-4)
+    # Rounding may choose between two that are alike, so that numbers of vertices differ.
+    assert len(found[1]) == len(expected[1])
+    for a, b in ((found, expected), (expected, found)):
+        off = prefilter.nearest_points(a[0].astype(np.float64), b[0], b[1])[2]
+        assert off.max() < 1e-4
 
 
 @BASES

@@ -205,13 +205,11 @@ void SampleFit::move(int depth, const FitLine* line, Vector3* point) const {
   }
 }
 
-std::optional<LocalSurface> SampleFit::trusted(int depth, const Vector3& point) const {
+std::optional<LocalSurface> SampleFit::surface_near(int depth, const Vector3& point) const {
   const double shrink = std::ldexp(1.0, depth - finest_);
   std::optional<LocalSurface> surface =
       local_surface(index_of_(depth), shrink * point, noise_.normal_trust);
-  if (surface) {
-    surface->distance *= trust_in(*surface, noise_.distance * shrink, noise_.mean_weight);
-  }
+  if (surface) surface->trust = trust_in(*surface, noise_.distance * shrink, noise_.mean_weight);
   return surface;
 }
 

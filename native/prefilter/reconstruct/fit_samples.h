@@ -23,6 +23,7 @@ struct LocalSurface {
   double spread = 0.0;    // of that distance by the samples of each cell: standard deviation
   double weight = 0.0;    // of as many samples as would have the same noise, all weighted alike
   double cells = 0.0;     // as many of these, likewise
+  double trust = 1.0;     // how much the distance counts beside the function's: trust_in
 };
 
 /// None where there are no samples, or their normals cancel each other, or with a `normal_trust` of
@@ -74,9 +75,10 @@ class SampleFit {
   /// normal, up to a cell of the samples at a time, for a function that was not solved for.
   void move(int depth, const FitLine* line, Vector3* point) const;
 
-  /// The surface as seen from such a point, in cells of that depth, with the distance as far as it
-  /// is to be trusted.
-  std::optional<LocalSurface> trusted(int depth, const Vector3& point) const;
+  /// The surface as seen from such a point, in cells of that depth.
+  std::optional<LocalSurface> surface_near(int depth, const Vector3& point) const;
+
+  const SampleIndex& samples(int depth) const { return index_of_(depth); }
 
  private:
   IndexOf index_of_;

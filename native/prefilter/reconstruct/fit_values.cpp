@@ -102,16 +102,17 @@ class ValueFit {
     if (!near || !far || !(counts(*near) || counts(*far))) return;
     // Where holes are filled, much smaller leaves may be farther away than values are known.
     if (near->place.depth - far->place.depth > 1) return;
-    const std::optional<LocalSurface> surface = fit_.trusted(place.depth, vertex);
+    const std::optional<LocalSurface> surface = fit_.surface_near(place.depth, vertex);
     if (!surface) return;
     // The surface moves by -distance along its normal, which is -distance / slope along the line,
     // if the value changes by as much times its derivative. Weights are the slope's square.
     const float derivative = is_high ? value(*far) - value(*near) : value(*near) - value(*far);
     const auto slope = static_cast<float>(surface->normal[axis]);
+    const auto distance = static_cast<float>(surface->trust * surface->distance);
     for (const Leaf& leaf : {*near, *far}) {
       if (!counts(leaf)) continue;
       Change& change = changes_[leaf.place.level()][leaf.place.cell];
-      change.sum += derivative * slope * static_cast<float>(surface->distance);
+      change.sum += derivative * slope * distance;
       change.weight += slope * slope;
     }
   }

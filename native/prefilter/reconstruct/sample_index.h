@@ -66,6 +66,12 @@ class SampleIndex {
     }
   }
 
+  /// Calls visit(cell) for all.
+  template <typename Visit>
+  void for_all(const Visit& visit) const {
+    for (const Entry& entry : cells_) visit(entry.level->samples.cells[entry.index]);
+  }
+
  private:
   struct Entry {
     const SampleLevel* level;

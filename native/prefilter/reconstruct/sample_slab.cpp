@@ -17,7 +17,6 @@ namespace prefilter {
 namespace {
 
 constexpr int kIndexBits = 64 - kKeyBits;
-constexpr int kNeighborsOfSurface = 3;
 constexpr int kAreaSteps = 2;
 // Cells this large always count, so that there is one where every sample does.
 constexpr int kCoarsestLeaf = 2;
@@ -33,6 +32,8 @@ constexpr int kOutlierDepths = 3;
 constexpr double kLeastSamples = 1.5;
 // In the cells around one that has octants with so many.
 constexpr double kEnough = 4.0 * kCellsAround * kLeastSamples;
+// In a cell that is met, for its octants' octants: just less than 16, as rounding is not to decide.
+constexpr double kEnoughOfCell = 15.99;
 // Where there are so many in the cells around one, a sample in it without neighbors is a stray.
 constexpr double kIsolated = kEnough * (1 << (2 * (kOutlierDepths - 1)));
 
@@ -112,7 +113,7 @@ void mark_met(const CellLayers& cells, double mean_weight, SampleLevel* level) {
   }
   constexpr CellKey kBack = ((CellKey{1} << kRowShift) + 1) << kRowShift;
   std::array<std::size_t, 9> cursors{};
-  level->is_met.resize(level->size());
+  level->occupied.resize(level->size());
   level->around.resize(level->size());
   level->is_scattered.resize(level->size());
   std::array<const SampleCell*, 27> near;
@@ -133,7 +134,7 @@ void mark_met(const CellLayers& cells, double mean_weight, SampleLevel* level) {
       }
     }
     level->around[i] = around;
-    level->is_met[i] = found >= kNeighborsOfSurface ? 1 : 0;
+    level->occupied[i] = static_cast<std::uint8_t>(found + 1);
     level->is_scattered[i] = 0;
     if (static_cast<double>(around) >= kIsolated * mean_weight) continue;
     for (int n = 0; n <= found; ++n)
@@ -168,6 +169,16 @@ double area_in(const SampleCell& cell) {
   return length / sum;
 }
 
+// Whether there are samples enough in the cells around the one two depths above that have any: thin
+// parts meet few. `parent` is a cell of the depth above.
+bool is_crowded(const SampleSlab& slab, int k, std::uint32_t parent, const CloudLeaves& cloud) {
+  if (k - 2 < slab.top) return false;
+  const std::uint32_t i = slab.at(k - 1).parents[parent];
+  const SampleLevel& above = slab.at(k - 2);
+  return static_cast<double>(above.around[i]) >=
+         kEnoughOfCell * above.occupied[i] * cloud.mean_weight;
+}
+
 // Cells count where the surface seems to meet them and there are samples enough for their size:
 // those in and around the cell two depths up, so that sizes do not change with every few samples.
 void find_leaves_of_level(const CloudLeaves& cloud, int finest, int k, SampleSlab* slab) {
@@ -184,7 +195,8 @@ void find_leaves_of_level(const CloudLeaves& cloud, int finest, int k, SampleSla
             ? static_cast<double>(slab->at(k - 2).around[above.parents[parent]]) / 4.0
             : around;
     const bool counts =
-        k <= kCoarsestLeaf || (level.is_met[i] != 0 && wide >= enough && around >= enough / 4.0);
+        k <= kCoarsestLeaf || (level.is_met(i) && around >= enough / 4.0 &&
+                               (wide >= enough || is_crowded(*slab, k, parent, cloud)));
     const bool is_stray =
         above.leaf[parent] == k - 1 && around >= isolated && finest - (k - 1) >= kOutlierDepths;
     if (counts) {
@@ -301,7 +313,7 @@ void find_leaves(const CloudLeaves& cloud, int finest, SampleSlab* slab) {
   }
   // These have told all that they are for.
   for (SampleLevel& level : slab->levels) {
-    level.is_met = {};
+    level.occupied = {};
     level.around = {};
     level.is_scattered = {};
   }

@@ -22,7 +22,7 @@ namespace prefilter {
 struct SampleLevel {
   SampleCells samples;
   std::vector<std::uint32_t> parents;  // of each, its index on the level above; none on the first
-  std::vector<std::uint8_t> is_met;    // whether enough neighbors have samples
+  std::vector<std::uint8_t> occupied;  // of a cell and its neighbors, how many have samples
   std::vector<float> around;           // the weight of its samples and of those of its neighbors
   // Whether samples, if they are few, are spread over space instead of a surface.
   std::vector<std::uint8_t> is_scattered;
@@ -35,6 +35,8 @@ struct SampleLevel {
   std::vector<float> unit_area;  // of the surface, in finest cells, per unit of weight
 
   std::size_t size() const { return samples.size(); }
+  // Whether the surface seems to meet a cell: enough neighbors have samples.
+  bool is_met(std::size_t i) const { return occupied[i] > 3; }
 };
 
 /// Depths from `top`, of cells as high as the slab, to the finest.
@@ -50,8 +52,8 @@ struct SampleSlab {
 /// The levels of cells of `depth`, up to `top`.
 SampleSlab make_sample_slab(SampleCells finest, int depth, int top, std::size_t attribute_count);
 
-/// Sets is_met, `around` and is_scattered of all levels, where the slabs below and above, if there
-/// are any, have been made.
+/// Sets `occupied`, `around` and is_scattered of all levels, where the slabs below and above, if
+/// there are any, have been made.
 void find_met_cells(const SampleSlab* below, const SampleSlab* above, double mean_weight,
                     SampleSlab* slab);
 

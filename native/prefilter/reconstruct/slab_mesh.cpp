@@ -14,6 +14,8 @@
 #include "prefilter/contour/contour_slab.h"
 #include "prefilter/reconstruct/fit_values.h"
 #include "prefilter/reconstruct/slab_support.h"
+#include "prefilter/reconstruct/thin_parts.h"
+#include "prefilter/wavelet/smooth.h"
 
 namespace prefilter {
 namespace {
@@ -64,15 +66,22 @@ ContourSlab contour_of_slab(const SurfaceSamples& surface, const ReconstructOpti
   HeightRange heights = {s * slabs.height(), (s + 1) * slabs.height()};
   if (s + 1 == slabs.count()) ++heights.high;
   const int largest = largest_fitted(slabs, options);
-  CellTree tree = tree_around(slabs, s, largest > 0 ? kFitOctants : kContourOctants, level.scale,
-                              options.smooth);
+  CellTree tree =
+      tree_around(slabs, s, largest > 0 ? kFitOctants : kContourOctants, level.scale, false);
+  std::vector<std::vector<OctantValues>> before;
+  if (options.smooth) before = smooth_leaves(&tree);
   const bool are_occupancies = options.basis == WaveletBasis::kHaar && !options.smooth;
   float isovalue = level.isovalue;
   if (are_occupancies && options.isovalue == Isovalue::kMean) {
     center_occupancies(isovalue, &tree);
     isovalue = 0.5F;
   }
-  if (largest > 0) fit_values(fit_of(surface, samples), isovalue, {heights, largest}, &tree);
+  if (largest > 0) {
+    const SampleFit fit = fit_of(surface, samples);
+    restore_thin_parts(fit, isovalue, {heights, largest}, before, &tree);
+    before = {};
+    fit_values(fit, isovalue, {heights, largest}, &tree);
+  }
   ContourSlab contour = contour_slab(
       tree, isovalue, are_occupancies ? Interpolant::kOccupancy : Interpolant::kLinear, heights);
   const int side = 1 << slabs.depth();

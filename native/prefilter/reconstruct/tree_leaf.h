@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "prefilter/wavelet/cell_tree.h"
 
@@ -28,6 +29,31 @@ inline TreeLeaf leaf_at(const CellTree& tree, int depth, const std::array<std::i
         ((at[0] >> shift) & 1) | ((at[1] >> shift) & 1) << 1 | ((at[2] >> shift) & 1) << 2;
     const TreeLevel& level = tree.levels[static_cast<std::size_t>(k - 1)];
     if (!level.is_split(block, o)) return {k, 8 * block + static_cast<std::size_t>(o)};
+    block = level.child(block, o);
+  }
+}
+
+/// A cell of a tree, split or not.
+struct TreeCell {
+  TreeLeaf place;
+  bool is_leaf;
+};
+
+/// The cell of depth `depth` there, or the larger leaf that holds it; none outside of the root.
+inline std::optional<TreeCell> cell_at(const CellTree& tree, int depth,
+                                       const std::array<std::int32_t, 3>& at) {
+  for (const std::int32_t x : at) {
+    if (x < 0 || x >= 1 << depth) return std::nullopt;
+  }
+  std::size_t block = 0;
+  for (int k = 1;; ++k) {
+    const int shift = depth - k;
+    const int o =
+        ((at[0] >> shift) & 1) | ((at[1] >> shift) & 1) << 1 | ((at[2] >> shift) & 1) << 2;
+    const TreeLevel& level = tree.levels[static_cast<std::size_t>(k - 1)];
+    const bool is_leaf = !level.is_split(block, o);
+    if (k == depth || is_leaf)
+      return TreeCell{{k, 8 * block + static_cast<std::size_t>(o)}, is_leaf};
     block = level.child(block, o);
   }
 }

@@ -52,7 +52,7 @@ void weigh_leaves(const SampleSlab& slab, std::vector<double>* weights) {
     const SampleLevel& level = slab.at(k);
     std::vector<std::int8_t> next(level.size());
     for (std::size_t i = 0; i < level.size(); ++i) {
-      next[i] = level.is_met[i] != 0 ? static_cast<std::int8_t>(k) : leaf[level.parents[i]];
+      next[i] = level.is_met(i) ? static_cast<std::int8_t>(k) : leaf[level.parents[i]];
     }
     leaf = std::move(next);
   }

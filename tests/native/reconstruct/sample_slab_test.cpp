@@ -81,11 +81,12 @@ TEST(SampleSlab, CellsAreMetWhereThreeNeighborsHaveSamples) {
                      &slabs[s]);
       for (int k = kTop; k <= kDepth; ++k) {
         const SampleLevel& level = slabs[s].at(k);
-        ASSERT_EQ(level.is_met.size(), level.size());
+        ASSERT_EQ(level.occupied.size(), level.size());
         for (std::size_t i = 0; i < level.size(); ++i) {
           const CellPosition at = cell_position(level.samples.cells[i].key);
-          ASSERT_EQ(level.is_met[i] != 0, neighbors_of(at, all[static_cast<std::size_t>(k)]) >= 3)
-              << seed << " " << s << " " << k;
+          const int neighbors = neighbors_of(at, all[static_cast<std::size_t>(k)]);
+          ASSERT_EQ(level.occupied[i], neighbors + 1) << seed << " " << s << " " << k;
+          ASSERT_EQ(level.is_met(i), neighbors >= 3) << seed << " " << s << " " << k;
         }
       }
     }

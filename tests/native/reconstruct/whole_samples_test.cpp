@@ -40,7 +40,7 @@ TEST(WholeSamples, WeightsAreThoseOfTheDeepestMetCells) {
     std::map<std::pair<int, CellKey>, bool> is_met;
     for (int k = kTop; k <= kDepth; ++k) {
       for (std::size_t i = 0; i < slab.at(k).size(); ++i) {
-        is_met[{k, slab.at(k).samples.cells[i].key}] = slab.at(k).is_met[i] != 0;
+        is_met[{k, slab.at(k).samples.cells[i].key}] = slab.at(k).is_met(i);
       }
     }
     for (const SampleCell& cell : slab.at(kDepth).samples.cells) {

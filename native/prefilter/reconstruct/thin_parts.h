@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// What smoothing takes from thin parts, given back.
+//
+// Beyond the text: of a plate a cell thick smoothing leaves half, of a rod a quarter. What is less
+// than the iso-value is no surface, and no line across it is left for values to be fitted to. Thin
+// parts are where the samples of opposite sides are close together.
+#pragma once
+
+#include <vector>
+
+#include "prefilter/reconstruct/fit_samples.h"
+#include "prefilter/reconstruct/fit_values.h"
+#include "prefilter/wavelet/cell_tree.h"
+
+namespace prefilter {
+
+/// Changes the values of leaves around samples; `before` has those before smoothing, level by
+/// level. Where the normals around a leaf cancel each other, it has the value from before. Then the
+/// mean samples in and around it say how far the function is off the iso-value at them: its value
+/// changes by as much as that is to be trusted, and all where normals cancel each other. The range,
+/// and what is known beyond it, are as for fit_values.
+void restore_thin_parts(const SampleFit& fit, float isovalue, const FitRange& range,
+                        const std::vector<std::vector<OctantValues>>& before, CellTree* tree);
+
+}  // namespace prefilter
