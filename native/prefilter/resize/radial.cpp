@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <numeric>
 #include <vector>
 
 #include "prefilter/base/parallel.h"
+#include "prefilter/base/vectors.h"
 #include "prefilter/filters/windowed_jinc.h"
 
 namespace prefilter {
@@ -109,6 +111,122 @@ struct Part {
   int end_tap;
 };
 
+// The weights of one row of taps for target texels [begin, end), and sums by them. Weights stand
+// once a channel, so that they and the values of a row are multiplied side by side.
+template <int C>
+class RowWeights {
+ public:
+  static constexpr int kLanes = C == 3 ? 12 : 4;
+  static constexpr int kTaps = kLanes / C;  // that are added at once
+
+  RowWeights(const Axis& axis, const RadialTable& table, int begin, int end)
+      : axis_(axis), table_(table), begin_(begin), end_(end) {
+    // Texels of the same phase have the same weights.
+    shares_ = axis.phases() < end - begin;
+    const auto slots = static_cast<std::size_t>(shares_ ? axis.phases() : end - begin);
+    stride_ = (axis.taps() + kTaps) * C;
+    sums_.resize(slots);
+    weights_.resize(slots * static_cast<std::size_t>(stride_));
+    distances_.resize(slots * static_cast<std::size_t>(axis.taps()));
+    for (std::size_t s = 0; s < slots; ++s) {
+      const int phase = shares_ ? static_cast<int>(s) : axis.phase(begin + static_cast<int>(s));
+      for (int i = 0; i < axis.taps(); ++i) {
+        distances_[s * axis.taps() + i] = axis.squared_distance(phase, i);
+      }
+    }
+  }
+
+  /// Weighs the taps of the row at that squared distance.
+  void move_to(double y_distance) {
+    first_ = axis_.taps();
+    int last = 0;
+    for (std::size_t s = 0; s < sums_.size(); ++s) {
+      double* to = weights_.data() + s * stride_;
+      double sum = 0.0;
+      for (int i = 0; i < axis_.taps(); ++i, to += C) {
+        const double weight = table_(distances_[s * axis_.taps() + i] + y_distance);
+        std::fill_n(to, C, weight);
+        sum += weight;
+        if (weight == 0.0) continue;
+        first_ = std::min(first_, i);
+        last = std::max(last, i);
+      }
+      sums_[s] += sum;
+    }
+    groups_ = std::max(0, (last + kTaps - first_) / kTaps);
+  }
+
+  /// The weights of a texel, over the rows until now.
+  double sum(int x) const { return sums_[slot(x)]; }
+
+  /// Adds a row, which begins at the source's texel `first` and goes on for kTaps more than taps
+  /// reach, to the values of the target texels.
+  void add_row(const double* row, int first, double* values) const {
+    // Texels of one phase are added together: sums then do not wait for themselves.
+    constexpr int kTogether = C == 3 ? 2 : 4;
+    const int step = axis_.phases();
+    int x = begin_;
+    if (shares_) {
+      for (; x + kTogether * step <= end_; x += kTogether * step) {
+        for (int k = 0; k < step; ++k) add_texels<kTogether>(row, first, x + k, step, values);
+      }
+    }
+    for (; x < end_; ++x) add_texels<1>(row, first, x, step, values);
+  }
+
+ private:
+  using Two = Vector<double, 2>;
+
+  std::size_t slot(int x) const {
+    return static_cast<std::size_t>(shares_ ? axis_.phase(x) : x - begin_);
+  }
+
+  template <int kCount>
+  void add_texels(const double* row, int first, int x, int step, double* values) const {
+    constexpr int kVectors = kLanes / 2;
+    Two sums[kCount][kVectors] = {};
+    const double* from[kCount];
+    for (int k = 0; k < kCount; ++k) {
+      from[k] = row + static_cast<std::ptrdiff_t>(axis_.first(x + k * step) + first_ - first) * C;
+    }
+    const double* weight = weights_.data() + slot(x) * stride_ + first_ * C;
+    std::ptrdiff_t at = 0;
+    for (int group = 0; group < groups_; ++group) {
+      for (int v = 0; v < kVectors; ++v, at += 2) {
+        Two weights;
+        std::memcpy(&weights, weight + at, sizeof weights);
+        for (int k = 0; k < kCount; ++k) {
+          Two two;
+          std::memcpy(&two, from[k] + at, sizeof two);
+          sums[k][v] += weights * two;
+        }
+      }
+    }
+    for (int k = 0; k < kCount; ++k) {
+      double lanes[kLanes];
+      std::memcpy(lanes, sums[k], sizeof lanes);
+      double* const to = values + static_cast<std::ptrdiff_t>(x + k * step - begin_) * C;
+      for (int c = 0; c < C; ++c) {
+        double sum = lanes[c];
+        for (int i = 1; i < kTaps; ++i) sum += lanes[i * C + c];
+        to[c] += sum;
+      }
+    }
+  }
+
+  const Axis& axis_;
+  const RadialTable& table_;
+  int begin_;
+  int end_;
+  bool shares_ = false;
+  int stride_ = 0;  // values of a slot's weights, and of zeros behind them
+  std::vector<double> sums_;
+  std::vector<double> weights_;
+  std::vector<double> distances_;
+  int first_ = 0;   // the first tap that weighs anything
+  int groups_ = 0;  // from there on
+};
+
 class Filter {
  public:
   Filter(const ImageView& source, int width, int height, int radius, WrapModes wrap)
@@ -137,63 +255,44 @@ class Filter {
  private:
   template <int C>
   Sums sums_of(const Part& part) const {
-    const int taps = x_axis_.taps();
     const int count = part.end - part.begin;
     const int first = x_axis_.first(part.begin);
-    const int width = x_axis_.first(part.end - 1) + taps - first;
-    // Texels of the same phase have the same weights.
-    const bool shared = x_axis_.phases() < count;
-    const int slots = shared ? x_axis_.phases() : count;
-    std::vector<double> x_distances(static_cast<std::size_t>(slots) * taps);
-    for (int s = 0; s < slots; ++s) {
-      const int phase = shared ? s : x_axis_.phase(part.begin + s);
-      for (int i = 0; i < taps; ++i) {
-        x_distances[static_cast<std::size_t>(s) * taps + i] = x_axis_.squared_distance(phase, i);
-      }
-    }
-    std::vector<double> weights(x_distances.size());
-    std::vector<double> weight_sums(static_cast<std::size_t>(slots));
-    std::vector<double> row(static_cast<std::size_t>(width) * C);
+    const int width = x_axis_.first(part.end - 1) + x_axis_.taps() - first;
+    RowWeights<C> weights(x_axis_, table_, part.begin, part.end);
+    std::vector<double> row(static_cast<std::size_t>(width + RowWeights<C>::kTaps) * C);
     Sums sums{std::vector<double>(static_cast<std::size_t>(count) * C),
               std::vector<double>(static_cast<std::size_t>(count))};
     for (int j = part.first_tap; j < part.end_tap; ++j) {
-      const double y_distance = y_axis_.squared_distance(y_axis_.phase(part.y), j);
-      for (int s = 0; s < slots; ++s) {
-        const std::size_t at = static_cast<std::size_t>(s) * taps;
-        double sum = 0.0;
-        for (int i = 0; i < taps; ++i) {
-          weights[at + i] = table_(x_distances[at + i] + y_distance);
-          sum += weights[at + i];
-        }
-        weight_sums[s] += sum;
-      }
+      weights.move_to(y_axis_.squared_distance(y_axis_.phase(part.y), j));
       const int source_y = wrap_index(y_axis_.first(part.y) + j, source_.height, wrap_.v);
       if (source_y < 0) continue;
       read_row<C>(source_y, first, width, row.data());
-      double* to = sums.values.data();
-      for (int x = part.begin; x < part.end; ++x) {
-        const int slot = shared ? x_axis_.phase(x) : x - part.begin;
-        const double* weight = weights.data() + static_cast<std::size_t>(slot) * taps;
-        const double* from = row.data() + static_cast<std::ptrdiff_t>(x_axis_.first(x) - first) * C;
-        double sum[C] = {};
-        for (int i = 0; i < taps; ++i, from += C) {
-          for (int c = 0; c < C; ++c) sum[c] += weight[i] * from[c];
-        }
-        for (int c = 0; c < C; ++c) *to++ += sum[c];
-      }
+      weights.add_row(row.data(), first, sums.values.data());
     }
-    for (int x = part.begin; x < part.end; ++x) {
-      sums.weights[x - part.begin] = weight_sums[shared ? x_axis_.phase(x) : x - part.begin];
-    }
+    for (int x = part.begin; x < part.end; ++x) sums.weights[x - part.begin] = weights.sum(x);
     return sums;
   }
 
   template <int C>
   void read_row(int y, int first, int width, double* row) const {
-    for (int x = first; x < first + width; ++x) {
-      const int from = wrap_index(x, source_.width, wrap_.u);
-      for (int c = 0; c < C; ++c) *row++ = from < 0 ? 0.0 : source_.texel(from, y)[c];
+    const auto copy_wrapped = [&](int begin, int end) {
+      for (int x = begin; x < end; ++x) {
+        const int from = wrap_index(x, source_.width, wrap_.u);
+        for (int c = 0; c < C; ++c) {
+          row[static_cast<std::ptrdiff_t>(x - first) * C + c] =
+              from < 0 ? 0.0 : source_.texel(from, y)[c];
+        }
+      }
+    };
+    const int inner = std::clamp(0, first, first + width);
+    const int inner_end = std::clamp(source_.width, inner, first + width);
+    copy_wrapped(first, inner);
+    if (inner < inner_end) {
+      const float* const from = source_.texel(inner, y);
+      std::copy(from, from + static_cast<std::ptrdiff_t>(inner_end - inner) * C,
+                row + static_cast<std::ptrdiff_t>(inner - first) * C);
     }
+    copy_wrapped(inner_end, first + width);
   }
 
   ImageView source_;
