@@ -29,6 +29,19 @@ void bind_color(py::module_& m) {
   bind("decode_srgb", decode_srgb);
   bind("encode_srgb", encode_srgb);
   m.def(
+      "decode_bytes",
+      [](const Array<std::uint8_t>& array, int threads) {
+        const ByteValues values = byte_values(true);
+        const TexelSource bytes = bytes_of(array, &values);
+        Image result;
+        {
+          const py::gil_scoped_release unlocked;
+          result = to_floats(bytes, threads);
+        }
+        return to_array(std::move(result));
+      },
+      py::arg("image"), py::arg("threads"));
+  m.def(
       "to_bytes",
       [](const Array<float>& array, bool srgb, int threads) {
         const ImageView image = view_of(array);

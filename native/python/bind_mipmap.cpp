@@ -57,9 +57,7 @@ std::vector<Image> levels_of_bytes(const Array<std::uint8_t>& array, bool srgb,
                                    const py::object& progress) {
   options.progress = to_progress(progress);
   const ByteValues values = byte_values(srgb);
-  const TexelSource image(array.data(), static_cast<int>(array.shape(1)),
-                          static_cast<int>(array.shape(0)), static_cast<int>(array.shape(2)),
-                          &values);
+  const TexelSource image = bytes_of(array, &values);
   const py::gil_scoped_release unlocked;
   return coarser_levels(image, surfaces, options);
 }

@@ -7,6 +7,7 @@
 #include <pybind11/pybind11.h>
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -28,6 +29,12 @@ using Array = pybind11::array_t<T, pybind11::array::c_style>;
 
 /// A view of an array of shape (height, width, channels).
 ImageView view_of(const Array<float>& array);
+
+/// The same of bytes, which stand for these values.
+inline TexelSource bytes_of(const Array<std::uint8_t>& array, const ByteValues* values) {
+  return {array.data(), static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0)),
+          static_cast<int>(array.shape(2)), values};
+}
 
 std::vector<ImageView> views_of(const std::vector<Array<float>>& arrays);
 

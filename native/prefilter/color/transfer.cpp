@@ -7,6 +7,7 @@
 
 #include "prefilter/base/elementary.h"
 #include "prefilter/base/parallel.h"
+#include "prefilter/color/srgb_byte_encoder.h"
 
 namespace prefilter {
 namespace {
@@ -63,13 +64,21 @@ ByteValues byte_values(bool srgb) {
 std::vector<std::uint8_t> to_bytes(const ImageView& image, bool srgb, int threads) {
   std::vector<std::uint8_t> bytes(image.value_count());
   const std::size_t row_values = image.value_count() / static_cast<std::size_t>(image.height);
+  const int colors = srgb ? std::min(image.channels, 3) : 0;
+  const SrgbByteEncoder& encoded = SrgbByteEncoder::instance();
   parallel_for(image.height, threads, Progress(), [&](std::int64_t y) {
     const float* value = image.texel(0, static_cast<int>(y));
     std::uint8_t* byte = bytes.data() + static_cast<std::size_t>(y) * row_values;
-    for (std::size_t i = 0; i < row_values; ++i) {
-      const bool color = srgb && static_cast<int>(i % static_cast<std::size_t>(image.channels)) < 3;
-      const float encoded = color ? linear_to_srgb(value[i]) : value[i];
-      byte[i] = static_cast<std::uint8_t>(std::clamp(encoded, 0.0F, 1.0F) * 255.0F + 0.5F);
+    const auto nearest = [](float v) {
+      return static_cast<std::uint8_t>(std::clamp(v, 0.0F, 1.0F) * 255.0F + 0.5F);
+    };
+    if (colors == 0) {
+      std::transform(value, value + row_values, byte, nearest);
+      return;
+    }
+    for (int x = 0; x < image.width; ++x) {
+      for (int c = 0; c < colors; ++c) *byte++ = encoded(*value++);
+      for (int c = colors; c < image.channels; ++c) *byte++ = nearest(*value++);
     }
   });
   return bytes;

@@ -16,16 +16,55 @@
 namespace prefilter {
 namespace {
 
+constexpr std::uint8_t kOpaque = 255;
+constexpr float kShare = 1.0F / 255.0F;
+
 bool is_opaque(const TexelSource& bytes, int alpha) {
-  constexpr std::uint8_t kOpaque = 255;
   for (int y = 0; y < bytes.height; ++y) {
     const std::uint8_t* texel = bytes.byte_texel(0, y);
-    for (int x = 0; x < bytes.width; ++x, texel += bytes.channels) {
-      if (texel[alpha] != kOpaque) return false;
-    }
+    std::uint8_t least = kOpaque;
+    for (int x = 0; x < bytes.width; ++x) least &= texel[x * bytes.channels + alpha];
+    if (least != kOpaque) return false;
   }
   return true;
 }
+
+// Colors times alpha, the last of the channels.
+template <int C, typename Value>
+void read_multiplied(const std::uint8_t* byte, int count, const Value& value, float* to) {
+  for (int i = 0; i < count; ++i, byte += C, to += C) {
+    const float alpha = value(byte[C - 1], C - 1);
+    for (int c = 0; c < C - 1; ++c) to[c] = value(byte[c], c) * alpha;
+    to[C - 1] = alpha;
+  }
+}
+
+template <int C, typename Value>
+void read_plain(const std::uint8_t* byte, int count, const Value& value, float* to) {
+  for (int i = 0; i < count; ++i, byte += C, to += C) {
+    for (int c = 0; c < C; ++c) to[c] = value(byte[c], c);
+  }
+}
+
+template <typename Value>
+void read_texels(const std::uint8_t* bytes, int channels, bool is_multiplied, int count,
+                 const Value& value, float* to) {
+  switch (channels) {
+    case 1:
+      return read_plain<1>(bytes, count, value, to);
+    case 2:
+      if (is_multiplied) return read_multiplied<2>(bytes, count, value, to);
+      return read_plain<2>(bytes, count, value, to);
+    case 3:
+      return read_plain<3>(bytes, count, value, to);
+    default:
+      if (is_multiplied) return read_multiplied<4>(bytes, count, value, to);
+      return read_plain<4>(bytes, count, value, to);
+  }
+}
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr ValueRange kNothing = {kInfinity, -kInfinity};
 
 ValueRange widened(const ValueRange& a, const ValueRange& b) {
   return {std::min(a.low, b.low), std::max(a.high, b.high)};
@@ -38,28 +77,73 @@ FilteredImage::FilteredImage(const TexelSource& source, const FindRead& find_rea
     : source_(source), floats_(source.floats()), alpha_(options.alpha.value_or(0)) {
   assert(!options.alpha || *options.alpha == source.channels - 1);
   if (source.has_bytes()) {
-    if (!options.needs_floats &&
-        (!options.alpha || (options.stays_opaque && is_opaque(source, alpha_)))) {
+    const bool is_plain = !options.alpha || (options.stays_opaque && is_opaque(source, alpha_));
+    if (options.is_read_by_rows || (!options.needs_floats && is_plain)) {
       floats_ = {nullptr, source.width, source.height, source.channels};
+      has_shares_ = bytes_are_shares();
+      is_multiplied_ = !is_plain;
+      if (is_multiplied_) find_byte_colors(options);
       return;
     }
-    make_floats(options);
+    copy_ = to_floats(source, options.threads);
+    floats_ = copy_.view();
   } else {
     check(find_read, options);
   }
   if (options.alpha) multiply_by_alpha(find_read, options);
 }
 
-void FilteredImage::make_floats(const Options& options) {
-  copy_ = Image(source_.width, source_.height, source_.channels);
-  floats_ = copy_.view();
-  parallel_for(source_.height, options.threads, Progress(), [&](std::int64_t y) {
-    const std::uint8_t* bytes = source_.byte_texel(0, static_cast<int>(y));
-    float* texel = copy_.texel(0, static_cast<int>(y));
-    for (int x = 0; x < source_.width; ++x) {
-      for (int c = 0; c < source_.channels; ++c) *texel++ = source_.value(*bytes++, c);
+bool FilteredImage::bytes_are_shares() const {
+  for (int c = 0; c < source_.channels; ++c) {
+    for (int byte = 0; byte <= kOpaque; ++byte) {
+      const float share = static_cast<float>(byte) / 255.0F;
+      if (source_.value(static_cast<std::uint8_t>(byte), c) != share) return false;
     }
-  });
+  }
+  return true;
+}
+
+void FilteredImage::read(int y, int begin, int end, float* values) const {
+  assert(floats_.data == nullptr);
+  const std::uint8_t* const bytes = source_.byte_texel(begin, y);
+  if (has_shares_ && !is_multiplied_) {
+    const int count = (end - begin) * source_.channels;
+    for (int i = 0; i < count; ++i) values[i] = static_cast<float>(bytes[i]) * kShare;
+  } else if (has_shares_) {
+    const auto share = [](std::uint8_t byte, int) { return static_cast<float>(byte) * kShare; };
+    read_texels(bytes, source_.channels, is_multiplied_, end - begin, share, values);
+  } else {
+    const auto value = [this](std::uint8_t byte, int c) { return source_.value(byte, c); };
+    read_texels(bytes, source_.channels, is_multiplied_, end - begin, value, values);
+  }
+}
+
+// Whether bytes stand for values that rise or not: each that is there is looked at.
+void FilteredImage::find_byte_colors(const Options& options) {
+  using Seen = std::array<std::array<unsigned char, 256>, 3>;
+  constexpr int kRows = 64;
+  std::vector<Seen> parts(static_cast<std::size_t>(range_count(source_.height, kRows)));
+  parallel_ranges(source_.height, kRows, options.threads, options.progress,
+                  [&](std::int64_t begin, std::int64_t end) {
+                    Seen& seen = parts[static_cast<std::size_t>(begin / kRows)];
+                    const std::uint8_t* texel = source_.byte_texel(0, static_cast<int>(begin));
+                    for (std::int64_t i = 0; i < (end - begin) * source_.width; ++i) {
+                      const unsigned char is_seen = texel[alpha_] != 0 ? 1 : 0;
+                      for (int c = 0; c < alpha_; ++c) seen[c][texel[c]] |= is_seen;
+                      texel += source_.channels;
+                    }
+                  });
+  for (int c = 0; c < alpha_; ++c) {
+    ValueRange& range = colors_[c];
+    range = kNothing;
+    for (int byte = 0; byte <= kOpaque; ++byte) {
+      const bool is_seen = std::any_of(parts.begin(), parts.end(),
+                                       [&](const Seen& seen) { return seen[c][byte] != 0; });
+      const float value = source_.value(static_cast<std::uint8_t>(byte), c);
+      if (is_seen) range = widened(range, {value, value});
+    }
+    if (!(range.low <= range.high)) range = {0.0F, 0.0F};
+  }
 }
 
 void FilteredImage::check(const FindRead& find_read, const Options& options) {
@@ -95,8 +179,6 @@ void FilteredImage::multiply_by_alpha(const FindRead& find_read, const Options& 
 
   is_multiplied_ = true;
   Image& copy = own_copy();
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  constexpr ValueRange kNothing = {kInfinity, -kInfinity};
   std::vector<std::array<ValueRange, 3>> rows(static_cast<std::size_t>(copy.height));
   for (std::array<ValueRange, 3>& row : rows) row.fill(kNothing);
   parallel_for(copy.height, options.threads, options.progress.part(0.8, 1.0),

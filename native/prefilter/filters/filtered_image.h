@@ -30,6 +30,8 @@ class FilteredImage {
     bool stays_opaque = true;
     // Whether bytes have to be floats, also where alpha plays no part.
     bool needs_floats = true;
+    // Whether bytes stay bytes whatever alpha does, because `read` is asked for what they are.
+    bool is_read_by_rows = false;
     const char* name = "image";  // what errors call it
     int threads = 0;
     Progress progress;
@@ -43,6 +45,14 @@ class FilteredImage {
   TexelSource texels() const { return floats_.data == nullptr ? source_ : TexelSource(floats_); }
   /// The same; no data where bytes are read as they are.
   const ImageView& floats() const { return floats_; }
+
+  /// The values of bytes, multiplied by alpha where `is_multiplied`: of texels from `begin` to
+  /// before `end` of a row. To be called where there are no `floats`.
+  void read(int y, int begin, int end, float* values) const;
+
+  int width() const { return source_.width; }
+  int height() const { return source_.height; }
+  int channels() const { return source_.channels; }
 
   /// Whether colors were multiplied by an alpha that is not 1 everywhere, or does not stay so.
   bool is_multiplied() const { return is_multiplied_; }
@@ -58,16 +68,20 @@ class FilteredImage {
   void divide_by_alpha(WrapModes wrap, const Progress& progress, int threads, Image* level) const;
 
  private:
-  void make_floats(const Options& options);
   void check(const FindRead& find_read, const Options& options);
   void multiply_by_alpha(const FindRead& find_read, const Options& options);
   Image& own_copy();
+  // The ranges of the colors of bytes that are not transparent.
+  void find_byte_colors(const Options& options);
+  // Where bytes stand for a 255th each, which takes no table.
+  bool bytes_are_shares() const;
 
   const TexelSource& source_;
   ImageView floats_;
   int alpha_;  // the channel, where there is one
   Image copy_;
   bool is_multiplied_ = false;
+  bool has_shares_ = false;
   std::array<ValueRange, 3> colors_{};  // of texels with alpha, before they are multiplied by it
 };
 

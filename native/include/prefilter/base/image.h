@@ -98,4 +98,7 @@ struct Image {
   }
 };
 
+/// What the bytes of an image stand for.
+Image to_floats(const TexelSource& bytes, int threads);
+
 }  // namespace prefilter

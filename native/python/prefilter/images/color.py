@@ -2,10 +2,11 @@
 
 """Color encodings."""
 
+import numpy as np
 import numpy.typing as npt
 
 from .. import _native
-from .._border.arrays import FloatArray, as_image, as_threads, in_form_of
+from .._border.arrays import FloatArray, as_image, as_texels, as_threads, in_form_of
 
 
 def to_linear(image: npt.ArrayLike, *, threads: int = 0) -> FloatArray:
@@ -24,7 +25,11 @@ def to_linear(image: npt.ArrayLike, *, threads: int = 0) -> FloatArray:
     Raises:
         ValueError: The image has another shape or type.
     """
-    made = _native.decode_srgb(as_image("image", image), as_threads(threads))
+    stored = as_texels("image", image)
+    if stored.dtype == np.uint8:
+        made = _native.decode_bytes(stored, as_threads(threads))
+    else:
+        made = _native.decode_srgb(as_image("image", stored), as_threads(threads))
     return in_form_of(image, made)
 
 
@@ -32,3 +37,24 @@ def to_srgb(image: npt.ArrayLike, *, threads: int = 0) -> FloatArray:
     """Encodes scene-linear values as sRGB: the inverse of `to_linear`."""
     made = _native.encode_srgb(as_image("image", image), as_threads(threads))
     return in_form_of(image, made)
+
+
+def as_light(stored: np.ndarray, srgb: bool, threads: int) -> FloatArray:
+    """An image of floats, or of uint16 that stand for a 65535th each."""
+    floats = as_image("image", stored)
+    if not srgb:
+        return floats
+    if stored.dtype != np.uint16:
+        raise ValueError(
+            "encoding: 'srgb' requires images of uint8 or uint16; decode others with to_linear"
+        )
+    return to_linear(floats, threads=threads)
+
+
+def as_words(level: FloatArray, srgb: bool, threads: int) -> npt.NDArray[np.uint16]:
+    """A level in steps of a 65535th, rounded to the nearest."""
+    if srgb:
+        level = to_srgb(level, threads=threads)
+    full = np.float32(np.iinfo(np.uint16).max)
+    words: npt.NDArray[np.uint16] = np.rint(np.clip(level, 0, 1) * full).astype(np.uint16)
+    return words

@@ -27,7 +27,7 @@ from .._border.arguments import (
 from .._border.arrays import as_image, as_texels, as_threads, in_form_of
 from ..meshes.surface import Surface, as_surfaces
 from ..sampling.levels import FilteredLevels
-from .color import to_linear, to_srgb
+from .color import as_light, as_words
 
 _Arguments = ParamSpec("_Arguments")
 
@@ -155,10 +155,10 @@ def mipmaps(
     if stored.dtype == np.uint8:
         made = _native.coarser_byte_levels(stored, srgb, surfaces, options, report)
     else:
-        light = _as_light(stored, srgb, options.threads)
+        light = as_light(stored, srgb, options.threads)
         made = _native.coarser_levels(light, surfaces, options, report)
         if stored.dtype == np.uint16:
-            made = [_as_words(level, srgb, options.threads) for level in made]
+            made = [as_words(level, srgb, options.threads) for level in made]
     # Copied once the memory for filtering is free again.
     return FilteredLevels([in_form_of(image, level) for level in (stored.copy(), *made)], filter)
 
@@ -198,30 +198,9 @@ def coarser_levels(
     if stored.dtype == np.uint8:
         made = _native.coarser_float_levels_of_bytes(stored, srgb, surfaces, options, report)
     else:
-        light = _as_light(stored, srgb, options.threads)
+        light = as_light(stored, srgb, options.threads)
         made = _native.coarser_levels(light, surfaces, options, report)
     return FilteredLevels((in_form_of(image, level) for level in made), filter)
-
-
-def _as_light(stored: np.ndarray, srgb: bool, threads: int) -> npt.NDArray[np.float32]:
-    """An image of floats, or of uint16 that stand for a 65535th each."""
-    floats = as_image("image", stored)
-    if not srgb:
-        return floats
-    if stored.dtype != np.uint16:
-        raise ValueError(
-            "encoding: 'srgb' requires images of uint8 or uint16; decode others with to_linear"
-        )
-    return to_linear(floats, threads=threads)
-
-
-def _as_words(level: npt.NDArray[np.float32], srgb: bool, threads: int) -> npt.NDArray[np.uint16]:
-    """A level in steps of a 65535th, rounded to the nearest."""
-    if srgb:
-        level = to_srgb(level, threads=threads)
-    full = np.float32(np.iinfo(np.uint16).max)
-    words: npt.NDArray[np.uint16] = np.rint(np.clip(level, 0, 1) * full).astype(np.uint16)
-    return words
 
 
 def mipmap_error(
