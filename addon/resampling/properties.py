@@ -40,6 +40,7 @@ class ResizeProperties(PartedSettings):
             layout.prop(self, "use_aspect")
         layout.prop(self, "filter")
         layout.prop(self, "use_constrained")
+        layout.prop(self, "ringing")
         layout.prop(self, "wrap")
 
 

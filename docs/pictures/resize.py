@@ -22,11 +22,11 @@ GAP, TEXT = 16, 18
 SIZE, SMALL = 384, 64
 FINE = 4  # What the picture is drawn at, by its size.
 SHOWN = (
-    ("box", False, "Box"),
-    ("lanczos3", False, "Lanczos 3"),
-    ("radial3", False, "Radial 3"),
-    ("least-squares", False, "Least squares"),
-    ("least-squares", True, "Least squares in [0, 1]"),
+    ("box", "auto", "Box"),
+    ("lanczos3", "auto", "Lanczos 3"),
+    ("radial3", "auto", "Radial 3"),
+    ("least-squares", "allow", "Least squares, ringing"),
+    ("least-squares", "auto", "Least squares"),
 )
 
 
@@ -34,8 +34,8 @@ def main(folder: Path) -> None:
     """Makes the picture."""
     picture = drawn()
     cells = [(picture, f"{SIZE} x {SIZE}")]
-    for filter, constrained, title in SHOWN:
-        small = prefilter.resize(picture, SMALL, SMALL, filter=filter, constrained=constrained)
+    for filter, ringing, title in SHOWN:
+        small = prefilter.resize(picture, SMALL, SMALL, filter=filter, ringing=ringing)
         large = prefilter.resize(small, SIZE, SIZE, filter="tent")
         error = np.sqrt(np.mean((large - picture) ** 2))
         print(f"{title}: error {error:.4f}, from {small.min():.3f} to {small.max():.3f}")

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+#include <cstdint>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "bind_options.h"
 #include "convert.h"
+#include "prefilter/color/transfer.h"
 #include "prefilter/filters/pixel_filter.h"
 #include "prefilter/resize/resize.h"
 
@@ -15,7 +18,9 @@ namespace {
 
 void bind_resize_options(py::module_& m) {
   using Options = ResizeOptions;
-  bind_options<Options>(m, "ResizeOptions")
+  py::class_<Options> bound = bind_options<Options>(m, "ResizeOptions");
+  bind_named(bound, "ringing", &Options::ringing, kRingings);
+  bound
       .def_property(
           "filter", [](const Options& o) { return name_of(o.filter); },
           [](Options& o, const std::string& name) { o.filter = resize_filter(name); })
@@ -34,6 +39,21 @@ Array<float> bound_resize(const Array<float>& array, int width, int height, Resi
   return to_array(std::move(result));
 }
 
+Array<std::uint8_t> bound_resize_bytes(const Array<std::uint8_t>& array, bool srgb, int width,
+                                       int height, ResizeOptions options,
+                                       const py::object& progress) {
+  options.progress = to_progress(progress);
+  const ByteValues values = byte_values(srgb);
+  const TexelSource image = bytes_of(array, &values);
+  std::vector<std::uint8_t> bytes;
+  {
+    const py::gil_scoped_release unlocked;
+    const Image result = resize(image, width, height, options);
+    bytes = to_bytes(result.view(), srgb, options.threads);
+  }
+  return to_array<std::uint8_t>(std::move(bytes), {height, width, image.channels});
+}
+
 }  // namespace
 
 void bind_resize(py::module_& m) {
@@ -47,6 +67,8 @@ void bind_resize(py::module_& m) {
     }
     return filters;
   });
+  m.def("resize_bytes", &bound_resize_bytes, py::arg("image"), py::arg("srgb"), py::arg("width"),
+        py::arg("height"), py::arg("options"), py::arg("progress"));
   m.def("resize", &bound_resize, py::arg("image"), py::arg("width"), py::arg("height"),
         py::arg("options"), py::arg("progress"));
 }

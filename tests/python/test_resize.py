@@ -97,28 +97,63 @@ def tents(texels, target, wrap):
     return values.T @ (weights[:, None] * values), over_texels
 
 
-def closest(image, width, height, wrap, bounds):
-    """Dense least squares."""
+def closest(image, width, height, wrap, low, high):
+    """Dense least squares within bounds, of all texels or of each."""
     products_x, texels_x = tents(image.shape[1], width, wrap)
     products_y, texels_y = tents(image.shape[0], height, wrap)
     root = np.linalg.cholesky(np.kron(products_y, products_x))
-    result = np.empty((height, width, image.shape[2]))
+    shape = (height, width, image.shape[2])
+    # The solver wants some room between bounds.
+    low, high = np.broadcast_to(low, shape), np.broadcast_to(high, shape) + 1e-12
+    result = np.empty(shape)
     for c in range(image.shape[2]):
         right = (texels_y.T @ image[..., c] @ texels_x).ravel()
-        solved = optimize.lsq_linear(root.T, np.linalg.solve(root, right), bounds, "bvls")
+        bounds = low[..., c].ravel(), high[..., c].ravel()
+        solved = optimize.lsq_linear(
+            root.T, np.linalg.solve(root, right), bounds, "bvls", tol=1e-15, max_iter=1000
+        )
         result[..., c] = solved.x.reshape(height, width)
     return result
 
 
+def ranges_around(image, width, height, wrap):
+    """The least and the greatest of the pixels that overlap a square around each new one."""
+    old_height, old_width, channels = image.shape
+    pad = 3 * max(1, *(-(-a // b) for a, b in ((old_height, height), (old_width, width))))
+    mode = {"clamp": "edge", "repeat": "wrap", "border": "constant"}[wrap]
+    padded = np.pad(image, ((pad, pad), (pad, pad), (0, 0)), mode=mode)
+    low = np.empty((height, width, channels))
+    high = np.empty_like(low)
+
+    def overlapped(index, size, new_size):
+        # In units of 1 / (2 new_size) of an old pixel, where all ends are whole numbers.
+        center, reach = (2 * index + 1) * size, 2 * max(size, new_size)
+        edges = 2 * new_size * np.arange(-pad, size + pad)
+        return (edges + 2 * new_size > center - reach) & (edges < center + reach)
+
+    for y, x in np.ndindex(height, width):
+        rows = overlapped(y, old_height, height)
+        columns = overlapped(x, old_width, width)
+        around = padded[rows][:, columns]
+        low[y, x], high[y, x] = around.min(axis=(0, 1)), around.max(axis=(0, 1))
+    return low, high
+
+
 @pytest.mark.parametrize("wrap", WRAPS)
 @pytest.mark.parametrize("constrained", [False, True])
-def test_least_squares_are_dense_least_squares(wrap, constrained):
+@pytest.mark.parametrize("ringing", ["allow", "auto"])
+def test_least_squares_are_dense_least_squares(wrap, constrained, ringing):
     beyond = 0
     for k, (width, height, new_width, new_height) in enumerate(SIZES):
-        # Black and white: what fits best is out of bounds.
+        # Black and white, or three grays: what fits best is out of bounds.
         image = image_of(width, height, 1 + k % 2).round()
-        bounds = (0.0, 1.0) if constrained else (-np.inf, np.inf)
-        expected = closest(image.astype(float), new_width, new_height, wrap, bounds)
+        if ringing == "auto":
+            image = (2 * image_of(width, height, 1 + k % 2)).round() - np.float32(0.25)
+        low, high = (0.0, 1.0) if constrained else (-np.inf, np.inf)
+        if ringing == "auto":
+            around = ranges_around(image, new_width, new_height, wrap)
+            low, high = (np.clip(one, low, high) for one in around)
+        expected = closest(image.astype(float), new_width, new_height, wrap, low, high)
         found = prefilter.resize(
             image,
             new_width,
@@ -126,11 +161,59 @@ def test_least_squares_are_dense_least_squares(wrap, constrained):
             filter="least-squares",
             wrap=wrap,
             constrained=constrained,
+            ringing=ringing,
             premultiplied=True,
         )
         beyond += np.sum((found < 0) | (found > 1))
         np.testing.assert_allclose(found, expected, rtol=0, atol=5e-6)
     assert (beyond == 0) == constrained
+
+
+@pytest.mark.parametrize("filter", prefilter.RESIZE_FILTERS)
+@pytest.mark.parametrize("wrap", WRAPS)
+def test_without_ringing_values_are_those_around(filter, wrap):
+    for k, (width, height, new_width, new_height) in enumerate((*SIZES, (40, 3, 3, 40))):
+        image = image_of(width, height, 1 + k % 4) * 3 - 1
+        options = {"filter": filter, "wrap": wrap, "premultiplied": True}
+        found = prefilter.resize(image, new_width, new_height, ringing="limit", **options)
+        low, high = ranges_around(image, new_width, new_height, wrap)
+        assert np.all(found >= low)
+        assert np.all(found <= high)
+        if filter != "least-squares":
+            free = prefilter.resize(image, new_width, new_height, **options)
+            np.testing.assert_array_equal(found, free.clip(low, high).astype(np.float32))
+            allowed = prefilter.resize(image, new_width, new_height, ringing="allow", **options)
+            np.testing.assert_array_equal(free, allowed)
+
+
+@pytest.mark.parametrize("filter", prefilter.RESIZE_FILTERS)
+def test_a_bright_sun_leaves_no_darkness_around_it(filter):
+    sky = 0.1 + 0.4 * image_of(64, 48, 3)
+    sky[20:23, 30:33] = 20000.0
+    found = prefilter.resize(sky, 16, 12, filter=filter, ringing="limit")
+    assert found.min() >= 0.1
+    assert found.max() <= 20000
+    if filter == "least-squares":
+        np.testing.assert_array_equal(found, prefilter.resize(sky, 16, 12, filter=filter))
+        assert prefilter.resize(sky, 16, 12, filter=filter, ringing="allow").min() < -100
+
+
+@pytest.mark.parametrize("filter", prefilter.RESIZE_FILTERS)
+def test_without_ringing_colors_are_those_seen_around(filter):
+    image = image_of(24, 20, 4)
+    image[..., 3] = image[..., 3] > 0.5
+    image[image[..., 3] == 0, :3] = 7.0  # that of nothing that is seen
+    found = prefilter.resize(image, 9, 7, filter=filter, ringing="limit")
+    seen = image[..., 3:] > 0
+    low, _ = ranges_around(np.where(seen, image, np.inf), 9, 7, "clamp")
+    _, high = ranges_around(np.where(seen, image, -np.inf), 9, 7, "clamp")
+    assert np.all(found[..., :3] >= low[..., :3])
+    assert np.all(found[..., :3] <= high[..., :3])
+
+
+def test_ringing_has_three_names():
+    with pytest.raises(ValueError, match="ringing: 'some' is not one of auto, limit, allow"):
+        prefilter.resize(np.zeros((2, 2)), 1, 1, ringing="some")
 
 
 def enlarged(image, width, height):
@@ -144,7 +227,7 @@ def test_constrained_least_squares_beat_the_other_filters_within_the_bounds():
     image = image[..., None]
 
     def error(**options):
-        small = prefilter.resize(image, 24, 24, constrained=True, **options)
+        small = prefilter.resize(image, 24, 24, constrained=True, ringing="allow", **options)
         large = enlarged(small, 960, 960)
         return np.sqrt(np.mean((large - prefilter.resize(image, 960, 960, filter="box")) ** 2))
 
@@ -237,8 +320,10 @@ def test_colors_count_by_their_alpha(filter, colors):
     multiplied = image * image[..., -1:]
     multiplied[..., -1] = image[..., -1]
     for width, height in ((30, 27), (83, 90)):
-        found = prefilter.resize(image, width, height, filter=filter)
-        plain = prefilter.resize(multiplied, width, height, filter=filter, premultiplied=True)
+        # Bounds of colors are none of what is multiplied.
+        options = {"filter": filter, "ringing": "allow"}
+        found = prefilter.resize(image, width, height, **options)
+        plain = prefilter.resize(multiplied, width, height, premultiplied=True, **options)
         plain[..., :-1] /= plain[..., -1:]
         away = np.s_[height // 2 :, width // 2 :]
         np.testing.assert_allclose(found[away], plain[away], rtol=0, atol=4e-6)

@@ -125,10 +125,34 @@ class LanesOfChannels {
   bool has_alpha_;
 };
 
+// The ranges of texels as a system has them: within both, less what the system is solved for.
+TexelRanges lane_ranges(const RangesAround& around, const SolveOptions& solve,
+                        const LanesOfChannels& lane, Lanes offset,
+                        const NinePointSystem<float>& system) {
+  TexelRanges ranges{std::vector<LaneValues>(system.size()),
+                     std::vector<LaneValues>(system.size())};
+  parallel_for(system.height(), solve.threads, Progress(), [&](std::int64_t row) {
+    const auto y = static_cast<int>(row);
+    for (int x = 0; x < system.width(); ++x) {
+      const std::ptrdiff_t at = system.at(x, y);
+      for (int c = 0; c < around.low.channels; ++c) {
+        const ValueRange& both = solve.ranges[c];
+        const int to = lane(c);
+        ranges.low[at].v[to] =
+            std::clamp(around.low.texel(x, y)[c], both.low, both.high) - offset[to];
+        ranges.high[at].v[to] =
+            std::clamp(around.high.texel(x, y)[c], both.low, both.high) - offset[to];
+      }
+    }
+  });
+  return ranges;
+}
+
 }  // namespace
 
 Image fit_bilinearly(const ImageView& source, int width, int height, WrapModes wrap,
-                     const SolveOptions& solve, const Progress& progress) {
+                     const SolveOptions& solve, const RangesAround* around,
+                     const Progress& progress) {
   const TentAxis x_axis(source.width, width, wrap.u);
   const TentAxis y_axis(source.height, height, wrap.v);
   Image level = filter_separably(source, x_axis.mean_taps(), y_axis.mean_taps(), wrap,
@@ -159,6 +183,11 @@ Image fit_bilinearly(const ImageView& source, int width, int height, WrapModes w
       system.right_side(system.at(x, y)).v = mass * mean.v;
     }
   });
+  TexelRanges ranges;
+  if (around != nullptr) {
+    ranges = lane_ranges(*around, solve, lane, offset, system);
+    by_lanes.texel_ranges = &ranges;
+  }
   system.invert_diagonal();
   system.solve(by_lanes, progress.part(0.45, 0.95));
   parallel_for(height, solve.threads, progress.part(0.95, 1.0), [&](std::int64_t row) {

@@ -6,6 +6,7 @@
 #include "prefilter/base/image.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/base/wrap.h"
+#include "prefilter/resize/ranges_around.h"
 #include "prefilter/solve/nine_point_system.h"
 
 namespace prefilter {
@@ -15,8 +16,11 @@ namespace prefilter {
 /// where I are the source's texels as squares, and b_i are the tents that interpolate c bilinearly,
 /// wrapped around the image as the wrap mode says (section 1.1 with the bilinear basis). With
 /// clamp, the outermost texels reach out to the image's edge; with border there are zeros around
-/// them. With ranges_times_alpha the last channel is alpha.
+/// them. With ranges_times_alpha the last channel is alpha. `around`, where it is given, has ranges
+/// for each texel, within which it stays too; with ranges_times_alpha, of colors before they are
+/// multiplied.
 Image fit_bilinearly(const ImageView& source, int width, int height, WrapModes wrap,
-                     const SolveOptions& solve, const Progress& progress);
+                     const SolveOptions& solve, const RangesAround* around,
+                     const Progress& progress);
 
 }  // namespace prefilter

@@ -120,6 +120,10 @@ class NinePointSystem<Entry>::Row {
     south_values_ = system->texels_.data() + south_row;
     north_values_ = system->texels_.data() + north_row;
     right_side_ = system->right_side_.data() + system->at(0, y);
+    if (options.texel_ranges != nullptr) {
+      texel_low_ = options.texel_ranges->low.data() + system->at(0, y);
+      texel_high_ = options.texel_ranges->high.data() + system->at(0, y);
+    }
     // Open ranges are as wide as floats go, and not infinite: times an alpha of 0 they are 0.
     constexpr float kWidest = std::numeric_limits<float>::max();
     for (int c = 0; c < kMaxChannels; ++c) {
@@ -172,12 +176,14 @@ class NinePointSystem<Entry>::Row {
     sum -= of(here_[west].east) * values_[west].v;
     const Lanes inverse = Lanes{} + of(here_[x].center);
     const Lanes free = select(inverse > 0.0F, old + kRelaxation * (sum * inverse - old), old);
+    const Lanes low = texel_low_ != nullptr ? texel_low_[x].v : low_;
+    const Lanes high = texel_high_ != nullptr ? texel_high_[x].v : high_;
     Lanes scale = Lanes{} + 1.0F;
     if (times_alpha_) {
-      scale = Lanes{} + std::clamp(free[3], low_[3], high_[3]);
+      scale = Lanes{} + std::clamp(free[3], low[3], high[3]);
       scale[3] = 1.0F;
     }
-    const Lanes next = lane_min(lane_max(free, low_ * scale), high_ * scale);
+    const Lanes next = lane_min(lane_max(free, low * scale), high * scale);
     values_[x].v = next;
     const Lanes step = lane_max(next - old, old - next);
     excess_ = lane_max(excess_, step - tolerance_ * lane_max(typical_, lane_max(next, -next)));
@@ -190,6 +196,8 @@ class NinePointSystem<Entry>::Row {
   Lanes typical_;
   Lanes low_{};
   Lanes high_{};
+  const LaneValues* texel_low_ = nullptr;
+  const LaneValues* texel_high_ = nullptr;
   Lanes excess_{};
   const Stencil* here_;
   const Stencil* south_;

@@ -19,8 +19,16 @@
 
 namespace prefilter {
 
+/// A range for each texel, in the order of NinePointSystem::at, as wide as floats go at the most.
+struct TexelRanges {
+  std::vector<LaneValues> low;
+  std::vector<LaneValues> high;
+};
+
 struct SolveOptions {
   std::array<ValueRange, kMaxChannels> ranges{};
+  // Instead of those, where texels have ranges of their own.
+  const TexelRanges* texel_ranges = nullptr;
   // Whether the ranges of the first three channels are multiplied by a texel's fourth, its alpha.
   bool ranges_times_alpha = false;
   // Stops when no texel moves by more than this, against its own value or a typical one of its

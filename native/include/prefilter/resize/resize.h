@@ -14,6 +14,10 @@ struct ResizeOptions {
   ResizeFilter filter = find_kernel("lanczos3");
   // Whether texels stay in [0, 1]: least squares are solved so, the others are clipped.
   bool constrained = false;
+  // Whether texels stay within the range of the old ones around: those in a square of two new
+  // texels a side, or two old ones where these are wider. Least squares are solved so, the others
+  // are clipped. Colors have the range of those that are seen, before they are multiplied by alpha.
+  Ringing ringing = Ringing::kAuto;
   WrapModes wrap;
   // False: the last of two or four channels is coverage, in [0, 1], and the others are not
   // multiplied by it yet. They are multiplied, filtered and divided again; colors then stay within
@@ -34,9 +38,12 @@ struct ResizeOptions {
 /// difference between the old texels, as squares, and the new ones, interpolated bilinearly
 /// (section 1.1).
 ///
+/// Bytes are filtered by kernels with sums of floats, which is right to a few millionths, and never
+/// are floats all at once; by other filters they are what floats are.
+///
 /// Throws Error where channels are not 1 to 4, a size is out of range, memory does not hold the
 /// result, or a texel is not finite or beyond 1e30; and, from the progress callback, when
 /// cancelled.
-Image resize(const ImageView& image, int width, int height, const ResizeOptions& options);
+Image resize(const TexelSource& image, int width, int height, const ResizeOptions& options);
 
 }  // namespace prefilter

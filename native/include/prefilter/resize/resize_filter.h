@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "prefilter/base/names.h"
 #include "prefilter/filters/kernel.h"
 
 namespace prefilter {
@@ -24,6 +25,16 @@ struct BilinearFit {
 
 /// A kernel along each axis, or one of these.
 using ResizeFilter = std::variant<const Kernel*, RadialFilter, BilinearFit>;
+
+/// Whether values may go beyond those of the old texels around.
+enum class Ringing {
+  kAuto,   // of least squares they may not, of others they may
+  kLimit,  // they may not
+  kAllow,
+};
+
+inline constexpr Named<Ringing> kRingings[] = {
+    {"auto", Ringing::kAuto}, {"limit", Ringing::kLimit}, {"allow", Ringing::kAllow}};
 
 /// All there are: every kernel, and the others.
 std::vector<ResizeFilter> resize_filters();

@@ -30,6 +30,11 @@ FILTERS = filters_for(
         "box": "The average of the pixels; enlarged pixels stay squares",
     },
 )
+RINGING = {
+    "auto": Choice("Automatic", "Limited for Least Squares, allowed for the other filters"),
+    "limit": Choice("Limited", "No value lies beyond those of the old pixels around"),
+    "allow": Choice("Allowed", "Values go as far as the filter takes them"),
+}
 WRAPS = {
     "clamp": Choice("Clamp", "Extend edge pixels"),
     "repeat": Choice("Repeat", "The image tiles the plane"),
@@ -172,6 +177,14 @@ class ResizeSettings:
         "Keep values between 0 and 1. Least Squares is solved within these limits, the "
         "results of other filters are clipped. Byte images are always limited",
         flag_description="Keep values between 0 and 1; byte pictures are always limited",
+    )
+    ringing: str = one_of(
+        "auto",
+        "Ringing",
+        "Whether values may overshoot at edges: dark and bright lines there, and values below 0 "
+        "around a bright sun",
+        RINGING,
+        metavar="MODE",
     )
     wrap: str = one_of("clamp", "Wrap", "What lies outside the image", WRAPS, metavar="MODE")
     threads: int = threads()

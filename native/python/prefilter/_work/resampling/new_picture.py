@@ -3,11 +3,13 @@
 """A new image of an old one: what was read is computed anywhere, then handed on or written."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 import prefilter
 
@@ -15,10 +17,11 @@ from ..._border import staging
 from .. import alpha
 from ..files import pictures
 from ..outcome import Outcome
-from ..picture import FloatArray, Picture, encoded, scene_linear
+from ..picture import Encoding, FloatArray, Picture, encoded, scene_linear
 from ..progress import Progress, go_on, share
 from ..wording import Sentence
 
+Bytes = NDArray[np.uint8]
 Keep = Callable[["NewPicture", FloatArray], Outcome]
 
 _DECODED, _FILTERED = 0.1, 0.9  # What the progress is once these steps are done.
@@ -75,6 +78,27 @@ class NewPicture:
         """
         raise NotImplementedError
 
+    def filtered_bytes(self, progress: Progress) -> Bytes | None:
+        """Returns the pixels of the new image as bytes that are stored as they are.
+
+        None where a subclass makes none of the picture, whose pixels then are `filtered`.
+
+        Args:
+            progress: Called with the fraction done.
+        """
+        return None
+
+    @property
+    def keeps_bytes(self) -> bool:
+        """Whether bytes become bytes of the same encoding, which the library has."""
+        picture = self.picture
+        if picture.texels.dtype != np.uint8 or picture.encoding is Encoding.OCIO:
+            return False
+        if self._target is None:
+            return True
+        is_encoded = picture.is_data or picture.encoding is Encoding.SRGB
+        return is_encoded and self._target.suffix.lower() == ".png"
+
     def compute(self, progress: Progress) -> None:
         """Decodes, filters and encodes the pixels, and stages the file.
 
@@ -85,6 +109,12 @@ class NewPicture:
             OSError: The file cannot be written.
         """
         picture = self.picture
+        if self.keeps_bytes:
+            made = self.filtered_bytes(share(progress, 0.0, _FILTERED))
+            if made is not None:
+                self._finish_bytes(made)
+                go_on(progress, 1.0)
+                return
         linear = scene_linear(picture, partial(go_on, progress, 0.0))
         go_on(progress, _DECODED)
         result = self.filtered(linear, share(progress, _DECODED, _FILTERED))
@@ -97,6 +127,15 @@ class NewPicture:
             check()
             self._staged = _stage(self._target, picture, result)
         go_on(progress, 1.0)
+
+    def _finish_bytes(self, made: Bytes) -> None:
+        picture = self.picture
+        if self._target is None:
+            self._stored = replace(picture, texels=made).stored
+        else:
+            self._staged = pictures.stage(
+                self._target, made, is_data=picture.is_data, is_half=False
+            )
 
     def write(self) -> Outcome:
         """Makes the image, or puts the file into place.

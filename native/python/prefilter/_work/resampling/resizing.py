@@ -3,14 +3,15 @@
 """Resizing an image."""
 
 from pathlib import Path
+from typing import Any
 
 import prefilter
 
 from ..._options.resampling import FILTERS, ResizeSettings
-from ..picture import FloatArray, Picture
+from ..picture import FloatArray, Picture, Texels, light_or_bytes
 from ..progress import Progress
 from ..wording import Sentence
-from .new_picture import Keep, NewPicture
+from .new_picture import Bytes, Keep, NewPicture
 
 
 class Resizing(NewPicture):
@@ -51,14 +52,24 @@ class Resizing(NewPicture):
 
     def filtered(self, linear: FloatArray, progress: Progress) -> FloatArray:
         """Returns the pixels of the new image."""
+        return self._resized(linear, None, progress)
+
+    def filtered_bytes(self, progress: Progress) -> Bytes | None:
+        """Returns the pixels of the new image as bytes."""
+        texels, encoding = light_or_bytes(self.picture)
+        return self._resized(texels, encoding, progress)
+
+    def _resized(self, texels: Texels, encoding: str | None, progress: Progress) -> Any:
         settings = self._settings
         return prefilter.resize(
-            linear,
+            texels,
             *self.new_size,
             filter=settings.filter,
             constrained=settings.use_constrained or not self.picture.is_float,
+            ringing=settings.ringing,
             wrap=settings.wrap,
             premultiplied=not self.picture.alpha_is_straight,
+            encoding=encoding,
             progress=progress,
             threads=settings.threads,
         )
