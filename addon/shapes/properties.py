@@ -40,6 +40,7 @@ class RasterizeProperties(PartedSettings):
             layout.prop(self, "view")
         elif source == "uv":
             layout.prop(self, "tile")
+            layout.prop(self, "uv_margin")
 
     def draw_parts(self, layout: bpy.types.UILayout, source: str) -> None:
         """Draws the parts that count for a source."""

@@ -24,9 +24,9 @@ from .host import PLAIN, Host
 _SVG = ".svg"
 _SOURCES = (_SVG, *mesh_endings.ENDINGS)
 FLAGS = (
-    *("filter", "side", "width", "height", "density", "margin", "tile", "color"),
-    *("background_color", "overlap", "light", "font_folder", "pixel_type", "alpha", "use_bleed"),
-    "threads",
+    *("filter", "side", "width", "height", "density", "margin", "tile", "uv_margin"),
+    *("color", "background_color", "overlap", "light", "font_folder", "pixel_type", "alpha"),
+    *("use_bleed", "threads"),
 )
 """The options that need no Blender."""
 _NOTES = """\

@@ -151,6 +151,16 @@ class RasterizeSettings:
         display={"soft_max": 64.0, "precision": 1},
         metavar="PIXELS",
     )
+    uv_margin: float = number(
+        0.0,
+        "UV Margin",
+        "How many pixels beyond their borders the charts of a UV map reach, as in bakes",
+        low=0.0,
+        high=LARGEST_SIDE / 2,
+        subtype="PIXEL",
+        display={"soft_max": 64.0, "precision": 1},
+        metavar="PIXELS",
+    )
     view: str = one_of(
         "object", "View", "Direction from which curves and texts are seen", VIEWS, metavar="VIEW"
     )

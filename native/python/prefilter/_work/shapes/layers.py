@@ -92,6 +92,8 @@ class Layers:
     memory: Memory = free_memory
     placed: Callable[[Frame], Any] = lambda _: None
     """Returns where the image is."""
+    grown: float = 0.0
+    """How many pixels farther than their contours shapes reach."""
 
     def drawn(self, settings: RasterizeSettings, progress: Progress) -> Drawn:
         """Returns the shapes in an image."""
@@ -115,6 +117,8 @@ class Layers:
             for contour in layer.contours:
                 add_contour(shape, product(contour, frame.to_pixels.T))
             shapes.append(shape)
+            if self.grown > 0.0:
+                shapes.append(shape.stroked(2.0 * self.grown, join="round"))
         color = next(iter(colors), _WHITE) if is_coverage else None
         return Drawn(frame.width, frame.height, shapes, color, place=self.placed(frame))
 
@@ -180,7 +184,7 @@ def uv_layers(
     Args:
         name: What the image is named after.
         polygons: The borders of what they cover, as `layouts.borders` returns them.
-        settings: The tile, and the size of the image.
+        settings: The tile, the size of the image, and how far what is covered grows.
         memory: What the work may use.
     """
     row, column = divmod(settings.tile - 1001, _TILES_PER_ROW)
@@ -190,7 +194,8 @@ def uv_layers(
         contours.append(np.stack([corners, np.roll(corners, -1, axis=0)], axis=1))
     low = (float(column), float(row))
     frame = whole_frame(settings.width, settings.height, low, (low[0] + 1.0, low[1] + 1.0))
-    return Layers(name, [Layer(contours, _WHITE, "nonzero")], frame, memory)
+    layers = [Layer(contours, _WHITE, "nonzero")]
+    return Layers(name, layers, frame, memory, grown=settings.uv_margin)
 
 
 def svg_drawing(
