@@ -89,9 +89,12 @@ class Axis {
   double reach_;
 };
 
+// Values that are added side by side: some taps of a texel, channel by channel.
+constexpr int lanes_of(int channels) { return channels == 3 ? 12 : 4; }
+
 // What some target texels of one row are made of.
 struct Sums {
-  std::vector<double> values;   // weighted, texel by texel
+  std::vector<double> values;   // weighted, texel by texel, in lanes
   std::vector<double> weights;  // of each texel
 
   void add(const Sums& other) {
@@ -102,9 +105,10 @@ struct Sums {
   }
 };
 
-// Part of the work: target texels [begin, end) of row y, and of their taps along y some.
+// Part of the work: target texels [begin, end) of rows [y, end_y), and of their taps along y some.
 struct Part {
   int y;
+  int end_y;
   int begin;
   int end;
   int first_tap;
@@ -116,7 +120,7 @@ struct Part {
 template <int C>
 class RowWeights {
  public:
-  static constexpr int kLanes = C == 3 ? 12 : 4;
+  static constexpr int kLanes = lanes_of(C);
   static constexpr int kTaps = kLanes / C;  // that are added at once
 
   RowWeights(const Axis& axis, const RadialTable& table, int begin, int end)
@@ -125,7 +129,11 @@ class RowWeights {
     shares_ = axis.phases() < end - begin;
     const auto slots = static_cast<std::size_t>(shares_ ? axis.phases() : end - begin);
     stride_ = (axis.taps() + kTaps) * C;
-    sums_.resize(slots);
+    for (int x = begin; x < end; ++x) {
+      firsts_.push_back(axis.first(x));
+      slots_.push_back(shares_ ? axis.phase(x) : x - begin);
+    }
+    slot_count_ = slots;
     weights_.resize(slots * static_cast<std::size_t>(stride_));
     distances_.resize(slots * static_cast<std::size_t>(axis.taps()));
     for (std::size_t s = 0; s < slots; ++s) {
@@ -136,11 +144,16 @@ class RowWeights {
     }
   }
 
-  /// Weighs the taps of the row at that squared distance.
-  void move_to(double y_distance) {
+  /// How many different weights texels have.
+  std::size_t slots() const { return slot_count_; }
+  /// Of a texel, in what `move_to` adds up.
+  std::size_t slot(int x) const { return static_cast<std::size_t>(slots_[x - begin_]); }
+
+  /// Weighs the taps of the row at that squared distance, and adds the weights of each slot up.
+  void move_to(double y_distance, std::vector<double>* sums) {
     first_ = axis_.taps();
     int last = 0;
-    for (std::size_t s = 0; s < sums_.size(); ++s) {
+    for (std::size_t s = 0; s < slot_count_; ++s) {
       double* to = weights_.data() + s * stride_;
       double sum = 0.0;
       for (int i = 0; i < axis_.taps(); ++i, to += C) {
@@ -151,13 +164,10 @@ class RowWeights {
         first_ = std::min(first_, i);
         last = std::max(last, i);
       }
-      sums_[s] += sum;
+      (*sums)[s] += sum;
     }
     groups_ = std::max(0, (last + kTaps - first_) / kTaps);
   }
-
-  /// The weights of a texel, over the rows until now.
-  double sum(int x) const { return sums_[slot(x)]; }
 
   /// Adds a row, which begins at the source's texel `first` and goes on for kTaps more than taps
   /// reach, to the values of the target texels.
@@ -177,17 +187,14 @@ class RowWeights {
  private:
   using Two = Vector<double, 2>;
 
-  std::size_t slot(int x) const {
-    return static_cast<std::size_t>(shares_ ? axis_.phase(x) : x - begin_);
-  }
-
   template <int kCount>
   void add_texels(const double* row, int first, int x, int step, double* values) const {
     constexpr int kVectors = kLanes / 2;
     Two sums[kCount][kVectors] = {};
     const double* from[kCount];
     for (int k = 0; k < kCount; ++k) {
-      from[k] = row + static_cast<std::ptrdiff_t>(axis_.first(x + k * step) + first_ - first) * C;
+      from[k] =
+          row + static_cast<std::ptrdiff_t>(firsts_[x + k * step - begin_] + first_ - first) * C;
     }
     const double* weight = weights_.data() + slot(x) * stride_ + first_ * C;
     std::ptrdiff_t at = 0;
@@ -203,13 +210,12 @@ class RowWeights {
       }
     }
     for (int k = 0; k < kCount; ++k) {
-      double lanes[kLanes];
-      std::memcpy(lanes, sums[k], sizeof lanes);
-      double* const to = values + static_cast<std::ptrdiff_t>(x + k * step - begin_) * C;
-      for (int c = 0; c < C; ++c) {
-        double sum = lanes[c];
-        for (int i = 1; i < kTaps; ++i) sum += lanes[i * C + c];
-        to[c] += sum;
+      double* to = values + static_cast<std::ptrdiff_t>(x + k * step - begin_) * kLanes;
+      for (int v = 0; v < kVectors; ++v, to += 2) {
+        Two before;
+        std::memcpy(&before, to, sizeof before);
+        before += sums[k][v];
+        std::memcpy(to, &before, sizeof before);
       }
     }
   }
@@ -219,8 +225,10 @@ class RowWeights {
   int begin_;
   int end_;
   bool shares_ = false;
-  int stride_ = 0;  // values of a slot's weights, and of zeros behind them
-  std::vector<double> sums_;
+  int stride_ = 0;           // values of a slot's weights, and of zeros behind them
+  std::vector<int> firsts_;  // the first tap of each target texel
+  std::vector<int> slots_;   // whose weights it has
+  std::size_t slot_count_ = 0;
   std::vector<double> weights_;
   std::vector<double> distances_;
   int first_ = 0;   // the first tap that weighs anything
@@ -239,7 +247,8 @@ class Filter {
   const Axis& x_axis() const { return x_axis_; }
   const Axis& y_axis() const { return y_axis_; }
 
-  Sums sums(const Part& part) const {
+  /// Row by row.
+  std::vector<Sums> sums(const Part& part) const {
     switch (source_.channels) {
       case 1:
         return sums_of<1>(part);
@@ -253,23 +262,35 @@ class Filter {
   }
 
  private:
+  // Each row of the source is read once for all rows of the part.
   template <int C>
-  Sums sums_of(const Part& part) const {
-    const int count = part.end - part.begin;
+  std::vector<Sums> sums_of(const Part& part) const {
+    const auto count = static_cast<std::size_t>(part.end - part.begin);
     const int first = x_axis_.first(part.begin);
     const int width = x_axis_.first(part.end - 1) + x_axis_.taps() - first;
     RowWeights<C> weights(x_axis_, table_, part.begin, part.end);
     std::vector<double> row(static_cast<std::size_t>(width + RowWeights<C>::kTaps) * C);
-    Sums sums{std::vector<double>(static_cast<std::size_t>(count) * C),
-              std::vector<double>(static_cast<std::size_t>(count))};
-    for (int j = part.first_tap; j < part.end_tap; ++j) {
-      weights.move_to(y_axis_.squared_distance(y_axis_.phase(part.y), j));
-      const int source_y = wrap_index(y_axis_.first(part.y) + j, source_.height, wrap_.v);
-      if (source_y < 0) continue;
-      read_row<C>(source_y, first, width, row.data());
-      weights.add_row(row.data(), first, sums.values.data());
+    const auto rows = static_cast<std::size_t>(part.end_y - part.y);
+    std::vector<Sums> sums(rows, {std::vector<double>(count * lanes_of(C)), {}});
+    std::vector<std::vector<double>> weight_sums(rows, std::vector<double>(weights.slots()));
+    const int first_row = y_axis_.first(part.y) + part.first_tap;
+    const int end_row = y_axis_.first(part.end_y - 1) + part.end_tap;
+    for (int from = first_row; from < end_row; ++from) {
+      const int source_y = wrap_index(from, source_.height, wrap_.v);
+      if (source_y >= 0) read_row<C>(source_y, first, width, row.data());
+      for (int y = part.y; y < part.end_y; ++y) {
+        const int tap = from - y_axis_.first(y);
+        if (tap < part.first_tap || tap >= part.end_tap) continue;
+        const auto k = static_cast<std::size_t>(y - part.y);
+        weights.move_to(y_axis_.squared_distance(y_axis_.phase(y), tap), &weight_sums[k]);
+        if (source_y >= 0) weights.add_row(row.data(), first, sums[k].values.data());
+      }
     }
-    for (int x = part.begin; x < part.end; ++x) sums.weights[x - part.begin] = weights.sum(x);
+    for (std::size_t k = 0; k < rows; ++k) {
+      for (int x = part.begin; x < part.end; ++x) {
+        sums[k].weights.push_back(weight_sums[k][weights.slot(x)]);
+      }
+    }
     return sums;
   }
 
@@ -303,9 +324,15 @@ class Filter {
 };
 
 void write(const Sums& sums, int channels, float* texel) {
-  for (std::size_t i = 0; i < sums.values.size(); ++i) {
-    texel[i] =
-        static_cast<float>(sums.values[i] / sums.weights[i / static_cast<std::size_t>(channels)]);
+  const int lanes = lanes_of(channels);
+  const double* values = sums.values.data();
+  for (const double weight : sums.weights) {
+    for (int c = 0; c < channels; ++c) {
+      double sum = values[c];
+      for (int i = c + channels; i < lanes; i += channels) sum += values[i];
+      *texel++ = static_cast<float>(sum / weight);
+    }
+    values += lanes;
   }
 }
 
@@ -318,6 +345,7 @@ Image filter_radially(const ImageView& source, int width, int height, int radius
   // parted too.
   constexpr double kMostTerms = 1 << 22;
   constexpr int kMostTexels = 512;
+  constexpr int kMostBand = 8;
   const int rows = filter.y_axis().taps();
   const double row_terms = filter.x_axis().taps();
   const int texels =
@@ -325,9 +353,12 @@ Image filter_radially(const ImageView& source, int width, int height, int radius
   const int rows_together = static_cast<int>(std::clamp<double>(kMostTerms / row_terms, 1, rows));
   const std::int64_t blocks = range_count(width, texels);
   const std::int64_t pieces = texels > 1 ? 1 : range_count(rows, rows_together);
+  // Of texels that are many at a time, several rows are made together.
+  const int band = texels == kMostTexels ? kMostBand : 1;
   const auto part_of = [&](std::int64_t block, std::int64_t piece) {
     Part part{};
-    part.y = static_cast<int>(block / blocks);
+    part.y = static_cast<int>(block / blocks) * band;
+    part.end_y = std::min(part.y + band, height);
     part.begin = static_cast<int>(block % blocks) * texels;
     part.end = std::min(part.begin + texels, width);
     part.first_tap = static_cast<int>(piece) * rows_together;
@@ -335,23 +366,27 @@ Image filter_radially(const ImageView& source, int width, int height, int radius
     return part;
   };
   Image target(width, height, source.channels);
-  const auto finish = [&](std::int64_t block, const Sums& sums) {
+  const auto finish = [&](std::int64_t block, const std::vector<Sums>& sums) {
     const Part part = part_of(block, 0);
-    write(sums, source.channels, target.texel(part.begin, part.y));
+    for (int y = part.y; y < part.end_y; ++y) {
+      write(sums[static_cast<std::size_t>(y - part.y)], source.channels,
+            target.texel(part.begin, y));
+    }
   };
+  const std::int64_t count = range_count(height, band) * blocks;
   if (pieces == 1) {
-    parallel_for(height * blocks, threads, progress,
+    parallel_for(count, threads, progress,
                  [&](std::int64_t block) { finish(block, filter.sums(part_of(block, 0))); });
     return target;
   }
-  std::vector<Sums> sums(static_cast<std::size_t>(height * blocks * pieces));
-  parallel_for(height * blocks * pieces, threads, progress, [&](std::int64_t i) {
+  std::vector<std::vector<Sums>> sums(static_cast<std::size_t>(count * pieces));
+  parallel_for(count * pieces, threads, progress, [&](std::int64_t i) {
     sums[static_cast<std::size_t>(i)] = filter.sums(part_of(i / pieces, i % pieces));
   });
-  for (std::int64_t block = 0; block < height * blocks; ++block) {
-    Sums& sum = sums[static_cast<std::size_t>(block * pieces)];
+  for (std::int64_t block = 0; block < count; ++block) {
+    std::vector<Sums>& sum = sums[static_cast<std::size_t>(block * pieces)];
     for (std::int64_t piece = 1; piece < pieces; ++piece) {
-      sum.add(sums[static_cast<std::size_t>(block * pieces + piece)]);
+      sum.front().add(sums[static_cast<std::size_t>(block * pieces + piece)].front());
     }
     finish(block, sum);
   }
