@@ -1,49 +1,30 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Compares resized images with those of other libraries: time, accuracy, and what comes back.
+"""Compares resized images with those of other libraries: time and accuracy.
 
 Usage: scripts/run python3 bench/resize/compare.py [--rounds N] [--side N] [--json FILE]
 
 Other libraries are Pillow, OpenImageIO, libvips (pyvips) and OpenCV, as far as this Python can
 import them; all have one thread, and work on floats. Times are the least of rounds in turns, where
 a library does what the filter's name says: some have another box, or enlarge by another filter.
-What comes back is an image made smaller to a quarter, and enlarged again by bilinear interpolation:
-the base colors of the models in ../shared/data/textured, and figure 1.8 as in the documentation.
-Fails where a criterion does not hold.
 """
 
 import argparse
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import prefilter
 from numpy.typing import NDArray
-from PIL import Image
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "docs" / "pictures"))
-from resize import drawn
 
 from bench.peers.resizers import Resize, found
 from bench.report import Report, add_json_option
 
-ROOT = Path(__file__).resolve().parents[2]
-Array = NDArray[np.float32]
-
-TEXTURES = ROOT.parent / "shared" / "data" / "textured"
-PICTURES = {
-    "spot": "spot/spot_texture.png",
-    "Duck": "Duck/DuckCM.png",
-    "BoomBox": "BoomBox/BoomBox_baseColor.png",
-    "AntiqueCamera": "AntiqueCamera/camera_camera_BaseColor.png",
-    "DamagedHelmet": "DamagedHelmet/Default_albedo.jpg",
-}
-SHRINK = 4
 # Channels, and the new side by the old one.
 WORK = ((1, 1 / 4), (4, 1 / 4), (4, 2 / 3), (4, 3 / 2))
 TIMED = ("box", "tent", "mitchell", "lanczos3", "radial3")
@@ -51,7 +32,6 @@ CLOSED_FORMS = ("box", "tent", "mitchell", "lanczos3")
 SAME = 0.01  # How far a library may be from the definition for its time to count.
 EDGE = 12  # New pixels, whose filters reach over the edge: libraries differ there.
 OURS_ONLY = ("least-squares",)
-QUALITY = ("box", "tent", "mitchell", "lanczos3", "radial3", "least-squares")
 
 
 def main() -> None:
@@ -65,7 +45,6 @@ def main() -> None:
     libraries = found()
     time_all(report, libraries, options.side, options.rounds)
     accuracy(report, libraries)
-    quality(report)
     report.finish(options.json)
 
 
@@ -169,58 +148,6 @@ def dense(filter: str, size: int, target: int) -> NDArray[np.float64]:
         tent = np.maximum(0.0, 1 - x)
         weights = {"tent": tent, "mitchell": cubic, "lanczos3": windowed}[filter]
     return weights / weights.sum(axis=1, keepdims=True)
-
-
-def quality(report: Report) -> None:
-    """Makes pictures smaller and enlarges them again."""
-    rows, beaten = [], []
-    for name, picture in pictures():
-        height, width = picture.shape[:2]
-        errors = {}
-        for filter in QUALITY:
-            for constrained in (False, True):
-                small = prefilter.resize(
-                    picture,
-                    width // SHRINK,
-                    height // SHRINK,
-                    filter=filter,
-                    constrained=constrained,
-                )
-                large = prefilter.resize(small, width, height, filter="tent")
-                error = float(np.sqrt(np.mean((large - picture) ** 2)))
-                over = float(max(small.max() - picture.max(), picture.min() - small.min()))
-                errors[filter, constrained] = error, over
-        box = errors["box", False][0]
-        cells = []
-        for filter in QUALITY:
-            free, bound = errors[filter, False], errors[filter, True]
-            cells.append(f"{free[0] / box:.3f} / {bound[0] / box:.3f}; {max(free[1], 0.0):.2f}")
-        rows.append((name, f"{box:.4f}", *cells))
-        best = errors["least-squares", True][0]
-        beaten.append(best / min(errors[f, True][0] for f in QUALITY if f != "least-squares"))
-    report.table(
-        "To a quarter and back: error of the box; that of others, as they are / in [0, 1], as a "
-        "share of it; overshoot",
-        ("picture", "box", *QUALITY),
-        rows,
-        "pictures",
-    )
-    report.verdict(
-        max(beaten) < 1.0,
-        f"values in [0, 1]: least squares have the lowest error on every picture, "
-        f"{min(beaten):.3f} to {max(beaten):.3f} of the next filter's",
-    )
-
-
-def pictures() -> Iterator[tuple[str, Array]]:
-    """Yields names and scene-linear colors."""
-    yield "figure 1.8", drawn()
-    for name, path in PICTURES.items():
-        if (TEXTURES / path).exists():
-            colors = np.asarray(Image.open(TEXTURES / path).convert("RGB"))[::-1]
-            rows = colors.shape[0] // SHRINK * SHRINK
-            columns = colors.shape[1] // SHRINK * SHRINK
-            yield name, prefilter.to_linear(colors[:rows, :columns].astype(np.float32) / 255)
 
 
 if __name__ == "__main__":
