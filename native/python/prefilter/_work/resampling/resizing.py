@@ -52,12 +52,14 @@ class Resizing(NewPicture):
 
     def filtered(self, linear: FloatArray, progress: Progress) -> FloatArray:
         """Returns the pixels of the new image."""
-        return self._resized(linear, None, progress)
+        made: FloatArray = self._resized(linear, None, progress)
+        return made
 
     def filtered_bytes(self, progress: Progress) -> Bytes | None:
         """Returns the pixels of the new image as bytes."""
         texels, encoding = light_or_bytes(self.picture)
-        return self._resized(texels, encoding, progress)
+        made: Bytes = self._resized(texels, encoding, progress)
+        return made
 
     def _resized(self, texels: Texels, encoding: str | None, progress: Progress) -> Any:
         settings = self._settings
