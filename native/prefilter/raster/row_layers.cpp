@@ -51,16 +51,15 @@ void RowLayers::leave(const CellLayer& layer) {
   }
   std::sort(own_.begin(), own_.end(),
             [](const SideStep& a, const SideStep& b) { return a.y < b.y; });
-  // A layer that goes on along the side has arcs behind it. Only rounding leaves steps without.
-  const bool goes_on = !layer.arcs.empty();
+  // What is level leaves no arcs, so that steps may go on through many cells.
   bool has_steps = false;
   for (std::size_t i = 0; i < own_.size();) {
     SideStep sum = own_[i];
     while (++i < own_.size() && own_[i].y == sum.y) sum.winding += own_[i].winding;
     if (sum.winding == 0) continue;
-    if (sum.y <= -0.5 || (!goes_on && sum.y <= 0.0)) {
+    if (sum.y <= -0.5) {
       base += sum.winding;
-    } else if (sum.y < 0.5 && goes_on) {
+    } else if (sum.y < 0.5) {
       next_steps_.push_back(sum);
       has_steps = true;
     }

@@ -165,6 +165,28 @@ TEST(StackRows, LinearColorsAreExact) {
   expect_like_outlines<5>(shapes, "mitchell", 30);
 }
 
+TEST(StackRows, LevelEdgesGoOnThroughCells) {
+  std::mt19937 random(12);
+  std::uniform_real_distribution<double> place(-2.0, 32.0);
+  std::vector<Shape> shapes;
+  for (int i = 0; i < 12; ++i) {
+    Outline outline;
+    for (int box = 0; box < 2; ++box) {
+      const Point2 low{place(random), place(random)};
+      const Point2 high{place(random), place(random)};
+      outline.move_to(low);
+      outline.line_to({high.x, low.y});
+      outline.line_to(high);
+      outline.line_to({low.x, high.y});
+      outline.close();
+    }
+    const FillRule rule = i % 2 == 0 ? FillRule::kNonzero : FillRule::kEvenOdd;
+    shapes.push_back({outline, rule, painted(&random, 0.7)});
+  }
+  expect_like_outlines<0>(shapes, "box", 30);
+  expect_like_outlines<3>(shapes, "mitchell", 30);
+}
+
 TEST(StackRows, SampledCellsAreCloseToPoints) {
   for (const double alpha : {1.0, 0.2}) {
     // All of it within a few pixels.
