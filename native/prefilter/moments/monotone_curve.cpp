@@ -134,11 +134,46 @@ double internal::halve_conic(std::span<const Point2> controls, double weight,
   return std::sqrt(0.5 * (1.0 + weight));
 }
 
+namespace {
+
+// Along one axis: what ParametricCurve says of it, to the bit.
+class AxisCurve {
+ public:
+  AxisCurve(const ParametricCurve& curve, int axis) : curve_(curve), axis_(axis) {
+    for (std::size_t i = 0; i < powers_.size(); ++i) powers_[i] = component(curve.powers[i], axis);
+  }
+
+  double at(double t) const {
+    if (curve_.kind == CurveKind::kBezier) return component(curve_.at(t), axis_);
+    const double sum = powers_[0] + t * (powers_[1] + t * (powers_[2] + t * powers_[3]));
+    return curve_.kind == CurveKind::kConic ? (1.0 / below(t)) * sum : sum;
+  }
+  double derivative(double t) const {
+    if (curve_.kind == CurveKind::kBezier) return component(curve_.derivative(t), axis_);
+    const double slope = powers_[1] + t * (2.0 * powers_[2] + (3.0 * t) * powers_[3]);
+    if (curve_.kind != CurveKind::kConic) return slope;
+    const double below_slope = curve_.denominator[1] + 2.0 * t * curve_.denominator[2];
+    return (1.0 / below(t)) * (slope - below_slope * at(t));
+  }
+
+ private:
+  double below(double t) const {
+    const auto& d = curve_.denominator;
+    return d[0] + t * (d[1] + t * d[2]);
+  }
+
+  const ParametricCurve& curve_;
+  int axis_;
+  std::array<double, 4> powers_{};
+};
+
+}  // namespace
+
 double crossing(const MonotoneCurve& piece, int axis, double value, double low) {
-  const ParametricCurve& curve = piece.curve;
+  const AxisCurve curve(piece.curve, axis);
   double high = piece.t_end;
   const bool rises = component(piece.end, axis) > component(piece.begin, axis);
-  const double at_low = component(curve.at(low), axis) - value;
+  const double at_low = curve.at(low) - value;
   const double at_high = component(piece.end, axis) - value;
   double t = low;
   if (at_high != at_low) t = low - at_low * (high - low) / (at_high - at_low);
@@ -146,10 +181,10 @@ double crossing(const MonotoneCurve& piece, int axis, double value, double low) 
   constexpr int kMostSteps = 60;
   for (int step = 0; step < kMostSteps; ++step) {
     if (!(t > low && t < high)) t = 0.5 * (low + high);
-    const double off = component(curve.at(t), axis) - value;
+    const double off = curve.at(t) - value;
     if (off == 0.0) return t;
     ((off > 0.0) == rises ? high : low) = t;
-    const double next = t - off / component(curve.derivative(t), axis);
+    const double next = t - off / curve.derivative(t);
     if (std::abs(next - t) < 1e-15) return std::clamp(next, low, high);
     t = next;
   }
