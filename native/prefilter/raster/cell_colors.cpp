@@ -8,15 +8,21 @@ namespace prefilter {
 namespace {
 
 // What is behind so much does not show in a float.
-constexpr double kLeastPassing = 1e-9;
+constexpr double kLeastPassing = RowLayers::kLeastPassing;
 
 }  // namespace
 
-void CellColors::append_color(const Paint& paint, std::vector<ChannelValues>* colors) const {
-  if (stack_.is_constant) {
-    colors->push_back(paint.constant);
-    return;
+CellColors::CellColors(const LayerStack& stack, const CellFilter& filter,
+                       const ChannelValues& background, int channels)
+    : stack_(stack), filter_(filter), background_(background), channels_(channels) {
+  if (!stack.is_constant) return;
+  for (const StackLayer& layer : stack.layers) {
+    const ChannelValues& color = layer.paint->constant;
+    veils_.push_back({color, 1.0 - opacity(color)});
   }
+}
+
+void CellColors::append_color(const Paint& paint, std::vector<ChannelValues>* colors) const {
   const double scale = 1.0 / filter_.cells_per_pixel;
   for (std::size_t i = 0; i < kColorNodes; ++i) {
     colors->push_back(paint.kind == Paint::Kind::kConstant
@@ -25,8 +31,25 @@ void CellColors::append_color(const Paint& paint, std::vector<ChannelValues>* co
   }
 }
 
+bool CellColors::append_constant_full(std::uint32_t end, std::uint32_t behind,
+                                      const LayerSet& full) {
+  Veil sum;
+  for (std::uint32_t layer = full.highest_below(end);
+       layer != LayerSet::kNone && (behind == LayerSet::kNone || layer > behind) &&
+       sum.passing >= kLeastPassing;
+       layer = full.highest_below(layer)) {
+    const Veil& veil = veils_[layer];
+    // All four, of which those beyond the channels are not looked at.
+    for (int c = 0; c < kMaxChannels; ++c) sum.color[c] += sum.passing * veil.color[c];
+    sum.passing *= veil.passing;
+  }
+  full_.push_back(sum);
+  return sum.passing >= kLeastPassing;
+}
+
 // What is full below `end`, and over `behind`. Returns whether something passes.
 bool CellColors::append_full(std::uint32_t end, std::uint32_t behind, const LayerSet& full) {
+  if (stack_.is_constant) return append_constant_full(end, behind, full);
   const std::size_t first = full_.size();
   full_.resize(first + nodes());
   double most_passing = 1.0;
@@ -64,7 +87,12 @@ std::size_t CellColors::look_at(std::size_t count) {
     const std::size_t next = full_.size() / nodes();
     if (next > count) break;
     if (next > 0) {
-      append_color(*stack_.layers[layers_[seen_].layer].paint, &colors_);
+      const std::uint32_t layer = layers_[seen_].layer;
+      if (stack_.is_constant) {
+        colors_.push_back(veils_[layer].color);
+      } else {
+        append_color(*stack_.layers[layer].paint, &colors_);
+      }
       ++seen_;
     }
     const bool is_last = seen_ == layers_.size();

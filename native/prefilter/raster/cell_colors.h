@@ -28,8 +28,7 @@ struct Veil {
 class CellColors {
  public:
   CellColors(const LayerStack& stack, const CellFilter& filter, const ChannelValues& background,
-             int channels)
-      : stack_(stack), filter_(filter), background_(background), channels_(channels) {}
+             int channels);
 
   std::size_t nodes() const { return stack_.is_constant ? 1 : kColorNodes; }
   int channels() const { return channels_; }
@@ -63,11 +62,13 @@ class CellColors {
  private:
   void append_color(const Paint& paint, std::vector<ChannelValues>* colors) const;
   bool append_full(std::uint32_t end, std::uint32_t behind, const LayerSet& full);
+  bool append_constant_full(std::uint32_t end, std::uint32_t behind, const LayerSet& full);
 
   const LayerStack& stack_;
   const CellFilter& filter_;
   ChannelValues background_;
   int channels_;
+  std::vector<Veil> veils_;  // the layers, where all are constant
   Point2 center_;
   std::span<const CellLayer> layers_;
   const LayerSet* all_full_ = nullptr;

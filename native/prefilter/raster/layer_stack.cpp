@@ -2,15 +2,24 @@
 
 #include "prefilter/raster/layer_stack.h"
 
+#include <optional>
 #include <utility>
 
+#include "prefilter/outline/resolve_soon.h"
 #include "prefilter/raster/gradient_strips.h"
 
 namespace prefilter {
 namespace {
 
-void add_layer(const Outline& outline, FillRule rule, const Paint& paint, LayerStack* stack) {
+void add_layer(const Outline& outline, FillRule rule, const Paint& paint, bool is_one_of_many,
+               LayerStack* stack) {
   if (outline.empty()) return;
+  // Of what winds once both rules say the same, and that of odd numbers takes less.
+  std::optional<Outline> changed;
+  if (is_one_of_many && rule == FillRule::kNonzero && resolve_soon(outline, rule, {}, &changed) &&
+      !changed) {
+    rule = FillRule::kEvenOdd;
+  }
   stack->layers.push_back({{}, rule, &paint});
   stack->layers.back().edges.add(outline);
   stack->is_constant = stack->is_constant && paint.kind == Paint::Kind::kConstant;
@@ -22,13 +31,14 @@ LayerStack stack_of(std::span<const Shape> shapes) {
   LayerStack stack;
   for (const Shape& shape : shapes) {
     if (shape.paint.kind != Paint::Kind::kLinearStops) {
-      add_layer(shape.outline, shape.fill_rule, shape.paint, &stack);
+      add_layer(shape.outline, shape.fill_rule, shape.paint, shapes.size() > 1, &stack);
       continue;
     }
     for (GradientStrip& strip : gradient_strips(shape.outline, shape.paint)) {
       stack.outlines.push_back(std::move(strip.outline));
       stack.paints.push_back(std::move(strip.paint));
-      add_layer(stack.outlines.back(), shape.fill_rule, stack.paints.back(), &stack);
+      add_layer(stack.outlines.back(), shape.fill_rule, stack.paints.back(), shapes.size() > 1,
+                &stack);
     }
   }
   return stack;

@@ -210,10 +210,7 @@ void make_bands(const RasterLayers& job, const CellFilter& filter, const RasterO
                 Image* image) {
   constexpr int kBandValues = 1 << 17;
   constexpr int kLeastRows = 16;
-  int rows = std::clamp(kBandValues / (options.width * job.channels), kLeastRows, 256);
-  // The arcs of stacks are held for a band, and those of the cells that two bands have in common
-  // are made for both.
-  if (!job.stacks.empty()) rows = filter.taps == 1 ? kLeastRows / 2 : kLeastRows;
+  const int rows = std::clamp(kBandValues / (options.width * job.channels), kLeastRows, 256);
   parallel_ranges(options.height, rows, options.threads, options.progress.part(kLayersShare, 1.0),
                   [&](std::int64_t begin, std::int64_t end) {
                     BandMaker<N> maker(job, filter, image);

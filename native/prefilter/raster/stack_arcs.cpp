@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
 #include <utility>
 
 namespace prefilter {
@@ -11,133 +13,210 @@ namespace {
 
 // Of arcs of one layer in a cell, those that are equal become one where there are more than so
 // many: a contour that is there many times is no more work than once.
-constexpr std::size_t kManyArcs = 16;
+constexpr std::ptrdiff_t kManyArcs = 16;
 
-// What tells an arc from others: where it is at five places. Curves up to degree 3, and conics, are
-// told by so many.
-struct ArcPlaces {
-  std::array<double, 12> numbers{};
-  StackArc arc;
-};
+// Fewer are sorted in place.
+constexpr std::size_t kFewArcs = 48;
+
+std::uint64_t key_of(const StackArc& arc) {
+  std::uint64_t key = 0;
+  for (const double value : {arc.low.x, arc.low.y, arc.high.x, arc.high.y}) {
+    key = (key ^ std::bit_cast<std::uint64_t>(value)) * 0x9e3779b97f4a7c15u;
+    key ^= key >> 29;
+  }
+  return key;
+}
+
+bool is_before(const StackArc& a, const StackArc& b) { return a.column < b.column; }
 
 }  // namespace
 
-void StackArcs::gather(const LayerStack& stack, const CellFilter& filter, int width, int first_row,
-                       int end_row) {
+void StackArcs::begin_band(const LayerStack& stack, const CellFilter& filter, int width,
+                           int first_row, int end_row) {
   window_ = {filter.first_cell(0), filter.first_cell(width - 1) + filter.taps,
              filter.first_cell(first_row), filter.first_cell(end_row - 1) + filter.taps};
-  rows_.resize(window_.end_row - window_.first_row);
-  for (auto& arcs : rows_) arcs.clear();
-  curves_.clear();
+  layers_.clear();
   pieces_.clear();
   const double low = filter.to_pixel(window_.first_row);
   const double high = filter.to_pixel(window_.end_row);
   for (std::size_t i = stack.layers.size(); i-- > 0;) {
     const EdgeList& edges = stack.layers[i].edges;
     if (edges.high() < low || edges.low() > high) continue;
+    const std::size_t first = pieces_.size();
     edges.for_pieces_between(window_.first_row, window_.end_row, filter,
                              [&](const MonotoneCurve& piece, bool backward) {
-                               add(piece, backward ? 1 : -1, static_cast<std::uint32_t>(i));
+                               if (piece.begin.y == piece.end.y) return;
+                               pieces_.push_back({piece, backward ? 1 : -1});
                              });
+    if (pieces_.size() > first) {
+      layers_.push_back({static_cast<std::uint32_t>(i), first, pieces_.size()});
+    }
   }
 }
 
-void StackArcs::add(const MonotoneCurve& piece, int sign, std::uint32_t layer) {
-  const int left = window_.first_column - 1;
-  const auto add_left = [&](int row_index, double y_begin, double y_end) {
-    const double center = row_index + 0.5;
-    const bool rises = y_begin < y_end;
-    row(row_index).push_back({{0.0, (rises ? y_begin : y_end) - center},
-                              {0.0, (rises ? y_end : y_begin) - center},
-                              layer,
-                              left,
-                              rises ? sign : -sign,
-                              StackArc::kLine});
-  };
-  if (piece.curve.kind == CurveKind::kLine) {
-    const auto add_line = [&](int column, int row_index, Point2 begin, Point2 end) {
-      const Point2 center{column + 0.5, row_index + 0.5};
-      row(row_index).push_back(
-          {begin - center, end - center, layer, column, sign, StackArc::kLine});
-    };
-    cut_line_to_cells(piece.begin, piece.end, window_, add_line, add_left);
-    return;
+void StackArcs::begin_row(int row) {
+  row_ = {window_.first_column, window_.end_column, row, row + 1};
+  curves_.clear();
+}
+
+void StackArcs::append_left(double y_begin, double y_end, int sign,
+                            std::vector<StackArc>* arcs) const {
+  const double center = row_.first_row + 0.5;
+  if (y_begin > y_end) {
+    std::swap(y_begin, y_end);
+    sign = -sign;
   }
-  const std::size_t known = curves_.size();
-  const auto add_arc = [&](int column, int row_index, const CellArc& arc) {
+  arcs->push_back({{0.0, y_begin - center}, {0.0, y_end - center}, -1, sign, StackArc::kLine});
+}
+
+// Of a piece in cells that are not seen only the heights count. Returns false where it passes
+// others.
+bool StackArcs::append_hidden(const Piece& piece, const OpenColumns& open,
+                              std::vector<StackArc>* arcs) const {
+  const Point2& begin = piece.curve.begin;
+  const Point2& end = piece.curve.end;
+  const double first = row_.first_column;
+  const double last = row_.end_column - 1;
+  const double left = std::clamp(std::min(begin.x, end.x) - 1e-6, first, last + 0.5);
+  const double right = std::clamp(std::max(begin.x, end.x) + 1e-6, first, last + 0.5);
+  const int low_column = static_cast<int>(std::floor(left)) - row_.first_column;
+  const int end_column = static_cast<int>(std::floor(right)) - row_.first_column + 1;
+  if (open.next(low_column, end_column) < end_column) return false;
+  if (std::max(begin.x, end.x) >= row_.end_column) return false;
+  const double y_begin = std::clamp<double>(begin.y, row_.first_row, row_.end_row);
+  const double y_end = std::clamp<double>(end.y, row_.first_row, row_.end_row);
+  append_left(y_begin, y_end, piece.sign, arcs);
+  arcs->back().column = low_column;
+  return true;
+}
+
+void StackArcs::append_line(const Piece& piece, std::vector<StackArc>* arcs) const {
+  const auto add_line = [&](int column, int row, Point2 begin, Point2 end) {
+    const Point2 center{column + 0.5, row + 0.5};
+    arcs->push_back(
+        {begin - center, end - center, column - row_.first_column, piece.sign, StackArc::kLine});
+  };
+  const auto add_left = [&](int, double y_begin, double y_end) {
+    append_left(y_begin, y_end, piece.sign, arcs);
+  };
+  cut_line_to_cells(piece.curve.begin, piece.curve.end, row_, add_line, add_left);
+}
+
+void StackArcs::append_curve(std::uint32_t index, std::vector<StackArc>* arcs) {
+  const Piece& piece = pieces_[index];
+  const auto add_arc = [&](int column, int row, const CellArc& arc) {
     if (arc.begin.y == arc.end.y) return;
-    const Point2 center{column + 0.5, row_index + 0.5};
-    StackArc made{arc.begin - center,
-                  arc.end - center,
-                  layer,
-                  column,
-                  sign,
+    const Point2 center{column + 0.5, row + 0.5};
+    StackArc made{arc.begin - center, arc.end - center, column - row_.first_column, piece.sign,
                   static_cast<std::uint32_t>(curves_.size())};
     if (made.low.y > made.high.y) {
       std::swap(made.low, made.high);
-      made.winding = -sign;
+      made.winding = -piece.sign;
     }
-    row(row_index).push_back(made);
-    curves_.push_back({static_cast<std::uint32_t>(pieces_.size()), arc.t_begin, arc.t_end});
+    arcs->push_back(made);
+    curves_.push_back({index, arc.t_begin, arc.t_end});
   };
-  cut_to_cells(piece, window_, add_arc, add_left);
-  if (curves_.size() > known) pieces_.push_back(piece);
+  const auto add_left = [&](int, double y_begin, double y_end) {
+    append_left(y_begin, y_end, piece.sign, arcs);
+  };
+  cut_to_cells(piece.curve, row_, add_arc, add_left);
 }
 
-// Returns their end.
-StackArcs::Arcs::iterator StackArcs::merge_equal(Arcs::iterator begin, Arcs::iterator end) const {
-  std::vector<ArcPlaces> places;
-  for (auto arc = begin; arc != end; ++arc) {
-    places.push_back({{arc->low.y, arc->low.x, arc->high.y, arc->high.x}, *arc});
-    if (arc->curve == StackArc::kLine) continue;
-    auto& numbers = places.back().numbers;
-    const StackCurve& of = curve(*arc);
-    const ParametricCurve& whole = piece(of).curve;
-    const bool is_told = whole.kind != CurveKind::kBezier;
-    numbers[4] = is_told ? 1.0 : 2.0 + arc->curve;
-    numbers[5] = of.t_end - of.t_begin;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const double share = 0.25 * static_cast<double>(i + 1);
-      const Point2 point = whole.at(of.t_begin + share * (of.t_end - of.t_begin));
-      numbers[6 + 2 * i] = point.x;
-      numbers[7 + 2 * i] = point.y;
+void StackArcs::append(const Layer& layer, const OpenColumns& open, std::vector<StackArc>* arcs) {
+  const std::size_t first = arcs->size();
+  for (std::size_t i = layer.first_piece; i < layer.end_piece; ++i) {
+    const Piece& piece = pieces_[i];
+    const auto [low, high] = std::minmax(piece.curve.begin.y, piece.curve.end.y);
+    if (high <= row_.first_row || low >= row_.end_row) continue;
+    if (append_hidden(piece, open, arcs)) continue;
+    if (piece.curve.curve.kind == CurveKind::kLine) {
+      append_line(piece, arcs);
+    } else {
+      append_curve(static_cast<std::uint32_t>(i), arcs);
     }
   }
-  std::stable_sort(places.begin(), places.end(),
-                   [](const ArcPlaces& a, const ArcPlaces& b) { return a.numbers < b.numbers; });
-  auto out = begin;
-  for (std::size_t i = 0; i < places.size();) {
-    const std::size_t first = i;
-    StackArc sum = places[first].arc;
-    while (++i < places.size() && places[i].numbers == places[first].numbers) {
-      sum.winding += places[i].arc.winding;
-    }
-    if (sum.winding != 0) *out++ = sum;
-  }
-  return out;
+  sort_by_columns(first, arcs);
+  merge_equal(first, arcs);
 }
 
-std::span<const StackArc> StackArcs::in_row(int row_index) {
-  const Arcs& arcs = row(row_index);
-  const int left = window_.first_column - 1;
-  first_.assign(window_.end_column - left + 1, 0);
-  for (const StackArc& arc : arcs) ++first_[arc.column - left + 1];
+void StackArcs::sort_by_columns(std::size_t first, std::vector<StackArc>* arcs) {
+  const auto begin = arcs->begin() + static_cast<std::ptrdiff_t>(first);
+  const auto own = std::span(*arcs).subspan(first);
+  if (std::is_sorted(begin, arcs->end(), is_before)) return;
+  if (own.size() <= kFewArcs) {
+    std::stable_sort(begin, arcs->end(), is_before);
+    return;
+  }
+  first_.assign(static_cast<std::size_t>(row_.end_column - row_.first_column) + 2, 0);
+  for (const StackArc& arc : own) ++first_[static_cast<std::size_t>(arc.column + 2)];
   for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
-  sorted_.resize(arcs.size());
-  for (const StackArc& arc : arcs) sorted_[first_[arc.column - left]++] = arc;
-  auto out = sorted_.begin();
-  for (auto begin = sorted_.begin(); begin != sorted_.end();) {
-    auto end = begin;
-    while (end != sorted_.end() && end->column == begin->column && end->layer == begin->layer) {
-      ++end;
+  sorted_.resize(own.size());
+  for (const StackArc& arc : own) sorted_[first_[static_cast<std::size_t>(arc.column + 1)]++] = arc;
+  std::copy(sorted_.begin(), sorted_.end(), begin);
+}
+
+bool StackArcs::are_different(std::span<const StackArc> arcs) {
+  keys_.clear();
+  for (const StackArc& arc : arcs) keys_.push_back(key_of(arc));
+  std::sort(keys_.begin(), keys_.end());
+  return std::adjacent_find(keys_.begin(), keys_.end()) == keys_.end();
+}
+
+StackArcs::Places StackArcs::places_of(const StackArc& arc) const {
+  Places numbers = {arc.low.y, arc.low.x, arc.high.y, arc.high.x};
+  if (arc.curve == StackArc::kLine) return numbers;
+  const StackCurve& of = curve(arc);
+  const ParametricCurve& whole = piece(of).curve;
+  const bool is_told = whole.kind != CurveKind::kBezier;
+  numbers[4] = is_told ? 1.0 : 2.0 + arc.curve;
+  numbers[5] = of.t_end - of.t_begin;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double share = 0.25 * static_cast<double>(i + 1);
+    const Point2 point = whole.at(of.t_begin + share * (of.t_end - of.t_begin));
+    numbers[6 + 2 * i] = point.x;
+    numbers[7 + 2 * i] = point.y;
+  }
+  return numbers;
+}
+
+bool StackArcs::are_equal(const StackArc& a, const StackArc& b) const {
+  return a.winding == b.winding && a.low == b.low && a.high == b.high &&
+         places_of(a) == places_of(b);
+}
+
+void StackArcs::merge(std::vector<StackArc>::iterator begin, std::vector<StackArc>::iterator end,
+                      std::vector<StackArc>::iterator* out) const {
+  struct Told {
+    Places places;
+    StackArc arc;
+  };
+  std::vector<Told> told;
+  for (auto arc = begin; arc != end; ++arc) told.push_back({places_of(*arc), *arc});
+  std::stable_sort(told.begin(), told.end(),
+                   [](const Told& a, const Told& b) { return a.places < b.places; });
+  for (std::size_t i = 0; i < told.size();) {
+    const std::size_t first = i;
+    StackArc sum = told[first].arc;
+    while (++i < told.size() && told[i].places == told[first].places) {
+      sum.winding += told[i].arc.winding;
     }
-    const bool are_many = static_cast<std::size_t>(end - begin) > kManyArcs;
-    const auto own_end = are_many ? merge_equal(begin, end) : end;
-    out = std::move(begin, own_end, out);
+    if (sum.winding != 0) *(*out)++ = sum;
+  }
+}
+
+void StackArcs::merge_equal(std::size_t first, std::vector<StackArc>* arcs) {
+  auto out = arcs->begin() + static_cast<std::ptrdiff_t>(first);
+  for (auto begin = out; begin != arcs->end();) {
+    auto end = begin;
+    while (end != arcs->end() && end->column == begin->column) ++end;
+    if (end - begin <= kManyArcs || are_different({begin, end})) {
+      out = out == begin ? end : std::move(begin, end, out);
+    } else {
+      merge(begin, end, &out);
+    }
     begin = end;
   }
-  sorted_.erase(out, sorted_.end());
-  return sorted_;
+  arcs->erase(out, arcs->end());
 }
 
 }  // namespace prefilter

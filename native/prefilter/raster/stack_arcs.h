@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What the outlines of a stack leave in the cells of a band.
+// What the outlines of a stack leave in the cells of a band, row by row.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "prefilter/moments/cell_cutter.h"
 #include "prefilter/raster/cell_filter.h"
 #include "prefilter/raster/layer_stack.h"
+#include "prefilter/raster/open_columns.h"
 
 namespace prefilter {
 
@@ -19,10 +21,9 @@ struct StackArc {
 
   Point2 low;
   Point2 high;
-  std::uint32_t layer = 0;
-  std::int32_t column = 0;
+  std::int32_t column = 0;      // from the window's first
   std::int32_t winding = 1;     // what the number to its right is higher by than that to its left
-  std::uint32_t curve = kLine;  // one of StackArcs::curves()
+  std::uint32_t curve = kLine;  // one of StackArcs::curve()
 };
 
 /// Where on a curve an arc is.
@@ -34,30 +35,58 @@ struct StackCurve {
 
 class StackArcs {
  public:
-  /// What lies left of the window is in the column before its first.
-  void gather(const LayerStack& stack, const CellFilter& filter, int width, int first_row,
-              int end_row);
+  /// The pieces of a layer in the band.
+  struct Layer {
+    std::uint32_t layer = 0;
+    std::size_t first_piece = 0;
+    std::size_t end_piece = 0;
+  };
+
+  void begin_band(const LayerStack& stack, const CellFilter& filter, int width, int first_row,
+                  int end_row);
   const GridWindow& window() const { return window_; }
-  /// The arcs of a row of cells by columns, and in each by layers from the highest. They are valid
-  /// until the next call.
-  std::span<const StackArc> in_row(int row);
+  /// Those of the band, from the highest.
+  std::span<const Layer> layers() const { return layers_; }
+
+  void begin_row(int row);
+  /// Appends the arcs of a layer in the row, by columns. What lies left of the window is in column
+  /// -1, and what lies in columns that are not open is in any of those.
+  void append(const Layer& layer, const OpenColumns& open, std::vector<StackArc>* arcs);
   const StackCurve& curve(const StackArc& arc) const { return curves_[arc.curve]; }
+  /// Whether they are the same, as far as five places tell.
+  bool are_equal(const StackArc& a, const StackArc& b) const;
   /// In coordinates of cells.
-  const MonotoneCurve& piece(const StackCurve& curve) const { return pieces_[curve.piece]; }
+  const MonotoneCurve& piece(const StackCurve& curve) const { return pieces_[curve.piece].curve; }
 
  private:
-  using Arcs = std::vector<StackArc>;
+  struct Piece {
+    MonotoneCurve curve;
+    int sign = 1;
+  };
+  // What tells an arc from others: where it is at five places. Curves up to degree 3, and conics,
+  // are told by so many.
+  using Places = std::array<double, 12>;
 
-  void add(const MonotoneCurve& piece, int sign, std::uint32_t layer);
-  Arcs::iterator merge_equal(Arcs::iterator begin, Arcs::iterator end) const;
-  Arcs& row(int row) { return rows_[row - window_.first_row]; }
+  Places places_of(const StackArc& arc) const;
+  bool append_hidden(const Piece& piece, const OpenColumns& open,
+                     std::vector<StackArc>* arcs) const;
+  void append_line(const Piece& piece, std::vector<StackArc>* arcs) const;
+  void append_curve(std::uint32_t index, std::vector<StackArc>* arcs);
+  void append_left(double y_begin, double y_end, int sign, std::vector<StackArc>* arcs) const;
+  void sort_by_columns(std::size_t first, std::vector<StackArc>* arcs);
+  void merge_equal(std::size_t first, std::vector<StackArc>* arcs);
+  bool are_different(std::span<const StackArc> arcs);
+  void merge(std::vector<StackArc>::iterator begin, std::vector<StackArc>::iterator end,
+             std::vector<StackArc>::iterator* out) const;
 
   GridWindow window_;
-  std::vector<Arcs> rows_;
+  std::vector<Layer> layers_;
+  std::vector<Piece> pieces_;
+  GridWindow row_;
   std::vector<StackCurve> curves_;
-  std::vector<MonotoneCurve> pieces_;
-  Arcs sorted_;
+  std::vector<StackArc> sorted_;
   std::vector<std::uint32_t> first_;  // of each column
+  std::vector<std::uint64_t> keys_;
 };
 
 }  // namespace prefilter

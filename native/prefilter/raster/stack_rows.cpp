@@ -12,9 +12,6 @@ namespace prefilter {
 namespace {
 
 constexpr double kMomentUnit = 1.0 / (1 << kMomentBits);
-// For an image, of a sweep and of samples: a second or so of a processor each.
-constexpr std::size_t kSweepSteps = std::size_t{1} << 25;
-constexpr std::size_t kSampleSteps = std::size_t{1} << 30;
 // With more arcs a cell is not swept: moments hold 31 regions to the right of some, one over
 // another.
 constexpr std::size_t kMostArcs = 60;
@@ -27,117 +24,70 @@ std::size_t share_of_row(std::size_t steps, int height) {
   return steps / static_cast<std::size_t>(std::max(height, 64));
 }
 
-// How many layers of a cell are seen one behind another, until less than a millionth passes: each
-// covers half of it, as good as it gets.
-std::size_t layers_seen(const LayerStack& stack, int channels) {
-  constexpr double kMost = 4096.0;
-  double opacity = 0.0;
-  for (const StackLayer& layer : stack.layers) {
-    const Paint& paint = *layer.paint;
-    const bool lets_through = channels == kMaxChannels && paint.kind == Paint::Kind::kConstant;
-    opacity += lets_through ? paint.constant[kMaxChannels - 1] : 1.0;
-  }
-  const double mean = opacity / static_cast<double>(std::max<std::size_t>(1, stack.layers.size()));
-  return static_cast<std::size_t>(std::min(kMost, 28.0 / std::max(mean, 1e-3)));
-}
-
 }  // namespace
 
 template <int N>
 StackRows<N>::StackRows(const LayerStack& stack, const CellFilter& filter,
-                        const ChannelValues& background, int channels, int width, int height)
+                        const ChannelValues& background, int channels, int width, int height,
+                        std::size_t sweep_steps)
     : stack_(stack),
       filter_(filter),
       channels_(channels),
       width_(width),
-      sweep_steps_(share_of_row(kSweepSteps, height)),
-      sample_steps_(share_of_row(kSampleSteps, height)),
-      most_layers_(layers_seen(stack, channels)),
-      layers_(stack),
+      sweep_steps_(share_of_row(sweep_steps, height)),
+      layers_(stack, channels),
       colors_(stack, filter, background, channels),
       sweep_(arcs_),
       samples_(arcs_, channels, N > 0),
       pixels_(filter, width) {}
 
-// Says up to how many arcs cells are swept, and how finely the others are sampled.
+// Says up to how many arcs cells are swept.
 template <int N>
-void StackRows<N>::plan_row(std::span<const StackArc> arcs) {
-  struct Cells {
-    std::size_t count = 0;
-    std::size_t layers = 0;
-    std::size_t arcs = 0;
-  };
-  std::array<Cells, kMostArcs + 2> cells{};  // by arcs; the last are those of more
-  for (std::size_t i = 0; i < arcs.size();) {
-    const std::size_t first = i;
-    std::size_t layers = 0;
-    for (; i < arcs.size() && arcs[i].column == arcs[first].column; ++i) {
-      if (i == first || arcs[i].layer != arcs[i - 1].layer) ++layers;
-    }
-    Cells& alike = cells[std::min(i - first, kMostArcs + 1)];
-    ++alike.count;
-    alike.layers += std::min(layers, most_layers_);
-    alike.arcs += layers == 1 ? i - first : std::min(i - first, 2 * most_layers_);
+void StackRows<N>::plan_row() {
+  std::array<std::size_t, kMostArcs + 1> cells{};  // by arcs
+  const int columns = arcs_.window().end_column - arcs_.window().first_column;
+  for (int column = 0; column < columns; ++column) {
+    if (layers_.layer_count(column) == 0) continue;
+    const std::size_t arcs = layers_.arc_count(column);
+    if (arcs <= kMostArcs) ++cells[arcs];
   }
   std::size_t steps = 0;
   for (most_arcs_ = 0; most_arcs_ < kMostArcs; ++most_arcs_) {
-    steps += cells[most_arcs_ + 1].count * steps_of(most_arcs_ + 1);
+    steps += cells[most_arcs_ + 1] * steps_of(most_arcs_ + 1);
     if (steps > sweep_steps_) break;
-  }
-  Cells sampled;
-  for (std::size_t count = most_arcs_ + 1; count < cells.size(); ++count) {
-    sampled.layers += cells[count].layers;
-    sampled.arcs += cells[count].arcs;
-  }
-  // Where each sample keeps its color, that is more to do.
-  const std::size_t values = N > 0 ? 1 + static_cast<std::size_t>(channels_) : 1;
-  const auto steps_by = [&](int rows) {
-    return sampled.layers * values * CellSamples::count_of(rows) +
-           sampled.arcs * static_cast<std::size_t>(rows);
-  };
-  sample_rows_ = CellSamples::kMostRows;
-  while (sample_rows_ > CellSamples::kLeastRows && steps_by(sample_rows_) > sample_steps_) {
-    sample_rows_ /= 2;
   }
 }
 
 template <int N>
 void StackRows<N>::add_values(int first_row, int end_row, BandValues* values) {
   pixels_.begin(first_row, end_row, values);
-  arcs_.gather(stack_, filter_, width_, first_row, end_row);
+  arcs_.begin_band(stack_, filter_, width_, first_row, end_row);
   for (int row = arcs_.window().first_row; row < arcs_.window().end_row; ++row) add_row(row);
 }
 
 template <int N>
 void StackRows<N>::add_row(int row) {
-  const std::span<const StackArc> arcs = arcs_.in_row(row);
-  if (arcs.empty()) return;
-  plan_row(arcs);
-  const GridWindow& window = arcs_.window();
-  layers_.begin_row();
-  int column = window.first_column - 1;
-  bool goes_on = false;
-  for (std::size_t i = 0; i < arcs.size() || goes_on;) {
-    if (!goes_on) {
-      add_run(column, arcs[i].column, row);
-      column = arcs[i].column;
+  layers_.make_row(row, &arcs_);
+  plan_row();
+  const int first = arcs_.window().first_column;
+  const int columns = arcs_.window().end_column - first;
+  for (int column = 0; column < columns;) {
+    layers_.enter(column);
+    if (layers_.layers().empty()) {
+      const int end = layers_.next_change(column);
+      add_run(first + column, first + end, row);
+      column = end;
+    } else {
+      add_cell(first + column, row);
+      ++column;
     }
-    if (column >= window.end_column) return;
-    const std::size_t first = i;
-    while (i < arcs.size() && arcs[i].column == column) ++i;
-    layers_.enter(arcs.subspan(first, i - first));
-    if (column >= window.first_column) add_cell(column, row);
-    goes_on = layers_.leave();
-    ++column;
   }
-  add_run(column, window.end_column, row);
 }
 
 template <int N>
 void StackRows<N>::add_run(int begin, int end, int row) {
-  begin = std::max(begin, arcs_.window().first_column);
-  if (begin >= end || layers_.full().highest_below(
-                          static_cast<std::uint32_t>(stack_.layers.size())) == LayerSet::kNone) {
+  if (layers_.full().highest_below(static_cast<std::uint32_t>(stack_.layers.size())) ==
+      LayerSet::kNone) {
     return;
   }
   step_.resize(colors_.nodes());
@@ -177,7 +127,7 @@ void StackRows<N>::add_cell(int column, int row) {
 
 template <int N>
 void StackRows<N>::add_sampled(int column, int row) {
-  samples_.compose(column, row, layers_.layers(), sample_rows_, &colors_);
+  samples_.compose(column, row, layers_.layers(), &colors_);
   const int degree = filter_.degree;
   for (int c = 0; c < channels_; ++c) {
     sums_[c].resize(static_cast<std::size_t>(degree + 1) * (degree + 1));

@@ -28,14 +28,17 @@ struct StackWork {
 /// N is the filter's degree and that of the colors together: 2 where these are not constant.
 ///
 /// Cells are swept, which is exact, as far as their number of arcs lets a row of an image be made
-/// within a number of steps; those with more arcs are sampled, as finely as another number of steps
-/// lets them. Which they are depends on the row alone.
+/// within a number of steps; those with more arcs are sampled. Which they are depends on the row
+/// alone.
 template <int N>
 class StackRows {
  public:
-  /// All must outlive it.
+  /// For an image: some tenths of a second of a processor.
+  static constexpr std::size_t kSweepSteps = std::size_t{1} << 24;
+
+  /// All must outlive it. An image takes about so many steps of a sweep.
   StackRows(const LayerStack& stack, const CellFilter& filter, const ChannelValues& background,
-            int channels, int width, int height);
+            int channels, int width, int height, std::size_t sweep_steps = kSweepSteps);
 
   /// Adds to `values`, those of the pixel rows [first_row, end_row), what the stack shows less the
   /// background.
@@ -50,17 +53,14 @@ class StackRows {
   void add_sampled(int column, int row);
   void integrate(const SweptPart& part, int column, int row, std::int32_t place);
   void add_place(const ArcMoments<N>& moments, std::span<const ChannelValues> step);
-  void plan_row(std::span<const StackArc> arcs);
+  void plan_row();
 
   const LayerStack& stack_;
   const CellFilter& filter_;
   int channels_;
   int width_;
-  std::size_t sweep_steps_;   // for a row
-  std::size_t sample_steps_;  // likewise
-  std::size_t most_layers_;   // one behind another that are sampled, mostly
+  std::size_t sweep_steps_;  // for a row
   std::size_t most_arcs_ = 0;
-  int sample_rows_ = CellSamples::kMostRows;
   StackArcs arcs_;
   RowLayers layers_;
   CellColors colors_;

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <random>
@@ -30,10 +31,12 @@ struct Drawn {
 };
 
 template <int N>
-Drawn drawn(const std::vector<Shape>& shapes, std::string_view filter, int width, int height) {
+Drawn drawn(const std::vector<Shape>& shapes, std::string_view filter, int width, int height,
+            std::size_t sweep_steps = StackRows<N>::kSweepSteps) {
   const LayerStack stack = stack_of(shapes);
   const int channels = shapes.front().paint.channels;
-  StackRows<N> rows(stack, *find_cell_filter(filter), kBackground, channels, width, height);
+  StackRows<N> rows(stack, *find_cell_filter(filter), kBackground, channels, width, height,
+                    sweep_steps);
   BandValues values;
   values.reset(width, height, channels, kBackground);
   rows.add_values(0, height, &values);
@@ -165,26 +168,167 @@ TEST(StackRows, LinearColorsAreExact) {
   expect_like_outlines<5>(shapes, "mitchell", 30);
 }
 
+Outline box(const Point2& low, const Point2& high) {
+  Outline outline;
+  outline.move_to(low);
+  outline.line_to({high.x, low.y});
+  outline.line_to(high);
+  outline.line_to({low.x, high.y});
+  outline.close();
+  return outline;
+}
+
 TEST(StackRows, LevelEdgesGoOnThroughCells) {
   std::mt19937 random(12);
   std::uniform_real_distribution<double> place(-2.0, 32.0);
   std::vector<Shape> shapes;
   for (int i = 0; i < 12; ++i) {
     Outline outline;
-    for (int box = 0; box < 2; ++box) {
+    for (int k = 0; k < 2; ++k) {
       const Point2 low{place(random), place(random)};
       const Point2 high{place(random), place(random)};
-      outline.move_to(low);
-      outline.line_to({high.x, low.y});
-      outline.line_to(high);
-      outline.line_to({low.x, high.y});
-      outline.close();
+      outline.append(box(low, high));
     }
     const FillRule rule = i % 2 == 0 ? FillRule::kNonzero : FillRule::kEvenOdd;
     shapes.push_back({outline, rule, painted(&random, 0.7)});
   }
   expect_like_outlines<0>(shapes, "box", 30);
   expect_like_outlines<3>(shapes, "mitchell", 30);
+}
+
+// Boxes all over the place, over curves, until nothing passes.
+TEST(StackRows, WhatIsHiddenIsLeftOut) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> place(0.0, 20.0);
+  for (const double alpha : {1.0, 0.75}) {
+    std::vector<Shape> shapes = tangles(4, 4, 30.0, 0.5, 6);
+    for (int i = 0; i < 40; ++i) {
+      const Point2 low{place(random) - 4.0, place(random) - 4.0};
+      Outline outline = box(low, {low.x + 15.3, low.y + 14.6});
+      if (i % 8 == 0) outline.append(tangle(&random, 2, 30.0));
+      shapes.push_back({outline, FillRule::kNonzero, painted(&random, alpha)});
+    }
+    expect_like_outlines<0>(shapes, "box", 30);
+    expect_like_outlines<1>(shapes, "tent", 30);
+    Paint paint = painted(&random, 1.0);
+    shapes.push_back({box({-50.0, -50.0}, {50.0, 50.0}), FillRule::kEvenOdd, paint});
+    const Drawn found = drawn<0>(shapes, "box", 30, 30);
+    EXPECT_EQ(found.work.swept_cells + found.work.sampled_cells, 0u);
+    for (std::size_t i = 0; i < found.values.size(); ++i) {
+      ASSERT_NEAR(found.values[i], paint.constant[i % 4], 1e-6) << i;
+    }
+  }
+}
+
+// Far inside of what winds around it several times, other curves change nothing.
+TEST(StackRows, WindingNumbersThatNothingCancelsFill) {
+  std::mt19937 random(4);
+  Outline outline;
+  for (int i = 0; i < 9; ++i) outline.append(box({-3.5 - i, -3.5}, {33.5, 33.25 + i}));
+  outline.append(tangle(&random, 9, 30.0));
+  Paint paint;
+  const Drawn found = drawn<0>({{outline, FillRule::kNonzero, paint}}, "box", 30, 30);
+  EXPECT_EQ(found.work.swept_cells + found.work.sampled_cells, 0u);
+  for (const double value : found.values) ASSERT_NEAR(value, 1.0, 1e-6);
+}
+
+// For half planes in a cell: the share of it, and that of its samples.
+TEST(CellSamples, NoEdgeIsOffByMoreThanAStepOfBytes) {
+  constexpr int kDirections = 360;
+  double worst = 0.0;
+  std::vector<double> heights(CellSamples::kCount);
+  const auto compare = [&](double turn) {
+    const Point2 across{std::cos(turn), std::sin(turn)};
+    for (int i = 0; i < CellSamples::kCount; ++i) {
+      const Point2 place = CellSamples::place(i % CellSamples::kRows, i / CellSamples::kRows);
+      heights[i] = place.x * across.x + place.y * across.y;
+    }
+    std::sort(heights.begin(), heights.end());
+    // The integral of a trapezoid: how long a line at a height is in the cell.
+    const double a = std::max(1e-9, std::min(std::fabs(across.x), std::fabs(across.y)));
+    const double b = std::max(std::fabs(across.x), std::fabs(across.y));
+    const auto square = [](double x) { return x > 0.0 ? x * x : 0.0; };
+    for (int i = 0; i < CellSamples::kCount; ++i) {
+      const double up = heights[i] + 0.5 * (a + b);
+      const double share =
+          (square(up) - square(up - a) - square(up - b) + square(up - a - b)) / (2.0 * a * b);
+      // Just before the sample and just behind.
+      worst = std::max({worst, std::fabs(share - i / double{CellSamples::kCount}),
+                        std::fabs(share - (i + 1) / double{CellSamples::kCount})});
+    }
+  };
+  for (int i = 0; i < kDirections; ++i) compare(i * 6.283185307179586 / kDirections);
+  for (int i = -40; i <= 40; ++i) {
+    compare(std::atan(i / 128.0));
+    compare(std::atan(i / 128.0) + 1.5707963267948966);
+  }
+  EXPECT_LE(worst, 1.0 / 255.0);
+}
+
+// All that cells are sampled for, where there is little enough for a sweep.
+TEST(StackRows, SampledCellsAreWhatSweptOnesAre) {
+  constexpr std::size_t kAll = std::size_t{1} << 40;
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    const double alpha = seed % 2 == 0 ? 1.0 : 0.3;
+    // Many of the curves within a pixel, and few.
+    const double side = seed <= 3 ? 24.0 : 8.0;
+    const std::vector<Shape> shapes = tangles(4, 8, side, alpha, seed);
+    const int pixels = static_cast<int>(side);
+    for (const std::string_view filter : {"box", "tent"}) {
+      const auto draw = [&](std::size_t steps) {
+        return filter == "box" ? drawn<0>(shapes, filter, pixels, pixels, steps)
+                               : drawn<1>(shapes, filter, pixels, pixels, steps);
+      };
+      const Drawn swept = draw(kAll);
+      const Drawn sampled = draw(0);
+      EXPECT_EQ(swept.work.sampled_cells, 0u);
+      EXPECT_GT(sampled.work.sampled_cells, 30u);
+      for (std::size_t i = 0; i < swept.values.size(); ++i) {
+        ASSERT_NEAR(swept.values[i], sampled.values[i], 1.0 / 255.0) << seed << filter << i;
+      }
+    }
+  }
+}
+
+// Lines next to each other, almost along the rows of samples and almost across.
+TEST(StackRows, SampledHatchesAreWhatSweptOnesAre) {
+  for (const double slope : {0.001, 0.004, 0.03, 0.2}) {
+    Outline along;
+    Outline across;
+    for (int i = 0; i < 20; ++i) {
+      const double low = -1.0 + 0.31 * i;
+      along.append(
+          box({-1.0, low}, {6.0, low + 0.1}).transformed(AffineMap2{{1.0, slope}, {0.0, 1.0}}));
+      across.append(
+          box({low, -1.0}, {low + 0.1, 6.0}).transformed(AffineMap2{{1.0, 0.0}, {slope, 1.0}}));
+    }
+    Paint paint;
+    for (const Outline& hatch : {along, across}) {
+      const std::vector<Shape> shapes = {{hatch, FillRule::kNonzero, paint}};
+      const Drawn swept = drawn<0>(shapes, "box", 5, 5, std::size_t{1} << 40);
+      const Drawn sampled = drawn<0>(shapes, "box", 5, 5, 0);
+      for (std::size_t i = 0; i < swept.values.size(); ++i) {
+        EXPECT_NEAR(swept.values[i], sampled.values[i], 3.0 / 255.0) << slope << " " << i;
+      }
+    }
+  }
+}
+
+// Translucent layers of one outline, which cells take as one.
+TEST(StackRows, EqualLayersAreOne) {
+  std::mt19937 random(7);
+  const Outline once = tangle(&random, 5, 8.0);
+  Paint paint = painted(&random, 0.1);
+  Paint whole = paint;
+  const double passing = std::pow(0.9, 300);
+  for (int c = 0; c < 4; ++c) whole.constant[c] *= (1.0 - passing) / 0.1;
+  const std::vector<Shape> many(300, Shape{once, FillRule::kNonzero, paint});
+  const Drawn expected = drawn<0>({{once, FillRule::kNonzero, whole}}, "box", 8, 8);
+  const Drawn found = drawn<0>(many, "box", 8, 8);
+  EXPECT_GT(found.work.sampled_cells, 10u);
+  for (std::size_t i = 0; i < found.values.size(); ++i) {
+    EXPECT_NEAR(found.values[i], expected.values[i], 1.0 / 255.0) << i;
+  }
 }
 
 TEST(StackRows, SampledCellsAreCloseToPoints) {
