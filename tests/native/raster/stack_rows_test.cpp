@@ -157,6 +157,31 @@ TEST(StackRows, SweptCellsAreWhatOutlinesAre) {
   }
 }
 
+TEST(StackRows, CurvesThatCrossTwiceInACell) {
+  // x - y is 0.8 t (1 - t) along a curve, and 0.1 along a line: they cross at 0.15 and 0.85.
+  const auto closed = [](Outline outline) {
+    outline.line_to({2.5, outline.points().back().y});
+    outline.line_to({2.5, 1.05});
+    outline.close();
+    return outline;
+  };
+  std::mt19937 random(2);
+  for (const double control : {0.3, 0.32, 0.28}) {
+    Outline curve;
+    curve.move_to({1.1, 1.1});
+    curve.curve_to(std::vector<Point2>{{2.0 - control, 1.0 + control}, {1.9, 1.9}});
+    Outline line;
+    line.move_to({1.15, 1.05});
+    line.line_to({1.95, 1.85});
+    expect_like_outlines<0>({{closed(curve), FillRule::kNonzero, painted(&random, 0.5)},
+                             {closed(line), FillRule::kNonzero, painted(&random, 0.5)}},
+                            "box", 3);
+  }
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    expect_like_outlines<0>(tangles(2, 5, 3.0, 0.5, seed), "box", 3);
+  }
+}
+
 TEST(StackRows, LinearColorsAreExact) {
   std::vector<Shape> shapes = tangles(3, 5, 30.0, 1.0, 9);
   for (Shape& shape : shapes) {
