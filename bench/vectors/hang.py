@@ -243,7 +243,7 @@ def rows_of(name: str, limit: float, report: Report) -> list[list[str]]:
         last = (count, found["seconds"])
         if count == counts[-1]:
             report.verdict(
-                found["seconds"] <= 2 * MOST_SECONDS and mib <= MOST_MIB,
+                found["seconds"] <= MOST_SECONDS and mib <= MOST_MIB,
                 f"{name}: {count} take {found['seconds']:.2f} processor s and {mib:.0f} MiB",
             )
             if exponent != "-" and found["seconds"] > 0.5:
