@@ -276,58 +276,43 @@ double CellSamples::take_opaque() {
   return taken;
 }
 
-// Likewise a share of what passes; returns what passed where it is filled.
-float CellSamples::take_passing(int column, int word, float opaque) {
+// Likewise a share of what passes, in a word of a column; returns what passed where it is filled.
+float CellSamples::take_passing(int column, int word, const ChannelValues& color, float opaque) {
   const std::uint64_t filled = filled_[column][word];
-  float* first = passing_.data() + column * kRows + word * kWordRows;
+  const int first = column * kRows + word * kWordRows;
   Lanes<float> sums{};
   Lanes<float> most{};
   for (int row = 0; row < kWordRows; row += kLanes<float>) {
-    auto passing = load<Lanes<float>>(first + row);
+    float* at = passing_.data() + first + row;
+    auto passing = load<Lanes<float>>(at);
     const Lanes<float> share = masked(passing, filled, row);
     sums += share;
     passing -= share * opaque;
-    store(passing, first + row);
+    store(passing, at);
     most = select(passing > most, passing, most);
+    for (std::size_t c = 0; c < values_.size(); ++c) {
+      float* values = values_[c].data() + first + row;
+      store(load<Lanes<float>>(values) + share * static_cast<float>(color[c]), values);
+    }
   }
   if (std::max({most[0], most[1], most[2], most[3]}) < kLeastPassing) open_[column][word] = 0;
   return (sums[0] + sums[1]) + (sums[2] + sums[3]);
 }
 
-double CellSamples::take_passing(float opaque) {
+double CellSamples::take_passing(const ChannelValues& color, float opaque) {
   double sum = 0.0;
   for (int column = 0; column < kColumns; ++column) {
     for (int word = 0; word < kWords; ++word) {
       if ((filled_[column][word] & open_[column][word]) == 0) continue;
-      sum += static_cast<double>(take_passing(column, word, opaque));
+      sum += static_cast<double>(take_passing(column, word, color, opaque));
     }
   }
   return sum;
 }
 
-void CellSamples::add_values(const ChannelValues& color) {
-  for (int column = 0; column < kColumns; ++column) {
-    for (int word = 0; word < kWords; ++word) {
-      const std::uint64_t filled = filled_[column][word];
-      if ((filled & open_[column][word]) == 0) continue;
-      const int first = column * kRows + word * kWordRows;
-      for (int c = 0; c < channels_; ++c) {
-        const auto value = static_cast<float>(color[c]);
-        float* values = values_[c].data() + first;
-        for (int row = 0; row < kWordRows; row += kLanes<float>) {
-          const Lanes<float> share =
-              masked(load<Lanes<float>>(passing_.data() + first + row), filled, row);
-          store(load<Lanes<float>>(values + row) + share * value, values + row);
-        }
-      }
-    }
-  }
-}
-
 void CellSamples::put_constant_behind(const ChannelValues& color, double opacity) {
   if (opacity < 1.0) let_some_pass();
-  if (keeps_places_) add_values(color);
-  const double sum = is_opaque_ ? take_opaque() : take_passing(static_cast<float>(opacity));
+  const double sum = is_opaque_ ? take_opaque() : take_passing(color, static_cast<float>(opacity));
   left_ -= sum * opacity;
   for (int c = 0; c < channels_; ++c) sums_[c] += passing_all_ * sum * color[c];
 }

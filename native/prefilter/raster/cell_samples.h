@@ -52,9 +52,8 @@ class CellSamples {
   void fill(const CellLayer& layer);
   void let_some_pass();
   double take_opaque();
-  float take_passing(int column, int word, float opaque);
-  double take_passing(float opaque);
-  void add_values(const ChannelValues& color);
+  float take_passing(int column, int word, const ChannelValues& color, float opaque);
+  double take_passing(const ChannelValues& color, float opaque);
   void put_constant_behind(const ChannelValues& color, double opacity);
   void put_powers_behind(const std::array<ColorPowers, kMaxChannels>& color,
                          const ColorPowers& opacity);
