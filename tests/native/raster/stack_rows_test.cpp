@@ -245,6 +245,20 @@ TEST(StackRows, WhatIsHiddenIsLeftOut) {
   }
 }
 
+TEST(StackRows, WhatIsHiddenEndsWithWhatHidesIt) {
+  std::mt19937 random(6);
+  const Paint behind = painted(&random, 1.0);
+  std::vector<Shape> shapes = {{box({-5.0, -5.0}, {28.0, 40.0}), FillRule::kEvenOdd, behind}};
+  for (int i = 0; i < 40; ++i) {
+    const Paint paint = painted(&random, 0.75);
+    shapes.push_back({box({-5.0, -5.0}, {10.0, 40.0}), FillRule::kEvenOdd, paint});
+  }
+  const Drawn found = drawn<0>(shapes, "box", 30, 30);
+  for (int x = 11; x < 28; ++x) {
+    EXPECT_NEAR(found.values[4 * (30 * 15 + x)], behind.constant[0], 1e-6) << x;
+  }
+}
+
 // Far inside of what winds around it several times, other curves change nothing.
 TEST(StackRows, WindingNumbersThatNothingCancelsFill) {
   std::mt19937 random(4);
