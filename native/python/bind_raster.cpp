@@ -168,13 +168,23 @@ void bind_stroke_options(py::module_& m) {
 // An outline, the name of its fill rule, its paint, and whether it winds once.
 using DrawnShape = std::tuple<const Outline*, std::string, Paint, bool>;
 
-Array<float> bound_rasterize(const std::vector<DrawnShape>& drawn, RasterOptions options,
-                             const py::object& progress) {
+py::array bound_rasterize(const std::vector<DrawnShape>& drawn, RasterOptions options,
+                          bool is_bytes, const py::object& progress) {
   options.progress = to_progress(progress);
   std::vector<Shape> shapes;
+  shapes.reserve(drawn.size());
   for (const auto& [outline, fill_rule, paint, winds_once] : drawn) {
     shapes.push_back(
         {*outline, value_named("fill_rule", fill_rule, kFillRules), paint, winds_once});
+  }
+  if (is_bytes) {
+    ByteImage image;
+    {
+      const py::gil_scoped_release unlocked;
+      image = rasterize_bytes(shapes, options);
+    }
+    const int height = image.height;
+    return to_array<std::uint8_t>(std::move(image.data), {height, image.width, image.channels});
   }
   Image image;
   {
@@ -266,7 +276,8 @@ void bind_raster(py::module_& m) {
             return paint.transformed(map_of(matrix));
           },
           py::arg("matrix"));
-  m.def("rasterize", &bound_rasterize, py::arg("shapes"), py::arg("options"), py::arg("progress"));
+  m.def("rasterize", &bound_rasterize, py::arg("shapes"), py::arg("options"),
+        py::arg("is_bytes"), py::arg("progress"));
   m.attr("FILL_RULES") = names_of(kFillRules);
 }
 

@@ -193,6 +193,31 @@ def test_bytes_are_correctly_rounded():
         assert off.max() <= 1
 
 
+@pytest.mark.parametrize("method", ["scanline", "wavelet"])
+@pytest.mark.parametrize("channels", [1, 2, 3, 4])
+def test_bytes_are_the_floats_rounded(method, channels):
+    """With lobes that leave the range, in rows of every length, with a background or without."""
+    colors = np.random.default_rng(channels).uniform(-0.2, 1.2, (3, channels))
+    colors[:, 3:] = np.clip(colors[:, 3:], 0.0, 1.0)
+    for width, height in ((1, 3), (15, 9), (37, 5)):
+        shapes = [
+            to_shape([blob(3, 40 + i, (0, 0), (width, height - 1))], color=color)
+            for i, color in enumerate(colors)
+        ]
+        for name in ("box",) if method == "wavelet" else ("box", "lanczos3", "radial3"):
+            for background in (None, colors[0]):
+                found = [
+                    prefilter.rasterize(
+                        shapes, width, height, filter=name, method=method, background=background,
+                        dtype=dtype,
+                    )
+                    for dtype in (np.float32, np.uint8)
+                ]  # fmt: skip
+                expected = np.rint(np.float32(255.0) * np.clip(found[0], 0.0, 1.0))
+                assert found[1].dtype == np.uint8
+                np.testing.assert_array_equal(found[1], expected)
+
+
 def test_bytes_of_colors_out_of_range():
     square = polygon([(1, 1), (3, 1), (3, 3), (1, 3)])
     for color, expected in ((-0.5, 0), (0.0, 0), (1.0, 255), (7.0, 255), (1e30, 255)):

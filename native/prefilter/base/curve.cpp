@@ -83,6 +83,34 @@ void flatten_conic(const std::array<Weighted, 3>& conic, double tolerance, int d
   flatten_conic(second, tolerance, depth - 1, points);
 }
 
+// The root in (0, 1) of a polynomial whose coefficients change their sign once, so that there is just
+// one: Newton's steps, or halves of the interval where these leave it.
+double only_root(std::span<const double> coefficients) {
+  const std::size_t size = coefficients.size();
+  const double first =
+      *std::find_if(coefficients.begin(), coefficients.end(), [](double c) { return c != 0.0; });
+  double low = 0.0;
+  double high = 1.0;
+  double t = 0.5;
+  constexpr int kMostSteps = 80;
+  for (int step = 0; step < kMostSteps; ++step) {
+    std::array<double, Outline::kMostDegree + 1> values;
+    std::copy(coefficients.begin(), coefficients.end(), values.begin());
+    double slope = 0.0;
+    for (std::size_t left = size - 1; left > 0; --left) {
+      slope = static_cast<double>(size - 1) * (values[1] - values[0]);
+      for (std::size_t i = 0; i < left; ++i) values[i] += t * (values[i + 1] - values[i]);
+    }
+    if (values[0] == 0.0) return t;
+    ((values[0] < 0.0) == (first < 0.0) ? low : high) = t;
+    const double by_slope = t - values[0] / slope;
+    const double next = by_slope > low && by_slope < high ? by_slope : 0.5 * (low + high);
+    if (std::abs(next - t) < 1e-15) return next;
+    t = next;
+  }
+  return t;
+}
+
 }  // namespace
 
 Point2 point_at(const Curve& curve, double t) {
@@ -206,6 +234,10 @@ void append_sign_changes(std::span<const double> coefficients, double from, doub
     last = coefficient;
   }
   if (count == 0) return;
+  if (count == 1) {
+    changes->push_back(from + (to - from) * only_root(coefficients));
+    return;
+  }
   const double middle = 0.5 * (from + to);
   if (to - from < 1e-15 || middle <= from || middle >= to) {
     changes->push_back(middle);

@@ -43,7 +43,9 @@ class Helpers {
 
 int resolve_threads(int threads) {
   if (threads > 0) return std::min(threads, kMaxThreads);
-  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  // Asked once: the system reads a file for it, which takes longer than drawing an icon.
+  static const int processors = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return processors;
 }
 
 void parallel_for(std::int64_t count, int threads, const Progress& progress,

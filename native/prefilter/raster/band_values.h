@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "prefilter/base/image.h"
+#include "prefilter/base/unit_bytes.h"
 #include "prefilter/raster/paint.h"
 
 namespace prefilter {
@@ -50,19 +52,31 @@ class BandValues {
 
   /// The row as floats.
   void store(int row, float* out) const {
-    const std::size_t count = static_cast<std::size_t>(width_) * channels_;
     if (is_changed_[row] == 0) {
       fill(width_, background_, out);
       return;
     }
-    const double* values = values_.data() + row_begin(row);
-    std::transform(values, values + count, out,
+    const std::span<const double> values = values_of(row);
+    std::transform(values.begin(), values.end(), out,
                    [](double value) { return static_cast<float>(value); });
+  }
+  /// The row as bytes, those of its floats.
+  void store(int row, std::uint8_t* out) const {
+    if (is_changed_[row] == 0) {
+      ChannelValues bytes;
+      std::transform(background_.begin(), background_.end(), bytes.begin(), unit_byte<double>);
+      fill(width_, bytes, out);
+      return;
+    }
+    unit_bytes(values_of(row), out);
   }
 
  private:
   std::size_t row_begin(int row) const {
     return static_cast<std::size_t>(row) * width_ * channels_;
+  }
+  std::span<const double> values_of(int row) const {
+    return {values_.data() + row_begin(row), static_cast<std::size_t>(width_) * channels_};
   }
   template <int C>
   struct Count {

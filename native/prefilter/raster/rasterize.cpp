@@ -17,6 +17,7 @@
 #include "prefilter/base/memory.h"
 #include "prefilter/base/names.h"
 #include "prefilter/base/parallel.h"
+#include "prefilter/base/unit_bytes.h"
 #include "prefilter/raster/band_values.h"
 #include "prefilter/raster/box_coverage.h"
 #include "prefilter/raster/coverage_rows.h"
@@ -30,7 +31,8 @@
 namespace prefilter {
 namespace {
 
-void check_options(std::span<const Shape> shapes, const RasterOptions& options) {
+void check_options(std::span<const Shape> shapes, const RasterOptions& options,
+                   double value_bytes) {
   if (options.width < 1 || options.height < 1) {
     throw_invalid("width, height: found " + std::to_string(options.width) + " x " +
                   std::to_string(options.height) + " pixels; at least 1 x 1 is needed");
@@ -38,7 +40,7 @@ void check_options(std::span<const Shape> shapes, const RasterOptions& options) 
   const int channels = channel_count(shapes, options);
   check_memory("width, height: an image of " + std::to_string(options.width) + " x " +
                    std::to_string(options.height) + " pixels",
-               4.0 * options.width * options.height * channels);
+               value_bytes * options.width * options.height * channels);
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     const std::string who = "shapes: shape " + std::to_string(i);
     if (shapes[i].paint.channels != channels) {
@@ -72,6 +74,23 @@ void check_wavelet_options(std::span<const Shape> shapes, const RasterOptions& o
   }
 }
 
+// Where pixels go: floats, or else bytes.
+struct PixelRows {
+  float* floats = nullptr;
+  std::uint8_t* bytes = nullptr;
+  int width = 0;
+  int height = 0;
+  int channels = 0;
+
+  std::size_t row_begin(int row) const {
+    return static_cast<std::size_t>(row) * width * channels;
+  }
+};
+
+PixelRows rows_of(Image* image) {
+  return {image->data.data(), nullptr, image->width, image->height, image->channels};
+}
+
 // For shapes of which the color changes.
 template <int M>
 struct Painted {
@@ -85,13 +104,13 @@ struct Painted {
 template <int N>
 class BandMaker {
  public:
-  BandMaker(const RasterLayers& job, const CellFilter& filter, Image* image)
-      : job_(job), filter_(filter), image_(image) {}
+  BandMaker(const RasterLayers& job, const CellFilter& filter, const PixelRows& pixels)
+      : job_(job), filter_(filter), pixels_(pixels) {}
 
   void make(int first_row, int end_row) {
     first_row_ = first_row;
     end_row_ = end_row;
-    values_.reset(image_->width, end_row - first_row, job_.channels, job_.background);
+    values_.reset(pixels_.width, end_row - first_row, job_.channels, job_.background);
     for (const RasterLayer& layer : job_.layers) {
       if (filter_.to_cell(layer.edges.high()) < filter_.first_cell(first_row)) continue;
       if (filter_.to_cell(layer.edges.low()) > filter_.first_cell(end_row - 1) + filter_.taps) {
@@ -113,7 +132,11 @@ class BandMaker {
       }
     }
     for (int row = first_row; row < end_row; ++row) {
-      values_.store(row - first_row, image_->texel(0, row));
+      if (pixels_.bytes != nullptr) {
+        values_.store(row - first_row, pixels_.bytes + pixels_.row_begin(row));
+      } else {
+        values_.store(row - first_row, pixels_.floats + pixels_.row_begin(row));
+      }
     }
   }
 
@@ -128,14 +151,14 @@ class BandMaker {
 
   void add_constant(const RasterLayer& layer) {
     // Of the filters the box alone is of degree 0.
-    if (N == 0 && image_->width <= kMostBoxPixels && image_->height <= kMostBoxPixels) {
+    if (N == 0 && pixels_.width <= kMostBoxPixels && pixels_.height <= kMostBoxPixels) {
       add_box(layer);
       return;
     }
     if (moments_ == nullptr) {
-      moments_ = std::make_unique<MomentRows<N>>(filter_, image_->width);
-      cells_.begin_band(filter_, image_->width, first_row_, end_row_);
-      rows_.reset(image_->width, end_row_ - first_row_);
+      moments_ = std::make_unique<MomentRows<N>>(filter_, pixels_.width);
+      cells_.begin_band(filter_, pixels_.width, first_row_, end_row_);
+      rows_.reset(pixels_.width, end_row_ - first_row_);
     }
     add_edges(layer, &cells_);
     moments_->add_coverage(cells_, first_row_, end_row_, &rows_);
@@ -154,7 +177,7 @@ class BandMaker {
 
   void add_box(const RasterLayer& layer) {
     if (box_ == nullptr) box_ = std::make_unique<BoxCoverage>();
-    box_->begin(image_->width, first_row_, end_row_);
+    box_->begin(pixels_.width, first_row_, end_row_);
     box_->add(layer.edges);
     const ChannelValues& color = layer.paint.constant;
     const auto coverage_of = [](std::uint32_t steps) {
@@ -174,16 +197,16 @@ class BandMaker {
 
   template <int M>
   void add_stack(const LayerStack& stack) {
-    StackRows<M> rows(stack, filter_, job_.background, job_.channels, image_->width,
-                      image_->height);
+    StackRows<M> rows(stack, filter_, job_.background, job_.channels, pixels_.width,
+                      pixels_.height);
     rows.add_values(first_row_, end_row_, &values_);
   }
 
   template <int M>
   void add_painted(const RasterLayer& layer, std::unique_ptr<Painted<M>>* painted) {
     if (*painted == nullptr) {
-      *painted = std::make_unique<Painted<M>>(filter_, image_->width);
-      (*painted)->cells.begin_band(filter_, image_->width, first_row_, end_row_);
+      *painted = std::make_unique<Painted<M>>(filter_, pixels_.width);
+      (*painted)->cells.begin_band(filter_, pixels_.width, first_row_, end_row_);
     }
     auto& [cells, rows] = **painted;
     add_edges(layer, &cells);
@@ -193,7 +216,7 @@ class BandMaker {
 
   const RasterLayers& job_;
   const CellFilter& filter_;
-  Image* image_;
+  PixelRows pixels_;
   int first_row_ = 0;
   int end_row_ = 0;
   MomentCells<N> cells_;
@@ -207,34 +230,34 @@ class BandMaker {
 
 template <int N>
 void make_bands(const RasterLayers& job, const CellFilter& filter, const RasterOptions& options,
-                Image* image) {
+                const PixelRows& pixels) {
   constexpr int kBandValues = 1 << 17;
   constexpr int kLeastRows = 16;
   const int rows = std::clamp(kBandValues / (options.width * job.channels), kLeastRows, 256);
   parallel_ranges(options.height, rows, options.threads, options.progress.part(kLayersShare, 1.0),
                   [&](std::int64_t begin, std::int64_t end) {
-                    BandMaker<N> maker(job, filter, image);
+                    BandMaker<N> maker(job, filter, pixels);
                     maker.make(static_cast<int>(begin), static_cast<int>(end));
                   });
 }
 
 void make_all_bands(const RasterLayers& job, const CellFilter& filter, const RasterOptions& options,
-                    Image* image) {
+                    const PixelRows& pixels) {
   switch (filter.degree) {
     case 0:
-      make_bands<0>(job, filter, options, image);
+      make_bands<0>(job, filter, options, pixels);
       break;
     case 1:
-      make_bands<1>(job, filter, options, image);
+      make_bands<1>(job, filter, options, pixels);
       break;
     case 2:
-      make_bands<2>(job, filter, options, image);
+      make_bands<2>(job, filter, options, pixels);
       break;
     case 3:
-      make_bands<3>(job, filter, options, image);
+      make_bands<3>(job, filter, options, pixels);
       break;
     default:
-      make_bands<Kernel::kMostDegree>(job, filter, options, image);
+      make_bands<Kernel::kMostDegree>(job, filter, options, pixels);
       break;
   }
 }
@@ -249,7 +272,7 @@ void add_stack_means(const RasterLayers& stacks, int cell_depth, RasterOptions o
   check_memory("width, height: the cells of an image",
                4.0 * options.width * options.height * stacks.channels);
   Image pixels(options.width, options.height, stacks.channels);
-  make_all_bands(stacks, *find_cell_filter("box"), options, &pixels);
+  make_all_bands(stacks, *find_cell_filter("box"), options, rows_of(&pixels));
   std::vector<ChannelValues> sums;
   for (int first = 0; first < image->height; first += side) {
     sums.assign(columns, {});
@@ -270,36 +293,62 @@ void add_stack_means(const RasterLayers& stacks, int cell_depth, RasterOptions o
   }
 }
 
-}  // namespace
+// What both kinds of images have in common: checked, and made ready.
+struct Job {
+  const CellFilter* filter = nullptr;
+  RasterLayers layers;
+};
 
-Image rasterize(std::span<const Shape> shapes, const RasterOptions& options) {
-  check_options(shapes, options);
+Job job_of(std::span<const Shape> shapes, const RasterOptions& options, double value_bytes) {
+  check_options(shapes, options, value_bytes);
   const std::string_view name =
       element_named("filter", options.filter, raster_filters(), std::identity());
-  const CellFilter* filter = find_cell_filter(name);
-  const bool is_wavelet = options.method == RasterMethod::kWavelet;
-  if (is_wavelet) {
+  if (options.method == RasterMethod::kWavelet) {
     check_wavelet_options(shapes, options);
   } else if (options.depth >= 0) {
     throw_invalid("depth: found " + std::to_string(options.depth) +
                   "; only the method wavelet has depths");
   }
-  RasterLayers job = make_layers(shapes, options);
-  Image image(options.width, options.height, job.channels);
-  if (is_wavelet) {
-    const int depth =
-        options.depth < 0 ? wavelet_depth(options.width, options.height) : options.depth;
-    add_up_wavelets(job, depth, options.threads, options.progress.part(kLayersShare, 1.0), &image);
-    if (!job.stacks.empty()) {
-      const int cell_depth = wavelet_depth(options.width, options.height) - depth;
-      RasterLayers stacks;
-      stacks.channels = job.channels;
-      stacks.background = job.background;
-      stacks.stacks = std::move(job.stacks);
-      add_stack_means(stacks, cell_depth, options, &image);
-    }
+  return {find_cell_filter(name), make_layers(shapes, options)};
+}
+
+void add_wavelets(RasterLayers* job, const RasterOptions& options, Image* image) {
+  const int most = wavelet_depth(options.width, options.height);
+  const int depth = options.depth < 0 ? most : options.depth;
+  add_up_wavelets(*job, depth, options.threads, options.progress.part(kLayersShare, 1.0), image);
+  if (job->stacks.empty()) return;
+  RasterLayers stacks;
+  stacks.channels = job->channels;
+  stacks.background = job->background;
+  stacks.stacks = std::move(job->stacks);
+  add_stack_means(stacks, most - depth, options, image);
+}
+
+}  // namespace
+
+Image rasterize(std::span<const Shape> shapes, const RasterOptions& options) {
+  Job job = job_of(shapes, options, sizeof(float));
+  Image image(options.width, options.height, job.layers.channels);
+  if (options.method == RasterMethod::kWavelet) {
+    add_wavelets(&job.layers, options, &image);
   } else {
-    make_all_bands(job, *filter, options, &image);
+    make_all_bands(job.layers, *job.filter, options, rows_of(&image));
+  }
+  return image;
+}
+
+ByteImage rasterize_bytes(std::span<const Shape> shapes, const RasterOptions& options) {
+  Job job = job_of(shapes, options, options.method == RasterMethod::kWavelet ? 5.0 : 1.0);
+  const int channels = job.layers.channels;
+  ByteImage image{options.width, options.height, channels, {}};
+  image.data.resize(static_cast<std::size_t>(options.width) * options.height * channels);
+  if (options.method == RasterMethod::kWavelet) {
+    Image floats(options.width, options.height, channels);
+    add_wavelets(&job.layers, options, &floats);
+    unit_bytes(std::span<const float>(floats.data), image.data.data());
+  } else {
+    const PixelRows rows{nullptr, image.data.data(), options.width, options.height, channels};
+    make_all_bands(job.layers, *job.filter, options, rows);
   }
   return image;
 }

@@ -869,7 +869,8 @@ class RasterOptions:
 def rasterize(
     shapes: Sequence[tuple[Outline, str, Paint, bool]],
     options: RasterOptions,
+    is_bytes: bool,
     progress: ProgressCallback | None,
-) -> npt.NDArray[np.float32]: ...
+) -> npt.NDArray[np.float32] | npt.NDArray[np.uint8]: ...
 
 FILL_RULES: Final[tuple[str, ...]]

@@ -71,4 +71,16 @@ struct RasterOptions {
 /// 0 or one that memory does not hold, and for what the method does not have.
 Image rasterize(std::span<const Shape> shapes, const RasterOptions& options);
 
+/// Interleaved bytes, in the layout of Image.
+struct ByteImage {
+  int width = 0;
+  int height = 0;
+  int channels = 0;
+  std::vector<std::uint8_t> data;
+};
+
+/// The same, with the floats from 0 to 1 as 0 to 255: rounded to the nearest, halves to even, and
+/// cut off outside.
+ByteImage rasterize_bytes(std::span<const Shape> shapes, const RasterOptions& options);
+
 }  // namespace prefilter

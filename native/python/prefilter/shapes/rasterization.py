@@ -94,16 +94,17 @@ def rasterize(
             f"background: {len(options.background)} values; {channels}, as the shapes have"
         )
     is_bytes = as_whether_bytes(dtype)
-    image = _native.rasterize(
-        [(shape._outline, shape._fill_rule, shape._paint, shape._winds_once) for shape in drawn],
-        options,
-        as_progress(progress),
+    parts = [(shape._outline, shape._fill_rule, shape._paint, shape._winds_once) for shape in drawn]
+    image: FloatArray | npt.NDArray[np.uint8] = _native.rasterize(
+        parts, options, is_bytes, as_progress(progress)
     )
-    return to_bytes(image) if is_bytes else image
+    return image
 
 
 def as_whether_bytes(dtype: npt.DTypeLike) -> bool:
     """Whether pixels are bytes: uint8 rather than float32."""
+    if dtype is np.float32 or dtype is np.uint8:
+        return dtype is np.uint8
     try:
         return {"float32": False, "uint8": True}[np.dtype(dtype).name]
     except (KeyError, TypeError) as error:

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Values from 0 to 1 as bytes.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "prefilter/base/vectors.h"
+
+namespace prefilter {
+
+/// The float nearest to a value, from 0 to 1 as 0 to 255: rounded to the nearest, halves to even,
+/// and cut off outside. What is no number is 0.
+template <typename T>
+std::uint8_t unit_byte(T value) {
+  const auto number = static_cast<float>(value);
+  const float above = number > 0.0F ? number : 0.0F;
+  return static_cast<std::uint8_t>(std::lrint(255.0F * (above < 1.0F ? above : 1.0F)));
+}
+
+#if defined(PREFILTER_SSE4_1)
+inline __m128 load_floats(const float* from) { return _mm_loadu_ps(from); }
+inline __m128 load_floats(const double* from) {
+  return _mm_movelh_ps(_mm_cvtpd_ps(_mm_loadu_pd(from)), _mm_cvtpd_ps(_mm_loadu_pd(from + 2)));
+}
+#endif
+
+/// All of them.
+template <typename T>
+void unit_bytes(std::span<const T> values, std::uint8_t* out) {
+  std::size_t i = 0;
+#if defined(PREFILTER_SSE4_1)
+  const auto four = [&](std::size_t at) {
+    const __m128 above = _mm_max_ps(load_floats(values.data() + at), _mm_setzero_ps());
+    const __m128 within = _mm_min_ps(above, _mm_set1_ps(1.0F));
+    return _mm_cvtps_epi32(_mm_mul_ps(within, _mm_set1_ps(255.0F)));
+  };
+  for (; i + 16 <= values.size(); i += 16) {
+    const __m128i low = _mm_packs_epi32(four(i), four(i + 4));
+    const __m128i high = _mm_packs_epi32(four(i + 8), four(i + 12));
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(out + i), _mm_packus_epi16(low, high));
+  }
+#endif
+  for (; i < values.size(); ++i) out[i] = unit_byte(values[i]);
+}
+
+}  // namespace prefilter
