@@ -15,6 +15,7 @@
 #include "prefilter/base/names.h"
 #include "prefilter/outline/set_operations.h"
 #include "prefilter/outline/stroke.h"
+#include "prefilter/raster/path_data.h"
 #include "prefilter/raster/rasterize.h"
 
 namespace py = pybind11;
@@ -43,25 +44,6 @@ void add_contour(Outline* outline, const Array<double>& points, int degree) {
   outline->move_to(all.front());
   for (std::size_t i = 1; i < all.size(); i += degree) outline->curve_to(all.subspan(i, degree));
   outline->close();
-}
-
-// How many numbers follow the letter of a segment in add_path; -1 for no such letter.
-int number_count(char letter) {
-  switch (letter) {
-    case 'M':
-    case 'L':
-      return 2;
-    case 'Q':
-      return 4;
-    case 'W':
-      return 5;
-    case 'C':
-      return 6;
-    case 'Z':
-      return 0;
-    default:
-      return -1;
-  }
 }
 
 void add_path(Outline* outline, const std::string& letters, const Array<double>& numbers) {
@@ -212,6 +194,31 @@ std::pair<Outline, bool> bound_stroke(const Outline& outline, const StrokeOption
   return {std::move(covered), winds_once};
 }
 
+py::bytes bytes_of(std::span<const double> numbers) {
+  return {reinterpret_cast<const char*>(numbers.data()), numbers.size_bytes()};
+}
+
+// Letters, the bytes of numbers, and whether all is valid; None for too many.
+py::tuple bound_read_path(const std::string& text, std::size_t most) {
+  PathSteps steps;
+  const PathOutcome outcome = read_path_data(text, most, &steps);
+  if (outcome == PathOutcome::kTooMany) return py::make_tuple(py::none(), py::none(), false);
+  return py::make_tuple(py::bytes(steps.letters), bytes_of(steps.numbers),
+                        outcome == PathOutcome::kWhole);
+}
+
+py::tuple bound_read_numbers(const std::string& text) {
+  std::vector<double> numbers;
+  const bool is_whole = read_numbers(text, &numbers);
+  return py::make_tuple(std::move(numbers), is_whole);
+}
+
+py::object bound_drawn_box(const std::string& letters, const Array<double>& numbers) {
+  const Box2 box = drawn_box(letters, values_of(numbers));
+  if (box.empty()) return py::none();
+  return py::make_tuple(box.low.x, box.low.y, box.high.x, box.high.y);
+}
+
 py::object bound_bounds(const Outline& outline) {
   const Box2 box = control_box(outline);
   if (outline.empty()) return py::none();
@@ -276,8 +283,11 @@ void bind_raster(py::module_& m) {
             return paint.transformed(map_of(matrix));
           },
           py::arg("matrix"));
-  m.def("rasterize", &bound_rasterize, py::arg("shapes"), py::arg("options"),
-        py::arg("is_bytes"), py::arg("progress"));
+  m.def("rasterize", &bound_rasterize, py::arg("shapes"), py::arg("options"), py::arg("is_bytes"),
+        py::arg("progress"));
+  m.def("read_path", &bound_read_path, py::arg("text"), py::arg("most"));
+  m.def("read_numbers", &bound_read_numbers, py::arg("text"));
+  m.def("drawn_box", &bound_drawn_box, py::arg("letters"), py::arg("numbers"));
   m.attr("FILL_RULES") = names_of(kFillRules);
 }
 

@@ -83,8 +83,8 @@ void flatten_conic(const std::array<Weighted, 3>& conic, double tolerance, int d
   flatten_conic(second, tolerance, depth - 1, points);
 }
 
-// The root in (0, 1) of a polynomial whose coefficients change their sign once, so that there is just
-// one: Newton's steps, or halves of the interval where these leave it.
+// The root in (0, 1) of a polynomial whose coefficients change their sign once, so that there is
+// just one: Newton's steps, or halves of the interval where these leave it.
 double only_root(std::span<const double> coefficients) {
   const std::size_t size = coefficients.size();
   const double first =

@@ -82,9 +82,7 @@ struct PixelRows {
   int height = 0;
   int channels = 0;
 
-  std::size_t row_begin(int row) const {
-    return static_cast<std::size_t>(row) * width * channels;
-  }
+  std::size_t row_begin(int row) const { return static_cast<std::size_t>(row) * width * channels; }
 };
 
 PixelRows rows_of(Image* image) {

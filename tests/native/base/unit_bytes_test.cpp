@@ -13,8 +13,8 @@ namespace {
 
 // Every byte, both of its ends, and what is outside, at every place of a vector.
 TEST(UnitBytes, AreTheNearest) {
-  std::vector<double> values = {-HUGE_VAL, -1.0, -0.0, HUGE_VAL, 1.5,
-                                std::numeric_limits<double>::quiet_NaN()};
+  std::vector<double> values = {-HUGE_VAL, -1.0, -0.0,
+                                HUGE_VAL,  1.5,  std::numeric_limits<double>::quiet_NaN()};
   std::vector<int> expected = {0, 0, 0, 255, 255, 0};
   for (int byte = 0; byte < 256; ++byte) {
     for (const double off : {-0.4999, 0.0, 0.4999}) {

@@ -22,10 +22,8 @@ Color: TypeAlias = tuple[float, float, float, float]
 IDENTITY: Matrix = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
 BLACK: Color = (0.0, 0.0, 0.0, 1.0)
 
-NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
-_NUMBER = re.compile(NUMBER, re.ASCII)
-_LENGTH = re.compile(rf"\s*({NUMBER})([a-zA-Z]*|%)\s*", re.ASCII)
-_SEPARATOR = re.compile(r"\s*,?\s*", re.ASCII)
+_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_LENGTH = re.compile(rf"\s*({_NUMBER})([a-zA-Z]*|%)\s*", re.ASCII)
 # CSS pixels; em and ex are multiples of the font's size.
 _UNITS = {
     "": 1.0,
@@ -116,15 +114,7 @@ def as_number(text: str) -> float | None:
 
 def leading_numbers(text: str) -> tuple[list[float], bool]:
     """The numbers that a text begins with, and whether it holds nothing else."""
-    numbers: list[float] = []
-    position = len(text) - len(text.lstrip())
-    while match := _NUMBER.match(text, position):
-        value = float(match[0])
-        if not math.isfinite(value):
-            return numbers, False
-        numbers.append(value)
-        position = _SEPARATOR.match(text, match.end()).end()  # type: ignore[union-attr]
-    return numbers, position >= len(text)
+    return _native.read_numbers(text.encode(errors="replace"))
 
 
 @dataclass(frozen=True, slots=True)
