@@ -172,6 +172,16 @@ class AxisCurve {
 double crossing(const MonotoneCurve& piece, int axis, double value, double low) {
   const AxisCurve curve(piece.curve, axis);
   double high = piece.t_end;
+  if (curve.kind == CurveKind::kQuadratic || curve.kind == CurveKind::kConic) {
+    const auto power = [&](std::size_t i) {
+      return component(curve.powers[i], axis) - value * curve.denominator[i];
+    };
+    std::array<double, 2> roots;
+    const int count = quadratic_roots(power(0), power(1), power(2), roots.data());
+    for (int i = 0; i < count; ++i) {
+      if (roots[i] > low && roots[i] < high) return roots[i];
+    }
+  }
   const bool rises = component(piece.end, axis) > component(piece.begin, axis);
   const double at_low = curve.at(low) - value;
   const double at_high = component(piece.end, axis) - value;

@@ -3,7 +3,9 @@
 // From values over cells to those of pixels.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -25,6 +27,10 @@ class CellPixels {
   void add(int column, int row, int channel, std::span<const double> moments);
   /// A cell of which a share has the same color all over.
   void add_full(int column, int row, double share, std::span<const ColorPowers> color);
+  /// The same of a filter of one cell a pixel: calls use(begin, end, values) for the cells that
+  /// are in the image, with the values of the first one on.
+  template <typename Use>
+  void add_row(int begin, int end, int row, const Use& use) const;
   /// Cells [begin, end) that are one color.
   void add_constant(int begin, int end, int row, std::span<const double> color);
 
@@ -39,5 +45,17 @@ class CellPixels {
   BandValues* values_ = nullptr;
   std::vector<ColorPowers> full_;  // of taps (oy, ox): the integrals of the color's powers
 };
+
+template <typename Use>
+void CellPixels::add_row(int begin, int end, int row, const Use& use) const {
+  const int y = filter_.first_pixel_over(row);
+  const int shift = filter_.first_cell(0);
+  begin = std::max(begin, shift);
+  end = std::min(end, shift + width_);
+  if (y < first_row_ || y >= end_row_ || begin >= end) return;
+  use(begin, end,
+      values_->row(y - first_row_) +
+          static_cast<std::ptrdiff_t>(begin - shift) * values_->channels());
+}
 
 }  // namespace prefilter

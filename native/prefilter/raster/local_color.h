@@ -4,14 +4,13 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "prefilter/raster/cell_filter.h"
 #include "prefilter/raster/raster_layers.h"
+#include "prefilter/raster/round_gradient.h"
 
 namespace prefilter {
-
-/// Of 1, u, v, u^2, u v, v^2, in the coordinates from a cell's center.
-using ColorPowers = std::array<double, 6>;
 
 /// The exponents of u and v in ColorPowers.
 inline constexpr std::array<std::array<int, 2>, 6> kColorExponents = {
@@ -28,7 +27,7 @@ void add_color_node(std::size_t index, const ChannelValues& value, int channels,
 class LocalColor {
  public:
   /// Of a layer's paint and veils. Both must outlive this.
-  LocalColor(const RasterLayer& layer, const CellFilter& filter) : layer_(layer), filter_(filter) {}
+  LocalColor(const RasterLayer& layer, const CellFilter& filter);
 
   int channels() const { return layer_.paint.channels; }
   /// 1 for linear colors, 2 for others.
@@ -36,15 +35,22 @@ class LocalColor {
   /// For each channel. Linear colors are what they are; others the polynomial that is nearest in
   /// the mean square, by Gauss's rule of three points along each axis.
   void powers(int column, int row, std::array<ColorPowers, kMaxChannels>* out) const;
+  /// Adds the means over cells [begin, end) times a share to `out`, the values of the first one on.
+  void add_means(int begin, int end, int row, double share, double* out) const;
 
  private:
   bool is_linear() const {
     return layer_.paint.kind == Paint::Kind::kLinear && layer_.veils.empty();
   }
   ChannelValues at(const Point2& point) const;
+  Point2 center_of(int column, int row) const {
+    return {filter_.to_pixel(column + 0.5), filter_.to_pixel(row + 0.5)};
+  }
+  void node_powers(int column, int row, std::array<ColorPowers, kMaxChannels>* out) const;
 
   const RasterLayer& layer_;
   const CellFilter& filter_;
+  std::optional<RoundGradient> round_;
 };
 
 }  // namespace prefilter

@@ -41,6 +41,13 @@ void PaintedRows<N>::add_cell(int column, int row, const Moments& moments,
 template <int N>
 void PaintedRows<N>::add_full_cells(int begin, int end, int row, double share,
                                     const LocalColor& color) {
+  // The box weighs a pixel's own cell alone, all over alike.
+  if (filter_.taps == 1 && filter_.degree == 0) {
+    pixels_.add_row(begin, end, row, [&](int first, int last, double* out) {
+      color.add_means(first, last, row, share, out);
+    });
+    return;
+  }
   std::array<ColorPowers, kMaxChannels> powers;
   const auto channels = static_cast<std::size_t>(color.channels());
   for (int column = begin; column < end; ++column) {
