@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Images of bytes from Python, beside Skia's; what overlaps cost, and other filters than the box.
+"""Images of bytes from Python, beside Skia's; what overlaps, other filters and reading cost.
 
-Usage: PYTHONPATH=SKIA scripts/run python3 -m bench.vectors.times [DRAWING...] [--rounds N]
-    [--skia FOLDER] [--json FILE]
+Usage: scripts/run python3 -m bench.vectors.times [DRAWING...] [--rounds N] [--skia FOLDER]
+    [--json FILE]
 
 Each drawing has its paths made before, by both; what is timed is a call that returns a new array of
 bytes. All run on one thread, in turns, and processor time counts. The criteria are shares of
-Skia's time; of the time where nothing is known to overlap; and of that of the box filter.
+Skia's time; of the time where nothing is known to overlap; of that of the box filter; and of what
+drawing takes.
 """
 
 import argparse
@@ -29,7 +30,8 @@ from bench.report import Report, add_json_option
 
 Floats = NDArray[np.float64]
 Color = tuple[float, ...]
-FONT = Path(__file__).resolve().parents[3] / "shared/data/svg/fonts/NotoSans-Regular.ttf"
+SVG = Path(__file__).resolve().parents[3] / "shared/data/svg"
+FONT = SVG / "fonts/NotoSans-Regular.ttf"
 QUARTER = math.sqrt(0.5)
 LETTERS = {"M": 1, "L": 1, "Q": 2, "W": 2, "C": 3, "Z": 0}
 LEAST_SECONDS = 0.02  # of what is timed at once
@@ -163,7 +165,7 @@ def border(a: Floats, b: Floats, random: np.random.Generator, depth: int) -> Flo
         middle = 0.5 * (points[1:] + points[:-1])
         along = points[1:] - points[:-1]
         across = np.stack([-along[:, 1], along[:, 0]], 1)
-        middle += across * random.uniform(-0.15, 0.15, (len(along), 1))
+        middle += across * random.uniform(-0.08, 0.08, (len(along), 1))
         both = np.empty((2 * len(points) - 1, 2))
         both[::2], both[1::2] = points, middle
         points = both
@@ -233,11 +235,31 @@ def _contours(path: Any) -> tuple[str, Floats]:
     return letters, np.asarray(points, np.float64).reshape(-1, 2)
 
 
+def _pairs(numbers: list[float]) -> list[tuple[float, float]]:
+    """Returns the points of a disc."""
+    found = [(numbers[0], numbers[1])]
+    for k in range(2, len(numbers), 5):
+        found += [(numbers[k], numbers[k + 1]), (numbers[k + 3], numbers[k + 4])]
+    return found
+
+
+def _conics(points: Floats) -> list[float]:
+    """Returns the numbers of a disc of its points."""
+    numbers = [*points[0]]
+    for middle, end in zip(points[1::2], points[2::2], strict=True):
+        numbers += [*middle, QUARTER, *end]
+    return numbers
+
+
 def rings(_: np.random.Generator) -> Drawing:
     """Returns circles within each other in one path, 512 x 512."""
     parts = []
-    for k in range(1, 64):
-        letters, numbers = disc(256.0, 256.0, 4.0 * k)
+    for k in range(1, 65):
+        letters, numbers = disc(256.0, 256.0, 3.9 * k)
+        if k % 2 == 1:
+            # The same the other way round: rings.
+            points = np.asarray([(y, x) for x, y in _pairs(numbers)])
+            numbers = _conics(points)
         parts.append((letters, np.asarray(numbers)))
     letters, numbers = joined([(a, b) for a, b in parts])
     return Drawing([Filled(letters, numbers, (0.0, 0.0, 0.0, 1.0))], 512)
@@ -351,6 +373,54 @@ def skia_paint(path: Filled) -> Any:
     return paint
 
 
+def markup(drawing: Drawing) -> str:
+    """Returns a drawing of lines and curves as SVG."""
+    paths = []
+    for path in drawing.paths:
+        data, at = [], 0
+        for letter in path.letters:
+            count = 2 * LETTERS[letter]
+            numbers = " ".join(f"{number:.3f}" for number in path.numbers[at : at + count])
+            data.append(letter + numbers)
+            at += count
+        assert not isinstance(path.paint, Gradient)
+        color = "rgb({} {} {})".format(*(round(255 * value) for value in path.paint[:3]))
+        paint = f'fill="none" stroke="{color}" stroke-width="{path.width:g}"'
+        if path.width == 0.0:
+            paint = f'fill="{color}"'
+        paths.append(f'<path d="{"".join(data)}" {paint}/>')
+    head = f'<svg xmlns="http://www.w3.org/2000/svg" width="{drawing.side}" height="{drawing.side}">'
+    return "\n".join([head, *paths, "</svg>"])
+
+
+def compare_reading(report: Report, rounds: int) -> None:
+    """What reading a drawing takes, and what drawing it then does."""
+    rows = []
+    claims = []
+    sources: dict[str, str | Path] = {
+        name: markup(CASES[name](np.random.default_rng(31))) for name in ("map", "text", "strokes")
+    }
+    sources["tiger"] = SVG / "Ghostscript_Tiger.svg"
+    for name, source in sources.items():
+        side = 1024
+        shapes = prefilter.read_svg(source).shapes_for(side, side)
+        calls = {
+            "read": partial(prefilter.read_svg, source),
+            "outline": lambda drawing=prefilter.read_svg(source): drawing.shapes_for(side, side),
+            "draw": partial(
+                prefilter.rasterize, shapes, side, side, dtype=np.uint8, threads=1
+            ),
+        }  # fmt: skip
+        found = measured(calls, rounds)
+        reading = found["read"] + found["outline"]
+        rows.append([name, *(f"{1e3 * found[what]:.1f}" for what in calls)])
+        claim = f"{name}: reading takes {reading / found['draw']:.2f} of drawing, at most 1"
+        claims.append((reading <= found["draw"], claim))
+    report.table("reading", ["drawing", "read ms", "outlines ms", "drawn ms"], rows, "reading")
+    for holds, claim in claims:
+        report.verdict(holds, claim)
+
+
 def measured(calls: dict[str, Callable[[], object]], rounds: int) -> dict[str, float]:
     """Returns the median processor time of each call [s], in turns."""
     counts = {}
@@ -432,10 +502,13 @@ def compare_filters(report: Report, rounds: int) -> None:
         report.verdict(holds, claim)
 
 
+PARTS = {"filters": compare_filters, "reading": compare_reading}
+
+
 def main() -> None:
     """Measures and prints."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("drawings", nargs="*", metavar="DRAWING", help=", ".join(CASES))
+    parser.add_argument("drawings", nargs="*", metavar="DRAWING", help=", ".join([*CASES, *PARTS]))
     parser.add_argument("--rounds", type=int, default=7, help="how often (default: %(default)s)")
     parser.add_argument("--skia", type=Path, help="the folder where Skia's package is")
     add_json_option(parser)
@@ -443,11 +516,13 @@ def main() -> None:
     if options.skia is not None:
         sys.path.insert(0, str(options.skia))
     report = Report()
-    names = [name for name in options.drawings or CASES if name != "filters"]
-    if names:
-        compare(report, names, options.rounds)
-    if not options.drawings or "filters" in options.drawings:
-        compare_filters(report, options.rounds)
+    names = options.drawings or [*CASES, *PARTS]
+    drawings = [name for name in names if name not in PARTS]
+    if drawings:
+        compare(report, drawings, options.rounds)
+    for name, part in PARTS.items():
+        if name in names:
+            part(report, options.rounds)
     report.finish(options.json)
 
 

@@ -94,3 +94,34 @@ def test_radial_gradients_where_they_are_smooth():
     for name in ("box", "mitchell"):
         expected = image_of_colors(rows, WIDTH, HEIGHT, name, rows.inside(), color)
         assert np.abs(drawn(shape, name) - expected).max() < 1e-6, name
+
+
+@pytest.mark.parametrize("spread", ["pad", "repeat"])
+@pytest.mark.parametrize("transform", [None, (0.9, -0.4), (0.05, 0.3)])
+def test_radial_gradients_against_dense_points(spread, transform):
+    """With stops, near the center and far from it, as circles and as ellipses."""
+    center, first, radius = np.array([20.3, 17.8]), 4.0, 21.0
+    matrix = np.eye(2, 3)
+    if transform is not None:
+        matrix[:, :2] = [(1.0, transform[1]), (transform[0] - 1.0, 1.0)]
+        matrix[:, 2] = center - matrix[:, :2] @ center
+    stops = [(0.0, (0.1, 0.9)), (0.3, (0.8, 0.2)), (1.0, (0.4, 0.6))]
+    shape = prefilter.Shape()
+    shape.add_polygon([(0, 0), (40, 0), (40, 36), (0, 36)])
+    shape.radial_gradient(
+        center, radius, stops, focus=center, focus_radius=first, spread=spread, transform=matrix
+    )
+    found = prefilter.rasterize([shape], 40, 36)
+    finer = 24
+    x = (np.arange(40 * finer) + 0.5) / finer
+    y = (np.arange(36 * finer) + 0.5) / finer
+    points = np.stack(np.meshgrid(x, y), -1) @ inverse(matrix)[:, :2].T + inverse(matrix)[:, 2]
+    offset = (np.linalg.norm(points - center, axis=-1) - first) / (radius - first)
+    offset = spread_offset(offset, spread)
+    for channel in range(2):
+        values = np.interp(offset, [s[0] for s in stops], [s[1][channel] for s in stops])
+        expected = values.reshape(36, finer, 40, finer).mean((1, 3))
+        off = np.abs(found[..., channel] - expected)
+        assert np.median(off) < 2e-5
+        # Where the color has a bend, or a jump, within a pixel.
+        assert off.max() < (0.005 if spread == "pad" else 0.08)

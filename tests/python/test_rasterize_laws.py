@@ -331,3 +331,82 @@ def test_covering_needs_no_color_of_what_is_covered():
         same = prefilter.rasterize([below, below], 11, 9, filter=filter, overlap="cover")
         once = prefilter.rasterize([below], 11, 9, filter=filter)
         assert np.abs(same - once).max() < 9 * ROUNDING
+
+
+def ragged_map(source, side):
+    """Quads that share ragged borders."""
+    corners = np.stack(np.meshgrid(np.arange(side + 1), np.arange(side + 1)), -1) * 5.0 + 2.0
+    corners += source.uniform(-0.8, 0.8, corners.shape)
+
+    def border(a, b):
+        steps = np.linspace(a, b, 9)[:-1]
+        steps[1:] += source.uniform(-0.25, 0.25, (7, 2))
+        return steps
+
+    flat = [[border(*corners[y, x : x + 2]) for x in range(side)] for y in range(side + 1)]
+    steep = [[border(*corners[y : y + 2, x]) for x in range(side + 1)] for y in range(side)]
+
+    def back(line, end):
+        return np.concatenate([end[None], line[:0:-1]])
+
+    for y in range(side):
+        for x in range(side):
+            yield np.concatenate(
+                [
+                    flat[y][x],
+                    steep[y][x + 1],
+                    back(flat[y + 1][x], corners[y + 1, x + 1]),
+                    back(steep[y][x], corners[y + 1, x]),
+                ]
+            )
+
+
+@pytest.mark.parametrize("filter", ["box", "mitchell"])
+def test_a_map_is_added(filter):
+    """What is side by side covers nothing; with another shape over it, it is covered."""
+    source = np.random.default_rng(12)
+    shapes = []
+    for points in ragged_map(source, 5):
+        shapes.append(prefilter.Shape(color=source.random(3)))
+        shapes[-1].add_polygon(points)
+    options = {"width": 30, "height": 28, "filter": filter}
+    added = prefilter.rasterize(shapes, overlap="add", **options)
+    np.testing.assert_array_equal(prefilter.rasterize(shapes, **options), added)
+    over = prefilter.Shape(color=(0.0, 0.0, 0.0))
+    over.add_polygon([(-20, -20), (70, -20), (70, 70), (-20, 70)])
+    assert np.abs(prefilter.rasterize([*shapes, over], **options)).max() < 1e-6
+
+
+@pytest.mark.parametrize("filter", ["box", "tent", "lanczos3"])
+@pytest.mark.parametrize("alpha", [1.0, 0.4])
+def test_a_page_is_a_background(filter, alpha):
+    source = np.random.default_rng(5)
+    page = prefilter.Shape(color=(0.3 * alpha, 0.1 * alpha, 0.2 * alpha, alpha))
+    far = 0 if filter == "box" else 30
+    page.add_polygon([(-far, -far), (20 + far, -far), (20 + far, 15 + far), (-far, 15 + far)])
+    others = []
+    for _ in range(4):
+        others.append(prefilter.Shape(color=(*source.random(3) * 0.5, 0.5)))
+        others[-1].add_polygon(source.random((3, 2)) * 15)
+    behind = (0.2, 0.6, 0.4, 0.8)
+    mixed = np.array(page.color) + (1.0 - alpha) * np.array(behind)
+    options = {"width": 20, "height": 15, "filter": filter}
+    found = prefilter.rasterize([page, *others], background=behind, **options)
+    expected = prefilter.rasterize(others, background=mixed, **options)
+    assert np.abs(found - expected).max() < 1e-6
+    # A page that ends within the image, or is no rectangle, is a shape like others.
+    for points in (
+        [(0, 0), (19.5, 0), (19.5, 15), (0, 15)],
+        [(0, 0), (20, 0), (20, 15)],
+        [(0, 0), (20, 0), (20, 15), (3, 15)],
+    ):
+        small = prefilter.Shape(color=page.color)
+        small.add_polygon(points)
+        found = prefilter.rasterize([small, *others], **options)
+        alone = prefilter.rasterize(others, **options)
+        expected = alone + prefilter.rasterize([small], **options)
+        # Where nothing else is, there is the page as far as it goes.
+        nothing = np.zeros(found.shape[:2], bool)
+        nothing[:, 17:] = True
+        if filter == "box":
+            assert np.abs(found - expected)[nothing].max() < 1e-6

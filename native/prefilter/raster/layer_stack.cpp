@@ -25,22 +25,29 @@ void add_layer(const Outline& outline, FillRule rule, const Paint& paint, bool i
   stack->is_constant = stack->is_constant && paint.kind == Paint::Kind::kConstant;
 }
 
+void add_shape(const Shape& shape, bool is_one_of_many, LayerStack* stack) {
+  if (shape.paint.kind != Paint::Kind::kLinearStops) {
+    add_layer(shape.outline, shape.fill_rule, shape.paint, is_one_of_many, stack);
+    return;
+  }
+  for (GradientStrip& strip : gradient_strips(shape.outline, shape.paint)) {
+    stack->outlines.push_back(std::move(strip.outline));
+    stack->paints.push_back(std::move(strip.paint));
+    add_layer(stack->outlines.back(), shape.fill_rule, stack->paints.back(), is_one_of_many, stack);
+  }
+}
+
 }  // namespace
 
 LayerStack stack_of(std::span<const Shape> shapes) {
   LayerStack stack;
-  for (const Shape& shape : shapes) {
-    if (shape.paint.kind != Paint::Kind::kLinearStops) {
-      add_layer(shape.outline, shape.fill_rule, shape.paint, shapes.size() > 1, &stack);
-      continue;
-    }
-    for (GradientStrip& strip : gradient_strips(shape.outline, shape.paint)) {
-      stack.outlines.push_back(std::move(strip.outline));
-      stack.paints.push_back(std::move(strip.paint));
-      add_layer(stack.outlines.back(), shape.fill_rule, stack.paints.back(), shapes.size() > 1,
-                &stack);
-    }
-  }
+  for (const Shape& shape : shapes) add_shape(shape, shapes.size() > 1, &stack);
+  return stack;
+}
+
+LayerStack stack_of(std::span<const Shape> shapes, std::span<const std::uint32_t> chosen) {
+  LayerStack stack;
+  for (const std::uint32_t i : chosen) add_shape(shapes[i], chosen.size() > 1, &stack);
   return stack;
 }
 

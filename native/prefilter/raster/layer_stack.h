@@ -4,6 +4,7 @@
 // cell.
 #pragma once
 
+#include <cstdint>
 #include <deque>
 #include <span>
 #include <vector>
@@ -30,5 +31,7 @@ struct LayerStack {
 
 /// Shapes over each other, which must outlive it.
 LayerStack stack_of(std::span<const Shape> shapes);
+/// Some of them, by their numbers in rising order.
+LayerStack stack_of(std::span<const Shape> shapes, std::span<const std::uint32_t> chosen);
 
 }  // namespace prefilter

@@ -8,8 +8,10 @@
 
 #include "prefilter/base/parallel.h"
 #include "prefilter/outline/resolve_soon.h"
+#include "prefilter/outline/shared_edges.h"
 #include "prefilter/outline/visible_pieces.h"
 #include "prefilter/raster/gradient_strips.h"
+#include "prefilter/raster/shape_groups.h"
 
 namespace prefilter {
 namespace {
@@ -120,6 +122,170 @@ class LayerMaker {
   int together_ = 0;  // shapes in the last layer, where that is of one color
 };
 
+// A shape by itself: its outline as it winds once, where that can be told.
+struct Single {
+  std::optional<Outline> changed;
+  bool is_clear = true;
+};
+
+// Shapes that are apart from all others.
+struct Group {
+  std::vector<std::uint32_t> shapes;  // numbers, from the lowest
+  /// Where they are not beside each other, so that they only have to be added.
+  bool is_covered = false;
+  /// What is seen of them then, where that can be told.
+  std::optional<std::vector<VisiblePiece>> pieces;
+};
+
+class LayerFinder {
+ public:
+  LayerFinder(std::span<const Shape> shapes, const RasterOptions& options)
+      : shapes_(shapes), options_(options), singles_(shapes.size()) {}
+
+  // Looks for what is seen of shapes that cover each other, from a number on.
+  void find_covered(std::uint32_t first, const Progress& progress) {
+    group_shapes(first);
+    std::size_t most = 0;
+    for (const Group& group : groups_) most = std::max(most, group.shapes.size());
+    // One group takes all threads, and the others one each.
+    const auto largest = std::find_if(groups_.begin(), groups_.end(), [&](const Group& group) {
+      return group.shapes.size() == most;
+    });
+    if (largest == groups_.end()) return;
+    const double share = static_cast<double>(most) / static_cast<double>(shapes_.size() - first);
+    find_pieces(&*largest, options_.threads, progress.part(0.0, share));
+    parallel_for(static_cast<std::int64_t>(groups_.size()), options_.threads,
+                 progress.part(share, 1.0), [&](std::int64_t i) {
+                   if (&groups_[i] != &*largest) find_pieces(&groups_[i], 1, {});
+                 });
+  }
+
+  // The same of shapes that are added.
+  void find_added(const Progress& progress) {
+    groups_.resize(shapes_.size());
+    for (std::uint32_t i = 0; i < shapes_.size(); ++i) groups_[i].shapes = {i};
+    // Only the thread that called reports, which one shape by itself stays on.
+    const Progress within = shapes_.size() == 1 ? progress : Progress();
+    parallel_for(static_cast<std::int64_t>(shapes_.size()), options_.threads, progress,
+                 [&](std::int64_t i) { find_single(static_cast<std::uint32_t>(i), within); });
+  }
+
+  void add_to(std::span<const Paint> paints, RasterLayers* out) {
+    LayerMaker maker(options_.method, out);
+    std::vector<std::uint32_t> stacked;
+    for (Group& group : groups_) {
+      if (group.is_covered) {
+        if (!group.pieces) {
+          stacked.insert(stacked.end(), group.shapes.begin(), group.shapes.end());
+          continue;
+        }
+        for (VisiblePiece& piece : *group.pieces) {
+          std::vector<Paint> veils;
+          for (const std::uint32_t veil : piece.veils) {
+            veils.push_back(shapes_[group.shapes[veil]].paint);
+          }
+          maker.add_veiled(maker.keep(std::move(piece.outline)), paints[group.shapes[piece.layer]],
+                           veils);
+        }
+        continue;
+      }
+      for (const std::uint32_t i : group.shapes) {
+        Single& single = singles_[i];
+        if (single.is_clear) {
+          maker.add(single.changed ? maker.keep(*std::move(single.changed)) : shapes_[i].outline,
+                    paints[i]);
+        } else if (options_.overlap == Overlap::kAdd) {
+          out->stacks.push_back(stack_of(shapes_.subspan(i, 1)));
+        } else {
+          stacked.push_back(i);
+        }
+      }
+    }
+    // In one, so that it has the steps of one, however many groups there are.
+    std::sort(stacked.begin(), stacked.end());
+    if (!stacked.empty()) out->stacks.push_back(stack_of(shapes_, stacked));
+  }
+
+ private:
+  void group_shapes(std::uint32_t first) {
+    if (options_.method == RasterMethod::kWavelet) {
+      // That leaves contours open where shapes do not cover each other.
+      groups_.push_back({{}, true, {}});
+      for (std::uint32_t i = first; i < shapes_.size(); ++i) groups_[0].shapes.push_back(i);
+      return;
+    }
+    std::vector<Box2> boxes(shapes_.size());
+    for (std::uint32_t i = first; i < shapes_.size(); ++i) {
+      if (!shapes_[i].outline.empty()) boxes[i] = control_box(shapes_[i].outline);
+    }
+    for (std::vector<std::uint32_t>& group : groups_apart(boxes)) {
+      groups_.push_back({std::move(group), false, {}});
+    }
+  }
+
+  void find_single(std::uint32_t i, const Progress& progress) {
+    const Shape& shape = shapes_[i];
+    if (shape.winds_once) return;
+    if (options_.method == RasterMethod::kWavelet && is_left_open(shape.outline)) return;
+    Single& single = singles_[i];
+    single.is_clear = resolve_soon(shape.outline, shape.fill_rule, progress, &single.changed);
+  }
+
+  void find_pieces(Group* group, int threads, const Progress& progress) {
+    if (!group->is_covered) {
+      const auto count = static_cast<std::int64_t>(group->shapes.size());
+      parallel_for(count, threads, progress.part(0.0, 0.1),
+                   [&](std::int64_t i) { find_single(group->shapes[i], {}); });
+      group->is_covered = count > 1 && !are_beside(group->shapes);
+    }
+    if (!group->is_covered) return;
+    std::vector<CoveringLayer> layers;
+    for (const std::uint32_t i : group->shapes) {
+      layers.push_back({&shapes_[i].outline, shapes_[i].fill_rule, is_opaque(shapes_[i].paint)});
+    }
+    group->pieces =
+        visible_pieces(layers, ArrangementEffort::kBounded, threads, progress.part(0.1, 1.0));
+  }
+
+  bool are_beside(std::span<const std::uint32_t> numbers) const {
+    std::vector<const Outline*> outlines;
+    for (const std::uint32_t i : numbers) {
+      const Single& single = singles_[i];
+      if (!single.is_clear) return false;
+      outlines.push_back(single.changed ? &*single.changed : &shapes_[i].outline);
+    }
+    return are_side_by_side(outlines);
+  }
+
+  std::span<const Shape> shapes_;
+  const RasterOptions& options_;
+  std::vector<Single> singles_;
+  std::vector<Group> groups_;
+};
+
+// Whether a shape is one color all over an image, and so far around it that a filter sees no more.
+bool is_behind_all(const Shape& shape, const RasterOptions& options) {
+  if (shape.paint.kind != Paint::Kind::kConstant || options.method == RasterMethod::kWavelet) {
+    return false;
+  }
+  const Outline& outline = shape.outline;
+  const auto points = outline.points();
+  if (outline.contour_count() != 1 || outline.segments().size() + 1 < points.size()) return false;
+  if (points.size() < 4 || points.size() > 5) return false;
+  if (points.size() == 5 && !(points[4] == points[0])) return false;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Point2 side = points[(i + 1) % 4] - points[i];
+    const Point2 next = points[(i + 2) % 4] - points[(i + 1) % 4];
+    // Sides along one axis in turns; with those of no length it is no rectangle around anything.
+    if (!((side.x == 0.0 && next.y == 0.0) || (side.y == 0.0 && next.x == 0.0))) return false;
+  }
+  constexpr double kFarthestSeen = 16.0;
+  const double margin = options.filter == "box" ? 0.0 : kFarthestSeen;
+  const Box2 box = control_box(outline);
+  return box.low.x <= -margin && box.low.y <= -margin && box.high.x >= options.width + margin &&
+         box.high.y >= options.height + margin;
+}
+
 }  // namespace
 
 int channel_count(std::span<const Shape> shapes, const RasterOptions& options) {
@@ -131,49 +297,29 @@ RasterLayers make_layers(std::span<const Shape> shapes, const RasterOptions& opt
   RasterLayers out;
   out.channels = channel_count(shapes, options);
   std::copy(options.background.begin(), options.background.end(), out.background.begin());
+  const bool covers = options.overlap == Overlap::kCover && shapes.size() > 1;
+  // Pages mostly have one behind all that is on them.
+  std::uint32_t first = 0;
+  for (; covers && first < shapes.size() && is_behind_all(shapes[first], options); ++first) {
+    const ChannelValues& color = shapes[first].paint.constant;
+    const double passing = has_alpha(shapes[first].paint) ? 1.0 - color[kAlpha] : 0.0;
+    for (int c = 0; c < out.channels; ++c) {
+      out.background[c] = passing * out.background[c] + color[c];
+    }
+  }
   std::vector<Paint> paints;
   for (const Shape& shape : shapes) {
     paints.push_back(shape.paint);
     take_background(out.background, &paints.back());
   }
   const Progress progress = options.progress.part(0.0, kLayersShare);
-  LayerMaker maker(options.method, &out);
-  if (options.overlap == Overlap::kCover && shapes.size() > 1) {
-    std::vector<CoveringLayer> layers;
-    for (const Shape& shape : shapes) {
-      layers.push_back({&shape.outline, shape.fill_rule, is_opaque(shape.paint)});
-    }
-    auto pieces = visible_pieces(layers, ArrangementEffort::kBounded, options.threads, progress);
-    if (!pieces) {
-      out.stacks.push_back(stack_of(shapes));
-      return out;
-    }
-    for (VisiblePiece& piece : *pieces) {
-      std::vector<Paint> veils;
-      for (const std::uint32_t veil : piece.veils) veils.push_back(shapes[veil].paint);
-      maker.add_veiled(maker.keep(std::move(piece.outline)), paints[piece.layer], veils);
-    }
-    return out;
+  LayerFinder finder(shapes, options);
+  if (covers) {
+    finder.find_covered(first, progress);
+  } else {
+    finder.find_added(progress);
   }
-  // Only the thread that called reports, which one shape by itself stays on.
-  const Progress within = shapes.size() == 1 ? progress : Progress();
-  std::vector<std::optional<Outline>> changed(shapes.size());
-  std::vector<std::uint8_t> is_stacked(shapes.size(), 0);
-  parallel_for(
-      static_cast<std::int64_t>(shapes.size()), options.threads, progress, [&](std::int64_t i) {
-        if (shapes[i].winds_once) return;
-        if (options.method == RasterMethod::kWavelet && is_left_open(shapes[i].outline)) {
-          return;
-        }
-        is_stacked[i] = !resolve_soon(shapes[i].outline, shapes[i].fill_rule, within, &changed[i]);
-      });
-  for (std::size_t i = 0; i < shapes.size(); ++i) {
-    if (is_stacked[i] != 0) {
-      out.stacks.push_back(stack_of(shapes.subspan(i, 1)));
-    } else {
-      maker.add(changed[i] ? maker.keep(*std::move(changed[i])) : shapes[i].outline, paints[i]);
-    }
-  }
+  finder.add_to(paints, &out);
   return out;
 }
 
