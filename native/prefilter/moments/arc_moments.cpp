@@ -107,15 +107,23 @@ inline void integrate_lines(Lanes x0, Lanes y0, Lanes x1, Lanes y1, Lanes signs,
 inline int parts_of(const ParametricCurve& curve, const CellArc& arc) {
   constexpr int kMostParts = 256;
   constexpr double kMostBend = 0.06;
-  int parts = curve.kind == CurveKind::kConic ? 2 : 1;
+  constexpr double kShort = 0.25;  // of the parameter: over it a conic is as good as a polynomial
+  int parts = curve.kind == CurveKind::kConic && arc.t_end - arc.t_begin > kShort ? 2 : 1;
   if (curve.kind == CurveKind::kBezier) {
     const double turns = static_cast<double>(curve.controls.size()) * (arc.t_end - arc.t_begin);
     while (parts < turns) parts *= 2;
   }
   const auto bend = [&](double t_begin, double t_end) {
+    const double t = 0.5 * (t_begin + t_end);
+    if (curve.kind != CurveKind::kConic && curve.kind != CurveKind::kBezier) {
+      // Of polynomials up to the third degree the second derivative in the middle tells it.
+      const double half = 0.5 * (t_end - t_begin);
+      const Point2 off = (half * half) * (curve.powers[2] + (3.0 * t) * curve.powers[3]);
+      return std::abs(off.x) + std::abs(off.y);
+    }
     const Point2 a = curve.at(t_begin);
     const Point2 c = curve.at(t_end);
-    const Point2 off = curve.at(0.5 * (t_begin + t_end)) - 0.5 * (a + c);
+    const Point2 off = curve.at(t) - 0.5 * (a + c);
     return std::abs(off.x) + std::abs(off.y);
   };
   while (parts < kMostParts) {
@@ -189,10 +197,11 @@ void ArcBatch<N>::add_curve(const ParametricCurve& curve, const CellArc& arc, Po
     const double from = arc.t_begin + part * step;
     for (int k = 0; k < kPoints; ++k) {
       const double t = from + rule.nodes[k] * step;
-      const Point2 at = curve.at(t) - center;
+      const Point2 point = curve.at(t);
+      const Point2 at = point - center;
       const auto x = static_cast<float>(at.x);
       const auto y = static_cast<float>(at.y);
-      auto factor = static_cast<float>(rule.weights[k] * step * curve.derivative(t).y);
+      auto factor = static_cast<float>(rule.weights[k] * step * curve.derivative(t, point).y);
       std::array<float, kCount> powers;
       float power = 1.0F;
       for (int b = 0; b < kCount; ++b) {

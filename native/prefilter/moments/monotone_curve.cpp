@@ -56,21 +56,9 @@ ParametricCurve::ParametricCurve(std::span<const Point2> controls_, double weigh
   }
 }
 
-Point2 ParametricCurve::at(double t) const {
-  if (kind == CurveKind::kBezier) return point_at({controls}, t);
-  const Point2 sum = powers[0] + t * (powers[1] + t * (powers[2] + t * powers[3]));
-  if (kind != CurveKind::kConic) return sum;
-  return (1.0 / (denominator[0] + t * (denominator[1] + t * denominator[2]))) * sum;
-}
+Point2 ParametricCurve::bezier_at(double t) const { return point_at({controls}, t); }
 
-Point2 ParametricCurve::derivative(double t) const {
-  if (kind == CurveKind::kBezier) return derivative_at({controls}, t);
-  const Point2 slope = powers[1] + t * (2.0 * powers[2] + (3.0 * t) * powers[3]);
-  if (kind != CurveKind::kConic) return slope;
-  const double below = denominator[0] + t * (denominator[1] + t * denominator[2]);
-  const double below_slope = denominator[1] + 2.0 * t * denominator[2];
-  return (1.0 / below) * (slope - below_slope * at(t));
-}
+Point2 ParametricCurve::bezier_derivative(double t) const { return derivative_at({controls}, t); }
 
 int turning_points(const ParametricCurve& curve, std::span<const Point2> controls,
                    std::array<double, kMostTurns>* turns) {

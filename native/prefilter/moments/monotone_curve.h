@@ -28,9 +28,27 @@ struct ParametricCurve {
   ParametricCurve() = default;
   ParametricCurve(std::span<const Point2> controls_, double weight);
 
-  Point2 at(double t) const;
+  Point2 at(double t) const {
+    if (kind == CurveKind::kBezier) return bezier_at(t);
+    const Point2 sum = powers[0] + t * (powers[1] + t * (powers[2] + t * powers[3]));
+    if (kind != CurveKind::kConic) return sum;
+    return (1.0 / (denominator[0] + t * (denominator[1] + t * denominator[2]))) * sum;
+  }
   /// By t.
-  Point2 derivative(double t) const;
+  Point2 derivative(double t) const { return derivative(t, at(t)); }
+  /// The same where the point there is known.
+  Point2 derivative(double t, const Point2& point) const {
+    if (kind == CurveKind::kBezier) return bezier_derivative(t);
+    const Point2 slope = powers[1] + t * (2.0 * powers[2] + (3.0 * t) * powers[3]);
+    if (kind != CurveKind::kConic) return slope;
+    const double below = denominator[0] + t * (denominator[1] + t * denominator[2]);
+    const double below_slope = denominator[1] + 2.0 * t * denominator[2];
+    return (1.0 / below) * (slope - below_slope * point);
+  }
+
+ private:
+  Point2 bezier_at(double t) const;
+  Point2 bezier_derivative(double t) const;
 };
 
 /// From t_begin to t_end along a curve neither x nor y turns.

@@ -16,29 +16,33 @@ void MomentCells<N>::begin_band(const CellFilter& filter, int width, int first_r
   is_touched_.assign(rows * blocks_, 0);
   left_.assign(rows, 0);
   cells_.clear();
+  use_no_row();
+}
+
+template <int N>
+std::int32_t MomentCells<N>::made(int row, std::int32_t* slot) {
+  if (*slot == 0) {
+    cells_.emplace_back();
+    *slot = static_cast<std::int32_t>(cells_.size());
+    first_used_row_ = std::min(first_used_row_, row);
+    end_used_row_ = std::max(end_used_row_, row + 1);
+  }
+  return *slot - 1;
 }
 
 template <int N>
 std::int32_t MomentCells<N>::cell(int column, int row) {
-  std::int32_t& slot = slots_[slot_place(column, row)];
-  if (slot == 0) {
-    is_touched_[slot_place(column, row) / kBlock] = 1;
-    cells_.emplace_back();
-    slot = static_cast<std::int32_t>(cells_.size());
-  }
-  return slot - 1;
+  const std::size_t place = slot_place(column, row);
+  is_touched_[place / kBlock] = 1;
+  return made(row, &slots_[place]);
 }
 
 template <int N>
 void MomentCells<N>::add(const MonotoneCurve& piece, int sign) {
   const auto left_of_window = [&](int row, double y_begin, double y_end) {
-    std::int32_t& slot = left_[row - window_.first_row];
-    if (slot == 0) {
-      cells_.emplace_back();
-      slot = static_cast<std::int32_t>(cells_.size());
-    }
+    const std::int32_t place = made(row, &left_[row - window_.first_row]);
     const double center = row + 0.5;
-    batch_.add_line({0.0, y_begin - center}, {0.0, y_end - center}, sign, slot - 1, &cells_);
+    batch_.add_line({0.0, y_begin - center}, {0.0, y_end - center}, sign, place, &cells_);
   };
   if (piece.curve.kind == CurveKind::kLine) {
     cut_line_to_cells(
@@ -82,13 +86,17 @@ std::array<std::int64_t, N + 1> MomentCells<N>::left_of(int row) const {
 
 template <int N>
 void MomentCells<N>::clear() {
-  std::fill(left_.begin(), left_.end(), 0);
-  for (std::size_t block = 0; block < is_touched_.size(); ++block) {
-    if (is_touched_[block] == 0) continue;
-    is_touched_[block] = 0;
-    std::fill_n(slots_.begin() + static_cast<std::ptrdiff_t>(block * kBlock), kBlock, 0);
+  for (int row = first_used_row_; row < end_used_row_; ++row) {
+    left_[row - window_.first_row] = 0;
+    const std::size_t first = static_cast<std::size_t>(row - window_.first_row) * blocks_;
+    for (std::size_t block = first; block < first + blocks_; ++block) {
+      if (is_touched_[block] == 0) continue;
+      is_touched_[block] = 0;
+      std::fill_n(slots_.begin() + static_cast<std::ptrdiff_t>(block * kBlock), kBlock, 0);
+    }
   }
   cells_.clear();
+  use_no_row();
 }
 
 template class MomentCells<0>;

@@ -22,6 +22,9 @@ class MomentCells {
   /// The cells under the pixels of the rows [first_row, end_row) of images of a width.
   void begin_band(const CellFilter& filter, int width, int first_row, int end_row);
   const GridWindow& window() const { return window_; }
+  /// Arcs have left something in rows of cells from the first of these up to the second alone.
+  int first_used_row() const { return first_used_row_; }
+  int end_used_row() const { return end_used_row_; }
 
   /// Adds a piece, in coordinates of cells; the region on its right counts `sign` times.
   void add(const MonotoneCurve& piece, int sign);
@@ -51,8 +54,15 @@ class MomentCells {
   }
   // The place in cells_ of a cell, made where there is none yet.
   std::int32_t cell(int column, int row);
+  std::int32_t made(int row, std::int32_t* slot);
+  void use_no_row() {
+    first_used_row_ = window_.end_row;
+    end_used_row_ = window_.first_row;
+  }
 
   GridWindow window_;
+  int first_used_row_ = 0;
+  int end_used_row_ = 0;
   int blocks_ = 0;
   std::vector<std::int32_t> slots_;  // one more than the place in cells_, or 0
   std::vector<std::uint8_t> is_touched_;

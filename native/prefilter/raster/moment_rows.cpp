@@ -91,7 +91,7 @@ void MomentRows<N>::add_coverage(const MomentCells<N>& cells, int first_row, int
                                  CoverageRows* rows) {
   first_row_ = first_row;
   end_row_ = end_row;
-  for (int row = cells.window().first_row; row < cells.window().end_row; ++row) {
+  for (int row = cells.first_used_row(); row < cells.end_used_row(); ++row) {
     cells.columns_of(row, &columns_);
     Across across = cells.left_of(row);
     start_row(row, across, rows);

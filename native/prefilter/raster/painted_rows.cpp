@@ -61,7 +61,7 @@ void PaintedRows<N>::add_values(const MomentCells<N>& cells, const LocalColor& c
                                 int end_row, BandValues* values) {
   pixels_.begin(first_row, end_row, values);
   const int end_column = cells.window().end_column;
-  for (int row = cells.window().first_row; row < cells.window().end_row; ++row) {
+  for (int row = cells.first_used_row(); row < cells.end_used_row(); ++row) {
     cells.columns_of(row, &columns_);
     std::array<std::int64_t, N + 1> across = cells.left_of(row);
     // By powers of y, from P_b.
