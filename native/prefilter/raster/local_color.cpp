@@ -3,33 +3,6 @@
 #include "prefilter/raster/local_color.h"
 
 namespace prefilter {
-namespace {
-
-constexpr std::array<double, 3> kNodes = {-0.38729833462074170, 0.0, 0.38729833462074170};
-constexpr std::array<double, 3> kWeights = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
-
-}  // namespace
-
-Point2 color_node(std::size_t index) { return {kNodes[index % 3], kNodes[index / 3]}; }
-
-void add_color_node(std::size_t index, const ChannelValues& value, int channels,
-                    std::array<ColorPowers, kMaxChannels>* powers) {
-  const auto [u, v] = color_node(index);
-  const double weight = kWeights[index % 3] * kWeights[index / 3];
-  // Legendre's polynomials, each over the integral of its square.
-  const double uu = 180.0 * (u * u - 1.0 / 12.0);
-  const double vv = 180.0 * (v * v - 1.0 / 12.0);
-  for (int c = 0; c < channels; ++c) {
-    const double term = weight * value[c];
-    ColorPowers& sums = (*powers)[c];
-    sums[0] += term * (1.0 - (uu + vv) / 12.0);
-    sums[1] += term * 12.0 * u;
-    sums[2] += term * 12.0 * v;
-    sums[3] += term * uu;
-    sums[4] += term * 144.0 * u * v;
-    sums[5] += term * vv;
-  }
-}
 
 ChannelValues LocalColor::at(const Point2& point) const {
   ChannelValues value = layer_.paint.at(point);
@@ -67,6 +40,7 @@ void LocalColor::node_powers(int column, int row,
                              std::array<ColorPowers, kMaxChannels>* out) const {
   const double scale = 1.0 / filter_.cells_per_pixel;
   const Point2 center = center_of(column, row);
+  if (round_ && round_->node_powers(center, out)) return;
   for (ColorPowers& powers : *out) powers = {};
   for (std::size_t i = 0; i < kColorNodes; ++i) {
     const Point2 place = center + scale * color_node(i);

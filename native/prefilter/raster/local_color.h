@@ -7,22 +7,11 @@
 #include <optional>
 
 #include "prefilter/raster/cell_filter.h"
+#include "prefilter/raster/color_nodes.h"
 #include "prefilter/raster/raster_layers.h"
 #include "prefilter/raster/round_gradient.h"
 
 namespace prefilter {
-
-/// The exponents of u and v in ColorPowers.
-inline constexpr std::array<std::array<int, 2>, 6> kColorExponents = {
-    {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}}};
-
-/// Where a color is told that is no polynomial: three points along each axis, by Gauss's rule.
-inline constexpr std::size_t kColorNodes = 9;
-/// From the cell's center, in cells.
-Point2 color_node(std::size_t index);
-/// Adds what a value there is of the polynomial that is nearest in the mean square.
-void add_color_node(std::size_t index, const ChannelValues& value, int channels,
-                    std::array<ColorPowers, kMaxChannels>* powers);
 
 class LocalColor {
  public:

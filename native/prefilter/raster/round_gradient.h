@@ -7,12 +7,10 @@
 #include <optional>
 #include <vector>
 
+#include "prefilter/raster/color_nodes.h"
 #include "prefilter/raster/paint.h"
 
 namespace prefilter {
-
-/// Of 1, u, v, u^2, u v, v^2, in the coordinates from a cell's center.
-using ColorPowers = std::array<double, 6>;
 
 /// The color on a cell that is far from the center and within one stretch between stops: there it
 /// is linear in the radius, which is told by its slopes and curvature at the cell's center.
@@ -27,6 +25,9 @@ class RoundGradient {
   /// The powers of each channel, around a point in pixels; false where the color is not that
   /// smooth.
   bool powers(const Point2& center, std::array<ColorPowers, kMaxChannels>* out) const;
+  /// The same by what the color is at the nodes; false where it jumps, or more than two stretches
+  /// meet there.
+  bool node_powers(const Point2& center, std::array<ColorPowers, kMaxChannels>* out) const;
   /// Adds the means over cells along a row, the first one around a point, times a share to `out`,
   /// for as long as the color is that smooth; returns over how many of `count`.
   int add_means(const Point2& center, int count, double share, double* out) const;
