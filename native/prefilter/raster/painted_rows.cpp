@@ -13,7 +13,7 @@ constexpr double kMomentUnit = 1.0 / (1 << kMomentBits);
 
 template <int N>
 PaintedRows<N>::PaintedRows(const CellFilter& filter, int width)
-    : filter_(filter), pixels_(filter, width) {}
+    : filter_(filter), is_box_(filter.taps == 1 && filter.degree == 0), pixels_(filter, width) {}
 
 template <int N>
 void PaintedRows<N>::add_cell(int column, int row, const Moments& moments,
@@ -22,6 +22,19 @@ void PaintedRows<N>::add_cell(int column, int row, const Moments& moments,
   color.powers(column, row, &powers);
   const int count = filter_.degree + 1;
   const int channels = color.channels();
+  if (is_box_) {
+    const std::size_t terms = color.degree() == 1 ? 3 : kColorExponents.size();
+    pixels_.add_row(column, column + 1, row, [&](int, int, double* out) {
+      for (int c = 0; c < channels; ++c) {
+        double sum = 0.0;
+        for (std::size_t k = 0; k < terms; ++k) {
+          sum += powers[c][k] * moments[kColorExponents[k][0]][kColorExponents[k][1]];
+        }
+        out[c] += sum;
+      }
+    });
+    return;
+  }
   for (int c = 0; c < channels; ++c) {
     // The moments of the color: of the color's powers and the filter's together.
     std::array<double, (N + 1) * (N + 1)> colored{};
@@ -41,8 +54,7 @@ void PaintedRows<N>::add_cell(int column, int row, const Moments& moments,
 template <int N>
 void PaintedRows<N>::add_full_cells(int begin, int end, int row, double share,
                                     const LocalColor& color) {
-  // The box weighs a pixel's own cell alone, all over alike.
-  if (filter_.taps == 1 && filter_.degree == 0) {
+  if (is_box_) {
     pixels_.add_row(begin, end, row, [&](int first, int last, double* out) {
       color.add_means(first, last, row, share, out);
     });

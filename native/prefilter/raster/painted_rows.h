@@ -33,6 +33,7 @@ class PaintedRows {
   void add_full_cells(int begin, int end, int row, double share, const LocalColor& color);
 
   const CellFilter& filter_;
+  bool is_box_;  // which weighs a pixel's own cell alone, all over alike
   CellPixels pixels_;
   std::vector<int> columns_;
 };
