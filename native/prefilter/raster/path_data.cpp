@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <initializer_list>
 #include <numbers>
 
@@ -18,6 +19,21 @@ constexpr std::string_view kCommands = "MmZzLlHhVvCcSsQqTtAa";
 
 bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+constexpr std::array<bool, 256> kIsCommand = [] {
+  std::array<bool, 256> is{};
+  for (const char letter : kCommands) is[static_cast<unsigned char>(letter)] = true;
+  return is;
+}();
+bool is_command(char c) { return kIsCommand[static_cast<unsigned char>(c)]; }
+
+// Whole numbers of so many digits are exact, and so are the powers of ten up to there.
+constexpr std::size_t kExactDigits = 15;
+constexpr std::array<double, kExactDigits + 1> kPowersOfTen = [] {
+  std::array<double, kExactDigits + 1> powers{1.0};
+  for (std::size_t i = 1; i < powers.size(); ++i) powers[i] = 10.0 * powers[i - 1];
+  return powers;
+}();
 
 // What is left of a text.
 class Cursor {
@@ -37,23 +53,25 @@ class Cursor {
   // A sign, digits with a point among them, an exponent; what is behind the longest one stays.
   bool take_number(double* number) {
     std::size_t end = !empty() && (front() == '+' || front() == '-') ? 1 : 0;
-    const std::size_t whole = run(end, is_digit);
+    std::uint64_t digits = 0;
+    const std::size_t whole = take_digits(end, &digits);
+    std::size_t fraction = 0;
     end += whole;
     if (end < text_.size() && text_[end] == '.') {
-      const std::size_t fraction = run(end + 1, is_digit);
-      if (whole + fraction == 0) return false;
+      fraction = take_digits(end + 1, &digits);
       end += 1 + fraction;
-    } else if (whole == 0) {
-      return false;
     }
-    if (end < text_.size() && (text_[end] == 'e' || text_[end] == 'E')) {
-      std::size_t exponent = end + 1;
-      if (exponent < text_.size() && (text_[exponent] == '+' || text_[exponent] == '-')) ++exponent;
-      const std::size_t digits = run(exponent, is_digit);
-      if (digits > 0) end = exponent + digits;
+    if (whole + fraction == 0) return false;
+    const std::size_t exponent = exponent_size(end);
+    if (exponent == 0 && whole + fraction <= kExactDigits) {
+      // Both are exact, so that the quotient is the nearest number.
+      const double size = static_cast<double>(digits) / kPowersOfTen[fraction];
+      *number = front() == '-' ? -size : size;
+    } else {
+      end += exponent;
+      to_number(text_.substr(0, end), number);
+      if (!std::isfinite(*number)) return false;
     }
-    to_number(text_.substr(0, end), number);
-    if (!std::isfinite(*number)) return false;
     skip(end);
     return true;
   }
@@ -70,6 +88,24 @@ class Cursor {
     std::size_t end = begin;
     while (end < text_.size() && is(text_[end])) ++end;
     return end - begin;
+  }
+
+  // How many digits there are from a place on; adds them to those before.
+  std::size_t take_digits(std::size_t begin, std::uint64_t* digits) const {
+    std::size_t end = begin;
+    for (; end < text_.size() && is_digit(text_[end]); ++end) {
+      *digits = 10 * *digits + static_cast<std::uint64_t>(text_[end] - '0');
+    }
+    return end - begin;
+  }
+
+  // Of an exponent at a place, with its letter; 0 for none.
+  std::size_t exponent_size(std::size_t begin) const {
+    if (begin == text_.size() || (text_[begin] != 'e' && text_[begin] != 'E')) return 0;
+    std::size_t end = begin + 1;
+    if (end < text_.size() && (text_[end] == '+' || text_[end] == '-')) ++end;
+    const std::size_t digits = run(end, is_digit);
+    return digits > 0 ? end + digits - begin : 0;
   }
 
   std::string_view text_;
@@ -427,9 +463,10 @@ PathOutcome read_path_data(std::string_view text, std::size_t most, PathSteps* s
   while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
   while (!text.empty()) {
     const char letter = text.front();
-    if (kCommands.find(letter) == std::string_view::npos) return PathOutcome::kBroken;
+    if (!is_command(letter)) return PathOutcome::kBroken;
     text.remove_prefix(1);
-    const std::size_t end = std::min(text.find_first_of(kCommands), text.size());
+    const auto at = std::find_if(text.begin(), text.end(), is_command);
+    const auto end = static_cast<std::size_t>(at - text.begin());
     const bool is_valid = pen.draw(letter, text.substr(0, end));
     if (pen.has_too_many()) return PathOutcome::kTooMany;
     if (!is_valid) return PathOutcome::kBroken;
