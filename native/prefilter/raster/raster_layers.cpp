@@ -145,19 +145,28 @@ class LayerFinder {
   // Looks for what is seen of shapes that cover each other, from a number on.
   void find_covered(std::uint32_t first, const Progress& progress) {
     group_shapes(first);
-    std::size_t most = 0;
-    for (const Group& group : groups_) most = std::max(most, group.shapes.size());
-    // One group takes all threads, and the others one each.
-    const auto largest = std::find_if(groups_.begin(), groups_.end(), [&](const Group& group) {
-      return group.shapes.size() == most;
-    });
-    if (largest == groups_.end()) return;
-    const double share = static_cast<double>(most) / static_cast<double>(shapes_.size() - first);
-    find_pieces(&*largest, options_.threads, progress.part(0.0, share));
-    parallel_for(static_cast<std::int64_t>(groups_.size()), options_.threads,
-                 progress.part(share, 1.0), [&](std::int64_t i) {
-                   if (&groups_[i] != &*largest) find_pieces(&groups_[i], 1, {});
-                 });
+    if (groups_.empty()) return;
+    // Large groups take all threads one after another, as only the one that called can be told to
+    // stop; the others one each.
+    constexpr std::size_t kLargeSegments = 4096;
+    std::vector<std::size_t> small;
+    std::vector<std::size_t> large;
+    for (std::size_t i = 0; i < groups_.size(); ++i) {
+      std::size_t segments = 0;
+      for (const std::uint32_t shape : groups_[i].shapes) {
+        segments += shapes_[shape].outline.segments().size();
+      }
+      (segments < kLargeSegments ? small : large).push_back(i);
+    }
+    const auto groups = static_cast<double>(groups_.size());
+    for (std::size_t i = 0; i < large.size(); ++i) {
+      const auto done = static_cast<double>(i);
+      find_pieces(&groups_[large[i]], options_.threads,
+                  progress.part(done / groups, (done + 1.0) / groups));
+    }
+    parallel_for(static_cast<std::int64_t>(small.size()), options_.threads,
+                 progress.part(static_cast<double>(large.size()) / groups, 1.0),
+                 [&](std::int64_t i) { find_pieces(&groups_[small[i]], 1, {}); });
   }
 
   // The same of shapes that are added.
@@ -234,8 +243,9 @@ class LayerFinder {
   void find_pieces(Group* group, int threads, const Progress& progress) {
     if (!group->is_covered) {
       const auto count = static_cast<std::int64_t>(group->shapes.size());
+      const Progress within = count == 1 ? progress : Progress();
       parallel_for(count, threads, progress.part(0.0, 0.1),
-                   [&](std::int64_t i) { find_single(group->shapes[i], {}); });
+                   [&](std::int64_t i) { find_single(group->shapes[i], within); });
       group->is_covered = count > 1 && !are_beside(group->shapes);
     }
     if (!group->is_covered) return;

@@ -16,7 +16,6 @@ from .limits import MOST_SEGMENTS, TooLargeError
 
 # How many numbers a segment has.
 _SIZES = {"M": 2, "L": 2, "Q": 4, "C": 6, "W": 5, "Z": 0}
-_TOO_MANY = f"more than {MOST_SEGMENTS} lines and curves in a path"
 
 
 class Outline:
@@ -64,13 +63,13 @@ class Outline:
     def extend(self, letters: bytes, numbers: "array[float]") -> None:
         """Adds segments, a letter for each, and the numbers of all of them."""
         if len(self._letters) + len(letters) > MOST_SEGMENTS:
-            raise TooLargeError(_TOO_MANY)
+            raise _too_many()
         self._letters += letters
         self._numbers.extend(numbers)
 
     def _add(self, letter: bytes, numbers: tuple[float, ...]) -> None:
         if len(self._letters) >= MOST_SEGMENTS:
-            raise TooLargeError(_TOO_MANY)
+            raise _too_many()
         self._letters += letter
         self._numbers.extend(numbers)
 
@@ -149,11 +148,15 @@ class Outline:
         return self._shapes[fill_rule]
 
 
+def _too_many() -> TooLargeError:
+    return TooLargeError(f"more than {MOST_SEGMENTS} lines and curves in a path")
+
+
 def read_path(text: str) -> tuple[Outline, bool]:
     """The outline that path data draw up to their first error, and whether there is none."""
     letters, numbers, is_whole = _native.read_path(text.encode(errors="replace"), MOST_SEGMENTS)
     if letters is None or numbers is None:
-        raise TooLargeError(_TOO_MANY)
+        raise _too_many()
     outline = Outline()
     outline.extend(letters, array("d", numbers))
     return outline, is_whole
