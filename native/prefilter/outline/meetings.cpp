@@ -370,20 +370,24 @@ class MeetingFinder {
            (1.0 - s) * a.begin() + s * a.end());
   }
 
-  // Cells along each other: where the part that both have begins and ends.
+  // Cells along each other: where the part that both have begins and ends. A cell may be so short
+  // that it is across the other one, where what is in its direction is nowhere near it.
   void append_overlap(const Cell& a, const Cell& b) {
-    const auto share_of = [](const Cell& cell, const Point2& point) {
+    const auto share_of = [this](const Cell& cell, const Point2& point) {
       const Point2 chord = cell.end() - cell.begin();
-      return dot(point - cell.begin(), chord) / dot(chord, chord);
+      const double share = dot(point - cell.begin(), chord) / dot(chord, chord);
+      if (!(share >= 0.0 && share <= 1.0)) return -1.0;
+      const Point2 nearest = (1.0 - share) * cell.begin() + share * cell.end();
+      return distance(point, nearest) <= 2.0 * precision_ ? share : -1.0;
     };
     for (const bool at_end : {false, true}) {
       const double t = share_of(b, at_end ? a.end() : a.begin());
-      if (t >= 0.0 && t <= 1.0) {
+      if (t >= 0.0) {
         append(at_end ? a.to() : a.from(), (1.0 - t) * b.from() + t * b.to(),
                at_end ? a.end() : a.begin());
       }
       const double s = share_of(a, at_end ? b.end() : b.begin());
-      if (s >= 0.0 && s <= 1.0) {
+      if (s >= 0.0) {
         append((1.0 - s) * a.from() + s * a.to(), at_end ? b.to() : b.from(),
                at_end ? b.end() : b.begin());
       }

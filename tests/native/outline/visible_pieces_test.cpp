@@ -128,6 +128,35 @@ TEST(VisiblePieces, WhatIsCoveredIsLeftOut) {
   EXPECT_TRUE(visible_pieces({}, ArrangementEffort::kAny).value().empty());
 }
 
+// A contour that ends beside its beginning has a closing line as short as rounding, across another
+// shape's edge that ends there.
+TEST(VisiblePieces, ClosingLinesAsShortAsRoundingMeetNothingFarAway) {
+  for (const bool is_vertical : {true, false}) {
+    for (const double above : {0.0, 0x1p-48, -0x1p-48}) {
+      const auto at = [&](double x, double y) { return is_vertical ? Point2{x, y} : Point2{y, x}; };
+      Outline body;
+      body.move_to(at(48.0, 22.0));
+      for (const Point2& point : {at(36.0, 22.0), at(36.0, 50.0), at(48.0, 50.0)}) {
+        body.line_to(point);
+      }
+      body.close();
+      Outline lid;
+      lid.move_to(at(48.0, 22.0));
+      for (const auto& points : {std::vector<Point2>{at(48.0, 25.0), at(36.0, 25.0)},
+                                 std::vector<Point2>{at(24.0, 25.0), at(24.0, 22.0)},
+                                 std::vector<Point2>{at(24.0, 18.0), at(36.0, 18.0)},
+                                 std::vector<Point2>{at(48.0, 18.0), at(48.0, 22.0 + above)}}) {
+        lid.curve_to(points);
+      }
+      lid.close();
+      Scene scene;
+      scene.add(body);
+      scene.add(lid);
+      scene.expect_pieces();
+    }
+  }
+}
+
 TEST(VisiblePieces, AreTheSameForAnyNumberOfThreads) {
   std::mt19937 random(9);
   std::vector<Outline> outlines;
