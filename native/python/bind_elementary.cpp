@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+#include <vector>
+
 #include "convert.h"
 #include "prefilter/base/elementary.h"
 
@@ -16,6 +18,19 @@ void bind_elementary(py::module_& m) {
       py::arg("y"));
   m.def("sin", elementary::sin, py::arg("x"));
   m.def("tan", elementary::tan, py::arg("x"));
+  m.def(
+      "powers",
+      [](const Array<double>& values, double exponent) {
+        Array<double> powers(
+            std::vector<py::ssize_t>(values.shape(), values.shape() + values.ndim()));
+        const double* from = values.data();
+        double* to = powers.mutable_data();
+        const py::ssize_t count = values.size();
+        const py::gil_scoped_release unlocked;
+        for (py::ssize_t i = 0; i < count; ++i) to[i] = elementary::pow(from[i], exponent);
+        return powers;
+      },
+      py::arg("values"), py::arg("exponent"));
   // Rows of distance, azimuth and elevation, the angles in radians.
   m.def(
       "from_spherical",

@@ -19,7 +19,10 @@ CLIP = "<clipPath id='c' transform='scale(2)'><rect x='5' width='15' height='50'
     ("body", "name"),
     [
         ("<foreignObject/>", "<foreignObject>"),
-        (f'<filter id="f"><feTile/></filter><g filter="url(#f)">{BOX}</g>', "filter with <feTile>"),
+        (
+            f'<filter id="f"><feTile in="BackgroundImage"/></filter><g filter="url(#f)">{BOX}</g>',
+            "filter with BackgroundImage",
+        ),
         (f'<filter id="f"><feOffset/></filter><g filter="url(#f)">{BOX}</g>', "filter"),
         ('<image width="9" height="9" href="http://example.org/a.png"/>', "<image>"),
         ('<rect width="9" height="9" clip-path="circle(4px)"/>', "clip-path"),

@@ -200,16 +200,10 @@ def clip_path(name):
 
 
 def test_what_is_not_supported_is_said_once():
-    body = f'<filter id="f"><feTurbulence/></filter>{BOX}{BOX}'
+    body = f'<filter id="f"><feOffset in="FillPaint"/></filter>{BOX}{BOX}'
     made, (warning,) = prefilter.rasterize_svg(svg(body), SIZE, SIZE)
-    assert str(warning) == "filter with <feTurbulence>: ignored (first in line 1, 2 times)"
+    assert str(warning) == "filter with FillPaint: ignored (first in line 1, 2 times)"
     same(made[::-1], plain(box(30, 20, 60, 50, "")))
-    for text, words in (
-        ("blur(2px)", "filter: ignored: blur(2px)"),
-        ("url(#x)", "filter: ignored"),
-    ):
-        _, (warning,) = prefilter.rasterize_svg(svg(box(0, 0, 9, 9, f'filter="{text}"')), 9, 9)
-        assert str(warning).startswith(words)
     assert prefilter.read_svg(svg(f"<filter id='f'><feOffset/></filter>{BOX}")).warnings
 
 

@@ -18,12 +18,12 @@ from ..rasterization import rasterize
 from ..shape import Shape
 from .blending import blended
 from .drawing import Drawing
-from .filtering import filtered, reach_of
-from .layering import Layering, Placed, bounds_of, is_plain, leaf_count
+from .filter_layers import filtered_layer
+from .layering import Layering, Placed, bounds_of, filtered_region, is_plain, leaf_count
 from .limits import TooLargeError
 from .outlining import Outlining
 from .resampled import picture_pixels, tiled_pixels
-from .tree import Box, Clip, Filter, Group, Mask, Painted, Pattern, Picture, carried, common
+from .tree import Box, Clip, Group, Mask, Painted, Pattern, Picture, carried, common
 from .values import Matrix, inverse, multiplied
 
 FloatArray = npt.NDArray[np.float32]
@@ -114,6 +114,11 @@ class Compositor:
         return canvas
 
     def _blank(self, window: Window) -> FloatArray:
+        self._take(window)
+        return np.zeros((window[3] - window[1], window[2] - window[0], 4), np.float32)
+
+    def _take(self, window: Window) -> None:
+        """Counts a layer."""
         width, height = window[2] - window[0], window[3] - window[1]
         self._pixels_left -= width * height
         self._layers_left -= 1
@@ -121,7 +126,6 @@ class Compositor:
             raise TooLargeError(
                 f"more than {MOST_LAYERS} layers, or of more than {MOST_LAYER_PIXELS} pixels"
             )
-        return np.zeros((height, width, 4), np.float32)
 
     def _put_shapes(self, shapes: list[Shape], canvas: FloatArray, window: Window) -> None:
         boxes = [shape.bounds for shape in shapes]
@@ -190,7 +194,7 @@ class Compositor:
     def _group(self, group: Group, placed: Placed, window: Window) -> FloatArray:
         inside = self._layering.placed(group, placed.matrix, placed.around)
         if group.filter is not None:
-            layer = self._filtered(group, group.filter, placed, window)
+            layer = self._filtered(group, placed, window)
         else:
             layer = self._nested(inside, window)
         for mask in group.masks:
@@ -200,31 +204,19 @@ class Compositor:
             layer *= np.float32(opacity)
         return layer
 
-    def _filtered(
-        self, group: Group, filter_: Filter, placed: Placed, window: Window
-    ) -> FloatArray:
+    def _filtered(self, group: Group, placed: Placed, window: Window) -> FloatArray:
         """A group after its filter, cut off at its clips after that."""
-        # What is farther away than half a side is left out: it would take too much memory.
-        most = max(window[2] - window[0], window[3] - window[1]) / 2.0
-        reach = math.ceil(min(reach_of(filter_, placed.matrix), most))
-        around = (window[0] - reach, window[1] - reach, window[2] + reach, window[3] + reach)
-        region = window_of([carried(filter_.region, placed.matrix)], around, self._reach)
-        if region is None:
-            return self._blank(window)
-        source = self._nested(self._layering.placed(group, placed.matrix), region)
-        made = filtered(source, filter_, placed.matrix, region[:2])
-        layer = self._blank(window)
-        shared = common((*map(float, window),), (*map(float, region),))  # type: ignore[arg-type]
-        if shared is not None:
-            left, low, right, high = map(int, shared)
-            rows = slice(low - region[1], high - region[1])
-            columns = slice(left - region[0], right - region[0])
-            _put(layer, window, made[rows, columns], (left, low, right, high), "normal")
+        box = filtered_region(group)
         clips = (*placed.around, *group.clips)
-        shape = self._outlining.region(filter_.region, clips, placed.matrix)
-        if shape is None:
+        if box is None:
             return self._blank(window)
-        if clips:
+
+        def draw(shown: Group, matrix: Matrix, part: Window) -> FloatArray:
+            return self._nested(self._layering.placed(shown, matrix), part)
+
+        self._take(window)
+        layer = filtered_layer(draw, group, box, placed.matrix, window, self._threads)
+        for shape in self._outlining.filtered(group, clips, placed.matrix):
             layer *= self._coverage(shape, window)
         return layer
 

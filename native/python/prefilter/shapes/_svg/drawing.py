@@ -12,7 +12,7 @@ from .clip_paths import clipped
 from .clips import box_clip
 from .context import Context, Sources
 from .document import Document, SvgElement, read_document
-from .filters import filter_of
+from .filters import filters_of
 from .font_places import FontPlaces
 from .images import Images, draw_image
 from .limits import Budget, check_uses
@@ -193,13 +193,13 @@ class Walk:
             if declared[name].lower() not in UNSUPPORTED[name]:
                 sources.warnings.unsupported(name, "ignored", element.line)
         inside = clipped(element, context, sources)
-        filter_ = filter_of(element, context, sources)
+        filters = filters_of(element, context, sources, self._images)
         masks = masks_of(element, context, sources)
         if inside is None or masks is None:
             return None
         is_isolated = (
             bool(masks)
-            or filter_ is not None
+            or bool(filters)
             or style.opacity < 1.0
             or style.mix_blend_mode != "normal"
             or style.isolation == "isolate"
@@ -210,13 +210,17 @@ class Walk:
                 opacity=context.colors.opacity(style.opacity),
                 blend=style.mix_blend_mode,
                 masks=masks,
-                filter=filter_,
-                clips=inside.clips if filter_ is not None else (),
+                filter=filters[-1] if filters else None,
+                clips=inside.clips if filters else (),
                 is_isolated=True,
                 line=element.line,
             )
             context.target.items.append(group)
-            clips = () if filter_ is not None else inside.clips
+            for earlier in reversed(filters[:-1]):
+                within = Group(filter=earlier, is_isolated=True, line=element.line)
+                group.items.append(within)
+                group = within
+            clips = () if filters else inside.clips
             inside = replace(inside, target=group, clips=clips)
         return inside
 

@@ -1,82 +1,106 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What filters make of pixels: W3C, Filter Effects Level 1.
+"""What filters make of layers: W3C, Filter Effects Level 1.
 
 Images are (height, width, 4) with row 0 at the bottom, colors multiplied by alpha.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from decimal import Decimal
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
 from ...images.color import to_linear, to_srgb
 from .blending import blended
-from .tree import Box, Filter, Step, carried
-from .values import Matrix
+from .filter_pixels import blurred, composited, recolored, shifted, transferred
+from .lighting import lit
+from .neighborhoods import convolved, extreme, tiled
+from .tree import Box, Filter, Group, Step, carried
+from .turbulence import noise
+from .values import Matrix, inverse, multiplied
 
 FloatArray = npt.NDArray[np.float32]
-
-_ONE = np.float32(1.0)
-# From here on a blur is three means, as the recommendation has it.
-_LARGE_BLUR = 2.0
+Slices = tuple[slice, slice]
+"""Rows and columns."""
 
 
 @dataclass
 class _Result:
-    """Pixels, and whether their colors are decoded."""
+    """Pixels, whether their colors are decoded, and where a step ended."""
 
     pixels: FloatArray
     is_linear: bool
+    region: Slices
 
 
 def reach_of(filter_: Filter, matrix: Matrix) -> float:
     """How far pixels may look for others, in pixels; the matrix leads to them from the tree."""
+    matrix = multiplied(matrix, filter_.matrix)
     total = 0.0
     for step in filter_.steps:
-        if step.kind == "feGaussianBlur":
+        if step.kind in ("feGaussianBlur", "feDropShadow"):
             total += 3.0 * max(_lengths(step.numbers[:2], matrix))
-        elif step.kind == "feOffset":
+        if step.kind == "feMorphology":
+            total += max(_lengths(step.numbers[:2], matrix))
+        if step.kind == "feOffset":
             total += sum(map(abs, _direction(step.numbers, matrix)))
-        elif step.kind == "feDropShadow":
-            total += 3.0 * max(_lengths(step.numbers[:2], matrix))
+        if step.kind == "feDropShadow":
             total += sum(map(abs, _direction(step.numbers[2:4], matrix)))
+        if step.kind == "feConvolveMatrix":
+            total += max(step.numbers[:2])
     return total + 1.0
 
 
 def filtered(
-    source: FloatArray, filter_: Filter, matrix: Matrix, corner: tuple[int, int]
+    draw: Callable[[Group], FloatArray],
+    group: Group,
+    filter_: Filter,
+    matrix: Matrix,
+    window: tuple[int, int, int, int],
 ) -> FloatArray:
-    """What a filter makes of a layer.
+    """What a filter makes of a group.
 
     Args:
-        source: The layer.
+        draw: Returns the pixels of what is in a group.
+        group: The group.
         filter_: The filter.
-        matrix: From the tree's units to pixels.
-        corner: Where the lower left corner of the layer is, in pixels.
+        matrix: From the filter's units to pixels, without turns but by right angles.
+        window: The pixels that are drawn: left, low, right, high.
     """
-    return _Filtering(source, filter_, matrix, corner).result()
+    return _Filtering(draw, group, filter_, matrix, window).result()
 
 
 class _Filtering:
     """The steps of a filter and what they have made so far."""
 
     def __init__(
-        self, source: FloatArray, filter_: Filter, matrix: Matrix, corner: tuple[int, int]
+        self,
+        draw: Callable[[Group], FloatArray],
+        group: Group,
+        filter_: Filter,
+        matrix: Matrix,
+        window: tuple[int, int, int, int],
     ) -> None:
+        left, low, right, high = window
+        self._draw = draw
         self._filter = filter_
         self._matrix = matrix
-        self._corner = corner
-        self._source = self._cut(source, filter_.region)
-        alpha = np.zeros_like(source)
+        self._corner = left, low
+        self._shape = high - low, right - left
+        # To pixels of the window, from its upper left corner.
+        self._down = multiplied((1.0, 0.0, 0.0, -1.0, -left, high), matrix)
+        self._region = self._slices(filter_.region)
+        self._source = _cut(draw(group), self._region)
+        alpha = np.zeros_like(self._source)
         alpha[..., 3] = self._source[..., 3]
         is_linear = filter_.is_linear
-        self._last = _Result(self._source, is_linear)
+        self._last = _Result(self._source, is_linear, self._region)
         self._named = {
             "SourceGraphic": self._last,
-            "SourceAlpha": _Result(alpha, is_linear),
+            "SourceAlpha": _Result(alpha, is_linear, self._region),
         }
 
     def result(self) -> FloatArray:
@@ -84,38 +108,118 @@ class _Filtering:
         if not self._filter.steps:
             return np.zeros_like(self._source)
         for step in self._filter.steps:
-            inputs = [
-                _with_colors(self._named.get(name, self._last), step.is_linear)
-                for name in step.inputs
-            ]
-            made = self._cut(self._made(step, inputs), self._filter.region)
-            if step.region is not None:
-                made = self._cut(made, step.region)
-            self._last = _Result(made, step.is_linear)
+            inputs = [self._named.get(name, self._last) for name in step.inputs]
+            region = self._region_of(step, inputs)
+            # What `feImage` shows is drawn as the layer is.
+            is_linear = self._filter.is_linear if step.kind == "feImage" else step.is_linear
+            made = self._made(step, inputs, region)
+            self._last = _Result(_cut(made, region), is_linear, region)
             if step.result:
                 self._named[step.result] = self._last
         return _with_colors(self._last, self._filter.is_linear)
 
-    def _made(self, step: Step, inputs: list[FloatArray]) -> FloatArray:
+    def _region_of(self, step: Step, inputs: list[_Result]) -> Slices:
+        """Where a step ends: as it says, or with its inputs."""
+        if step.region is not None:
+            return _common(self._region, self._slices(step.region))
+        if not inputs or step.kind == "feTile":
+            return self._region
+        rows, columns = (
+            slice(min(part.start for part in parts), max(part.stop for part in parts))
+            for parts in zip(*(each.region for each in inputs), strict=True)
+        )
+        return rows, columns
+
+    def _made(self, step: Step, inputs: list[_Result], region: Slices) -> FloatArray:
+        images = [_with_colors(each, step.is_linear) for each in inputs]
+        numbers = step.numbers
         match step.kind:
             case "feGaussianBlur":
-                return _blurred(inputs[0], *_lengths(step.numbers, self._matrix))
+                return blurred(images[0], *_lengths(numbers, self._matrix))
             case "feOffset":
-                return _shifted(inputs[0], *_direction(step.numbers, self._matrix))
+                return shifted(images[0], *_direction(numbers, self._matrix))
             case "feFlood":
-                return self._flood(step.numbers, step.is_linear)
+                return self._flood(numbers, step.is_linear)
             case "feDropShadow":
-                return self._shadowed(step, inputs[0])
+                return self._shadowed(step, images[0])
             case "feMerge":
-                return self._merged(inputs)
+                return self._merged(images)
             case "feComposite":
-                return _composited(inputs[0], inputs[1], step.name, step.numbers)
+                return composited(images[0], images[1], step.name, numbers)
             case "feBlend":
-                return blended(inputs[1].copy(), inputs[0], step.name)
+                return blended(images[1].copy(), images[0], step.name)
             case "feColorMatrix":
-                return _recolored(inputs[0], np.array(step.numbers, np.float32).reshape(4, 5))
+                return recolored(images[0], np.array(numbers, np.float32).reshape(4, 5))
+            case "feComponentTransfer":
+                return transferred(images[0], numbers)
+            case "feTile":
+                return tiled(images[0], inputs[0].region, region)
+            case "feMorphology":
+                x, y = (math.floor(length + 0.5) for length in _lengths(numbers, self._matrix))
+                return extreme(images[0], x, y, is_largest=step.name == "dilate")
+            case "feConvolveMatrix":
+                change = partial(convolved, numbers=numbers, edge_mode=step.name)
+                return self._changed(images[0], change)
+            case "feDiffuseLighting" | "feSpecularLighting":
+                return self._changed(images[0], partial(self._lit, step=step))
+            case "feTurbulence":
+                return self._noise(step, region)
+            case "feImage" if step.group is not None:
+                return self._draw(step.group)
             case _:
-                return _transferred(inputs[0], step.numbers)
+                return np.zeros_like(self._source)
+
+    def _changed(
+        self, pixels: FloatArray, change: Callable[[FloatArray], FloatArray]
+    ) -> FloatArray:
+        """The filter's region after a change, which takes it with the top row first."""
+        found = np.zeros_like(pixels)
+        if pixels[self._region].size:
+            found[self._region] = change(pixels[self._region][::-1])[::-1]
+        return found
+
+    def _lit(self, pixels: FloatArray, step: Step) -> FloatArray:
+        numbers = list(step.numbers)
+        color = np.array([[numbers[3:6]]], np.float32)
+        numbers[3:6] = (to_linear(color) if step.is_linear else color)[0, 0].tolist()
+        if step.name != "feDistantLight":
+            a, b, c, d, e, f = self._down
+            scale = math.sqrt((a * a + b * b + c * c + d * d) / 2.0)
+            rows, columns = self._region
+            top = self._shape[0] - rows.stop
+            for at in range(6, 6 + 3 * (len(numbers) // 3 - 2), 3):
+                x, y, z = numbers[at : at + 3]
+                numbers[at] = a * x + c * y + e - columns.start
+                numbers[at + 1] = b * x + d * y + f - top
+                numbers[at + 2] = scale * z
+        alpha = pixels[..., 3].astype(np.float64)
+        return lit(alpha, step.kind, step.name, tuple(numbers)).astype(np.float32)
+
+    def _noise(self, step: Step, region: Slices) -> FloatArray:
+        found = np.zeros_like(self._source)
+        a, b, c, d, e, f = inverse(self._down)
+        rows, columns = region
+        top, bottom = self._shape[0] - rows.stop, self._shape[0] - rows.start
+        x, y = np.meshgrid(
+            np.arange(float(columns.start), columns.stop), np.arange(float(top), bottom)
+        )
+        tile = None
+        if step.numbers[4]:
+            box = (float(columns.start), float(top), float(columns.stop), float(bottom))
+            left, upper, right, lower = carried(box, (a, b, c, d, e, f))
+            tile = left, upper, right - left, lower - upper
+        straight = noise(
+            a * x + c * y + e,
+            b * x + d * y + f,
+            (step.numbers[0], step.numbers[1]),
+            int(step.numbers[2]),
+            int(step.numbers[3]),
+            is_fractal=step.name == "fractalNoise",
+            tile=tile,
+        )
+        straight[..., :3] *= straight[..., 3:]
+        found[region] = straight[::-1]
+        return found
 
     def _merged(self, inputs: list[FloatArray]) -> FloatArray:
         merged = np.zeros_like(self._source)
@@ -125,38 +229,59 @@ class _Filtering:
 
     def _flood(self, color: tuple[float, ...], is_linear: bool) -> FloatArray:
         one = np.array([[[*(value * color[3] for value in color[:3]), color[3]]]], np.float32)
-        one = _with_colors(_Result(one, False), is_linear)
+        one = _with_colors(_Result(one, False, self._region), is_linear)
         return np.broadcast_to(one, self._source.shape).copy()
 
     def _shadowed(self, step: Step, source: FloatArray) -> FloatArray:
         numbers = step.numbers
         blur, move, color = numbers[:2], numbers[2:4], numbers[4:]
-        blurred = _blurred(source[..., 3:], *_lengths(blur, self._matrix))
-        alpha = _shifted(blurred, *_direction(move, self._matrix))
+        alpha = blurred(source[..., 3:], *_lengths(blur, self._matrix))
+        alpha = shifted(alpha, *_direction(move, self._matrix))
         return blended(self._flood(color, step.is_linear) * alpha, source, "normal")
 
-    def _cut(self, pixels: FloatArray, region: Box) -> FloatArray:
-        """Pixels that a region of the tree touches; others are transparent."""
+    def _slices(self, region: Box | None) -> Slices:
+        """The pixels that a region touches."""
+        height, width = self._shape
+        if region is None:
+            return slice(0, height), slice(0, width)
         left, low, right, high = carried(region, self._matrix)
         x, y = self._corner
-        height, width = pixels.shape[:2]
         begin, end = (_limited(value - x, width) for value in (left + 1e-6, right - 1e-6))
         bottom, top = (_limited(value - y, height) for value in (low + 1e-6, high - 1e-6))
-        found = np.zeros_like(pixels)
-        columns = slice(math.floor(begin), math.ceil(end))
-        rows = slice(math.floor(bottom), math.ceil(top))
-        found[rows, columns] = pixels[rows, columns]
-        return found
+        rows = slice(math.floor(bottom), max(math.ceil(top), math.floor(bottom)))
+        return rows, slice(math.floor(begin), max(math.ceil(end), math.floor(begin)))
 
 
 def _limited(value: float, most: int) -> float:
     return min(max(value, 0.0), float(most))
 
 
+def _common(one: Slices, other: Slices) -> Slices:
+    rows, columns = (
+        slice(max(a.start, b.start), max(min(a.stop, b.stop), a.start, b.start))
+        for a, b in zip(one, other, strict=True)
+    )
+    return rows, columns
+
+
+def _cut(pixels: FloatArray, region: Slices) -> FloatArray:
+    """The pixels of a region; others are transparent."""
+    found = np.zeros_like(pixels)
+    found[region] = pixels[region]
+    return found
+
+
+def is_upright(matrix: Matrix) -> bool:
+    """Whether a matrix turns by right angles alone."""
+    a, b, c, d = map(abs, matrix[:4])
+    return max(b, c) <= 1e-9 * max(a, d) or max(a, d) <= 1e-9 * max(b, c)
+
+
 def _lengths(lengths: tuple[float, ...], matrix: Matrix) -> tuple[float, float]:
-    """Along x and y, in pixels. What leads to these has no turns but of patterns."""
+    """Along x and y, in pixels."""
     a, b, c, d = matrix[:4]
-    return lengths[0] * math.sqrt(a * a + b * b), lengths[1] * math.sqrt(c * c + d * d)
+    x, y = lengths[0] * math.sqrt(a * a + b * b), lengths[1] * math.sqrt(c * c + d * d)
+    return (x, y) if abs(a) >= abs(b) else (y, x)
 
 
 def _direction(move: tuple[float, ...], matrix: Matrix) -> tuple[float, float]:
@@ -176,162 +301,3 @@ def _with_colors(result: _Result, is_linear: bool) -> FloatArray:
     changed = to_linear(straight) if is_linear else to_srgb(straight)
     found[..., :3] = changed * alpha
     return found
-
-
-def _blurred(pixels: FloatArray, x: float, y: float) -> FloatArray:
-    for axis, deviation in ((1, x), (0, y)):
-        if deviation >= _LARGE_BLUR:
-            pixels = _by_means(pixels, deviation, axis)
-        elif deviation > 0.0:
-            pixels = _by_weights(pixels, deviation, axis)
-    return pixels
-
-
-def _by_weights(pixels: FloatArray, deviation: float, axis: int) -> FloatArray:
-    """By a Gaussian, up to four deviations away."""
-    reach = max(math.ceil(4.0 * deviation), 1)
-    # Rounded alike everywhere, which exponentials of C are not.
-    exponents = (Decimal(-k * k) / (2 * Decimal(deviation) ** 2) for k in range(reach + 1))
-    weights = np.array([float(exponent.exp()) for exponent in exponents])
-    weights /= weights[0] + 2.0 * weights[1:].sum()
-    found = pixels * np.float32(weights[0])
-    for k in range(1, reach + 1):
-        for moved in (k, -k):
-            found += np.float32(weights[k]) * _moved(pixels, moved, axis)
-    return found
-
-
-def _by_means(pixels: FloatArray, deviation: float, axis: int) -> FloatArray:
-    """By three means of as many pixels as make nearly a Gaussian."""
-    count = math.floor(deviation * 3.0 * math.sqrt(2.0 * math.pi) / 4.0 + 0.5)
-    half = count // 2
-    means = [(half, half)] * 3
-    if count % 2 == 0:
-        # Of an even number, the first two are off by half a pixel, there and back.
-        means = [(half, half - 1), (half - 1, half), (half, half)]
-    for before, after in means:
-        pixels = _mean(pixels, before, after, axis)
-    return pixels
-
-
-def _mean(pixels: FloatArray, before: int, after: int, axis: int) -> FloatArray:
-    """The mean over pixels beside each other; beyond the edges all is 0."""
-    length = pixels.shape[axis]
-    sums = np.zeros_like(pixels, np.float64, shape=_longer(pixels.shape, axis))
-    np.cumsum(pixels, axis=axis, dtype=np.float64, out=sums[_behind(axis)])
-    at = np.arange(length)
-    high = np.minimum(at + after + 1, length)
-    low = np.maximum(at - before, 0)
-    difference = sums.take(high, axis) - sums.take(low, axis)
-    found: FloatArray = (difference / (before + after + 1)).astype(np.float32)
-    return found
-
-
-def _longer(shape: tuple[int, ...], axis: int) -> tuple[int, ...]:
-    return tuple(side + (index == axis) for index, side in enumerate(shape))
-
-
-def _behind(axis: int) -> tuple[slice, ...]:
-    return tuple(slice(1, None) if index == axis else slice(None) for index in range(axis + 1))
-
-
-def _moved(pixels: FloatArray, count: int, axis: int) -> FloatArray:
-    """Pixels so many further on; what comes in is 0."""
-    found = np.zeros_like(pixels)
-    length = pixels.shape[axis]
-    if abs(count) < length:
-        into = slice(max(count, 0), length + min(count, 0))
-        out_of = slice(max(-count, 0), length + min(-count, 0))
-        if axis == 0:
-            found[into] = pixels[out_of]
-        else:
-            found[:, into] = pixels[:, out_of]
-    return found
-
-
-def _shifted(pixels: FloatArray, x: float, y: float) -> FloatArray:
-    """Moved, in between by linear interpolation."""
-    for axis, distance in ((1, x), (0, y)):
-        whole = math.floor(distance)
-        share = np.float32(distance - whole)
-        moved = _moved(pixels, whole, axis)
-        if share > 0.0:
-            moved = (_ONE - share) * moved + share * _moved(pixels, whole + 1, axis)
-        pixels = moved
-    return pixels
-
-
-def _composited(
-    above: FloatArray, below: FloatArray, name: str, factors: tuple[float, ...]
-) -> FloatArray:
-    alpha_above, alpha_below = above[..., 3:], below[..., 3:]
-    match name:
-        case "in":
-            return above * alpha_below
-        case "out":
-            return above * (_ONE - alpha_below)
-        case "atop":
-            return above * alpha_below + below * (_ONE - alpha_above)
-        case "xor":
-            return above * (_ONE - alpha_below) + below * (_ONE - alpha_above)
-        case "lighter":
-            total: FloatArray = np.minimum(above + below, _ONE)
-            return total
-        case "arithmetic":
-            k1, k2, k3, k4 = map(np.float32, factors)
-            return _valid(k1 * above * below + k2 * above + k3 * below + k4)
-        case _:
-            return blended(below.copy(), above, "normal")
-
-
-def _valid(pixels: FloatArray) -> FloatArray:
-    """Alpha in [0, 1], and colors from 0 to alpha."""
-    pixels = pixels.clip(0.0, 1.0)
-    pixels[..., :3] = np.minimum(pixels[..., :3], pixels[..., 3:])
-    return pixels
-
-
-def _straight(pixels: FloatArray) -> FloatArray:
-    straight = pixels.clip(0.0, 1.0)
-    np.divide(pixels[..., :3], pixels[..., 3:], out=straight[..., :3], where=pixels[..., 3:] > 0.0)
-    found: FloatArray = straight.clip(0.0, 1.0)
-    return found
-
-
-def _multiplied(straight: FloatArray) -> FloatArray:
-    straight = straight.clip(0.0, 1.0)
-    straight[..., :3] *= straight[..., 3:]
-    return straight
-
-
-def _recolored(pixels: FloatArray, matrix: FloatArray) -> FloatArray:
-    straight = _straight(pixels)
-    found = np.empty_like(straight)
-    for row in range(4):
-        value = np.full(straight.shape[:2], matrix[row, 4], np.float32)
-        for column in range(4):
-            value += matrix[row, column] * straight[..., column]
-        found[..., row] = value
-    return _multiplied(found)
-
-
-def _transferred(pixels: FloatArray, numbers: tuple[float, ...]) -> FloatArray:
-    """Each channel by values at equal distances, or by steps where their number is negative."""
-    straight = _straight(pixels)
-    at = 0
-    for channel in range(4):
-        count = int(numbers[at])
-        values = np.array(numbers[at + 1 : at + 1 + abs(count)], np.float32)
-        at += 1 + abs(count)
-        place = straight[..., channel]
-        if count < 0:
-            index = np.minimum(np.floor(place * np.float32(-count)).astype(int), -count - 1)
-            straight[..., channel] = values[index]
-        elif count == 1:
-            straight[..., channel] = values[0]
-        else:
-            scaled = place * np.float32(count - 1)
-            index = np.minimum(np.floor(scaled).astype(int), count - 2)
-            share = scaled - index
-            straight[..., channel] = values[index] + share * (values[index + 1] - values[index])
-    return _multiplied(straight)

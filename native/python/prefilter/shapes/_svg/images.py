@@ -53,6 +53,8 @@ class Inner(Protocol):
 Read = Callable[[bytes, str], Inner]
 """Reads a drawing in a drawing, of its bytes and its name."""
 Contents = npt.NDArray[np.uint8] | Inner
+Bounds = tuple[float, float, float, float]
+"""Left, top, width, height."""
 
 
 class Images:
@@ -91,37 +93,66 @@ class Images:
 
 def draw_image(element: SvgElement, context: Context, sources: Sources, images: Images) -> None:
     """Draws an `image`."""
-    if context.style.visibility != "visible":
-        return
+    if context.style.visibility == "visible":
+        put_image(element, None, context, sources, images)
+
+
+def put_image(
+    element: SvgElement, box: Bounds | None, context: Context, sources: Sources, images: Images
+) -> None:
+    """Draws what an element refers to.
+
+    Args:
+        element: The element.
+        box: Left, top, width and height of where that is; None for what the element says.
+        context: Within it.
+        sources: What it is read with.
+        images: Those of the drawing.
+    """
     try:
-        _draw(element, images.contents(element, sources), context, sources)
+        contents = images.contents(element, sources)
+        if isinstance(contents, np.ndarray):
+            own = float(contents.shape[1]), float(contents.shape[0])
+        else:
+            own = contents.page.width, contents.page.height
+        place = _box_of(element, own, context, sources) if box is None else box
+        if place[2] > 0.0 and place[3] > 0.0:
+            _draw(element, contents, own, place, context, sources)
     except TooLargeError:
         raise
     except ElsewhereError as error:
-        sources.warnings.unsupported("<image>", f"left out, {error}", element.line)
+        sources.warnings.unsupported(f"<{element.tag}>", f"left out, {error}", element.line)
     except (UnusableError, PictureError, ValueError) as error:
-        sources.warnings.broken("<image>", f"left out, {error}", element.line)
+        sources.warnings.broken(f"<{element.tag}>", f"left out, {error}", element.line)
 
 
-def _draw(element: SvgElement, contents: Contents, context: Context, sources: Sources) -> None:
-    declared = sources.sheets.declared(element)
-    if isinstance(contents, np.ndarray):
-        own_width, own_height = float(contents.shape[1]), float(contents.shape[0])
-    else:
-        own_width, own_height = contents.page.width, contents.page.height
+def _box_of(
+    element: SvgElement, own: tuple[float, float], context: Context, sources: Sources
+) -> Bounds:
+    """Where an image is. What its sides do not say follows from its proportions."""
     x, y = (sources.pixels(element, key, _ZERO, context.units) for key in ("x", "y"))
     width, height = (
         sources.pixels(element, key, _AUTO, context.units) for key in ("width", "height")
     )
-    if width < 0.0 or height < 0.0:
-        # What is not said follows from the proportions of the image.
-        ratio = own_width / own_height
-        if width < 0.0 and height < 0.0:
-            width, height = own_width, own_height
-        width = height * ratio if width < 0.0 else width
-        height = width / ratio if height < 0.0 else height
-    if width == 0.0 or height == 0.0:
-        return
+    if width < 0.0 and height < 0.0:
+        width, height = own
+    ratio = own[0] / own[1]
+    width = height * ratio if width < 0.0 else width
+    height = width / ratio if height < 0.0 else height
+    return x, y, width, height
+
+
+def _draw(
+    element: SvgElement,
+    contents: Contents,
+    own: tuple[float, float],
+    box: Bounds,
+    context: Context,
+    sources: Sources,
+) -> None:
+    declared = sources.sheets.declared(element)
+    own_width, own_height = own
+    x, y, width, height = box
     aspect = declared.get("preserveAspectRatio", "")
     page = ViewBox(0.0, 0.0, own_width, own_height)
     fitted = multiplied((1.0, 0.0, 0.0, 1.0, x, y), placed(page, aspect, width, height))

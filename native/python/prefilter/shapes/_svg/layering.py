@@ -5,8 +5,9 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from .tree import Box, Clip, Group, Item, Painted, Pattern, common, leaves
-from .values import Matrix
+from .filtering import reach_of
+from .tree import Box, Clip, Group, Item, Painted, Pattern, carried, common, joined, leaves
+from .values import IDENTITY, Matrix
 
 _MOST_COMPARED = 200
 
@@ -87,7 +88,7 @@ def bounds_of(item: Item) -> Iterator[Box]:
     if not isinstance(item, Group):
         box = item.box
     elif item.filter is not None:
-        box = item.filter.region
+        box = filtered_region(item)
     else:
         for inner in item.items:
             yield from bounds_of(inner)
@@ -96,6 +97,22 @@ def bounds_of(item: Item) -> Iterator[Box]:
         box = common(box, clip.bounds) if box and clip.bounds else None
     if box is not None:
         yield box
+
+
+def filtered_region(group: Group) -> Box | None:
+    """Where the result of a group's filter ends, in the tree's units; None where it is nothing."""
+    filter_ = group.filter
+    assert filter_ is not None
+    if filter_.region is not None:
+        return carried(filter_.region, filter_.matrix)
+    box: Box | None = None
+    for item in group.items:
+        for inner in bounds_of(item):
+            box = joined(box, inner)
+    if box is None:
+        return None
+    more = reach_of(filter_, IDENTITY)
+    return box[0] - more, box[1] - more, box[2] + more, box[3] + more
 
 
 def leaf_count(group: Group) -> int:

@@ -62,7 +62,7 @@ def used(
             "<use>", "left out, as what it refers to is not there", element.line
         )
         return
-    if target in context.uses or target in _ancestors(element):
+    if target in context.uses or target in ancestors(element):
         sources.warnings.broken("<use>", "left out, as it is inside of itself", element.line)
         return
     x = sources.pixels(element, "x", _ZERO, context.units)
@@ -107,7 +107,8 @@ def viewport(element: SvgElement, context: Context, sources: Sources) -> Context
     return replace(context, matrix=matrix, viewport=size, clips=clips)
 
 
-def _ancestors(element: SvgElement) -> Iterator[SvgElement]:
+def ancestors(element: SvgElement) -> Iterator[SvgElement]:
+    """Yields an element and those that it is in."""
     at: SvgElement | None = element
     while at is not None:
         yield at

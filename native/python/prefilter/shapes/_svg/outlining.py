@@ -2,7 +2,6 @@
 
 """Outlines of a tree as shapes in pixels, cut off exactly at what they are clipped by."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import asdict
 
@@ -10,8 +9,9 @@ import numpy as np
 
 from ... import _native
 from ..shape import Shape
+from .filtering import is_upright
 from .paint_servers import Gradient
-from .tree import Box, Clip, Painted, Picture, carried, common, holds
+from .tree import Box, Clip, Group, Painted, Picture, common, holds
 from .values import Matrix, determinant, multiplied
 
 # How far the outline of a stroke may be off, in pixels: 8-bit images do not show it.
@@ -65,18 +65,25 @@ class Outlining:
         shape.add_polygon([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
         return self.clipped(shape.transformed(_rows(whole)), picture.box, clips, matrix)
 
-    def region(self, box: Box, clips: Sequence[Clip], matrix: Matrix) -> Shape | None:
-        """What clips leave of the pixels around a box of the tree; None for nothing."""
-        if any(clip.bounds is None or not common(box, clip.bounds) for clip in clips):
-            return None
-        left, low, right, high = carried(box, matrix)
-        shape = Shape()
-        # Pixels at the edges of a filter's region are whole.
-        shape.add_polygon(
-            [(left - 2, low - 2), (right + 2, low - 2), (right + 2, high + 2), (left - 2, high + 2)]
-        )
-        # It is larger than the box.
-        return self.clipped(shape, (-math.inf, -math.inf, math.inf, math.inf), clips, matrix)
+    def filtered(self, group: Group, clips: Sequence[Clip], matrix: Matrix) -> list[Shape]:
+        """What the result of a group's filter is cut off at: nothing, or a shape.
+
+        Pixels at the edges of an upright region are whole, so that clips alone cut it off.
+        """
+        filter_ = group.filter
+        assert filter_ is not None
+        if any(clip.bounds is None for clip in clips):
+            return [Shape()]
+        to_pixels = multiplied(matrix, filter_.matrix)
+        shapes = [self._region(clip, matrix) for clip in clips]
+        if filter_.region is not None and not is_upright(to_pixels):
+            left, top, right, bottom = filter_.region
+            shape = Shape()
+            shape.add_polygon([(left, top), (right, top), (right, bottom), (left, bottom)])
+            shapes.append(shape.transformed(_rows(to_pixels)))
+        while len(shapes) > 1:
+            shapes[-2:] = [_combined(shapes[-2], shapes[-1], "intersection")]
+        return shapes
 
     def clipped(self, shape: Shape, box: Box, clips: Sequence[Clip], matrix: Matrix) -> Shape:
         """What clips leave of a shape that lies within a box of the tree."""

@@ -81,6 +81,24 @@ def tiled_pixels(
     )
 
 
+def turned_pixels(
+    pixels: FloatArray, to_pixels: Matrix, width: int, height: int, threads: int
+) -> FloatArray:
+    """An image on another one, likewise; what is beside it goes on as at its edges."""
+    found = resample(
+        pixels,
+        _rows(to_pixels),
+        width,
+        height,
+        filter=_PICTURE_FILTER,
+        exact=True,
+        premultiplied=True,
+        threads=threads,
+    )
+    np.clip(found, 0.0, 1.0, out=found)
+    return np.minimum(found, found[..., 3:])
+
+
 def _is_enlarged(whole: Matrix, columns: int, rows: int) -> bool:
     return _native.hypot(*whole[:2]) >= columns and _native.hypot(*whole[2:4]) >= rows
 

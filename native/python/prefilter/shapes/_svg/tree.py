@@ -153,10 +153,11 @@ class Step:
         kind: The element's name.
         inputs: The names of other results; empty for the one before.
         result: What its own is called.
-        numbers: What it needs; lengths are those of the tree.
+        numbers: What it needs; lengths are those of the filter.
         name: Of its operator or mode.
         is_linear: Whether it takes decoded colors.
-        region: Where it ends, in the tree's units; None for that of the filter.
+        region: Where it ends, in the filter's units; None for where its inputs do.
+        group: What `feImage` shows.
     """
 
     kind: str
@@ -166,6 +167,7 @@ class Step:
     name: str
     is_linear: bool
     region: Box | None
+    group: "Group | None" = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,12 +175,14 @@ class Filter:
     """What becomes of a group's pixels.
 
     Attributes:
-        region: Where it is applied, in the tree's units.
+        region: Where it is applied, in its units; None where it ends nowhere.
+        matrix: From its units, those of its element, to the tree's.
         is_linear: Whether the group's colors are decoded.
     """
 
     steps: tuple[Step, ...]
-    region: Box
+    region: Box | None
+    matrix: Matrix
     is_linear: bool
 
 

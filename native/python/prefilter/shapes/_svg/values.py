@@ -152,7 +152,7 @@ def as_paint(text: str) -> Paint | None:
     tokens = _tokens(text)
     if not tokens:
         return None
-    server = _url_of(tokens[0])
+    server = url_of(tokens[0])
     if server is None:
         return _plain_paint(tokens)
     fallback = _plain_paint(tokens[1:]) if tokens[1:] else Paint(None)
@@ -170,7 +170,8 @@ def _plain_paint(tokens: Sequence[Any]) -> Paint | None:
     return Paint(color) if color is not None else None
 
 
-def _url_of(token: Any) -> str | None:
+def url_of(token: Any) -> str | None:
+    """The address in a `url()`; None for other tokens."""
     if token.type == "url":
         url = token.value
     elif token.type == "function" and token.lower_name == "url":
