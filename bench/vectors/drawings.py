@@ -38,7 +38,7 @@ MOST_SECONDS = 60
 WORST = 30
 THUMBNAIL = 200
 LEAST_KEPT = 0.5
-NOT_IN_RESVG = re.compile(rb"@font-face|[\"; ]background(-color)?:\\s*(#|rgb|white)")
+NOT_IN_RESVG = re.compile(rb"@font-face|[\"; ]background(-color)?:\s*(#|rgb|white)")
 Pixels = NDArray[np.float64]
 
 
@@ -72,9 +72,10 @@ def compared(path: Path, resvg: str, fonts: Path | None) -> Compared:
     began = time.process_time()
     try:
         picture = SvgPicture(path, "srgb", [fonts] if fonts else None, None)
-        scale = SIDE / math.sqrt(picture.width * picture.height)
+        columns = max(round(SIDE * math.sqrt(picture.width / picture.height)), 1)
+        scale = columns / picture.width
         found.seconds = time.process_time() - began
-        theirs = referred(path, resvg, fonts, scale)
+        theirs = referred(path, resvg, fonts, columns)
         height, width = theirs.shape[:2]
         began = time.process_time()
         place = (scale, 0.0, height - scale * picture.height)
@@ -91,9 +92,9 @@ def compared(path: Path, resvg: str, fonts: Path | None) -> Compared:
     return found
 
 
-def referred(path: Path, resvg: str, fonts: Path | None, scale: float) -> Pixels:
+def referred(path: Path, resvg: str, fonts: Path | None, columns: int) -> Pixels:
     """Returns what resvg makes of a file, multiplied by alpha; ValueError where it does not."""
-    options = ["--zoom", repr(scale)]
+    options = ["--width", str(columns)]
     if fonts:
         options += ["--skip-system-fonts", "--use-fonts-dir", str(fonts)]
     with tempfile.TemporaryDirectory() as folder:

@@ -370,3 +370,14 @@ def test_progress_and_canceling():
             read(body, progress=lambda share, limit=limit: share < limit)
     with pytest.raises(prefilter.Cancelled):
         drawing.shapes_for(SIZE, SIZE, progress=lambda _: False)
+
+
+def test_what_stands_for_other_markup_is_drawn():
+    body = "<switch><foreignObject/><rect width='9' height='9'/><rect/></switch>"
+    drawing = read(body)
+    assert len(drawing.shapes) == 1
+    assert [str(each) for each in drawing.warnings] == [
+        "<foreignObject>: replaced by what follows it (in line 1)"
+    ]
+    (warning,) = read("<switch><foreignObject/></switch>").warnings
+    assert warning.effect == "left out"

@@ -2,6 +2,8 @@
 
 """Text in drawings: letters are boxes of a font made here, so that all places are known."""
 
+import base64
+import io
 import itertools
 import unicodedata
 
@@ -10,6 +12,8 @@ import prefilter
 import pytest
 from box_fonts import KERNING, UNITS, WIDTHS, make_font, make_variable
 from drawings import SIZE, read, svg
+from fontTools.ttLib import TTFont
+from fontTools.ttLib.tables.DefaultTable import DefaultTable
 
 
 @pytest.fixture(scope="module")
@@ -386,3 +390,118 @@ def test_marks_are_placed_without_harfbuzz(tmp_path, monkeypatch):
     assert unicodedata.combining("\u0301")
     (shape,) = read(text("A\u0301"), fonts=[path]).shapes_for(SIZE, SIZE)
     near((shape.bounds[0][0], shape.bounds[1][0]), (20, 26))
+
+
+def font_face(data, kind="font/ttf", more="", family="Own"):
+    address = f"data:{kind};base64,{base64.b64encode(data).decode()}"
+    return (
+        f"<style>@font-face {{ font-family: '{family}'; src: local(x), url('{address}'); {more} }}"
+        "</style>"
+    )
+
+
+def as_woff(path):
+    font, file = TTFont(path), io.BytesIO()
+    font.flavor = "woff"
+    font.save(file)
+    return file.getvalue()
+
+
+@pytest.mark.parametrize("is_woff", [False, True])
+def test_fonts_in_the_file_come_before_others(tmp_path, boxes, is_woff):
+    wide = make_font(tmp_path / "wide.ttf", widths={"A": 900, "V": 500})
+    data = as_woff(wide) if is_woff else wide.read_bytes()
+    style = font_face(data, family="Boxes")
+    # Letters that the font in the file lacks come from the other one.
+    (one,) = boxes(style + text("AV"))
+    near(one, (20, 45, 20 + 9 + 5 - 1, 50))
+    narrow = make_font(tmp_path / "narrow.ttf", widths={"A": 100})
+    both = font_face(wide.read_bytes()) + font_face(narrow.read_bytes(), more="font-weight: 700")
+    for weight, width in ((400, 9), (700, 1)):
+        (one,) = boxes(both + text("A", f'style="font: {weight} 10px own"'))
+        near(one[2] - one[0], width)
+
+
+def test_fonts_in_the_file_have_parts_of_a_family(tmp_path, boxes):
+    parts = [
+        make_font(tmp_path / f"{letter}.ttf", widths={letter: width})
+        for letter, width in (("A", 900), ("V", 300))
+    ]
+    style = "".join(font_face(part.read_bytes()) for part in parts)
+    (one,) = boxes(style + text("AV", 'style="font-family: Own"'))
+    near(one[2] - one[0], 12)
+
+
+@pytest.mark.parametrize(
+    ("data", "words"),
+    [
+        (b"", "neither"),
+        (b"wOF2" + bytes(60), "WOFF 2"),
+        (b"wOFF", "neither"),
+        (b"wOFF" + bytes(8) + b"\xff\xff" + bytes(60), "early"),
+        (b"\x00\x01\x00\x00" + bytes(60), ""),
+    ],
+)
+def test_fonts_in_the_file_that_are_none(font, data, words):
+    drawing = read(font_face(data) + text("A", 'style="font-family: Own, Boxes"'), fonts=[font])
+    warning = drawing.warnings[0]
+    assert warning.name == "@font-face 'Own'"
+    assert words in warning.effect
+    assert len(drawing.shapes) == 1
+
+
+def test_compressed_fonts_are_unpacked_within_limits(tmp_path, font):
+    data = bytearray(as_woff(make_font(tmp_path / "font.ttf")))
+    # The first table is said to be as large as can be, or a little smaller than it is.
+    for size, words in ((0xFFFFFFFF, "larger than"), (41, "other sizes")):
+        data[44 + 12 : 44 + 16] = size.to_bytes(4, "big")
+        # Without text it is not read.
+        assert read(font_face(bytes(data)), fonts=[font]).warnings == ()
+        own = text("A", 'style="font-family: Own, Boxes"')
+        warning, *_ = read(font_face(bytes(data)) + own, fonts=[font]).warnings
+        assert words in warning.effect
+
+
+def test_fonts_elsewhere_are_named(font):
+    style = "<style>@font-face { font-family: Own; src: url(https://x.org/a.woff) }</style>"
+    own = text("A", 'style="font-family: Own, Boxes"')
+    first, second = read(style + own, fonts=[font]).warnings
+    assert (first.name, first.effect) == ("@font-face 'Own'", "ignored, as it is not in the file")
+    assert second.name == "font 'Own'"
+
+
+def test_lines_downwards(tmp_path, boxes):
+    """The middle of a font, from 2 below to 8 above, is on the line; letters are turned."""
+    for mode in ("tb", "vertical-rl"):
+        (one,) = boxes(f'<g writing-mode="{mode}">{text("AiV")}</g>')
+        near(one, (20 - 3, 50, 20 + 2, 50 + 12))
+    (one,) = boxes(text("AiV", 'writing-mode="tb" text-anchor="middle"'))
+    near((one[1], one[3]), (50 - 6, 50 + 6))
+    # It counts for text elements alone.
+    (one,) = boxes(text('<tspan writing-mode="tb">A</tspan>'))
+    near(one, (20, 45, 26, 50))
+    wide = make_font(tmp_path / "wide.ttf", widths={"\u65e5": 1000, "A": 600})
+    moved = text("\u65e5<tspan dy='3'>\u65e5</tspan>", 'writing-mode="tb"')
+    first, second = boxes(moved.replace("<tspan", '<tspan fill="red"'), [wide])
+    # Upright: as wide as a line is, and the middle of the font in the middle of the letter.
+    near(first, (20 - 5, 50 + 5 + 3 - 5, 20 + 5, 50 + 5 + 3))
+    near(np.subtract(second, first), (0, 13, 0, 13))
+
+
+def test_text_of_other_elements_and_of_other_languages(boxes):
+    tree = '<defs><text id="t">A<tspan>V</tspan></text></defs>'
+    (one,) = boxes(tree + text('<tref href="#t"/>'))
+    near(one[2], 20 + advance("AV"))
+    (one,) = boxes(text('A<tspan systemLanguage="ru">V</tspan>'))
+    near(one[2], 26)
+    (warning,) = read(text('<tref href="#x"/>')).warnings
+    assert warning.kind == "broken"
+
+
+def test_colors_of_letters_are_missed(tmp_path):
+    font = TTFont(make_font(tmp_path / "plain.ttf"))
+    font["COLR"] = DefaultTable("COLR")
+    font["COLR"].data = bytes(14)
+    font.save(tmp_path / "colored.ttf")
+    (warning,) = read(text("A A"), fonts=[tmp_path / "colored.ttf"]).warnings
+    assert str(warning).startswith("font 'Boxes': drawn without its colors")

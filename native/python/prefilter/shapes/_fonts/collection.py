@@ -66,18 +66,22 @@ class Fonts:
 
     Args:
         places: Files and folders; None for those of the system, looked for once they are needed.
+        own: Those of a drawing itself, which come before others of their families.
 
     Raises:
         ValueError: A file is no font that can be read, or there is no such file or folder.
     """
 
-    def __init__(self, places: Iterable[str | os.PathLike[str]] | None) -> None:
+    def __init__(
+        self, places: Iterable[str | os.PathLike[str]] | None, own: Sequence[Face] = ()
+    ) -> None:
+        self._own = tuple(own)
         self._places = None if places is None else tuple(Path(each) for each in places)
         self._faces = None if self._places is None else tuple(_listed(self._places))
         self._families: dict[str, list[Face]] = {}
         self._first: dict[Wanted, tuple[list[Font], list[str]]] = {}
         self._others: dict[tuple[int, Wanted], Font | None] = {}
-        self._opened: dict[tuple[Path, int, tuple[tuple[str, float], ...], float], Font | None] = {}
+        self._opened: dict[tuple[Face, tuple[tuple[str, float], ...], float], Font | None] = {}
 
     @property
     def faces(self) -> tuple[Face, ...]:
@@ -100,16 +104,33 @@ class Fonts:
         found: list[Font] = []
         missing: list[str] = []
         for name in wanted.families:
-            faces = self._of_family(name)
+            fonts = self._own_fonts(name, wanted)
+            faces = self._of_family(name) if not fonts else ()
             font = self._open(faces, wanted) if faces else None
             if font is not None:
-                found.append(font)
+                fonts = [font]
+            if fonts:
+                found.extend(fonts)
             elif not found and name.lower() not in _GENERIC:
                 missing.append(name)
         if not found:
             font = self._open(self._stand_in(missing[:1]), wanted)
             found = [font] if font is not None else []
         return found, missing
+
+    def _own_fonts(self, name: str, wanted: Wanted) -> list[Font]:
+        """Those of a drawing, of one family: several where each has some of its letters."""
+        faces = [face for face in self._own if name.lower() in face.families]
+        if not faces:
+            return []
+        best = nearest(faces, wanted)
+        like = (best.weight, best.stretch, best.slant)
+        opened = (
+            self._open([face], wanted)
+            for face in faces
+            if (face.weight, face.stretch, face.slant) == like
+        )
+        return [font for font in opened if font is not None]
 
     def with_character(self, code: int, wanted: Wanted) -> Font | None:
         """A font that shows a character, of any family; None where none does."""
@@ -164,7 +185,7 @@ class Fonts:
                 location.get(tag, 0.0) != 0.0 for tag in ("slnt", "ital")
             )
             skew = _SKEW if wanted.slant != "normal" and not is_slanted else 0.0
-            key = (face.path, face.index, tuple(sorted(location.items())), skew)
+            key = (face, tuple(sorted(location.items())), skew)
             if key not in self._opened:
                 try:
                     self._opened[key] = Font(face, location, skew)

@@ -2,6 +2,7 @@
 
 """What the tables of a font file say of its faces, without their glyphs."""
 
+import io
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -9,6 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from fontTools.ttLib import TTCollection, TTFont
+
+from .woff import as_sfnt
 
 # In percent of the normal width, by usWidthClass.
 _WIDTHS = (100.0, 50.0, 62.5, 75.0, 87.5, 100.0, 112.5, 125.0, 150.0, 200.0)
@@ -30,6 +33,7 @@ class Face:
         stretch: Likewise, in percent of the normal width.
         slant: "normal", "italic" or "oblique".
         axes: What varies: the lowest, usual and highest value, by tag.
+        data: The font itself, where it is in no file.
     """
 
     path: Path
@@ -40,6 +44,25 @@ class Face:
     stretch: tuple[float, float]
     slant: str
     axes: Mapping[str, tuple[float, float, float]]
+    data: bytes | None = None
+
+    def opened(self) -> Any:
+        """The tables of the font, read as they are needed."""
+        return TTFont(_source(self.path, self.data), fontNumber=self.index, lazy=True)
+
+    def contents(self) -> bytes:
+        """The font as TrueType or OpenType."""
+        data = self.path.read_bytes() if self.data is None else self.data
+        if data[:4] not in (b"wOFF", b"wOF2"):
+            return data
+        font, file = self.opened(), io.BytesIO()
+        font.flavor = None
+        font.save(file)
+        return file.getvalue()
+
+
+def _source(path: Path, data: bytes | None) -> str | io.BytesIO:
+    return str(path) if data is None else io.BytesIO(data)
 
 
 class UnreadableFontError(ValueError):
@@ -77,8 +100,24 @@ def faces_in(path: Path) -> tuple[Face, ...]:
     return _faces_as_of(path, (about.st_mtime_ns, about.st_size))
 
 
-def _face(path: Path, index: int) -> Face | None:
-    with TTFont(str(path), fontNumber=index, lazy=True) as font:
+def face_in(data: bytes, name: str) -> Face:
+    """The font that bytes are, which messages call by a name.
+
+    Raises:
+        UnreadableFontError: They are none.
+    """
+    try:
+        unpacked = as_sfnt(data)
+        found = _face(Path(name), 0, unpacked)
+    except Exception as error:
+        raise UnreadableFontError(str(error)[:200] or type(error).__name__) from None
+    if found is None:
+        raise UnreadableFontError("it has no outlines")
+    return found
+
+
+def _face(path: Path, index: int, data: bytes | None = None) -> Face | None:
+    with TTFont(_source(path, data), fontNumber=index, lazy=True) as font:
         if not any(tag in font for tag in _OUTLINES) or "cmap" not in font:
             return None
         names = _family_names(font["name"]) if "name" in font else []
@@ -103,6 +142,7 @@ def _face(path: Path, index: int) -> Face | None:
             _span(axes, "wdth", stretch),
             "oblique" if is_oblique else "italic" if is_italic else "normal",
             axes,
+            data,
         )
 
 

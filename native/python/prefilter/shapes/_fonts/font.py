@@ -9,7 +9,6 @@ from functools import cached_property
 from typing import Any
 
 from fontTools.pens.basePen import BasePen
-from fontTools.ttLib import TTFont
 
 from .faces import Face
 
@@ -59,7 +58,7 @@ class Font:
         self.location = dict(location)
         self.skew = skew
         # Not lazy: a file stays closed, and may change.
-        self._file = TTFont(str(face.path), fontNumber=face.index, lazy=True)
+        self._file = face.opened()
         self.units_per_em = float(max(self._file["head"].unitsPerEm, 1))
         self._order = self._file.getGlyphOrder()
         self._glyphs = self._file.getGlyphSet(location=self.location or None)
@@ -71,6 +70,11 @@ class Font:
         names = self._file.getBestCmap() or {}
         numbers = self._file.getReverseGlyphMap()
         return {code: numbers[name] for code, name in names.items() if name in numbers}
+
+    @property
+    def is_colored(self) -> bool:
+        """Whether its letters have colors, which outlines do not."""
+        return any(tag in self._file for tag in ("COLR", "SVG ", "sbix", "CBDT"))
 
     @cached_property
     def tables(self) -> Any:

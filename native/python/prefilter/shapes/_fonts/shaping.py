@@ -103,7 +103,7 @@ def shape(
 
 @lru_cache(maxsize=64)
 def _harfbuzz_font(font: Font) -> Any:
-    blob = uharfbuzz.Blob.from_file_path(str(font.face.path))
+    blob = uharfbuzz.Blob(font.face.contents())
     made = uharfbuzz.Font(uharfbuzz.Face(blob, font.face.index))
     if font.location:
         made.set_variations(font.location)

@@ -18,7 +18,7 @@ from .images import Images, draw_image
 from .limits import Budget, check_uses
 from .markers import MARKED, draw_markers
 from .masks import masks_of
-from .nesting import SHOWN, children, is_wanted, moved, used, viewport
+from .nesting import FOREIGN, SHOWN, children, is_wanted, moved, used, viewport
 from .outline import Outline
 from .page import Page, background_of, read_page
 from .paint_servers import Colors, PaintServers
@@ -126,7 +126,9 @@ class Walk:
         sheets = StyleSheets(document, warnings, lambda share: tell(0.5 * share))
         servers = PaintServers(document, sheets, warnings)
         check_uses(document, sheets)
-        self.sources = Sources(document, sheets, servers, warnings, budget, fonts, document.folder)
+        own = fonts.with_rules(sheets.font_rules, warnings)
+        self._fonts = fonts
+        self.sources = Sources(document, sheets, servers, warnings, budget, own, document.folder)
         self.page: Page = read_page(self.sources)
         self._tell = tell
         self._depth = depth
@@ -165,6 +167,10 @@ class Walk:
         if tag not in GROUPS and tag not in BASIC_SHAPES and tag not in _OTHER_DRAWN:
             sources.warnings.unsupported(f"<{tag}>", "left out", element.line)
             return
+        foreign = [child for child in element if child.tag == FOREIGN] if tag == "switch" else []
+        if foreign:
+            effect = "replaced by what follows it" if element[-1] not in foreign else "left out"
+            sources.warnings.unsupported(f"<{FOREIGN}>", effect, element.line)
         inside = self._within(element, moved(element, context, sources))
         if inside is None:
             return
@@ -297,5 +303,5 @@ class Walk:
             lambda _: None,
             self._depth + 1,
             sources.budget,
-            sources.fonts,
+            self._fonts,
         )

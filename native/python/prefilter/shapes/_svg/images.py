@@ -2,17 +2,16 @@
 
 """Images in drawings: those that are embedded, and files beside the drawing."""
 
-import base64
-import binascii
 from collections.abc import Callable
 from typing import Protocol
-from urllib.parse import unquote, unquote_to_bytes, urlsplit
+from urllib.parse import unquote, urlsplit
 
 import numpy as np
 import numpy.typing as npt
 
 from .clips import box_clip
 from .context import Context, Sources
+from .data_addresses import UnusableError, embedded
 from .document import SvgElement
 from .limits import TooLargeError
 from .nesting import SHOWN
@@ -27,10 +26,6 @@ _ZERO, _AUTO = Length(0.0), Length(-1.0)
 _PIXELATED = ("pixelated", "crisp-edges", "optimizespeed", "-moz-crisp-edges")
 _SIGNATURES = (b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff")
 MOST_BYTES = 1 << 28
-
-
-class UnusableError(Exception):
-    """An image that cannot be shown; the message says why."""
 
 
 class ElsewhereError(Exception):
@@ -187,7 +182,7 @@ def _bytes_of(element: SvgElement, sources: Sources) -> tuple[bytes, str]:
     if not address or address.startswith("#"):
         raise UnusableError("as it refers to no image")
     if address[:5].lower() == "data:":
-        return _embedded(address), "<image>"
+        return embedded(address), "<image>"
     parts = urlsplit(address)
     if parts.scheme or parts.netloc:
         raise ElsewhereError("as it is neither in the file nor in its folder")
@@ -202,16 +197,3 @@ def _bytes_of(element: SvgElement, sources: Sources) -> tuple[bytes, str]:
     if path.stat().st_size > MOST_BYTES:
         raise UnusableError(f"as it is larger than {MOST_BYTES >> 20} MiB")
     return path.read_bytes(), path.name
-
-
-def _embedded(address: str) -> bytes:
-    head, comma, body = address[5:].partition(",")
-    if not comma:
-        raise UnusableError("as its data are damaged")
-    data = unquote_to_bytes(body)
-    if head.strip().lower().endswith("base64"):
-        try:
-            data = base64.b64decode(b"".join(data.split()))
-        except binascii.Error:
-            raise UnusableError("as its data are damaged") from None
-    return data

@@ -115,6 +115,14 @@ class Lettering:
         return self._found[span]
 
     def _font_of(self, letter: str, span: Span) -> Font | None:
+        found = self._any_font_of(letter, span)
+        if found is not None and found.is_colored and not letter.isspace():
+            self.warnings.unsupported(
+                f"font '{found.face.family[:60]}'", "drawn without its colors", span.element.line
+            )
+        return found
+
+    def _any_font_of(self, letter: str, span: Span) -> Font | None:
         fonts = self._fonts_for(span)
         code = ord(letter)
         for font in fonts:

@@ -13,6 +13,7 @@ from .values import IDENTITY, Length, as_transform, multiplied
 from .viewports import as_view_box, placed
 
 _ZERO, _WHOLE = Length(0.0), Length(100.0, "%")
+FOREIGN = "foreignObject"
 SHOWN = ("visible", "auto")
 """The values of `overflow` that cut nothing off."""
 
@@ -23,7 +24,7 @@ def children(element: SvgElement) -> Iterator[SvgElement]:
         assert isinstance(child, SvgElement)
         if element.tag != "switch":
             yield child
-        elif is_wanted(child) and not child.tag.startswith("{"):
+        elif is_wanted(child) and not child.tag.startswith("{") and child.tag != FOREIGN:
             yield child
             return
 

@@ -18,6 +18,7 @@ from .text_style import (
     OWN_PROPERTIES,
     PROPERTIES,
     USUAL_TEXT,
+    FontRule,
     TextStyle,
     expanded_font,
     text_style_below,
@@ -171,12 +172,17 @@ _PROPERTIES = frozenset(
 
 
 class StyleSheets:
-    """The style sheets of a document, and what its elements declare."""
+    """The style sheets of a document, and what its elements declare.
+
+    Attributes:
+        font_rules: The rules `@font-face`.
+    """
 
     def __init__(
         self, document: Document, warnings: Warnings, tell: Callable[[float], None]
     ) -> None:
         self._warnings = warnings
+        self.font_rules: list[FontRule] = []
         self._styles: dict[SvgElement, Style] = {}
         self._declared: dict[SvgElement, dict[str, str]] = {}
         if document.foreign_style:
@@ -293,8 +299,11 @@ class StyleSheets:
         has_rules = False
         for rule in tinycss2.parse_stylesheet(element.text or "", True, True):
             line = element.line + getattr(rule, "source_line", 1) - 1
-            if rule.type == "at-rule":
-                if rule.lower_at_keyword not in ("charset", "font-face", "keyframes", "namespace"):
+            if rule.type == "at-rule" and rule.lower_at_keyword == "font-face":
+                said = {name: value for name, value, _ in _declarations_in(rule.content)}
+                self.font_rules.append(FontRule(line, said))
+            elif rule.type == "at-rule":
+                if rule.lower_at_keyword not in ("charset", "keyframes", "namespace"):
                     self._warnings.unsupported(f"@{rule.lower_at_keyword}", "ignored", line)
             elif rule.type == "error":
                 self._warnings.broken("style sheet", f"ignored a rule: {rule.message}", line)

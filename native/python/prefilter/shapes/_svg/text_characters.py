@@ -10,6 +10,7 @@ from .basic_shapes import BASIC_SHAPES, read_shape
 from .context import Context, Sources
 from .document import SvgElement
 from .lengths import Units, read_length
+from .nesting import is_wanted
 from .outline import read_path
 from .styles import Style
 from .text_style import TextStyle
@@ -163,16 +164,30 @@ class TextReader:
             return
         begin = len(found.raw)
         at = len(found.ranges)
+        if element.tag == "tref":
+            self._add_referred(element, span, keeps, found)
+            found.ranges.insert(at, (span, begin, len(found.raw)))
+            return
         self._add(element.text, span, keeps, found)
         for child in element:
             assert isinstance(child, SvgElement)
             declared = self._sources.sheets.declared(child)
-            if child.tag in INNER and declared.get("display", "") != "none":
+            is_shown = declared.get("display", "") != "none" and is_wanted(child)
+            if child.tag in INNER and is_shown:
                 below = self._sources.sheets.style_below(child, style)
                 inner_keeps = self._keeps_spaces(child, below, keeps)
                 self._walk(child, below, (*around, span), found, inner_keeps)
             self._add(child.tail, span, keeps, found)
         found.ranges.insert(at, (span, begin, len(found.raw)))
+
+    def _add_referred(self, element: SvgElement, span: Span, keeps: bool, found: _Found) -> None:
+        """Adds all text of the element that a `tref` refers to."""
+        target = self._sources.document.ids.get(element.href)
+        if target is None:
+            self._sources.warnings.broken("<tref>", "left out", element.line)
+            return
+        for text in target.itertext():
+            self._add(text, span, keeps, found)
 
     def _add(self, text: str | None, span: Span, keeps: bool, found: _Found) -> None:
         if not text:
@@ -205,9 +220,6 @@ class TextReader:
             place = self._place(element, style)
             if place is None:
                 return None
-        elif element.tag == "tref":
-            sources.warnings.unsupported("<tref>", "left out", element.line)
-            return None
         text_style = style.text
         override = declared.get("unicode-bidi", "").lower() in ("bidi-override", "isolate-override")
         forced = around[-1].forced if around else ""
@@ -222,15 +234,6 @@ class TextReader:
                     line for line in _lines(sources.sheets.declared(at)) if line not in lines
                 )
                 at = at.parent
-        if declared.get("writing-mode", "lr").lower() not in (
-            "lr",
-            "lr-tb",
-            "horizontal-tb",
-            "rl",
-            "rl-tb",
-            "inherit",
-        ):
-            sources.warnings.unsupported("writing-mode", "ignored", element.line)
         return Span(
             element,
             style,
@@ -290,7 +293,7 @@ class TextReader:
 
     def _position(self, span: Span, characters: list[Character]) -> None:
         """Puts what an element says of places into its characters."""
-        if span.element.tag not in ("text", "tspan"):
+        if span.element.tag not in ("text", "tspan", "tref"):
             return
         declared, units = self._sources.sheets.declared(span.element), self._units(span.style)
         for name in ("x", "y", "dx", "dy"):

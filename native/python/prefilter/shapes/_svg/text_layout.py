@@ -2,6 +2,7 @@
 
 """Where the glyphs of a text are: characters become clusters, and clusters follow each other."""
 
+import unicodedata
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
@@ -163,16 +164,26 @@ class TextLayout:
             x, y = along.offset + (first.x or 0.0), 0.0
         whole = sum(c.advance + sum(each.dx for each in c.characters) for c in clusters)
         style = first.span.text
+        is_vertical = along is None and next(first.span.line()).text.is_vertical
+        moved = [(each.dx, each.dy)[is_vertical] for each in part]
+        whole = sum(cluster.advance for cluster in clusters) + sum(moved)
         share = {"start": 0.0, "middle": 0.5, "end": 1.0}[style.anchor]
         if style.direction == "rtl":
             share = 1.0 - share
-        x -= share * whole
+        if is_vertical:
+            y -= share * whole
+        else:
+            x -= share * whole
         for cluster in clusters:
             head = cluster.characters[0]
             x += sum(each.dx for each in cluster.characters)
             y += sum(each.dy for each in cluster.characters)
-            cluster.matrix = _matrix(cluster, head, x, y)
-            x += cluster.advance
+            if is_vertical:
+                cluster.matrix = _downward(cluster, head, x, y)
+                y += cluster.advance
+            else:
+                cluster.matrix = _matrix(cluster, head, x, y)
+                x += cluster.advance
         if along is None:
             self._at = (x, y)
         else:
@@ -193,6 +204,29 @@ def _matrix(cluster: Cluster, head: Character, x: float, y: float) -> Matrix | N
     if matrix is not None and head.rotate != 0.0:
         matrix = multiplied(matrix, rotation(head.rotate))
     return matrix
+
+
+def _downward(cluster: Cluster, head: Character, x: float, y: float) -> Matrix:
+    """On a line downwards, turned by a right angle, and its middle on the line.
+
+    What stands upright in such lines, as Chinese does, is turned back about its middle.
+    """
+    metrics = cluster.font.metrics
+    middle = 0.5 * (metrics.ascent + metrics.descent) * cluster.span.style.font_size
+    matrix = multiplied(
+        (0.0, 1.0, -1.0, 0.0, x, y), (1.0, 0.0, 0.0, 1.0, 0.0, cluster.shift + middle)
+    )
+    if _is_upright(head.letter):
+        half = (cluster.advance - cluster.spacing) / 2.0
+        matrix = multiplied(matrix, (0.0, -1.0, 1.0, 0.0, half + middle, half - middle))
+    if head.rotate != 0.0:
+        matrix = multiplied(matrix, rotation(head.rotate))
+    return matrix
+
+
+def _is_upright(letter: str) -> bool:
+    is_wide = unicodedata.east_asian_width(letter) in ("W", "F")
+    return is_wide and not unicodedata.category(letter).startswith("P")
 
 
 def _parts(characters: Sequence[Character]) -> Iterator[Sequence[Character]]:

@@ -51,6 +51,7 @@ class TextStyle:
         direction: "ltr" or "rtl".
         baseline: What of a letter is at its position: as `dominant-baseline`.
         spaces: "collapse", "preserve", or "" for what `xml:space` says.
+        is_vertical: Whether lines go downwards: as `writing-mode` of the text element says.
     """
 
     families: tuple[str, ...] = ()
@@ -66,10 +67,24 @@ class TextStyle:
     direction: str = "ltr"
     baseline: str = "auto"
     spaces: str = ""
+    is_vertical: bool = False
 
 
 USUAL_TEXT = TextStyle()
 """That of text of which a file says nothing."""
+
+
+@dataclass(frozen=True, slots=True)
+class FontRule:
+    """A rule `@font-face` of a style sheet.
+
+    Attributes:
+        line: Where it is.
+        said: What it declares.
+    """
+
+    line: int
+    said: Mapping[str, str]
 
 
 def text_style_below(declared: Mapping[str, str], parent: TextStyle, font_size: float) -> TextStyle:
@@ -208,6 +223,15 @@ def _one_of(*names: str) -> Callable[[str], str | None]:
     return lambda text: text.lower() if text.lower() in names else None
 
 
+_DOWNWARDS = ("tb", "tb-rl", "vertical-rl", "vertical-lr")
+_ONWARDS = ("lr", "lr-tb", "rl", "rl-tb", "horizontal-tb")
+
+
+def _is_vertical(text: str) -> bool | None:
+    small = text.lower()
+    return small in _DOWNWARDS if small in (*_DOWNWARDS, *_ONWARDS) else None
+
+
 _KEPT_BASELINES = ("no-change", "reset-size", "use-script")
 _ANCHORS = _one_of("start", "middle", "end")
 # The field of each property, and what reads it.
@@ -229,12 +253,13 @@ PROPERTIES: Mapping[str, tuple[str, Callable[[str], Any]]] = {
         "baseline",
         lambda text: None if text.lower() in _KEPT_BASELINES else text.lower(),
     ),
+    "writing-mode": ("is_vertical", _is_vertical),
     "white-space": ("spaces", lambda text: _SPACES.get(text.lower())),
     "white-space-collapse": ("spaces", lambda text: _SPACES.get(text.lower(), text.lower())),
 }
 OWN_PROPERTIES = (
     *("alignment-baseline", "baseline-shift", "text-decoration", "text-decoration-line"),
-    *("unicode-bidi", "writing-mode"),
+    "unicode-bidi",
 )
 """Those that only count for the element itself."""
 NO_ATTRIBUTES = (
