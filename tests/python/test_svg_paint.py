@@ -5,7 +5,7 @@
 import numpy as np
 import prefilter
 import pytest
-from drawings import SIZE, drawn, read, same
+from drawings import SIZE, drawn, read, same, svg
 
 
 def color_of(body, light="srgb", attributes='viewBox="0 0 100 100"'):
@@ -257,3 +257,50 @@ def test_gradients_that_come_to_one_color_or_to_none(definition, color):
 def test_a_box_without_area_has_no_gradient():
     body = gradient(TWO, shape='<path d="M 0 5 H 50"')
     assert read(body).shapes == []
+
+
+@pytest.mark.parametrize("kind", ["gradient", "pattern"])
+@pytest.mark.parametrize("place", ["use", "marker"])
+def test_paints_of_others_lie_as_they_do_there(kind, place):
+    """What is brought is painted as its parts of one outline would be."""
+    paint = (
+        '<linearGradient id="p" gradientTransform="rotate(20)"><stop stop-color="red"/>'
+        '<stop offset="1" stop-color="blue"/></linearGradient>'
+        if kind == "gradient"
+        else '<pattern id="p" width="0.25" height="0.5"><path d="M0 0H4V9H0z" fill="teal"/>'
+        "</pattern>"
+    )
+    boxes = ((10, 20, 30, 20), (60, 30, 24, 40))
+    if place == "use":
+        inside = "".join(
+            f'<rect x="{(x - 5) / 2}" y="{y - 7}" width="{w / 2}" height="{h}" fill="context-fill" '
+            'transform="scale(2 1)"/>'
+            for x, y, w, h in boxes
+        )
+        body = f'<defs><g id="g">{inside}</g></defs><use href="#g" x="5" y="7" fill="url(#p)"/>'
+    else:
+        # Corners of a box around both; the path itself has no area, and fills nothing.
+        body = (
+            '<marker id="m" markerUnits="userSpaceOnUse" markerWidth="9" markerHeight="9" '
+            'overflow="visible" orient="90"><path d="M0 0H10V-8H0z" fill="context-fill"/></marker>'
+            '<path d="M10 20L84 70" marker-start="url(#m)" marker-end="url(#m)" fill="url(#p)"/>'
+        )
+        boxes = ((10, 20, 8, 10), (84, 70, 8, 10))
+    parts = "".join(f"M{x} {y}h{w}v{h}h{-w}z" for x, y, w, h in boxes)
+    clip = f'<clipPath id="c"><path d="{parts}"/></clipPath>'
+    # The same paint, in units of the page instead of shares of the box around both.
+    shares = "matrix(74 0 0 50 10 20)"
+    if kind == "gradient":
+        paint += paint.replace(
+            'id="p" gradientTransform="',
+            f'id="q" gradientUnits="userSpaceOnUse" x2="1" gradientTransform="{shares} ',
+        )
+    else:
+        paint += (
+            '<pattern id="q" patternUnits="userSpaceOnUse" x="10" y="20" width="18.5" height="25">'
+            '<path d="M0 0H4V9H0z" fill="teal"/></pattern>'
+        )
+    expected = f'{clip}<rect width="100" height="100" fill="url(#q)" clip-path="url(#c)"/>'
+    made, _ = prefilter.rasterize_svg(svg(paint + body), 100, 100)
+    other, _ = prefilter.rasterize_svg(svg(paint + expected), 100, 100)
+    np.testing.assert_allclose(made, other, atol=1e-5)

@@ -90,14 +90,29 @@ class Context:
     clips: tuple[Clip, ...] = ()
     uses: tuple[SvgElement, ...] = ()
     use: SvgElement | None = None
-    paints: Mapping[str, Paint] = field(default_factory=dict)
+    paints: Mapping[str, "HeldPaint"] = field(default_factory=dict)
 
     @property
     def units(self) -> Units:
         return Units(*self.viewport, self.style.font_size)
 
 
-def paints_of(context: Context) -> dict[str, Paint]:
+@dataclass(frozen=True, slots=True)
+class HeldPaint:
+    """What `context-fill` or `context-stroke` stands for.
+
+    Attributes:
+        paint: It.
+        element: The one that has it: gradients and patterns lie as they do there.
+        context: Within that.
+    """
+
+    paint: Paint
+    element: SvgElement
+    context: Context
+
+
+def paints_of(element: SvgElement, context: Context) -> dict[str, HeldPaint]:
     """What `context-fill` and `context-stroke` stand for in what an element brings."""
     found = {}
     for name, paint in (
@@ -105,8 +120,10 @@ def paints_of(context: Context) -> dict[str, Paint]:
         ("context-stroke", context.style.stroke),
     ):
         if isinstance(paint.color, str) and paint.color != "current":
-            paint = context.paints.get(paint.color, Paint(None))
-        elif paint.color == "current":
+            held = context.paints.get(paint.color)
+            found[name] = HeldPaint(Paint(None), element, context) if held is None else held
+            continue
+        if paint.color == "current":
             paint = replace(paint, color=context.style.color)
-        found[name] = paint
+        found[name] = HeldPaint(paint, element, context)
     return found

@@ -62,6 +62,7 @@ def draw_markers(element: SvgElement, context: Context, outline: Outline, source
     if all(marker is None for marker in found.values()):
         return
     corners = list(corners_of(outline))
+    context = replace(context, paints=paints_of(element, context))
     for index, corner in enumerate(corners):
         at_start, at_end = index == 0, index == len(corners) - 1
         for name, is_there in (
@@ -139,7 +140,6 @@ def _draw(
         clips=clips,
         uses=(*context.uses, marker),
         use=None,
-        paints=paints_of(context),
     )
     sources.draw((child, inside) for child in children(marker))
 

@@ -73,7 +73,7 @@ def used(
         matrix=multiplied(context.matrix, (1.0, 0.0, 0.0, 1.0, x, y)),
         uses=(*context.uses, target),
         use=element,
-        paints=paints_of(context),
+        paints=paints_of(element, context),
     )
     yield target, context
 

@@ -2,16 +2,19 @@
 
 """What an outline is filled and stroked with."""
 
+from dataclasses import replace
+
 import numpy as np
 
-from .context import Context, Sources
+from .bounding import object_bounds
+from .context import Context, HeldPaint, Sources
 from .document import SvgElement
 from .outline import Outline
 from .paint_servers import GRADIENTS, Gradient
 from .patterns import pattern_of
 from .tags import OTHER_PAINTS
 from .tree import Box, Pattern, Stroke
-from .values import Color, Paint
+from .values import Color, Paint, inverse, multiplied
 
 _MOST_DASHES = 100_000
 
@@ -26,7 +29,10 @@ def resolved(
 ) -> tuple[float, ...] | Gradient | Pattern | None:
     """What to paint with; None for nothing."""
     if isinstance(paint.color, str) and paint.color in context.paints:
-        paint = context.paints[paint.color]
+        held = context.paints[paint.color]
+        if held.paint.server:
+            return _resolved_there(held, context, opacity, sources)
+        paint = held.paint
     found: Gradient | Color | None = None
     is_here = paint.server.startswith("#")
     server = sources.document.ids.get(paint.server[1:]) if is_here else None
@@ -51,6 +57,19 @@ def resolved(
     if found[3] == 0.0:
         return None
     return context.colors.premultiplied(np.array([found]))[0]
+
+
+def _resolved_there(
+    held: HeldPaint, context: Context, opacity: float, sources: Sources
+) -> tuple[float, ...] | Gradient | Pattern | None:
+    """What another element is painted with, where that is, in units of this one."""
+    there = replace(held.context, colors=context.colors)
+    bounds = object_bounds(held.element, there, sources)
+    found = resolved(held.element, there, bounds, held.paint, opacity, sources)
+    if found is None or isinstance(found, tuple):
+        return found
+    to_here = multiplied(inverse(context.matrix), there.matrix)
+    return replace(found, matrix=multiplied(to_here, found.matrix))
 
 
 def stroke_of(
