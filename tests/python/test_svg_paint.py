@@ -304,3 +304,18 @@ def test_paints_of_others_lie_as_they_do_there(kind, place):
     made, _ = prefilter.rasterize_svg(svg(paint + body), 100, 100)
     other, _ = prefilter.rasterize_svg(svg(paint + expected), 100, 100)
     np.testing.assert_allclose(made, other, atol=1e-5)
+
+
+def test_properties_that_are_not_inherited_may_be():
+    rect = '<rect x="10" y="10" width="40" height="40" {}/>'
+    tree = '<clipPath id="c"><path d="M0 0H30V30H0z"/></clipPath><g clip-path="url(#c)">'
+    both = tree + rect.format('clip-path="inherit" transform="translate(5 5)"') + "</g>"
+    same(drawn(both), drawn('<path d="M15 15H30V30H15z"/>'))
+    same(drawn(rect.format('clip-path="inherit" overflow="inherit"')), drawn(rect.format("")))
+
+
+def test_patterns_of_boxes_without_an_area_have_their_color():
+    pattern = '<pattern id="p" width="1" height="1"><rect width="9" height="9"/></pattern>'
+    line = '<path d="M10 50H90" stroke-width="8" stroke="{}"/>'
+    same(drawn(pattern + line.format("url(#p) green")), drawn(line.format("green")))
+    assert not drawn(pattern + line.format("url(#p)")).any()

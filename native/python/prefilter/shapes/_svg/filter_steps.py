@@ -87,24 +87,13 @@ def _offset(element: SvgElement, place: FilterPlace, _: Sources) -> Found:
 def _flood(element: SvgElement, place: FilterPlace, sources: Sources) -> Found:
     del place
     color = _color(element, "flood-color", (0.0, 0.0, 0.0, 1.0), sources)
-    opacity = as_number(_property(element, "flood-opacity", "1", sources))
+    opacity = as_number(sources.sheets.declared(element).get("flood-opacity", "1"))
     alpha = color[3] * (1.0 if opacity is None else min(max(opacity, 0.0), 1.0))
     return [], [*color[:3], alpha], ""
 
 
-def _property(element: SvgElement, name: str, default: str, sources: Sources) -> str:
-    """The value of a property that is not inherited unless it says so."""
-    at: SvgElement | None = element
-    while at is not None:
-        value = sources.sheets.declared(at).get(name, default)
-        if value.lower() != "inherit":
-            return value
-        at = at.parent
-    return default
-
-
 def _color(element: SvgElement, name: str, default: Color, sources: Sources) -> Color:
-    color = as_color(_property(element, name, "", sources) or "none")
+    color = as_color(sources.sheets.declared(element).get(name, "none"))
     if color is None:
         return default
     return sources.sheets.style(element).color if isinstance(color, str) else color

@@ -9,6 +9,7 @@ import numpy as np
 from .bounding import object_bounds
 from .context import Context, HeldPaint, Sources
 from .document import SvgElement
+from .masks import shares_of
 from .outline import Outline
 from .paint_servers import GRADIENTS, Gradient
 from .patterns import pattern_of
@@ -39,7 +40,10 @@ def resolved(
     if server is not None and server.tag in GRADIENTS:
         found = sources.servers.resolve(server, opacity, context.units, bounds, context.colors)
     elif server is not None and server.tag == "pattern":
-        return pattern_of(server, opacity, context, bounds, sources)
+        pattern = pattern_of(server, opacity, context, bounds, sources)
+        # Shares of a box without an area are nothing, and the color is for that.
+        if pattern is not None or shares_of(bounds) is not None:
+            return pattern
     elif server is not None:
         is_paint = server.tag in OTHER_PAINTS
         tell = sources.warnings.unsupported if is_paint else sources.warnings.broken

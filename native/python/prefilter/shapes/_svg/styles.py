@@ -157,17 +157,16 @@ UNSUPPORTED = {
     "vector-effect": ("none",),
 }
 # Attributes that are properties too, so that style sheets may set them.
-_OTHER: tuple[str, ...] = ("x", "y", "cx", "cy", "r", "rx", "ry", "width", "height")
-_OTHER += ("background", "background-color", "clip-path", "display", "filter", "mask", "overflow")
-_OTHER += ("flood-color", "flood-opacity")
-_OTHER += ("transform", "transform-origin")
+_PLACES = ("x", "y", "cx", "cy", "r", "rx", "ry", "width", "height", "transform")
+_OTHER: tuple[str, ...] = ("background", "background-color", "clip-path", "display", "filter")
+_OTHER += ("mask", "overflow", "flood-color", "flood-opacity", "lighting-color", "transform-origin")
 # Those that are no attributes.
 _IN_SHEETS_ONLY = frozenset(
     ("background", "background-color", "mix-blend-mode", "isolation", *NO_ATTRIBUTES)
 )
 _MARKERS = ("marker-start", "marker-mid", "marker-end")
 _PROPERTIES = frozenset(
-    (*_PARSERS, *UNSUPPORTED, *_OTHER, *PROPERTIES, *OWN_PROPERTIES, "font-size")
+    (*_PARSERS, *UNSUPPORTED, *_PLACES, *_OTHER, *PROPERTIES, *OWN_PROPERTIES, "font-size")
 )
 
 
@@ -263,8 +262,7 @@ class StyleSheets:
         }
         own = _parsed_declarations(found.pop("style")) if "style" in found else ()
         if not rules and not own:
-            self._report(element, found)
-            return found
+            return self._inherited(element, found)
         for important in (False, True):
             for declarations in (*rules, own):
                 for name, value, is_important in declarations:
@@ -276,6 +274,16 @@ class StyleSheets:
                         found.update(expanded_font(value))
                     if name in _PROPERTIES and self._is_valid(name, value, element):
                         found[name] = value
+        return self._inherited(element, found)
+
+    def _inherited(self, element: SvgElement, found: dict[str, str]) -> dict[str, str]:
+        """The same, where properties that are not inherited by themselves have parents' values."""
+        if "inherit" in found.values():
+            parent = self._declared[element.parent] if element.parent is not None else {}
+            for name in [name for name in _OTHER if found.get(name) == "inherit"]:
+                del found[name]
+                if name in parent:
+                    found[name] = parent[name]
         self._report(element, found)
         return found
 
