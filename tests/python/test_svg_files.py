@@ -373,7 +373,7 @@ def test_progress_and_canceling():
 
 
 def test_what_stands_for_other_markup_is_drawn():
-    body = "<switch><foreignObject/><rect width='9' height='9'/><rect/></switch>"
+    body = "<switch><foreignObject/><x/><rect width='9' height='9'/><rect/></switch>"
     drawing = read(body)
     assert len(drawing.shapes) == 1
     assert [str(each) for each in drawing.warnings] == [

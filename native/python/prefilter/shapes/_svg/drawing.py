@@ -18,13 +18,13 @@ from .images import Images, draw_image
 from .limits import Budget, check_uses
 from .markers import MARKED, draw_markers
 from .masks import masks_of
-from .nesting import FOREIGN, SHOWN, children, is_wanted, moved, used, viewport
+from .nesting import DRAWN, FOREIGN, SHOWN, children, is_wanted, moved, used, viewport
 from .outline import Outline
 from .page import Page, background_of, read_page
 from .paint_servers import Colors, PaintServers
 from .painting import paint_order, resolved, stroke_of
 from .styles import UNSUPPORTED, Style, StyleSheets
-from .tags import GROUPS, NOT_DRAWN
+from .tags import NOT_DRAWN
 from .tree import Box, Clip, Group, Painted, Stroke, carried
 from .values import IDENTITY, Matrix, Paint, determinant, multiplied
 from .warnings import Warnings
@@ -35,7 +35,6 @@ Tell = Callable[[float], None]
 _LARGEST = 1e5
 _SMALLEST_DETERMINANT = 1e-40
 _MOST_NESTED = 8
-_OTHER_DRAWN = ("use", "image", "text")
 # Of the larger side: what rounding makes of a page that fits.
 _SLACK = 1e-9
 
@@ -164,7 +163,7 @@ class Walk:
             return
         if tag == "symbol" and context.use is None:
             return
-        if tag not in GROUPS and tag not in BASIC_SHAPES and tag not in _OTHER_DRAWN:
+        if tag not in DRAWN:
             sources.warnings.unsupported(f"<{tag}>", "left out", element.line)
             return
         foreign = [child for child in element if child.tag == FOREIGN] if tag == "switch" else []

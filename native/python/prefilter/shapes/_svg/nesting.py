@@ -5,15 +5,19 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
+from .basic_shapes import BASIC_SHAPES
 from .clips import box_clip
 from .context import Context, Sources, paints_of
 from .document import SvgElement
 from .lengths import about_origin
+from .tags import GROUPS
 from .values import IDENTITY, Length, as_transform, multiplied
 from .viewports import as_view_box, placed
 
 _ZERO, _WHOLE = Length(0.0), Length(100.0, "%")
 FOREIGN = "foreignObject"
+DRAWN = frozenset((*GROUPS, *BASIC_SHAPES, "use", "image", "text"))
+"""Elements of which something is drawn."""
 SHOWN = ("visible", "auto")
 """The values of `overflow` that cut nothing off."""
 
@@ -24,7 +28,7 @@ def children(element: SvgElement) -> Iterator[SvgElement]:
         assert isinstance(child, SvgElement)
         if element.tag != "switch":
             yield child
-        elif is_wanted(child) and not child.tag.startswith("{") and child.tag != FOREIGN:
+        elif is_wanted(child) and child.tag in DRAWN:
             yield child
             return
 
