@@ -3,6 +3,7 @@
 """Whole drawings as images: what closed forms say, and other ways to draw the same."""
 
 import base64
+import io
 import math
 
 import numpy as np
@@ -10,6 +11,7 @@ import prefilter
 import pytest
 from drawings import SIZE, image, same, svg
 from prefilter._work.files import png
+from prefilter.shapes._svg.pictures import size_of
 
 HALF = 128 / 255
 RED, GREEN = (1.0, 0.0, 0.0), (0.0, 128 / 255, 0.0)
@@ -401,6 +403,31 @@ def test_images_of_as_many_pixels_are_as_they_are():
     np.testing.assert_allclose(drawn(element), expected, atol=2e-3)
     linear = prefilter.to_linear(texels[..., :3] / np.float32(255)) * expected[..., 3:]
     np.testing.assert_allclose(drawn(element, light="linear")[..., :3], linear, atol=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("kind", "options"),
+    [
+        ("gif", {}),
+        ("webp", {"lossless": True}),
+        ("webp", {"quality": 90}),
+        ("webp", {"exif": b"x"}),
+    ],
+)
+def test_other_kinds_of_pictures(kind, options):
+    pillow = pytest.importorskip("PIL.Image")
+    rows = np.zeros((30, 50, 3), np.uint8)
+    rows[:, 20:] = (0, 128, 0)
+    file = io.BytesIO()
+    try:
+        pillow.fromarray(rows).save(file, kind, **options)
+    except (KeyError, OSError):
+        pytest.skip(f"Pillow writes no {kind}")
+    assert size_of(file.getvalue()) == (50, 30)
+    address = f"data:image/{kind};base64,{base64.b64encode(file.getvalue()).decode()}"
+    made = drawn(f'<image width="50" height="30" href="{address}"/>')
+    for x, color in ((10, (0, 0, 0, 1)), (40, (0, 128 / 255, 0, 1)), (60, (0, 0, 0, 0))):
+        np.testing.assert_allclose(made[10, x], color, atol=0.02)
 
 
 def test_where_images_are():

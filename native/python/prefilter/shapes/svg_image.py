@@ -32,10 +32,10 @@ def rasterize_svg(
     """The image of a drawing: its shapes, and the layers that they make.
 
     Groups with an opacity, a blend mode, a mask or a filter are layers; shapes are cut off at clip
-    paths exactly. Patterns, markers and images are drawn: PNG and JPEG, read by Pillow or by
-    OpenImageIO, and SVG, embedded in the file or in its folder. The drawing fills the image as its
-    preserveAspectRatio says, and is cut off at its page. Shapes between two layers are drawn as by
-    `rasterize` with overlap="cover".
+    paths exactly. Patterns, markers and images are drawn: PNG, JPEG, GIF and WebP, read by Pillow
+    or by OpenImageIO, and SVG, embedded in the file or in its folder. The drawing fills the image
+    as its preserveAspectRatio says, and is cut off at its page. Shapes between two layers are drawn
+    as by `rasterize` with overlap="cover".
 
     Args:
         source: As of `read_svg`.

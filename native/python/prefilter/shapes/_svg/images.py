@@ -17,14 +17,13 @@ from .limits import TooLargeError
 from .nesting import SHOWN
 from .page import Page
 from .paint_servers import Colors
-from .pictures import PictureError, read_picture, size_of
+from .pictures import PictureError, ending_of, read_picture, size_of
 from .tree import Clip, Group, Picture, carried
 from .values import Length, Matrix, multiplied
 from .viewports import ViewBox, placed
 
 _ZERO, _AUTO = Length(0.0), Length(-1.0)
 _PIXELATED = ("pixelated", "crisp-edges", "optimizespeed", "-moz-crisp-edges")
-_SIGNATURES = (b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff")
 MOST_BYTES = 1 << 28
 
 
@@ -77,13 +76,13 @@ class Images:
 
     def _contents(self, element: SvgElement, sources: Sources) -> Contents:
         data, name = _bytes_of(element, sources)
-        if data.startswith(_SIGNATURES):
+        if ending_of(data):
             width, height = size_of(data)
             sources.budget.take_texels(width * height)
             return read_picture(data)
         if data.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"<" or data[:2] == b"\x1f\x8b":
             return self._read(data, name)
-        raise ElsewhereError("as it is neither PNG, JPEG nor SVG")
+        raise ElsewhereError("as it is neither PNG, JPEG, GIF, WebP nor SVG")
 
 
 def draw_image(element: SvgElement, context: Context, sources: Sources, images: Images) -> None:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""PNG and JPEG pictures, read by Pillow or by OpenImageIO, whichever there is."""
+"""Pictures: PNG, JPEG, GIF and WebP, read by Pillow or by OpenImageIO, whichever there is."""
 
 import io
 import tempfile
@@ -20,7 +20,7 @@ class PictureError(Exception):
 
 
 def read_picture(data: bytes) -> Texels:
-    """The texels of a PNG or JPEG file.
+    """The texels of a file, the first ones where it holds several pictures.
 
     Returns:
         (height, width, 4): red, green, blue and alpha, not multiplied by it; the top row first.
@@ -36,7 +36,7 @@ def read_picture(data: bytes) -> Texels:
     except ImportError:
         return _by_openimageio(data)
     try:
-        with pillow.open(io.BytesIO(data), formats=("PNG", "JPEG")) as file:
+        with pillow.open(io.BytesIO(data), formats=("PNG", "JPEG", "GIF", "WEBP")) as file:
             # Pillow cuts 16 bits off where it should round them.
             if file.mode.startswith("I"):
                 gray = np.rint(np.asarray(file, np.float64) / 257.0).clip(0.0, 255.0)
@@ -49,10 +49,9 @@ def read_picture(data: bytes) -> Texels:
 def _by_openimageio(data: bytes) -> Texels:
     from ..._work import openimageio
 
-    ending = ".png" if data.startswith(b"\x89PNG") else ".jpg"
     try:
         with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / f"image{ending}"
+            path = Path(folder) / f"image{ending_of(data)}"
             path.write_bytes(data)
             values, _ = openimageio.read_pixels(path)
     except (OSError, ValueError) as error:
@@ -72,10 +71,26 @@ def _as_rgba(values: Texels) -> Texels:
     return found
 
 
+def ending_of(data: bytes) -> str:
+    """The ending that files have which begin like that; empty for what is no picture."""
+    for ending, signature in (
+        (".png", b"\x89PNG\r\n\x1a\n"),
+        (".jpg", b"\xff\xd8\xff"),
+        (".gif", b"GIF8"),
+    ):
+        if data.startswith(signature):
+            return ending
+    return ".webp" if data[:4] == b"RIFF" and data[8:12] == b"WEBP" else ""
+
+
 def size_of(data: bytes) -> tuple[int, int]:
     """The width and height that a file says it has, before anything of it is unpacked."""
     if data.startswith(b"\x89PNG"):
         return int.from_bytes(data[16:20], "big"), int.from_bytes(data[20:24], "big")
+    if data.startswith(b"GIF8"):
+        return int.from_bytes(data[6:8], "little"), int.from_bytes(data[8:10], "little")
+    if data.startswith(b"RIFF"):
+        return _size_of_webp(data)
     at = 2
     while at + 9 <= len(data) and data[at] == 0xFF:
         kind, length = data[at + 1], int.from_bytes(data[at + 2 : at + 4], "big")
@@ -84,3 +99,15 @@ def size_of(data: bytes) -> tuple[int, int]:
             return int.from_bytes(width, "big"), int.from_bytes(height, "big")
         at += 1 if kind == 0xFF else 2 + length
     return 0, 0
+
+
+def _size_of_webp(data: bytes) -> tuple[int, int]:
+    kind, body = data[12:16], data[20:30]
+    if kind == b"VP8X":
+        found = int.from_bytes(body[4:7], "little"), int.from_bytes(body[7:10], "little")
+        return found[0] + 1, found[1] + 1
+    if kind == b"VP8L":
+        bits = int.from_bytes(body[1:5], "little")
+        return (bits & 0x3FFF) + 1, (bits >> 14 & 0x3FFF) + 1
+    sides = int.from_bytes(body[6:8], "little"), int.from_bytes(body[8:10], "little")
+    return sides[0] & 0x3FFF, sides[1] & 0x3FFF
