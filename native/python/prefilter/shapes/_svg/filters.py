@@ -134,6 +134,7 @@ def _shown(
     left, top, right, bottom = region
     inside = replace(context, target=group, clips=(), use=None)
     if target is None:
+        inside = replace(inside, style=sources.sheets.style(element))
         put_image(element, (left, top, right - left, bottom - top), inside, sources, images)
     elif any(target in ancestors(used) for used in context.uses):
         raise InvalidFunctionError  # It is inside of itself.
