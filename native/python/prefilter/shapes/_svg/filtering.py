@@ -26,6 +26,8 @@ FloatArray = npt.NDArray[np.float32]
 Slices = tuple[slice, slice]
 """Rows and columns."""
 
+_AT_ONCE = 1 << 16
+
 
 @dataclass
 class _Result:
@@ -193,32 +195,37 @@ class _Filtering:
                 numbers[at + 1] = b * x + d * y + f - top
                 numbers[at + 2] = scale * z
         alpha = pixels[..., 3].astype(np.float64)
-        return lit(alpha, step.kind, step.name, tuple(numbers)).astype(np.float32)
+        return lit(alpha, step.kind, step.name, tuple(numbers))
 
     def _noise(self, step: Step, region: Slices) -> FloatArray:
         found = np.zeros_like(self._source)
         a, b, c, d, e, f = inverse(self._down)
         rows, columns = region
         top, bottom = self._shape[0] - rows.stop, self._shape[0] - rows.start
-        x, y = np.meshgrid(
-            np.arange(float(columns.start), columns.stop), np.arange(float(top), bottom)
-        )
         tile = None
         if step.numbers[4]:
             box = (float(columns.start), float(top), float(columns.stop), float(bottom))
             left, upper, right, lower = carried(box, (a, b, c, d, e, f))
             tile = left, upper, right - left, lower - upper
-        straight = noise(
-            a * x + c * y + e,
-            b * x + d * y + f,
-            (step.numbers[0], step.numbers[1]),
-            int(step.numbers[2]),
-            int(step.numbers[3]),
-            is_fractal=step.name == "fractalNoise",
-            tile=tile,
-        )
-        straight[..., :3] *= straight[..., 3:]
-        found[region] = straight[::-1]
+        inside = found[region][::-1]
+        # Some rows at a time, as numbers on the way take much memory.
+        count = max(_AT_ONCE // max(columns.stop - columns.start, 1), 1)
+        for begin in range(0, bottom - top, count):
+            part = inside[begin : begin + count]
+            x, y = np.meshgrid(
+                np.arange(float(columns.start), columns.stop), top + begin + np.arange(len(part))
+            )
+            straight = noise(
+                a * x + c * y + e,
+                b * x + d * y + f,
+                (step.numbers[0], step.numbers[1]),
+                int(step.numbers[2]),
+                int(step.numbers[3]),
+                is_fractal=step.name == "fractalNoise",
+                tile=tile,
+            )
+            straight[..., :3] *= straight[..., 3:]
+            part[...] = straight
         return found
 
     def _merged(self, inputs: list[FloatArray]) -> FloatArray:

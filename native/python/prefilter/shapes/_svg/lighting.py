@@ -11,12 +11,14 @@ import numpy.typing as npt
 from ... import _native
 
 Values = npt.NDArray[np.float64]
+FloatArray = npt.NDArray[np.float32]
 
 # Where the edge of a spot's cone is soft, in cosines.
 _SOFT = 0.016
+_AT_ONCE = 1 << 16
 
 
-def lit(alpha: Values, kind: str, light: str, numbers: tuple[float, ...]) -> Values:
+def lit(alpha: Values, kind: str, light: str, numbers: tuple[float, ...]) -> FloatArray:
     """The light that pixels send to the eye.
 
     Args:
@@ -30,11 +32,25 @@ def lit(alpha: Values, kind: str, light: str, numbers: tuple[float, ...]) -> Val
     Returns:
         (height, width, 4): colors multiplied by alpha.
     """
-    height, strength, shininess = numbers[:3]
-    color, about = np.array(numbers[3:6]), numbers[6:]
-    normals = _normals(alpha, height)
-    directions, share = _directions(alpha * height, light, about)
-    found = np.ones((*alpha.shape, 4))
+    slopes = _smoothed(_differences(alpha, 1), 0), _smoothed(_differences(alpha, 0), 1)
+    found = np.empty((*alpha.shape, 4), np.float32)
+    # Some rows at a time, as vectors take much memory.
+    count = max(_AT_ONCE // max(alpha.shape[1], 1), 1)
+    for begin in range(0, alpha.shape[0], count):
+        rows = slice(begin, begin + count)
+        normals = _normals(slopes[0][rows], slopes[1][rows], numbers[0])
+        surface = numbers[0] * alpha[rows]
+        directions, share = _directions(surface, begin, light, numbers[6:])
+        found[rows] = _sent(normals, directions, share, kind, numbers[1:6])
+    return found
+
+
+def _sent(
+    normals: Values, directions: Values, share: Values, kind: str, numbers: tuple[float, ...]
+) -> Values:
+    """The light that is sent on, by its strength, shininess and color."""
+    strength, shininess, color = numbers[0], numbers[1], np.array(numbers[2:5])
+    found = np.ones((*share.shape, 4))
     if kind == "feDiffuseLighting":
         amount = strength * (normals * directions).sum(-1) * share
         found[..., :3] = (amount[..., None] * color).clip(0.0, 1.0)
@@ -49,10 +65,9 @@ def lit(alpha: Values, kind: str, light: str, numbers: tuple[float, ...]) -> Val
     return found
 
 
-def _normals(alpha: Values, height: float) -> Values:
-    """Of length 1, by the differences that Filter Effects has, at edges one-sided ones."""
-    x = -height * _smoothed(_differences(alpha, 1), 0)
-    y = -height * _smoothed(_differences(alpha, 0), 1)
+def _normals(across: Values, along: Values, height: float) -> Values:
+    """Of length 1, of slopes as Filter Effects has them: the differences of pixels two apart."""
+    x, y = -height * across, -height * along
     lengths = np.sqrt(x * x + y * y + 1.0)
     return np.stack([x, y, np.ones_like(x)], -1) / lengths[..., None]
 
@@ -81,13 +96,18 @@ def _smoothed(values: Values, axis: int) -> Values:
     return np.moveaxis(found, 0, axis)
 
 
-def _directions(surface: Values, light: str, about: tuple[float, ...]) -> tuple[Values, Values]:
-    """From each pixel to the light, of length 1, and how much light comes along that."""
+def _directions(
+    surface: Values, top: int, light: str, about: tuple[float, ...]
+) -> tuple[Values, Values]:
+    """From each pixel to the light, of length 1, and how much light comes along that.
+
+    `surface` is how high rows from `top` on are.
+    """
     rows, columns = surface.shape
     if light == "feDistantLight":
         shape = (rows, columns, 3)
         return np.broadcast_to(np.array(about), shape), np.ones((rows, columns))
-    x, y = np.meshgrid(np.arange(columns), np.arange(rows))
+    x, y = np.meshgrid(np.arange(columns), top + np.arange(rows))
     to_light = np.stack([about[0] - x, about[1] - y, about[2] - surface], -1)
     lengths = np.sqrt((to_light * to_light).sum(-1, keepdims=True))
     directions = np.zeros_like(to_light)
