@@ -20,8 +20,8 @@ CLIP = "<clipPath id='c' transform='scale(2)'><rect x='5' width='15' height='50'
     [
         ("<foreignObject/>", "<foreignObject>"),
         (
-            f'<filter id="f"><feTile in="BackgroundImage"/></filter><g filter="url(#f)">{BOX}</g>',
-            "filter with BackgroundImage",
+            f'<filter id="f"><feWarp/></filter><g filter="url(#f)">{BOX}</g>',
+            "filter with <feWarp>",
         ),
         (f'<filter id="f"><feOffset/></filter><g filter="url(#f)">{BOX}</g>', "filter"),
         ('<image width="9" height="9" href="http://example.org/a.png"/>', "<image>"),

@@ -47,6 +47,13 @@ def test_functions_of_colors(text, color):
     np.testing.assert_allclose(functions(text)[50, 50], (*color, 1), atol=1e-5)
 
 
+def test_filters_that_are_missing_are_left_out_of_a_list():
+    element = FLAT.format("invert(1) url(#none) brightness(0.5)")
+    made, (warning,) = prefilter.rasterize_svg(svg(element), SIZE, SIZE)
+    assert warning.kind == "broken"
+    same(made[::-1], functions("invert(1) brightness(0.5)"))
+
+
 def test_opacity_is_a_function_too():
     same(functions("opacity(40%)"), functions("none") * np.float32(0.4))
 
@@ -274,6 +281,8 @@ def test_light_on_a_plane():
         )
         color = np.array([255, 165, 0]) / 255 * 0.8 * math.sin(math.radians(elevation))
         np.testing.assert_allclose(made[50, 50], (*color, 1), atol=1e-5)
+    made = drawn(f'<feDiffuseLighting diffuseConstant="-1">{light}{tail}', flat, ALL)
+    np.testing.assert_array_equal(made[50, 50], (0, 0, 0, 1))
     light = '<fePointLight x="30" y="40" z="21"/>'
     made = drawn(f'<feDiffuseLighting surfaceScale="1">{light}{tail}', flat, ALL)
     for x, y in ((10, 10), (30, 40), (90, 70)):

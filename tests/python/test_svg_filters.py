@@ -200,9 +200,14 @@ def clip_path(name):
 
 
 def test_what_is_not_supported_is_said_once():
-    body = f'<filter id="f"><feOffset in="FillPaint"/></filter>{BOX}{BOX}'
+    body = f'<filter id="f"><feOffset in="FillPaint" dx="5"/></filter>{BOX}{BOX}'
     made, (warning,) = prefilter.rasterize_svg(svg(body), SIZE, SIZE)
-    assert str(warning) == "filter with FillPaint: ignored (first in line 1, 2 times)"
+    words = "FillPaint: replaced by the result before it (first in line 1, 2 times)"
+    assert str(warning) == words
+    same(made[::-1], drawn('<feOffset dx="5"/>', BOX, ""))
+    body = f'<filter id="f"><feWarp/></filter>{BOX}'
+    made, (warning,) = prefilter.rasterize_svg(svg(body), SIZE, SIZE)
+    assert str(warning) == "filter with <feWarp>: ignored (in line 1)"
     same(made[::-1], plain(box(30, 20, 60, 50, "")))
     assert prefilter.read_svg(svg(f"<filter id='f'><feOffset/></filter>{BOX}")).warnings
 

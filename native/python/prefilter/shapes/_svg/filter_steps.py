@@ -254,9 +254,9 @@ def _lighting(element: SvgElement, place: FilterPlace, sources: Sources) -> Foun
     is_diffuse = element.tag == "feDiffuseLighting"
     strength = _number(element, "diffuseConstant" if is_diffuse else "specularConstant", 1.0)
     shininess = _number(element, "specularExponent", 1.0)
-    if strength < 0.0 or not (is_diffuse or 1.0 <= shininess <= 128.0):
+    if not (is_diffuse or 1.0 <= shininess <= 128.0):
         return _nothing(element)
-    numbers = [_number(element, "surfaceScale", 1.0), strength, shininess, *color[:3]]
+    numbers = [_number(element, "surfaceScale", 1.0), max(strength, 0.0), shininess, *color[:3]]
     return [_in(element)], [*numbers, *_light(lights[0], place)], lights[0].tag
 
 

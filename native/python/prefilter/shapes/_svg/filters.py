@@ -19,6 +19,8 @@ from .values import IDENTITY, Length, multiplied
 
 # Products of larger numbers would leave the range of floats.
 _LARGEST = 1e9
+# What no browser has, and that is for them as if it was not said.
+_REPLACED = ("BackgroundImage", "BackgroundAlpha", "FillPaint", "StrokePaint")
 _NOTHING = (0.0, 0.0, 0.0, 0.0)
 _DEFAULTS = {"x": -10.0, "y": -10.0, "width": 120.0, "height": 120.0}
 
@@ -39,7 +41,8 @@ def filters_of(
             if isinstance(each, str):
                 target = sources.document.ids.get(each[1:]) if each.startswith("#") else None
                 if target is None or target.tag != "filter":
-                    raise InvalidFunctionError
+                    sources.warnings.broken("filter", "ignored", element.line)
+                    continue
                 found.append(_referred(element, target, context, sources, images))
             else:
                 color, is_linear = context.style.color, context.colors.is_linear
@@ -81,8 +84,8 @@ def _step(
         raise UnknownStepError(f"<{element.tag}>")
     inputs, numbers, name = kind(element, place, sources)
     for each in inputs:
-        if each in ("BackgroundImage", "BackgroundAlpha", "FillPaint", "StrokePaint"):
-            raise UnknownStepError(each)
+        if each in _REPLACED:
+            sources.warnings.unsupported(each, "replaced by the result before it", element.line)
     style = sources.sheets.style(element)
     region = _subregion(element, place, context, sources)
     return Step(
