@@ -158,11 +158,11 @@ class AxisCurve {
 }  // namespace
 
 double crossing(const MonotoneCurve& piece, int axis, double value, double low) {
-  const AxisCurve curve(piece.curve, axis);
+  const ParametricCurve& whole = piece.curve;
   double high = piece.t_end;
-  if (curve.kind == CurveKind::kQuadratic || curve.kind == CurveKind::kConic) {
+  if (whole.kind == CurveKind::kQuadratic || whole.kind == CurveKind::kConic) {
     const auto power = [&](std::size_t i) {
-      return component(curve.powers[i], axis) - value * curve.denominator[i];
+      return component(whole.powers[i], axis) - value * whole.denominator[i];
     };
     std::array<double, 2> roots;
     const int count = quadratic_roots(power(0), power(1), power(2), roots.data());
@@ -170,6 +170,7 @@ double crossing(const MonotoneCurve& piece, int axis, double value, double low) 
       if (roots[i] > low && roots[i] < high) return roots[i];
     }
   }
+  const AxisCurve curve(whole, axis);
   const bool rises = component(piece.end, axis) > component(piece.begin, axis);
   const double at_low = curve.at(low) - value;
   const double at_high = component(piece.end, axis) - value;
