@@ -83,6 +83,7 @@ def main() -> None:
     add_json_option(parser)
     options = parser.parse_args()
     report = Report()
+    together = []
     for name in options.sets or json.loads(python("bench.scans.hard_sets")):
         found = prepared(options.folder, name, options.depth)
         rows = {}
@@ -91,9 +92,12 @@ def main() -> None:
         if OURS in options.programs:
             rows[OURS] = ours(options, name, found)
         title = f"{name}, depth {found.depth}" + (", open" if found.is_open else "")
-        report.table(title, HEAD, [line(key, row) for key, row in rows.items()], name)
+        lines = [line(key, row) for key, row in rows.items()]
+        report.table(title, HEAD, lines, name)
+        together += [[name if i == 0 else "", *cells] for i, cells in enumerate(lines)]
         if len(rows) == 2:
             judge(report, name, found, rows)
+    report.table("all", ("set", *HEAD), together, "sets")
     report.finish(options.json)
 
 
