@@ -29,13 +29,13 @@ constexpr double kMostOffPlane = 0.25;
 // Depths that a stray's cell is above those of the samples around it.
 constexpr int kOutlierDepths = 3;
 // In a cell that the surface meets.
-constexpr double kLeastSamples = 1.5;
+constexpr double kLeastSamples = 0.75;
 // In the cells around one that has octants with so many.
 constexpr double kEnough = 4.0 * kCellsAround * kLeastSamples;
-// In a cell that is met, for its octants' octants: just less than 16, as rounding is not to decide.
-constexpr double kEnoughOfCell = 15.99;
+// In a cell that is met, for its octants' octants: just less than 8, as rounding is not to decide.
+constexpr double kEnoughOfCell = 7.99;
 // Where there are so many in the cells around one, a sample in it without neighbors is a stray.
-constexpr double kIsolated = kEnough * (1 << (2 * (kOutlierDepths - 1)));
+constexpr double kIsolated = 6.0 * kCellsAround * (1 << (2 * (kOutlierDepths - 1)));
 
 SampleLevel coarser(SampleLevel* level, std::size_t attribute_count) {
   const std::vector<SampleCell>& cells = level->samples.cells;
