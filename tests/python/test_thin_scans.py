@@ -67,7 +67,7 @@ def test_thin_parts_are_kept(size: tuple[float, float, float]) -> None:
 
 
 def test_thin_parts_are_the_same_in_slabs() -> None:
-    points, normals, _ = cloud_with(PARTS["rod of 1.5"])
+    points, normals, _ = cloud_with(PARTS["plate of one cell"])
     report = prefilter.ReconstructionReport()
     at_once = prefilter.reconstruct(points, normals, depth=8, threads=1)
     spilled = prefilter.reconstruct(
