@@ -18,25 +18,17 @@ import numpy as np
 import prefilter
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
-from PIL import Image
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "docs" / "pictures"))
 from resize import drawn
 
 from bench.report import Report, add_json_option
+from bench.textures import textures
 
 ROOT = Path(__file__).resolve().parents[2]
 Array = NDArray[np.float32]
 
-TEXTURES = ROOT.parent / "shared" / "data" / "textured"
-PICTURES = {
-    "spot": "spot/spot_texture.png",
-    "Duck": "Duck/DuckCM.png",
-    "BoomBox": "BoomBox/BoomBox_baseColor.png",
-    "AntiqueCamera": "AntiqueCamera/camera_camera_BaseColor.png",
-    "DamagedHelmet": "DamagedHelmet/Default_albedo.jpg",
-}
 SHRINK = 4
 LEAST_SQUARES = "least-squares"
 RINGING = "least-squares, ringing"
@@ -142,12 +134,9 @@ def ringing(small: Array, picture: Array) -> float:
 def pictures() -> Iterator[tuple[str, Array]]:
     """Yields names and scene-linear colors."""
     yield "figure 1.8", drawn()
-    for name, path in PICTURES.items():
-        if (TEXTURES / path).exists():
-            colors = np.asarray(Image.open(TEXTURES / path).convert("RGB"))[::-1]
-            rows = colors.shape[0] // SHRINK * SHRINK
-            columns = colors.shape[1] // SHRINK * SHRINK
-            yield name, prefilter.to_linear(colors[:rows, :columns].astype(np.float32) / 255)
+    for name, colors in textures():
+        rows, columns = (side // SHRINK * SHRINK for side in colors.shape[:2])
+        yield name, colors[:rows, :columns]
 
 
 if __name__ == "__main__":

@@ -18,9 +18,9 @@ from pathlib import Path
 import numpy as np
 import prefilter
 from numpy.typing import NDArray
-from PIL import Image
 
 from bench.report import Report, add_json_option
+from bench.textures import textures
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "docs" / "pictures"))
@@ -29,14 +29,6 @@ from resize import drawn  # noqa: E402
 
 Array = NDArray[np.floating]
 
-TEXTURES = ROOT.parent / "shared" / "data" / "textured"
-IMAGES = {
-    "spot": "spot/spot_texture.png",
-    "Duck": "Duck/DuckCM.png",
-    "BoomBox": "BoomBox/BoomBox_baseColor.png",
-    "AntiqueCamera": "AntiqueCamera/camera_camera_BaseColor.png",
-    "DamagedHelmet": "DamagedHelmet/Default_albedo.jpg",
-}
 LEAST_GAIN = 6.0  # dB of 8 texels, over trilinear interpolation
 TEXELS = (8, 6, 4)
 SCALES = 2 ** np.linspace(0, 5, 21)[1:]
@@ -86,10 +78,7 @@ def of_figures(report: Report) -> None:
 def images() -> Iterator[tuple[str, Array]]:
     """Those that are there, in linear light, three channels."""
     yield "figure 6.1", drawn(figures.SIDE)
-    for name, path in IMAGES.items():
-        if (TEXTURES / path).exists():
-            pixels = np.asarray(Image.open(TEXTURES / path).convert("RGB"))[::-1]
-            yield name, prefilter.to_linear(pixels.astype(np.float32) / 255)
+    yield from textures()
 
 
 def of_images(report: Report) -> None:

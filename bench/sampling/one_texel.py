@@ -17,26 +17,18 @@ from pathlib import Path
 import numpy as np
 import prefilter
 from numpy.typing import NDArray
-from PIL import Image
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "docs" / "pictures"))
 from resize import drawn
 
 from bench.report import Report, add_json_option
+from bench.textures import textures
 
 ROOT = Path(__file__).resolve().parents[2]
 Array = NDArray[np.float32]
 
 FILTER = "lanczos2"
-TEXTURES = ROOT.parent / "shared" / "data" / "textured"
-PICTURES = {
-    "spot": "spot/spot_texture.png",
-    "Duck": "Duck/DuckCM.png",
-    "BoomBox": "BoomBox/BoomBox_baseColor.png",
-    "AntiqueCamera": "AntiqueCamera/camera_camera_BaseColor.png",
-    "DamagedHelmet": "DamagedHelmet/Default_albedo.jpg",
-}
 SCALE = 1024 / 89  # As in figure 6.1.
 COUNTS = (1, 4, 16, 64)
 # Of levels less the picture's mean, which is added to the samples.
@@ -62,9 +54,7 @@ def main() -> None:
     add_json_option(parser)
     options = parser.parse_args()
     report = Report()
-    pictures = {"figure 1.8": drawn()} | {
-        name: read(TEXTURES / path) for name, path in PICTURES.items()
-    }
+    pictures = {"figure 1.8": drawn()} | dict(textures())
     rows = []
     ratios: dict[str, list[float]] = {table: [] for table in BARS}
     for name, picture in pictures.items():
@@ -85,12 +75,6 @@ def main() -> None:
         if table != ABOUT_MEAN:
             report.note(f"{table}: weights have a magnitude of {magnitude(table):.2f} on average")
     report.finish(options.json)
-
-
-def read(path: Path) -> Array:
-    """A scene-linear picture of three channels."""
-    bytes_ = np.asarray(Image.open(path).convert("RGB"))
-    return prefilter.to_linear(bytes_[::-1].astype(np.float32) / 255)
 
 
 def measured(picture: Array, name: str, pixels: int) -> list[float]:

@@ -33,9 +33,7 @@ FAR = 3.0  # Cells: what is farther is lost, or invented.
 SPARSE = 3.0  # Spacings: as far may a surface be from the points of a real scan.
 NEIGHBOR = 4  # Whose distance is the spacing.
 FOLD = 90.0  # Degrees.
-CREASE = (
-    70.0  # Degrees: edges of a box, which turn by a little over 90 here and there, are no folds.
-)
+CREASE = 70.0  # Degrees: edges of a box turn by a little over 90 here and there.
 NEAR_CREASE = 2.0  # Cells.
 Floats = NDArray[np.float64]
 

@@ -26,7 +26,23 @@ TYPES = {
     "double": "d",
     "float64": "d",
 }
+POINTS = np.array([(0.0, 0.5, 1.0), (1.0, 0.25, -2.0), (3.0, 4.0, 5.5)])
+NORMALS = np.array([(0.0, 0.6, -0.8), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)])
+COLORS = np.array([(0, 10, 255), (1, 1, 1), (200, 0, 3)])
+INTENSITY = np.array([-2048.0, 0.5, 2047.0])
 FORMATS = ("ascii", "binary_little_endian", "binary_big_endian")
+
+
+def lines(*columns, separator=" "):
+    """Rows of numbers."""
+    return "".join(
+        separator.join(map(str, row)) + "\n" for row in np.column_stack(columns).tolist()
+    )
+
+
+def whole(text):
+    """The same with whole numbers as such."""
+    return text.replace(".0 ", " ").replace(".0\n", "\n")
 
 
 def ply(form, elements, *, lines=(), newline="\n"):

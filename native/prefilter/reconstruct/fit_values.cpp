@@ -27,17 +27,15 @@ constexpr float kStill = 0.05F;
 
 // A leaf, and how high it lies, in sides of it.
 struct Leaf {
-  TreeLeaf place;
+  TreeCell place;
   std::int32_t height;
 };
 
 // The leaf that is or holds a cell; none outside of the root.
 std::optional<Leaf> find_leaf(const CellTree& tree, int depth, const CellCoordinates& at) {
-  for (const std::int32_t x : at) {
-    if (x < 0 || x >= 1 << depth) return std::nullopt;
-  }
-  const TreeLeaf found = leaf_at(tree, depth, at);
-  return Leaf{found, at[2] >> (depth - found.depth)};
+  const std::optional<TreeCell> found = cell_at(tree, depth, at);
+  if (!found) return std::nullopt;
+  return Leaf{*found, at[2] >> (depth - found->depth)};
 }
 
 // How a leaf's value is to change, by the lines from its center to those of its neighbors: those
@@ -82,7 +80,7 @@ class ValueFit {
   float& value(std::size_t level, std::size_t cell) {
     return tree_->levels[level].blocks[cell / 8][cell % 8];
   }
-  float& value(const Leaf& leaf) { return value(leaf.place.level(), leaf.place.cell); }
+  float value(const Leaf& leaf) const { return value_of(leaf.place, *tree_); }
 
   // Whether the value of a leaf counts for the heights, now or in a later round.
   bool counts(const Leaf& leaf) const {

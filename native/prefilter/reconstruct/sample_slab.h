@@ -35,7 +35,7 @@ struct SampleLevel {
   std::vector<float> unit_area;  // of the surface, in finest cells, per unit of weight
 
   std::size_t size() const { return samples.size(); }
-  // Whether the surface seems to meet a cell: enough neighbors have samples.
+  // Whether the surface seems to meet a cell: three of its neighbors have samples, or more.
   bool is_met(std::size_t i) const { return occupied[i] > 3; }
 };
 

@@ -66,8 +66,7 @@ ContourSlab contour_of_slab(const SurfaceSamples& surface, const ReconstructOpti
   HeightRange heights = {s * slabs.height(), (s + 1) * slabs.height()};
   if (s + 1 == slabs.count()) ++heights.high;
   const int largest = largest_fitted(slabs, options);
-  CellTree tree =
-      tree_around(slabs, s, largest > 0 ? kFitOctants : kContourOctants, level.scale, false);
+  CellTree tree = tree_around(slabs, s, largest > 0 ? kFitOctants : kContourOctants, level.scale);
   std::vector<std::vector<OctantValues>> before;
   if (options.smooth) before = smooth_leaves(&tree);
   const bool are_occupancies = options.basis == WaveletBasis::kHaar && !options.smooth;

@@ -23,7 +23,8 @@ MeanSample mean_at_samples(float sign, const ReconstructOptions& options, const 
   MeanSample sum;
   double weight = 0.0;
   const auto add_up = [&](int s) {
-    const CellTree tree = tree_around(*slabs, s, kContourOctants, sign, options.smooth);
+    CellTree tree = tree_around(*slabs, s, kContourOctants, sign);
+    if (options.smooth) smooth_leaves(&tree);
     for (const SampleCell& cell : cells_of(s)) {
       sums[static_cast<std::size_t>(s)] +=
           static_cast<double>(cell.weight) *
@@ -88,16 +89,13 @@ SurfaceLevel level_of_mean(double mean, bool is_flipped, bool are_sides_known) {
   return {sign * static_cast<float>(0.5 / mean), 0.5F};
 }
 
-CellTree tree_around(const Slabs& slabs, int s, int octants, float scale, bool is_smooth) {
-  CellTree tree = assemble(slabs.coarse, {slabs.tree(s - 1), slabs.tree(s), slabs.tree(s + 1)}, s,
-                           slabs.depth(), octants, scale);
-  if (is_smooth) smooth_leaves(&tree);
-  return tree;
+CellTree tree_around(const Slabs& slabs, int s, int octants, float scale) {
+  return assemble(slabs.coarse, {slabs.tree(s - 1), slabs.tree(s), slabs.tree(s + 1)}, s,
+                  slabs.depth(), octants, scale);
 }
 
 float leaf_value(const CellTree& tree, int depth, const CellPosition& at) {
-  const TreeLeaf leaf = leaf_at(tree, depth, at);
-  return tree.levels[leaf.level()].blocks[leaf.cell / 8][leaf.cell % 8];
+  return value_of(*cell_at(tree, depth, at), tree);
 }
 
 }  // namespace prefilter

@@ -43,9 +43,9 @@ SurfaceLevel level_of_mean(double mean, bool is_flipped, bool are_sides_known);
 /// Around a slab, in octants of any depth: what its contour needs.
 inline constexpr int kContourOctants = 2;
 
-/// The tree around slab `s`, and so many octants beyond, of values times `scale`, smoothed or not.
+/// The tree around slab `s`, and so many octants beyond, of values times `scale`.
 /// The values of the slab and of those next to it have been made.
-CellTree tree_around(const Slabs& slabs, int s, int octants, float scale, bool is_smooth);
+CellTree tree_around(const Slabs& slabs, int s, int octants, float scale);
 
 /// The value of the leaf that holds a cell of depth `depth`.
 float leaf_value(const CellTree& tree, int depth, const CellPosition& at);

@@ -55,8 +55,8 @@ class Restorer {
   }
 
   void add_normals() {
-    for_samples([&](int k, const SampleCell& cell) {
-      for_around(k, cell, [&](Around& around, float share) {
+    for_samples([&](const SampleCell& cell, const TreeCell& leaf) {
+      for_around(leaf.depth, cell, [&](Around& around, float share) {
         around.weight += share * cell.weight;
         for (std::size_t a = 0; a < 3; ++a) around.normal[a] += share * cell.normal[a];
       });
@@ -70,11 +70,11 @@ class Restorer {
   }
 
   void add_changes(float isovalue) {
-    for_samples([&](int k, const SampleCell& cell) {
-      const float change = trust_in_sample(k, cell) * (isovalue - value_at(k, cell));
+    for_samples([&](const SampleCell& cell, const TreeCell& leaf) {
+      const float change = trust_in_sample(cell, leaf) * (isovalue - value_at(leaf.depth, cell));
       // Where normals of the cell cancel each other, the mean sample is on no surface.
       const float coherence = squared_mean(cell.normal, cell.weight);
-      for_around(k, cell, [&](Around& around, float share) {
+      for_around(leaf.depth, cell, [&](Around& around, float share) {
         around.change += coherence * share * change;
         around.change_weight += coherence * share;
       });
@@ -88,7 +88,7 @@ class Restorer {
   }
 
  private:
-  // Calls visit(depth, cell) for the cells of samples that are leaves, and count.
+  // Calls visit(cell, leaf) for the cells of samples that are leaves, and count.
   template <typename Visit>
   void for_samples(const Visit& visit) const {
     const int depth = tree_->depth();
@@ -103,7 +103,7 @@ class Restorer {
           return;
         }
         const std::optional<TreeCell> own = cell_at(*tree_, k, at);
-        if (own && own->is_leaf && own->place.depth == k) visit(k, cell);
+        if (own && own->is_leaf && own->depth == k) visit(cell, *own);
       });
     }
   }
@@ -120,8 +120,7 @@ class Restorer {
               cell_at(*tree_, k, {at[0] + dx, at[1] + dy, at[2] + dz});
           if (!found || !found->is_leaf) continue;
           const int steps = std::abs(dx) + std::abs(dy) + std::abs(dz);
-          visit(around_[found->place.level()][found->place.cell],
-                1.0F / static_cast<float>(1 << steps));
+          visit(around_[found->level()][found->cell], 1.0F / static_cast<float>(1 << steps));
         }
       }
     }
@@ -138,16 +137,15 @@ class Restorer {
     }
   }
 
-  float trust_in_sample(int k, const SampleCell& cell) const {
+  float trust_in_sample(const SampleCell& cell, const TreeCell& leaf) const {
     const CellPosition at = cell_position(cell.key);
-    const double size = std::ldexp(1.0, tree_->depth() - k);
+    const double size = std::ldexp(1.0, tree_->depth() - leaf.depth);
     Vector3 point;
     for (std::size_t a = 0; a < 3; ++a) {
       point[a] = size * (at[a] + static_cast<double>(cell.position[a] / cell.weight));
     }
-    const std::optional<TreeCell> own = cell_at(*tree_, k, at);
-    const float thinness = around_[own->place.level()][own->place.cell].thinness();
-    const std::optional<LocalSurface> surface = fit_.surface_near(k, point);
+    const float thinness = around_[leaf.level()][leaf.cell].thinness();
+    const std::optional<LocalSurface> surface = fit_.surface_near(leaf.depth, point);
     return surface ? std::max(thinness, static_cast<float>(surface->trust)) : thinness;
   }
 
@@ -167,8 +165,7 @@ class Restorer {
       const std::optional<TreeCell> found =
           cell_at(*tree_, k, {first[0] + step[0], first[1] + step[1], first[2] + step[2]});
       if (!found) continue;
-      float value =
-          tree_->levels[found->place.level()].blocks[found->place.cell / 8][found->place.cell % 8];
+      float value = value_of(*found, *tree_);
       for (std::size_t a = 0; a < 3; ++a) value *= step[a] != 0 ? off[a] : 1.0F - off[a];
       sum += value;
     }

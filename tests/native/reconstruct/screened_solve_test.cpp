@@ -180,7 +180,7 @@ TEST(ScreenedSolve, IsHalfAtSamplesOfScansThatAreOff) {
     double sum = 0.0;
     double count = 0.0;
     for (int s = 0; s < slabs.count(); ++s) {
-      const CellTree tree = tree_around(slabs, s, kContourOctants, 1.0F, true);
+      const CellTree tree = tree_around(slabs, s, kContourOctants, 1.0F);
       for (const SampleCell& cell : slabs.samples(s)->at(kDepth).samples.cells) {
         const double value = static_cast<double>(leaf_value(tree, kDepth, cell_position(cell.key)));
         sum += std::abs(value - 0.5);

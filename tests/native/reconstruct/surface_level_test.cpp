@@ -68,7 +68,7 @@ TEST(SurfaceLevel, OfASphereIsOneHalf) {
   EXPECT_EQ(level.isovalue, 0.5F);
   EXPECT_NEAR(level.scale, 1.0F, 0.05F);
   for (int s = 0; s < slabs.count(); ++s) {
-    const CellTree tree = tree_around(slabs, s, kContourOctants, level.scale, false);
+    const CellTree tree = tree_around(slabs, s, kContourOctants, level.scale);
     const int z = s * slabs.height();
     for (int x = 0; x < 1 << kDepth; ++x) {
       const double side = std::ldexp(1.0, -kDepth);

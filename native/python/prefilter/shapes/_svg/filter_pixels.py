@@ -19,6 +19,7 @@ FloatArray = npt.NDArray[np.float32]
 _ONE = np.float32(1.0)
 # From here on a blur is three means, as the recommendation has it.
 _LARGE_BLUR = 2.0
+_STRIP = 32
 
 
 def blurred(pixels: FloatArray, x: float, y: float) -> FloatArray:
@@ -61,22 +62,22 @@ def _by_means(pixels: FloatArray, deviation: float, axis: int) -> FloatArray:
 def _mean(pixels: FloatArray, before: int, after: int, axis: int) -> FloatArray:
     """The mean over pixels beside each other; beyond the edges all is 0."""
     length = pixels.shape[axis]
-    sums = np.zeros_like(pixels, np.float64, shape=_longer(pixels.shape, axis))
-    np.cumsum(pixels, axis=axis, dtype=np.float64, out=sums[_behind(axis)])
     at = np.arange(length)
     high = np.minimum(at + after + 1, length)
     low = np.maximum(at - before, 0)
-    difference = sums.take(high, axis) - sums.take(low, axis)
-    found: FloatArray = (difference / (before + after + 1)).astype(np.float32)
+    found = np.empty_like(pixels)
+    # Sums are of some rows or columns at a time, as those of all take twice the memory of pixels.
+    for first in range(0, pixels.shape[1 - axis], _STRIP):
+        part = slice(first, first + _STRIP)
+        lines = pixels[:, part].swapaxes(0, 1) if axis == 0 else pixels[part]
+        sums = np.zeros((lines.shape[0], length + 1, lines.shape[2]))
+        np.cumsum(lines, axis=1, dtype=np.float64, out=sums[:, 1:])
+        means = (sums[:, high] - sums[:, low]) / (before + after + 1)
+        if axis == 0:
+            found[:, part] = means.swapaxes(0, 1)
+        else:
+            found[part] = means
     return found
-
-
-def _longer(shape: tuple[int, ...], axis: int) -> tuple[int, ...]:
-    return tuple(side + (index == axis) for index, side in enumerate(shape))
-
-
-def _behind(axis: int) -> tuple[slice, ...]:
-    return tuple(slice(1, None) if index == axis else slice(None) for index in range(axis + 1))
 
 
 def _moved(pixels: FloatArray, count: int, axis: int) -> FloatArray:

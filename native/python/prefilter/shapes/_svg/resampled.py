@@ -41,19 +41,7 @@ def picture_pixels(
     texels = _evened(texels, whole, threads)
     rows, columns = texels.shape[:2]
     to_texels = multiplied((columns, 0.0, 0.0, rows, 0.0, 0.0), inverse(whole))
-    found = resample(
-        texels,
-        _rows(to_texels),
-        width,
-        height,
-        filter=_PICTURE_FILTER,
-        exact=True,
-        premultiplied=True,
-        threads=threads,
-    )
-    # What rings leaves the range of colors.
-    np.clip(found, 0.0, 1.0, out=found)
-    return np.minimum(found, found[..., 3:])
+    return turned_pixels(texels, to_texels, width, height, threads)
 
 
 def tiled_pixels(
@@ -84,7 +72,15 @@ def tiled_pixels(
 def turned_pixels(
     pixels: FloatArray, to_pixels: Matrix, width: int, height: int, threads: int
 ) -> FloatArray:
-    """An image on another one, likewise; what is beside it goes on as at its edges."""
+    """An image on another one; what is beside it goes on as at its edges.
+
+    Args:
+        pixels: (height, width, 4), with colors multiplied by alpha.
+        to_pixels: From pixels of the result to those of the image.
+        width: Of the result, in pixels.
+        height: Likewise.
+        threads: How many to use.
+    """
     found = resample(
         pixels,
         _rows(to_pixels),
@@ -95,6 +91,7 @@ def turned_pixels(
         premultiplied=True,
         threads=threads,
     )
+    # What rings leaves the range of colors.
     np.clip(found, 0.0, 1.0, out=found)
     return np.minimum(found, found[..., 3:])
 
