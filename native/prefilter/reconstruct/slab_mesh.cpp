@@ -67,8 +67,7 @@ ContourSlab contour_of_slab(const SurfaceSamples& surface, const ReconstructOpti
   if (s + 1 == slabs.count()) ++heights.high;
   const int largest = largest_fitted(slabs, options);
   CellTree tree = tree_around(slabs, s, largest > 0 ? kFitOctants : kContourOctants, level.scale);
-  std::vector<std::vector<OctantValues>> before;
-  if (options.smooth) before = smooth_leaves(&tree);
+  if (options.smooth) smooth_leaves(&tree);
   const bool are_occupancies = options.basis == WaveletBasis::kHaar && !options.smooth;
   float isovalue = level.isovalue;
   if (are_occupancies && options.isovalue == Isovalue::kMean) {
@@ -77,8 +76,7 @@ ContourSlab contour_of_slab(const SurfaceSamples& surface, const ReconstructOpti
   }
   if (largest > 0) {
     const SampleFit fit = fit_of(surface, samples);
-    restore_thin_parts(fit, isovalue, {heights, largest}, before, &tree);
-    before = {};
+    restore_thin_parts(fit, isovalue, {heights, largest}, &tree);
     fit_values(fit, isovalue, {heights, largest}, &tree);
   }
   ContourSlab contour = contour_slab(

@@ -19,7 +19,7 @@ namespace {
 // How far from the heights values are changed, in sides of a leaf: what fit_values reads.
 constexpr int kReach = 8;
 // Of 1 less the squared length of the mean normal: at creases it is 1/2, of a plate nearly 1. Noise
-// stays below, so that where there is some the function stays smooth.
+// stays below, so that where there is some the samples are trusted as for the fit.
 constexpr float kOfCrease = 0.5F;
 constexpr float kOfThinPart = 0.9F;
 // How much it counts that a value stays, beside a sample in the middle of its leaf.
@@ -63,12 +63,6 @@ class Restorer {
     });
   }
 
-  void take_back(const std::vector<std::vector<OctantValues>>& before) {
-    for_leaves([&](const Around& around, std::size_t k, std::size_t i, float* value) {
-      *value += around.thinness() * (before[k][i / 8][i % 8] - *value);
-    });
-  }
-
   void add_changes(float isovalue) {
     for_samples([&](const SampleCell& cell, const TreeCell& leaf) {
       const float change = trust_in_sample(cell, leaf) * (isovalue - value_at(leaf.depth, cell));
@@ -82,9 +76,13 @@ class Restorer {
   }
 
   void apply_changes() {
-    for_leaves([](const Around& around, std::size_t, std::size_t, float* value) {
-      *value += around.change / (around.change_weight + kStill);
-    });
+    for (std::size_t k = 0; k < around_.size(); ++k) {
+      for (std::size_t i = 0; i < around_[k].size(); ++i) {
+        const Around& around = around_[k][i];
+        if (!(around.weight > 0.0F)) continue;
+        tree_->levels[k].blocks[i / 8][i % 8] += around.change / (around.change_weight + kStill);
+      }
+    }
   }
 
  private:
@@ -122,17 +120,6 @@ class Restorer {
           const int steps = std::abs(dx) + std::abs(dy) + std::abs(dz);
           visit(around_[found->level()][found->cell], 1.0F / static_cast<float>(1 << steps));
         }
-      }
-    }
-  }
-
-  // Calls visit(around, level, cell, value) for the leaves that samples are in or around.
-  template <typename Visit>
-  void for_leaves(const Visit& visit) {
-    for (std::size_t k = 0; k < around_.size(); ++k) {
-      for (std::size_t i = 0; i < around_[k].size(); ++i) {
-        if (!(around_[k][i].weight > 0.0F)) continue;
-        visit(around_[k][i], k, i, &tree_->levels[k].blocks[i / 8][i % 8]);
       }
     }
   }
@@ -181,10 +168,9 @@ class Restorer {
 }  // namespace
 
 void restore_thin_parts(const SampleFit& fit, float isovalue, const FitRange& range,
-                        const std::vector<std::vector<OctantValues>>& before, CellTree* tree) {
+                        CellTree* tree) {
   Restorer restorer(fit, range, tree);
   restorer.add_normals();
-  restorer.take_back(before);
   restorer.add_changes(isovalue);
   restorer.apply_changes();
 }

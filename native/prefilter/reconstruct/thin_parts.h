@@ -7,20 +7,17 @@
 // parts are where the samples of opposite sides are close together.
 #pragma once
 
-#include <vector>
-
 #include "prefilter/reconstruct/fit_samples.h"
 #include "prefilter/reconstruct/fit_values.h"
 #include "prefilter/wavelet/cell_tree.h"
 
 namespace prefilter {
 
-/// Changes the values of leaves around samples; `before` has those before smoothing, level by
-/// level. Where the normals around a leaf cancel each other, it has the value from before. Then the
-/// mean samples in and around it say how far the function is off the iso-value at them: its value
-/// changes by as much as that is to be trusted, and all where normals cancel each other. The range,
-/// and what is known beyond it, are as for fit_values.
+/// Changes the values of leaves around samples. The mean samples in and around a leaf say how far
+/// the function is off the iso-value at them: its value changes by as much as that is to be
+/// trusted, and by all of it where the normals around cancel each other. The range, and what is
+/// known beyond it, are as for fit_values.
 void restore_thin_parts(const SampleFit& fit, float isovalue, const FitRange& range,
-                        const std::vector<std::vector<OctantValues>>& before, CellTree* tree);
+                        CellTree* tree);
 
 }  // namespace prefilter

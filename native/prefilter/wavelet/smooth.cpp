@@ -111,8 +111,8 @@ class Smoother {
 
 }  // namespace
 
-std::vector<std::vector<OctantValues>> smooth_leaves(CellTree* tree) {
-  if (tree->levels.empty()) return {};
+void smooth_leaves(CellTree* tree) {
+  if (tree->levels.empty()) return;
   Smoother smoother(*tree);
   const Cell root = {tree->root, 0, true};
   Around around;
@@ -120,9 +120,10 @@ std::vector<std::vector<OctantValues>> smooth_leaves(CellTree* tree) {
     around[at(1 + (o & 1), 1 + ((o >> 1) & 1), 1 + (o >> 2))] = smoother.octant(0, root, o);
   }
   smoother.visit(0, 0, around);
-  std::vector<std::vector<OctantValues>> values = smoother.take();
-  for (std::size_t k = 0; k < tree->levels.size(); ++k) tree->levels[k].blocks.swap(values[k]);
-  return values;
+  std::vector<std::vector<OctantValues>> smoothed = smoother.take();
+  for (std::size_t k = 0; k < tree->levels.size(); ++k) {
+    tree->levels[k].blocks = std::move(smoothed[k]);
+  }
 }
 
 }  // namespace prefilter
