@@ -8,7 +8,7 @@ from urllib.parse import unquote_to_bytes
 
 
 class UnusableError(Exception):
-    """An image that cannot be shown; the message says why."""
+    """What an address leads to cannot be used; the message says why."""
 
 
 def embedded(address: str) -> bytes:
