@@ -182,7 +182,7 @@ class TrimSettings:
         display={"soft_max": 50.0, "precision": 1, "step": 50},
     )
     island: float = number(
-        64.0,
+        12.0,
         "Islands",
         "Remove separate parts that are as large as the area of fewer points than this, if "
         "anything was cut",

@@ -103,6 +103,18 @@ def test_a_plane_stays_a_plane(wavelet):
     assert 0.95 < area(positions, triangles) < (1 + 5 * report.cell) ** 2
 
 
+def test_borders_do_not_curl():
+    """Beyond the last points a sheet turns round: little of that is left, and nothing folds."""
+    points, normals = flat(40_000, 1.0)
+    positions, triangles, _ = rebuilt(points, normals, depth=7)
+    a, b, c = np.moveaxis(positions[triangles], 1, 0)
+    faces = np.cross(b - a, c - a)
+    steepness = faces[:, 2] / np.linalg.norm(faces, axis=1)
+    assert steepness.min() > 0.3
+    areas = np.linalg.norm(faces, axis=1)
+    assert areas[steepness < 0.5].sum() < 5e-5 * areas.sum()
+
+
 @pytest.mark.parametrize(("radius", "is_open"), [(3.0, False), (12.0, True)])
 def test_small_holes_are_filled(radius, is_open):
     """Radii in cells."""
@@ -127,18 +139,31 @@ def test_thin_parts_stay(depth):
     assert borders(triangles) == 0
 
 
-def test_islands_go_and_are_told():
+def with_patch(count, size):
+    """A square of points, and a smaller one beside it."""
     points, normals = flat(20_000, 1.0)
-    patch, up = flat(60, 0.04, seed=1)
-    positions, _, report = rebuilt(
-        np.concatenate([points, patch + np.array([1.5, 0.5, 0.0])]),
-        np.concatenate([normals, up]),
-        depth=7,
-    )
+    patch, up = flat(count, size, seed=1)
+    beside = patch + np.array([1.5, 0.5, 0.0])
+    return np.concatenate([points, beside]), np.concatenate([normals, up])
+
+
+def test_islands_go_and_are_told():
+    positions, _, report = rebuilt(*with_patch(3, 0.004), depth=7)
     assert positions[:, 0].max() < 1.2
     # Points that are so few beside so dense ones bound no surface in the first place.
-    assert report.islands >= 1 or report.outliers == pytest.approx(60 / 20_060, rel=1e-3)
+    assert report.islands >= 1 or report.outliers == pytest.approx(3 / 20_003, rel=1e-3)
     assert report.island_share < 0.01
+
+
+def test_small_parts_stay_unless_more_is_asked_for():
+    cloud = with_patch(60, 0.04)
+    assert rebuilt(*cloud, depth=7)[0][:, 0].max() > 1.5
+    positions, triangles, support, _ = rebuilt(*cloud, depth=7, watertight=True, support=True)
+    kept, gone = (
+        prefilter.trim(positions, triangles, **support, island=island) for island in (12, 1000)
+    )
+    assert kept.positions[:, 0].max() > 1.5
+    assert (gone.islands, gone.positions[:, 0].max() < 1.2) == (kept.islands + 1, True)
 
 
 @BASES

@@ -26,6 +26,10 @@ constexpr int kFarCells = 8;
 // Of the length of normals: what faces away from them by more is not supported. At a sharp edge the
 // surface faces away from both sides.
 constexpr double kAway = -0.25;
+// What faces away by less than this is supported as well as can be, and the rest as if it were
+// farther off: around its rim a sheet turns within a cell or two, and would end folded.
+constexpr double kFacing = 0.7;
+constexpr double kTurned = 2.0;
 // Where normals cancel each other, to so much of their lengths, they face all ways.
 constexpr double kAligned = 0.5;
 
@@ -50,6 +54,14 @@ SupportCell support_of(const SampleCell& sum, int k, int finest, double unit_are
       static_cast<float>(std::clamp(spacing, std::max(1.0, kLeastReach * side), kMostReach * side));
   cell.spacing = static_cast<float>(spacing);
   return cell;
+}
+
+double facing_of(const SupportCell& cell, const Vector3& normal) {
+  const auto [x, y, z] = cell.normal;
+  const bool has_normal = x != 0.0F || y != 0.0F || z != 0.0F;
+  if (!has_normal || normal == Vector3{}) return 1.0;
+  return static_cast<double>(x) * normal[0] + static_cast<double>(y) * normal[1] +
+         static_cast<double>(z) * normal[2];
 }
 
 bool is_at(const SampleCell& cell, const HeightRange& heights) {
@@ -150,12 +162,11 @@ void SupportLevel::look(const FacingPoint& point, double side, int reach, Suppor
     }
     const double distance = std::sqrt(squared) / static_cast<double>(cell.reach);
     if (distance < static_cast<double>(best->distance)) {
-      double facing = 0.0;
-      for (std::size_t a = 0; a < 3; ++a) {
-        facing += static_cast<double>(cell.normal[a]) * point.normal[a];
-      }
+      const double facing = facing_of(cell, point.normal);
       if (facing < kAway) return;
-      *best = {static_cast<float>(distance), cell.spacing};
+      const double felt = (1.0 + kTurned * std::max(0.0, kFacing - facing)) * distance;
+      if (felt >= static_cast<double>(best->distance)) return;
+      *best = {static_cast<float>(felt), cell.spacing};
     }
   });
 }

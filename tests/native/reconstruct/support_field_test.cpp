@@ -82,9 +82,25 @@ TEST(SupportField, SamplesSupportWhatFacesAsTheyDo) {
     SupportField field(leaves.slabs, sign, 3);
     const Vector3 p = {32.0 + 22.4, 32.0, 30.0};
     EXPECT_LT(field.at({p, {sign, 0.0, 0.0}}, kDepth).distance, 1.0F);
-    EXPECT_LT(field.at({p, {0.0, 1.0, 0.0}}, kDepth).distance, 1.0F);
+    // A sharp edge faces so; regions as near as this are not cut.
+    EXPECT_LT(field.at({p, {0.0, 1.0, 0.0}}, kDepth).distance, 2.0F);
     EXPECT_GE(field.at({p, {-sign, 0.0, 0.0}}, kDepth).distance, 4.0F);
   }
+}
+
+TEST(SupportField, WhatIsTurnedIsFartherFromSamples) {
+  const Leaves leaves(testing::sphere_cloud(20000));
+  SupportField field(leaves.slabs, 1.0, 3);
+  const Vector3 p = {32.0 + 22.4 + 3.0, 32.0, 30.0};
+  const auto at_angle = [&](double degrees) {
+    const double angle = degrees * 3.14159265358979 / 180.0;
+    return field.at({p, {std::cos(angle), std::sin(angle), 0.0}}, kDepth).distance;
+  };
+  const float facing = at_angle(0.0);
+  EXPECT_EQ(at_angle(30.0), facing);
+  // By cosines: 1 + 2 * (0.7 - 0.5), and 1 + 2 * 0.7. Samples beside may face it more.
+  EXPECT_NEAR(at_angle(60.0), 1.4F * facing, 0.1F * facing);
+  EXPECT_NEAR(at_angle(90.0), 2.4F * facing, 0.3F * facing);
 }
 
 TEST(SupportField, StraysSupportNothing) {

@@ -21,7 +21,7 @@ struct TrimOptions {
   // but for regions that get no farther from them than this, and where the mesh does not end.
   double hole = 4.0;
   // Parts of fewer squared spacings go where anything was cut, but for the largest.
-  double island = 64.0;
+  double island = 12.0;
 };
 
 struct TrimReport {

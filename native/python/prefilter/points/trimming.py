@@ -47,7 +47,7 @@ def trim(
     attributes: npt.ArrayLike | None = None,
     limit: float = 1.5,
     hole: float = 4.0,
-    island: float = 64.0,
+    island: float = 12.0,
     progress: ProgressCallback | None = None,
 ) -> TrimmedSurface:
     """Cuts a reconstructed surface where no points support it, without another reconstruction.
