@@ -50,6 +50,46 @@ def test_a_reconstructed_surface_gets_the_colors_of_its_scan():
     assert np.mean(errors) < 0.05
 
 
+def test_charts_lie_beside_each_other():
+    """With the angle that Blender has at first, parts of the rims of Suzanne's ears overlap."""
+    colored()
+    bpy.ops.mesh.primitive_monkey_add()
+    monkey = bpy.context.object
+    monkey.modifiers.new("Subdivision", "SUBSURF").levels = 2
+    bpy.ops.object.modifier_apply(modifier="Subdivision")
+    bpy.data.objects["Scan"].select_set(True)
+    size = 1024
+    assert bpy.ops.prefilter.paint_texture(size=size) == {"FINISHED"}
+    mesh = monkey.data
+    mesh.calc_loop_triangles()
+    loops = np.empty((len(mesh.loop_triangles), 3), np.int32)
+    mesh.loop_triangles.foreach_get("loops", loops.ravel())
+    uvs = np.empty((len(mesh.loops), 2), np.float32)
+    mesh.uv_layers.active.uv.foreach_get("vector", uvs.ravel())
+    assert triangles_at_texels(uvs[loops].astype(float) * size, size).max() == 1
+
+
+def turn(a, b):
+    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+
+
+def triangles_at_texels(corners, size):
+    """How many triangles hold the center of each texel."""
+    counts = np.zeros((size, size), int)
+    for a, b, c in corners:
+        twice_area = turn(b - a, c - a)
+        if abs(twice_area) < 1e-9:
+            continue
+        low = np.floor(np.minimum.reduce([a, b, c])).astype(int)
+        high = np.ceil(np.maximum.reduce([a, b, c])).astype(int)
+        y, x = np.mgrid[low[1] : high[1], low[0] : high[0]]
+        centers = np.stack([x, y], axis=-1) + 0.5
+        first = turn(b - centers, c - centers) / twice_area
+        second = turn(c - centers, a - centers) / twice_area
+        counts[y, x] += (first > 0) & (second > 0) & (first + second < 1)
+    return counts
+
+
 def test_a_uv_map_that_is_there_stays():
     colored()
     cube = bodies.cube()
