@@ -37,7 +37,7 @@ CLIP = "<clipPath id='c' transform='scale(2)'><rect x='5' width='15' height='50'
         ),
         ('<rect width="9vw" height="9"/>', "unit 'vw'"),
         ('<path d="M 0 0 H 9" stroke="red" stroke-linejoin="arcs"/>', "stroke-linejoin 'arcs'"),
-        ("<style>@import url(a.css);</style>", "@import"),
+        ("<style>@import url(a.css);</style>", "@import 'a.css'"),
         ("<style>rect ~ rect{fill:red}</style>", "selector 'rect ~ rect'"),
         (
             '<g opacity="0.5"><rect width="9" height="9"/><rect width="9" height="9"/></g>',

@@ -5,6 +5,7 @@
 import base64
 import io
 import itertools
+import tracemalloc
 import unicodedata
 
 import numpy as np
@@ -14,6 +15,11 @@ from box_fonts import KERNING, UNITS, WIDTHS, make_font, make_variable
 from drawings import SIZE, read, svg
 from fontTools.ttLib import TTFont
 from fontTools.ttLib.tables.DefaultTable import DefaultTable
+
+try:
+    import brotli
+except ImportError:
+    brotli = None
 
 
 @pytest.fixture(scope="module")
@@ -436,7 +442,8 @@ def test_fonts_in_the_file_have_parts_of_a_family(tmp_path, boxes):
     ("data", "words"),
     [
         (b"", "neither"),
-        (b"wOF2" + bytes(60), "WOFF 2"),
+        (b"wOF2" + bytes(60), "brotli"),
+        (b"wOF2" + bytes(8) + b"\xff\xff" + bytes(10), "early" if brotli else "brotli"),
         (b"wOFF", "neither"),
         (b"wOFF" + bytes(8) + b"\xff\xff" + bytes(60), "early"),
         (b"\x00\x01\x00\x00" + bytes(60), ""),
@@ -462,11 +469,63 @@ def test_compressed_fonts_are_unpacked_within_limits(tmp_path, font):
         assert words in warning.effect
 
 
+@pytest.mark.skipif(brotli is None, reason="needs brotli")
+def test_fonts_of_woff_2_are_those_that_they_were_made_of(tmp_path, font):
+    file = io.BytesIO()
+    made = TTFont(font)
+    made.flavor = "woff2"
+    made.save(file)
+    own = text("AiV", 'style="font-family: Own, Boxes"')
+    drawing = read(font_face(file.getvalue()) + own, fonts=[make_font(tmp_path / "a.ttf", high=9)])
+    expected = read(text("AiV"), fonts=[font])
+    assert drawing.warnings == ()
+    for one, other in zip(drawing.shapes, expected.shapes, strict=True):
+        near(one.bounds, other.bounds)
+
+
+@pytest.mark.skipif(brotli is None, reason="needs brotli")
+def test_woff_2_is_unpacked_within_limits(tmp_path, font):
+    bomb = brotli.compress(bytes(1 << 27))
+    # A table that has a name of its own, and is not transformed.
+    table = b"\x3fabcd" + b"\x80\x80\x80\x40"
+    head = b"wOF2\0\1\0\0" + bytes(4) + b"\0\1" + bytes(6) + len(bomb).to_bytes(4, "big")
+    data = head + bytes(48 - len(head)) + table + bomb
+    tracemalloc.start()
+    own = text("A", 'style="font-family: Own, Boxes"')
+    warning, *_ = read(font_face(data) + own, fonts=[font]).warnings
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert "larger than 64 MiB" in warning.effect
+    assert peak < 1 << 26
+
+
+def test_fonts_beside_the_drawing_are_read(tmp_path, font):
+    (tmp_path / "in").mkdir()
+    make_font(tmp_path / "in" / "own.ttf", widths={"A": 900})
+    sheet = "@font-face { font-family: Own; src: url(%s) }"
+    own = text("A", 'style="font-family: Own, Boxes"')
+    for where, address in (("a.svg", "in/own.ttf"), ("in/a.svg", "own.ttf")):
+        path = tmp_path / where
+        path.write_text(svg(f"<style>{sheet % address}</style>{own}"))
+        made, warnings = prefilter.rasterize_svg(path, SIZE, SIZE, fonts=[font])
+        assert warnings == ()
+        columns = np.flatnonzero(made[..., 3].max(0) > 0.5)
+        assert (columns[0], columns[-1]) == (20, 28)
+    (tmp_path / "in/b.css").write_text(sheet % "own.ttf")
+    (tmp_path / "b.svg").write_text(svg(f"<style>@import 'in/b.css';</style>{own}"))
+    assert (prefilter.rasterize_svg(tmp_path / "b.svg", SIZE, SIZE, fonts=[font])[0] == made).all()
+    path.write_text(svg(f"<style>{sheet % '../../own.ttf'}</style>{own}"))
+    make_font(tmp_path.parent / "own.ttf")
+    _, (first, _) = prefilter.rasterize_svg(path, SIZE, SIZE, fonts=[font])
+    assert first.effect == "ignored, as it is neither in the file nor in its folder"
+
+
 def test_fonts_elsewhere_are_named(font):
     style = "<style>@font-face { font-family: Own; src: url(https://x.org/a.woff) }</style>"
     own = text("A", 'style="font-family: Own, Boxes"')
     first, second = read(style + own, fonts=[font]).warnings
-    assert (first.name, first.effect) == ("@font-face 'Own'", "ignored, as it is not in the file")
+    assert first.name == "@font-face 'Own'"
+    assert first.effect == "ignored, as it is neither in the file nor in its folder"
     assert second.name == "font 'Own'"
 
 

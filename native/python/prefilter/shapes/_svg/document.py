@@ -3,6 +3,7 @@
 """The XML of a drawing, read by expat, within limits that no honest file meets."""
 
 import os
+import re
 import zlib
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -14,6 +15,8 @@ from ..._border.input import as_path, open_file
 
 SVG = "http://www.w3.org/2000/svg"
 XLINK_HREF = "{http://www.w3.org/1999/xlink}href"
+_SHEETS = ("style", "{http://www.w3.org/1999/xhtml}link")
+_SAID = re.compile(r"([\w-]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
 
 MOST_DEPTH = 256
 MOST_ELEMENTS = 250_000
@@ -59,7 +62,8 @@ class Document:
         root: The outermost `svg`.
         ids: Elements by their id, the first of each.
         count: How many there are.
-        foreign_style: The line of a reference to a style sheet in another file; 0 without.
+        sheets: The elements that hold style sheets, or refer to some.
+        linked_sheets: What instructions before the drawing say of style sheets, and their lines.
     """
 
     def __init__(
@@ -69,7 +73,8 @@ class Document:
         self.folder: Path | None = None
         self.ids: dict[str, SvgElement] = {}
         self.count = 0
-        self.foreign_style = 0
+        self.sheets: list[SvgElement] = []
+        self.linked_sheets: list[tuple[dict[str, str], int]] = []
         self._open: list[SvgElement] = []
         self._texts = 0
         self._root: SvgElement | None = None
@@ -121,6 +126,8 @@ class Document:
             self._root = element
         self._open.append(element)
         self._texts += element.tag == "text"
+        if tag in _SHEETS:
+            self.sheets.append(element)
         if "id" in element.attrib:
             self.ids.setdefault(element.attrib["id"], element)
         self.count += 1
@@ -151,8 +158,9 @@ class Document:
             )
 
     def _instruction(self, target: str, data: str) -> None:
-        if target == "xml-stylesheet":
-            self.foreign_style = self._parser.CurrentLineNumber
+        if target == "xml-stylesheet" and self._root is None:
+            said = {name: one or other for name, one, other in _SAID.findall(data)}
+            self.linked_sheets.append((said, self._parser.CurrentLineNumber))
 
 
 def read_document(

@@ -4,14 +4,14 @@
 
 from collections.abc import Callable
 from typing import Protocol
-from urllib.parse import unquote, urlsplit
 
 import numpy as np
 import numpy.typing as npt
 
+from .beside import ElsewhereError, Place, read_address
 from .clips import box_clip
 from .context import Context, Sources
-from .data_addresses import UnusableError, embedded
+from .data_addresses import UnusableError
 from .document import SvgElement
 from .limits import TooLargeError
 from .nesting import SHOWN
@@ -25,10 +25,6 @@ from .viewports import ViewBox, placed
 _ZERO, _AUTO = Length(0.0), Length(-1.0)
 _PIXELATED = ("pixelated", "crisp-edges", "optimizespeed", "-moz-crisp-edges")
 MOST_BYTES = 1 << 28
-
-
-class ElsewhereError(Exception):
-    """An image that others may show; the message says why it is not shown here."""
 
 
 class Inner(Protocol):
@@ -180,19 +176,7 @@ def _bytes_of(element: SvgElement, sources: Sources) -> tuple[bytes, str]:
     address = element.address
     if not address or address.startswith("#"):
         raise UnusableError("as it refers to no image")
-    if address[:5].lower() == "data:":
-        return embedded(address), "<image>"
-    parts = urlsplit(address)
-    if parts.scheme or parts.netloc:
-        raise ElsewhereError("as it is neither in the file nor in its folder")
-    if sources.folder is None:
-        raise ElsewhereError("as it is not in the file, and that has no folder")
-    folder = sources.folder.resolve()
-    path = (folder / unquote(parts.path)).resolve()
-    if not path.is_relative_to(folder):
-        raise ElsewhereError("as it is neither in the file nor in its folder")
-    if not path.is_file():
-        raise UnusableError(f"as there is no file '{unquote(parts.path)}'")
-    if path.stat().st_size > MOST_BYTES:
-        raise UnusableError(f"as it is larger than {MOST_BYTES >> 20} MiB")
-    return path.read_bytes(), path.name
+    folder = sources.folder
+    place = None if folder is None else Place(folder, folder)
+    data, path = read_address(address, place, MOST_BYTES)
+    return data, "<image>" if path is None else path.name

@@ -8,7 +8,9 @@ from dataclasses import replace
 import tinycss2
 
 from .._fonts.faces import Face, UnreadableFontError, face_in
-from .data_addresses import UnusableError, embedded
+from .._fonts.woff import MOST_BYTES
+from .beside import ElsewhereError, read_address
+from .data_addresses import UnusableError
 from .text_style import USUAL_TEXT, FontRule, text_style_below
 from .values import url_of
 from .warnings import Warnings
@@ -32,16 +34,18 @@ def own_faces(rules: Sequence[FontRule], warnings: Warnings) -> list[Face]:
 
 
 def _read(rule: FontRule, family: str, warnings: Warnings) -> Face | None:
-    """The first font of a list that is in the file."""
+    """The first font of a list that is in the file, or beside it."""
     name = f"@font-face '{family[:60]}'"
     reason = "as it is not in the file"
     tokens = tinycss2.parse_component_value_list(rule.said["src"], skip_comments=True)
     for address in map(url_of, tokens):
-        if address is None or address[:5].lower() != "data:":
+        if not address or address.startswith("#"):
             continue
         try:
-            return face_in(embedded(address), family)
-        except (UnreadableFontError, UnusableError) as error:
+            return face_in(read_address(address, rule.place, MOST_BYTES)[0], family)
+        except (ElsewhereError, UnusableError) as error:
+            reason = str(error)
+        except UnreadableFontError as error:
             reason = f"as it cannot be read: {error}"
     warnings.unsupported(name, f"ignored, {reason}", rule.line)
     return None

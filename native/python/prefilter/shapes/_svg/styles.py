@@ -3,16 +3,16 @@
 """Which properties an element has: by attributes, style sheets, its style, and its parent."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from typing import Any
 
 import cssselect2
-import tinycss2
 
 from .blending import BLEND_MODES
 from .document import Document, SvgElement
+from .style_rules import StyleRules, declarations_in
 from .text_style import (
     NO_ATTRIBUTES,
     OWN_PROPERTIES,
@@ -181,21 +181,14 @@ class StyleSheets:
         self, document: Document, warnings: Warnings, tell: Callable[[float], None]
     ) -> None:
         self._warnings = warnings
-        self.font_rules: list[FontRule] = []
         self._styles: dict[SvgElement, Style] = {}
         self._declared: dict[SvgElement, dict[str, str]] = {}
-        if document.foreign_style:
-            warnings.unsupported("xml-stylesheet", "ignored", document.foreign_style)
-        matcher = cssselect2.Matcher()
-        is_styled = False
-        for element in document.root.iter("style"):
-            assert isinstance(element, SvgElement)
-            if element.get("type", "text/css").strip().lower() in ("text/css", ""):
-                is_styled = self._add_rules(matcher, element) or is_styled
+        found = StyleRules(document, warnings)
+        self.font_rules: list[FontRule] = found.font_rules
+        matcher = None if found.is_empty else found.matcher
         wrapper = cssselect2.ElementWrapper.from_xml_root(document.root)
-        if not is_styled:
-            matcher = None
-        for index, each in enumerate(wrapper.iter_subtree() if is_styled else document.root.iter()):
+        elements = document.root.iter() if matcher is None else wrapper.iter_subtree()
+        for index, each in enumerate(elements):
             if index % 50 == 0:
                 tell(index / document.count)
             if matcher is None:
@@ -302,50 +295,8 @@ class StyleSheets:
             else:
                 self._warnings.broken(f"{name} '{found[name][:40]}'", "ignored", element.line)
 
-    def _add_rules(self, matcher: cssselect2.Matcher, element: SvgElement) -> bool:
-        """Adds the rules of a style sheet; returns whether there are any."""
-        has_rules = False
-        for rule in tinycss2.parse_stylesheet(element.text or "", True, True):
-            line = element.line + getattr(rule, "source_line", 1) - 1
-            if rule.type == "at-rule" and rule.lower_at_keyword == "font-face":
-                said = {name: value for name, value, _ in _declarations_in(rule.content)}
-                self.font_rules.append(FontRule(line, said))
-            elif rule.type == "at-rule":
-                if rule.lower_at_keyword not in ("charset", "keyframes", "namespace"):
-                    self._warnings.unsupported(f"@{rule.lower_at_keyword}", "ignored", line)
-            elif rule.type == "error":
-                self._warnings.broken("style sheet", f"ignored a rule: {rule.message}", line)
-            elif _takes_long(rule.prelude):
-                selector = tinycss2.serialize(rule.prelude).strip()
-                self._warnings.unsupported(f"selector '{selector[:40]}'", "ignored", line)
-            else:
-                try:
-                    selectors = cssselect2.compile_selector_list(rule.prelude)
-                except cssselect2.SelectorError as error:
-                    self._warnings.broken("style sheet", f"ignored a rule: {error}", line)
-                    continue
-                declarations = tuple(_declarations_in(rule.content))
-                for selector in selectors:
-                    matcher.add_selector(selector, declarations)
-                has_rules = True
-        return has_rules
-
 
 _INITIAL = {field.name: field.default for field in fields(Style)}
-
-
-def _takes_long(prelude: list[Any]) -> bool:
-    """Whether a selector looks at all siblings or descendants of each element."""
-    for before, token in zip([None, *prelude], prelude, strict=False):
-        if token == "~":
-            return True
-        if before == ":" and token.type == "ident" and token.lower_value.endswith("-of-type"):
-            return True
-        if token.type == "function" and token.lower_name not in ("not", "is", "where"):
-            return True
-        if token.type == "function" and _takes_long(token.arguments):
-            return True
-    return False
 
 
 @lru_cache(maxsize=4096)
@@ -367,10 +318,4 @@ def _unknown_unit(name: str, text: str) -> str:
 
 @lru_cache(maxsize=4096)
 def _parsed_declarations(text: str) -> tuple[tuple[str, str, bool], ...]:
-    return tuple(_declarations_in(text))
-
-
-def _declarations_in(content: Any) -> Iterator[tuple[str, str, bool]]:
-    for node in tinycss2.parse_blocks_contents(content, True, True):
-        if node.type == "declaration":
-            yield node.lower_name, tinycss2.serialize(node.value).strip(), node.important
+    return tuple(declarations_in(text))

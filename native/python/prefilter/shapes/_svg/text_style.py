@@ -10,6 +10,7 @@ from typing import Any
 
 import tinycss2
 
+from .beside import Place
 from .values import UnknownUnitError, as_length, as_number
 
 _STRETCHES = {
@@ -81,10 +82,12 @@ class FontRule:
     Attributes:
         line: Where it is.
         said: What it declares.
+        place: Where addresses in it lead from.
     """
 
     line: int
     said: Mapping[str, str]
+    place: Place | None = None
 
 
 def text_style_below(declared: Mapping[str, str], parent: TextStyle, font_size: float) -> TextStyle:
