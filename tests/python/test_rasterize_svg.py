@@ -170,6 +170,12 @@ def test_a_drawing_is_cut_off_at_its_page():
     same(made[..., 3], np.ones((20, 40)))
 
 
+def test_the_language_of_the_whole_does_not_matter():
+    body = box(10, 10, 50, 50, 'fill="green"')
+    found = drawn(body, attributes='viewBox="0 0 100 100" systemLanguage="ru"')
+    same(found, by_hand((10, 10, 50, 50, GREEN)))
+
+
 def test_viewports_cut_off():
     inner = box(-50, -50, 150, 150)
     for attributes, expected in (
@@ -321,6 +327,33 @@ def test_masks_let_through_what_is_bright():
     assert gray == pytest.approx(HALF, abs=1e-5)
     linear = masked('color-interpolation="linearRGB"', box(10, 10, 50, 50, 'fill="#808080"'))
     assert linear[30, 30, 3] == pytest.approx(float(prefilter.to_linear([[HALF]])[0, 0]), abs=1e-5)
+
+
+def test_masks_of_masks_are_as_in_browsers():
+    white = box(10, 10, 50, 50, 'fill="white"')
+    green = box(0, 0, 100, 100, 'fill="green" mask="url(#m)"')
+    other = '<mask id="n"><rect x="20" y="20" width="10" height="10" fill="white"/></mask>'
+    # A mask has none itself; what is in it may have some.
+    whole = f'{other}<mask id="m" mask="url(#n)">{white}</mask>{green}'
+    same(drawn(whole), by_hand((10, 10, 50, 50, GREEN)))
+    inside = f'{other}<mask id="m"><g mask="url(#n)">{white}</g></mask>{green}'
+    same(drawn(inside), by_hand((20, 20, 30, 30, GREEN)))
+
+
+def test_a_mask_that_closes_a_circle_is_ignored_from_then_on():
+    masks = "".join(
+        f'<mask id="{name}"><rect x="{left}" y="{left}" width="{side}" height="{side}" '
+        f'fill="white" mask="url(#{other})"/></mask>'
+        for name, left, side, other in (("m", 10, 40, "n"), ("n", 20, 70, "m"))
+    )
+    body = masks + "".join(
+        box(left, 0, left + 50, 100, f'fill="green" mask="url(#{name})"')
+        for left, name in ((0, "m"), (50, "n"))
+    )
+    made, (warning,) = prefilter.rasterize_svg(svg(body), SIZE, SIZE)
+    assert "refers to itself" in str(warning)
+    # The first shows what both let through; the second what its own does.
+    same(made[::-1], by_hand((20, 20, 50, 50, GREEN), (50, 20, 90, 90, GREEN)))
 
 
 def test_a_pattern_is_what_its_tiles_are():
@@ -475,6 +508,18 @@ def test_pictures_are_the_same_by_either_library(monkeypatch, channels):
 
 def missing(name):
     raise ImportError(name)
+
+
+@pytest.mark.parametrize("aspect", ["xMinYMin", "xMaxYMax slice", "none"])
+def test_drawings_without_a_size_fit_themselves_into_their_place(aspect):
+    inner = svg(box(0, 0, 20, 20, 'fill="green"'), 'viewBox="0 0 20 20"')
+    data = base64.b64encode(inner.encode()).decode()
+    body = (
+        f'<image x="10" y="30" width="80" height="40" preserveAspectRatio="{aspect}" '
+        f'href="data:image/svg+xml;base64,{data}"/>'
+    )
+    expected = (10, 30, 90, 70) if aspect == "none" else (30, 30, 70, 70)
+    same(drawn(body), by_hand((*expected, GREEN)))
 
 
 def test_images_are_read_once_and_counted(monkeypatch):

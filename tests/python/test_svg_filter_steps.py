@@ -151,7 +151,7 @@ def test_weighted_sums(mode, keeps):
             if keeps == "true":
                 expected = np.array([*(np.clip(total[:3] / 5 + 0.125, 0, 1) * alpha), alpha])
             else:
-                expected = np.clip(total / 5 + 0.125 * alpha, 0, 1)
+                expected = np.clip(total / 5 + 0.125, 0, 1)
                 expected[:3] = np.minimum(expected[:3], expected[3])
             np.testing.assert_allclose(made[y, x], expected, atol=1e-5)
 
@@ -320,6 +320,51 @@ def test_light_on_a_slope():
         ALL,
     )
     np.testing.assert_allclose(made[50, 50], (shine, 0, 0, shine), atol=0.005)
+
+
+@pytest.mark.parametrize("kind", ["Diffuse", "Specular"])
+def test_light_is_the_same_at_every_size(kind):
+    """Slopes are those of the drawing, not of its pixels."""
+    slope = (
+        '<linearGradient id="g" gradientUnits="userSpaceOnUse" x1="0" x2="100">'
+        '<stop stop-opacity="0"/><stop offset="1"/></linearGradient>'
+    )
+    for light in (
+        '<feDistantLight azimuth="200" elevation="50"/>',
+        '<fePointLight x="20" y="50" z="40"/>',
+        '<feSpotLight x="20" y="50" z="40" pointsAtX="70" pointsAtY="60"/>',
+    ):
+        step = f'<fe{kind}Lighting surfaceScale="20">{light}</fe{kind}Lighting>'
+        body = f'<filter id="f" {ALL}>{step}</filter>{slope}'
+        body += box(0, 0, 100, 100, 'fill="url(#g)" filter="url(#f)"')
+        one, other = (
+            prefilter.rasterize_svg(svg(body), size, size)[0] for size in (SIZE, 3 * SIZE)
+        )
+        # Lights are where they are from corners of pixels on: half a pixel at most.
+        np.testing.assert_allclose(one[30:70, 30:70], other[91:211:3, 91:211:3], atol=0.02)
+
+
+def test_numbers_of_lights_are_as_in_browsers():
+    """Shininess is from 1 to 128, and a cone of 0 is none."""
+
+    def lit(shininess, more):
+        light = f'<feSpotLight x="50" y="50" z="30" pointsAtX="60" pointsAtY="50" {more}/>'
+        return drawn(
+            f'<feSpecularLighting specularExponent="{shininess}">{light}</feSpecularLighting>', BOX
+        )
+
+    for one, other in (("0", "1"), ("-5", "1"), ("0.5", "1"), ("1000", "128")):
+        same(lit(one, ""), lit(other, ""))
+        same(lit("2", f'specularExponent="{one}"'), lit("2", f'specularExponent="{other}"'))
+    same(lit("2", 'limitingConeAngle="0"'), lit("2", ""))
+    assert lit("2", "").any()
+
+
+def test_blurs_want_a_unit():
+    made, (warning,) = prefilter.rasterize_svg(svg(FLAT.format("blur(5)")), SIZE, SIZE)
+    assert warning.kind == "broken"
+    same(made[::-1], functions("none"))
+    same(functions("blur(0)"), functions("none"))
 
 
 def test_lights_and_images_that_are_missing_make_nothing():

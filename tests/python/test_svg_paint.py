@@ -5,7 +5,7 @@
 import numpy as np
 import prefilter
 import pytest
-from drawings import SIZE, drawn, read, same, svg
+from drawings import SIZE, drawn, image, read, same, svg
 
 
 def color_of(body, light="srgb", attributes='viewBox="0 0 100 100"'):
@@ -208,6 +208,41 @@ def test_radial_gradients(attributes, offset):
     assert np.abs(found - expected).max() < 0.02
 
 
+@pytest.mark.parametrize(
+    ("cx", "r", "fx", "fr"),
+    [(70, 10, 20, 0), (70, 10, 20, 4), (70, 10, 30, 25), (50, 10, 50, 40), (60, 20, 70, 45)],
+)
+@pytest.mark.parametrize("spread", ["pad", "repeat"])
+def test_gradients_between_any_two_circles(cx, r, fx, fr, spread):
+    """The circle at t is around a point on the way from the focus to the center. Of those through
+    a pixel the one with the largest t counts, and pixels without one are transparent.
+    """
+    attributes = f'gradientUnits="userSpaceOnUse" cx="{cx}" cy="50" r="{r}" fx="{fx}" fy="50" '
+    attributes += f'fr="{fr}" spreadMethod="{spread}"'
+    body = gradient(TWO, attributes, "radialGradient")
+    found = image(read(body).shapes_for(SIZE, SIZE))[::-1]
+    steps = np.linspace(-60, 60, 240_001)
+    radii, centers = fr + steps * (r - fr), fx + steps * (cx - fx)
+    checked = 0
+    for x, y in np.random.default_rng(5).integers(2, 98, (60, 2)):
+        # Within a pixel colors may jump; all of its corners say the same where they do not.
+        corners = [(x + dx, y + dy) for dx in (0.0, 0.5, 1.0) for dy in (0.0, 0.5, 1.0)]
+        at = []
+        for px, py in corners:
+            off = np.hypot(px - centers, py - 50) - radii
+            on = np.flatnonzero((off[1:] * off[:-1] <= 0) & (radii[1:] >= 0))
+            at.append(steps[on[-1]] if len(on) else None)
+        if all(each is None for each in at):
+            np.testing.assert_allclose(found[y, x], 0.0, atol=1e-6)
+            checked += 1
+        elif None not in at and np.ptp(np.floor(at)) == 0 and np.ptp(at) < 0.2:
+            shares = np.array(at) % 1 if spread == "repeat" else np.clip(at, 0, 1)
+            expected = straight_colors(TWO, shares).mean(0)
+            np.testing.assert_allclose(found[y, x], expected, atol=0.02)
+            checked += 1
+    assert checked > 20
+
+
 def test_gradients_by_reference():
     body = (
         '<linearGradient id="a" xlink:href="#b" x2="0.5"/>'
@@ -235,6 +270,7 @@ def test_a_gradient_goes_along_with_its_shape():
     ("definition", "color"),
     [
         ("<linearGradient id='g'/>", None),
+        ("<linearGradient id='g' gradientTransform='scale(0)'><stop/></linearGradient>", None),
         ("<linearGradient id='g'><stop stop-color='lime'/></linearGradient>", LIME),
         ("<linearGradient id='g' x2='0'><stop/><stop stop-color='lime'/></linearGradient>", LIME),
         ("<radialGradient id='g' r='0'><stop/><stop stop-color='lime'/></radialGradient>", LIME),
@@ -247,7 +283,12 @@ def test_gradients_that_come_to_one_color_or_to_none(definition, color):
     body = f'{definition}<rect width="9" height="9" fill="url(#g)"/>'
     if color is None:
         assert read(body).shapes == []
-        assert color_of(body.replace("url(#g)", "url('#g') blue")) == pytest.approx(BLUE)
+        # The color is for where there is no gradient.
+        other = body.replace("url(#g)", "url('#g') blue")
+        if "Gradient" in definition:
+            assert read(other).shapes == []
+        else:
+            assert color_of(other) == pytest.approx(BLUE)
     else:
         assert color_of(body) == pytest.approx(color)
         half = body.replace("fill=", 'fill-opacity="0.5" fill=')

@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace prefilter {
 namespace {
 
 // The offset of a point of a gradient between two circles: the largest one of which the circle, the
-// radius not below 0, passes through it. Where there is none, behind the last stop.
-double radial_offset(const Paint& paint, const Point2& p) {
+// radius not below 0, passes through it. There is none outside of a cone.
+std::optional<double> radial_offset(const Paint& paint, const Point2& p) {
   const Point2 axis = paint.end - paint.start;
   const Point2 to_point = p - paint.start;
   const double growth = paint.end_radius - paint.start_radius;
@@ -18,14 +19,13 @@ double radial_offset(const Paint& paint, const Point2& p) {
   const double a = dot(axis, axis) - growth * growth;
   const double b = dot(to_point, axis) + paint.start_radius * growth;
   const double c = dot(to_point, to_point) - paint.start_radius * paint.start_radius;
-  constexpr double kBehind = 1e300;
   const auto is_allowed = [&](double s) { return paint.start_radius + s * growth >= 0.0; };
   if (std::abs(a) <= 1e-12 * growth * growth) {
     const double s = c / (2.0 * b);
-    return std::isfinite(s) && is_allowed(s) ? s : kBehind;
+    return std::isfinite(s) && is_allowed(s) ? std::optional(s) : std::nullopt;
   }
   const double discriminant = b * b - a * c;
-  if (!(discriminant >= 0.0)) return kBehind;
+  if (!(discriminant >= 0.0)) return std::nullopt;
   const double root = std::sqrt(discriminant);
   // Without canceling: one root by the sum of equal signs, the other by their product c / a.
   const double q = b + std::copysign(root, b);
@@ -34,7 +34,7 @@ double radial_offset(const Paint& paint, const Point2& p) {
   const double high = std::max(first, second);
   const double low = std::min(first, second);
   if (is_allowed(high)) return high;
-  return is_allowed(low) ? low : kBehind;
+  return is_allowed(low) ? std::optional(low) : std::nullopt;
 }
 
 double spread_offset(Spread spread, double offset) {
@@ -75,9 +75,10 @@ ChannelValues Paint::at(const Point2& point) const {
   const Point2 p{cross(from_origin, to_shape.y_axis) / determinant,
                  cross(to_shape.x_axis, from_origin) / determinant};
   const Point2 axis = end - start;
-  const double offset =
+  const std::optional<double> offset =
       kind == Kind::kRadialStops ? radial_offset(*this, p) : dot(p - start, axis) / dot(axis, axis);
-  return value_of_stops(stops, spread_offset(spread, offset));
+  if (offset) return value_of_stops(stops, spread_offset(spread, *offset));
+  return channels == kMaxChannels ? ChannelValues{} : stops.back().value;
 }
 
 Paint Paint::transformed(const AffineMap2& map) const {

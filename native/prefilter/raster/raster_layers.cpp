@@ -46,8 +46,17 @@ bool is_left_open(const Outline& outline) {
   return false;
 }
 
+// A gradient between two circles, neither of which holds the other, is nothing outside of a cone.
+bool is_cone(const Paint& paint) {
+  if (paint.kind != Paint::Kind::kRadialStops) return false;
+  const Point2 axis = paint.end - paint.start;
+  const double growth = paint.end_radius - paint.start_radius;
+  return dot(axis, axis) >= growth * growth;
+}
+
 bool is_opaque(const Paint& paint) {
   if (!has_alpha(paint)) return true;
+  if (is_cone(paint)) return false;
   if (!paint.stops.empty()) {
     return std::all_of(paint.stops.begin(), paint.stops.end(),
                        [](const GradientStop& stop) { return stop.value[kAlpha] >= 1.0; });

@@ -150,6 +150,9 @@ class Shape(Contours):
     ) -> None:
         """Colors the shape from a focus outwards.
 
+        Where neither circle holds the other, colors fill a cone, and beside it a shape with alpha
+        is transparent.
+
         Within a pixel the color is taken for a polynomial of degree 2: where it jumps at a stop, a
         pixel may be some hundredths off.
 

@@ -28,6 +28,7 @@ class Sources:
         folder: Where images beside the drawing are; None where there are none.
         waiting: The elements to be drawn, of which the next one is the last.
         outlines: Those that are known, by element.
+        circular: Elements whose masks would mask themselves.
     """
 
     document: Document
@@ -39,6 +40,7 @@ class Sources:
     folder: Path | None = None
     waiting: list[tuple[SvgElement, "Context"]] = field(default_factory=list)
     outlines: dict[tuple[SvgElement, Units], Outline | None] = field(default_factory=dict)
+    circular: set[SvgElement] = field(default_factory=set)
 
     def pixels(self, element: SvgElement, name: str, default: Length, units: Units) -> float:
         """An attribute of an element, or what stands for it where there is none."""

@@ -159,7 +159,7 @@ class Walk:
             sources.warnings.unsupported("<script>", "not run", element.line)
         if tag in NOT_DRAWN or tag.startswith("{") or declared.get("display", "") == "none":
             return
-        if not is_wanted(element):
+        if not is_wanted(element) and element is not sources.document.root:
             return
         if tag == "symbol" and context.use is None:
             return

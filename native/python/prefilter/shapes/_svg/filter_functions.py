@@ -66,7 +66,9 @@ def filter_by_function(
     name = function.lower_name
     if name == "blur":
         deviation = _length(arguments[0], units) if arguments else 0.0
-        if len(arguments) > 1 or deviation < 0.0:
+        # Browsers want a unit here, and not of shadows.
+        is_bare = bool(arguments) and arguments[0].type == "number" and deviation != 0.0
+        if len(arguments) > 1 or deviation < 0.0 or is_bare:
             raise InvalidFunctionError
         step = _step("feGaussianBlur", [deviation, deviation])
     elif name == "drop-shadow":

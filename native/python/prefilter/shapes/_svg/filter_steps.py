@@ -150,7 +150,7 @@ def _color_matrix(element: SvgElement, _: FilterPlace, sources: Sources) -> Foun
         matrix = np.zeros((4, 5))
         matrix[3, :3] = _RED, _GREEN, _BLUE
     elif kind == "saturate":
-        matrix = saturating(max(_numbers(element.get("values"), [1.0])[0], 0.0))
+        matrix = saturating(_numbers(element.get("values"), [1.0])[0])
     elif kind == "hueRotate":
         matrix = turning_hues(_numbers(element.get("values"), [0.0])[0])
     else:
@@ -253,9 +253,7 @@ def _lighting(element: SvgElement, place: FilterPlace, sources: Sources) -> Foun
         return _nothing(element)
     is_diffuse = element.tag == "feDiffuseLighting"
     strength = _number(element, "diffuseConstant" if is_diffuse else "specularConstant", 1.0)
-    shininess = _number(element, "specularExponent", 1.0)
-    if not (is_diffuse or 1.0 <= shininess <= 128.0):
-        return _nothing(element)
+    shininess = min(max(_number(element, "specularExponent", 1.0), 1.0), 128.0)
     numbers = [_number(element, "surfaceScale", 1.0), max(strength, 0.0), shininess, *color[:3]]
     return [_in(element)], [*numbers, *_light(lights[0], place)], lights[0].tag
 
@@ -274,8 +272,9 @@ def _light(light: SvgElement, place: FilterPlace) -> list[float]:
     if light.tag == "feSpotLight":
         found += _place_of(light, ("pointsAtX", "pointsAtY", "pointsAtZ"), place)
         exponent = _number(light, "specularExponent", 1.0)
-        cone = _number(light, "limitingConeAngle", 180.0)
-        found += [exponent if exponent > 0.0 else 1.0]
+        # Browsers take an angle of 0 for one that is not said.
+        cone = _number(light, "limitingConeAngle", 0.0) or 180.0
+        found += [min(max(exponent, 1.0), 128.0)]
         found += [_native.cos(min(abs(cone), 180.0) * (math.pi / 180.0))]
     return found
 

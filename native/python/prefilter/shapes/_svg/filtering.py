@@ -184,9 +184,11 @@ class _Filtering:
         numbers = list(step.numbers)
         color = np.array([[numbers[3:6]]], np.float32)
         numbers[3:6] = (to_linear(color) if step.is_linear else color)[0, 0].tolist()
+        a, b, c, d, e, f = self._down
+        # Heights grow along with the picture, so that slopes stay.
+        scale = math.sqrt((a * a + b * b + c * c + d * d) / 2.0)
+        numbers[0] *= scale
         if step.name != "feDistantLight":
-            a, b, c, d, e, f = self._down
-            scale = math.sqrt((a * a + b * b + c * c + d * d) / 2.0)
             rows, columns = self._region
             top = self._shape[0] - rows.stop
             for at in range(6, 6 + 3 * (len(numbers) // 3 - 2), 3):

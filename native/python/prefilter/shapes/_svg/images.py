@@ -141,9 +141,12 @@ def _draw(
     sources: Sources,
 ) -> None:
     declared = sources.sheets.declared(element)
-    own_width, own_height = own
     x, y, width, height = box
     aspect = declared.get("preserveAspectRatio", "")
+    if not isinstance(contents, np.ndarray) and not contents.page.has_size:
+        # As in browsers it is as large as its place, and fits itself into that.
+        own = own if aspect.strip() == "none" else (width, height)
+    own_width, own_height = own
     page = ViewBox(0.0, 0.0, own_width, own_height)
     fitted = multiplied((1.0, 0.0, 0.0, 1.0, x, y), placed(page, aspect, width, height))
     matrix = multiplied(context.matrix, fitted)

@@ -17,12 +17,11 @@ from .values import Length, Matrix, multiplied
 _DEFAULTS = {"x": -10.0, "y": -10.0, "width": 120.0, "height": 120.0}
 
 
-def masks_of(
-    element: SvgElement, context: Context, sources: Sources, box: Box | None = None
-) -> tuple[Mask, ...] | None:
+def masks_of(element: SvgElement, context: Context, sources: Sources) -> tuple[Mask, ...] | None:
     """The masks of an element; None where they let nothing through.
 
-    `context` is that within the element. For a mask `box` is that of what it masks.
+    `context` is that within the element. As in browsers a mask has no mask itself; elements in it
+    may have some. A reference that closes a circle is ignored from then on.
     """
     text = sources.sheets.declared(element).get("mask", "none")
     if text.lower() == "none":
@@ -31,11 +30,12 @@ def masks_of(
     if mask is None or mask.tag != "mask":
         sources.warnings.broken("mask", "ignored", element.line)
         return ()
-    if mask in context.uses:
+    if mask in context.uses and element not in sources.circular:
+        sources.circular.add(element)
         sources.warnings.broken("mask", "ignored, as it refers to itself", element.line)
+    if element in sources.circular:
         return ()
-    if element.tag != "mask":
-        box = object_bounds(element, context, sources)
+    box = object_bounds(element, context, sources)
     region, matrix = box_in_units(mask, "maskUnits", _DEFAULTS, box, context, sources)
     if region is None:
         return None
@@ -57,12 +57,8 @@ def masks_of(
         if shares is None:
             return None
         place = replace(place, matrix=multiplied(context.matrix, shares), viewport=(1.0, 1.0))
-    around = masks_of(mask, replace(context, uses=place.uses), sources, box)
-    if around is None:
-        return None
     sources.draw((child, place) for child in children(mask))
-    made = Mask(group, style.mask_type == "luminance", place.colors.is_linear)
-    return (made, *around)
+    return (Mask(group, style.mask_type == "luminance", place.colors.is_linear),)
 
 
 def shares_of(box: Box | None) -> Matrix | None:

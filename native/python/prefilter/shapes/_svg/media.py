@@ -17,7 +17,9 @@ def holds_for_screens(query: str | Sequence[Any]) -> bool | None:
     Args:
         query: As text or as components. An empty one always holds.
     """
-    tokens = tinycss2.parse_component_value_list(query) if isinstance(query, str) else query
+    tokens: Sequence[Any] = (
+        tinycss2.parse_component_value_list(query) if isinstance(query, str) else query
+    )
     parts: list[list[Any]] = [[]]
     for token in tokens:
         if token == ",":

@@ -66,7 +66,7 @@ def convolved(pixels: FloatArray, numbers: tuple[float, ...], edge_mode: str) ->
     if keeps_alpha:
         found = (found[..., :3] + bias).clip(0.0, 1.0) * alpha
         return np.concatenate([found, alpha], -1)
-    found = (found + bias * alpha).clip(0.0, 1.0)
+    found = (found + bias).clip(0.0, 1.0)
     found[..., :3] = np.minimum(found[..., :3], found[..., 3:])
     return found
 

@@ -25,12 +25,14 @@ class Page:
         height: In pixels.
         view: In its units.
         aspect: How the view is fitted: `preserveAspectRatio`.
+        has_size: Whether the file says a width or a height.
     """
 
     width: float
     height: float
     view: ViewBox
     aspect: str
+    has_size: bool = True
 
     def placement(self, width: float, height: float) -> Matrix:
         """From the drawing's units to pixels of an image, with y upwards."""
@@ -66,6 +68,7 @@ def read_page(sources: Sources) -> Page:
             )
         sizes.append(None if length.unit == "%" else pixels)
     width, height = sizes
+    has_size = sizes != [None, None]
     # What a file does not say follows from its view box, and without one is CSS's 300 x 150.
     if view is not None:
         if width is None:
@@ -73,7 +76,7 @@ def read_page(sources: Sources) -> Page:
         height = width * view.height / view.width if height is None else height
     width, height = width or 300.0, height or 150.0
     view = view or ViewBox(0.0, 0.0, width, height)
-    return Page(width, height, view, declared.get("preserveAspectRatio", ""))
+    return Page(width, height, view, declared.get("preserveAspectRatio", ""), has_size)
 
 
 def background_of(sources: Sources, colors: Colors) -> tuple[float, ...] | None:

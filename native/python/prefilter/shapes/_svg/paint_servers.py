@@ -3,7 +3,7 @@
 """Gradients: what their attributes say, directly and by reference, as gradients of shapes."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -41,8 +41,8 @@ _DEFAULTS = {
     "r": Length(50.0, "%"),
     "fr": Length(0.0),
 }
-# The share of the radius at which a focus outside of the circle is put.
-_FOCUS_LIMIT = 1.0 - 1e-6
+# The share of a circle's radius that its focus has where that is the same circle.
+_NEARLY = 1.0 - 1e-6
 # How far straight lines between stops may be off, in shares of white as it is encoded.
 _TOLERANCE = 1.0 / 1020.0
 
@@ -141,6 +141,12 @@ class PaintServers:
         self._warnings = warnings
         self._known: dict[SvgElement, tuple[dict[str, str], list[Stop]]] = {}
 
+    def has_colors(self, element: SvgElement) -> bool:
+        """Whether a gradient has stops, and a transform that leaves it an area."""
+        attributes, stops = self._chain(element)
+        own = as_transform(attributes.get("gradientTransform", ""))
+        return bool(stops) and (own is None or determinant(own) != 0.0)
+
     def resolve(
         self,
         element: SvgElement,
@@ -177,7 +183,7 @@ class PaintServers:
             matrix = (right - left, 0.0, 0.0, bottom - top, left, top)
             units = Units(1.0, 1.0, units.font_size)
         own = as_transform(attributes.get("gradientTransform", ""))
-        if own is None or determinant(own) == 0.0:
+        if own is None:
             self._warnings.broken("gradientTransform", "ignored", element.line)
             own = IDENTITY
         own = about_origin(own, attributes.get("transform-origin", ""), units) or own
@@ -187,14 +193,14 @@ class PaintServers:
         if is_radial:
             if numbers[2] <= 0.0:
                 return stops[-1].color
-            numbers = _with_focus_inside(numbers)
+            numbers = _circles(numbers)
         elif numbers[:2] == numbers[2:]:
             return stops[-1].color
         spread = attributes.get("spreadMethod", "pad")
         if spread not in ("pad", "reflect", "repeat"):
             self._warnings.broken("spreadMethod", "ignored", element.line)
             spread = "pad"
-        return Gradient(is_radial, numbers, list(_pieces(stops, colors)), spread, matrix)
+        return Gradient(is_radial, numbers, list(pieces_between(stops, colors)), spread, matrix)
 
     def _chain(self, element: SvgElement) -> tuple[dict[str, str], list[Stop]]:
         """The attributes and stops of a gradient, and of those that it refers to."""
@@ -244,7 +250,17 @@ class PaintServers:
         return tuple(found.values())
 
 
-def _pieces(stops: list[Stop], colors: Colors) -> Iterator[tuple[float, tuple[float, ...]]]:
+def _circles(numbers: tuple[float, ...]) -> tuple[float, ...]:
+    """Center, radius, focus and its radius, where both circles are not the same one."""
+    cx, cy, r, fx, fy, fr = numbers
+    fr = max(fr, 0.0)
+    return cx, cy, r, fx, fy, (r * _NEARLY if (cx, cy, r) == (fx, fy, fr) else fr)
+
+
+def pieces_between(
+    stops: Sequence[Stop], colors: Colors
+) -> Iterator[tuple[float, tuple[float, ...]]]:
+    """Yields the stops of a shape: those of a file, and others where straight lines will not do."""
     for index, stop in enumerate(stops):
         following = stops[index + 1] if index + 1 < len(stops) else stop
         between = np.array([stop.color])
@@ -252,14 +268,3 @@ def _pieces(stops: list[Stop], colors: Colors) -> Iterator[tuple[float, tuple[fl
             between = colors.between(stop.color, following.color)[:-1]
         for k, color in enumerate(colors.premultiplied(between)):
             yield stop.offset + (following.offset - stop.offset) * k / len(between), color
-
-
-def _with_focus_inside(numbers: tuple[float, ...]) -> tuple[float, ...]:
-    cx, cy, r, fx, fy, fr = numbers
-    fr = min(max(fr, 0.0), r * _FOCUS_LIMIT)
-    # The circle around the focus lies within the other one.
-    room = (r - fr) * _FOCUS_LIMIT
-    distance = _native.hypot(fx - cx, fy - cy)
-    if distance > room:
-        fx, fy = cx + (fx - cx) * room / distance, cy + (fy - cy) * room / distance
-    return cx, cy, r, fx, fy, fr

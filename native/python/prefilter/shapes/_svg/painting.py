@@ -38,6 +38,8 @@ def resolved(
     is_here = paint.server.startswith("#")
     server = sources.document.ids.get(paint.server[1:]) if is_here else None
     if server is not None and server.tag in GRADIENTS:
+        if not sources.servers.has_colors(server):
+            return None  # As in browsers: the color is for where there is no gradient.
         found = sources.servers.resolve(server, opacity, context.units, bounds, context.colors)
     elif server is not None and server.tag == "pattern":
         pattern = pattern_of(server, opacity, context, bounds, sources)

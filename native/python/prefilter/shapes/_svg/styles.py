@@ -275,6 +275,9 @@ class StyleSheets:
             parent = self._declared[element.parent] if element.parent is not None else {}
             for name in [name for name in _OTHER if found.get(name) == "inherit"]:
                 del found[name]
+                if name == "overflow":
+                    # What elements of other kinds begin with.
+                    found[name] = "visible"
                 if name in parent:
                     found[name] = parent[name]
         self._report(element, found)
