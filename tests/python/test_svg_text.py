@@ -14,7 +14,6 @@ import pytest
 from box_fonts import KERNING, UNITS, WIDTHS, make_font, make_variable
 from drawings import SIZE, read, svg
 from fontTools.ttLib import TTFont
-from fontTools.ttLib.tables.DefaultTable import DefaultTable
 
 try:
     import brotli
@@ -555,12 +554,3 @@ def test_text_of_other_elements_and_of_other_languages(boxes):
     near(one[2], 26)
     (warning,) = read(text('<tref href="#x"/>')).warnings
     assert warning.kind == "broken"
-
-
-def test_colors_of_letters_are_missed(tmp_path):
-    font = TTFont(make_font(tmp_path / "plain.ttf"))
-    font["COLR"] = DefaultTable("COLR")
-    font["COLR"].data = bytes(14)
-    font.save(tmp_path / "colored.ttf")
-    (warning,) = read(text("A A"), fonts=[tmp_path / "colored.ttf"]).warnings
-    assert str(warning).startswith("font 'Boxes': drawn without its colors")

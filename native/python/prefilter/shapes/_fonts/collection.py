@@ -38,6 +38,8 @@ _ALIKE = (("calibri", "carlito", *_SANS), ("cambria", "caladea", *_SERIF), _SANS
 # Of a slanted face that is made: that of browsers.
 _SKEW = 0.25
 _MOST_TRIED = 400
+# Characters of Unicode that are pictures, such as emoji.
+_PICTURES = range(0x1F000, 0x20000)
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +142,9 @@ class Fonts:
         return self._others[key]
 
     def _found_with(self, code: int, wanted: Wanted) -> Font | None:
+        """Fonts with colors come first for pictures such as emoji, and last for other letters."""
         seen: set[str] = set()
+        other: Font | None = None
         for face in self.faces:
             if face.family in seen:
                 continue
@@ -149,8 +153,10 @@ class Fonts:
                 break
             font = self._open(self._of_family(face.family), wanted)
             if font is not None and code in font.characters:
-                return font
-        return None
+                if font.is_colored == (code in _PICTURES):
+                    return font
+                other = other or font
+        return other
 
     def _of_family(self, name: str) -> list[Face]:
         if not self._families:

@@ -11,12 +11,13 @@ from typing import Any
 
 from fontTools.ttLib import TTCollection, TTFont
 
+from .bitmaps import has_bitmaps
 from .woff import as_sfnt
 
 # In percent of the normal width, by usWidthClass.
 _WIDTHS = (100.0, 50.0, 62.5, 75.0, 87.5, 100.0, 112.5, 125.0, 150.0, 200.0)
 _FAMILY_NAMES = (16, 1, 21)
-_OUTLINES = ("glyf", "CFF ", "CFF2")
+OUTLINES = ("glyf", "CFF ", "CFF2")
 _MOST_FACES = 256
 
 
@@ -90,7 +91,7 @@ def _faces_as_of(path: Path, stamp: tuple[int, int]) -> tuple[Face, ...]:
 
 
 def faces_in(path: Path) -> tuple[Face, ...]:
-    """The fonts in a file that have outlines.
+    """The fonts in a file that have outlines, or pictures of letters.
 
     Raises:
         UnreadableFontError: It is no font, or damaged.
@@ -118,7 +119,8 @@ def face_in(data: bytes, name: str) -> Face:
 
 def _face(path: Path, index: int, data: bytes | None = None) -> Face | None:
     with TTFont(_source(path, data), fontNumber=index, lazy=True) as font:
-        if not any(tag in font for tag in _OUTLINES) or "cmap" not in font:
+        is_drawn = any(tag in font for tag in OUTLINES) or has_bitmaps(font)
+        if not is_drawn or "cmap" not in font:
             return None
         names = _family_names(font["name"]) if "name" in font else []
         family = names[0] if names else path.stem

@@ -10,7 +10,9 @@ from typing import Any
 
 from fontTools.pens.basePen import BasePen
 
-from .faces import Face
+from .bitmaps import Bitmap, BitmapTable, has_bitmaps
+from .color_layers import ColorGroup, ColorTable, UnknownPaintError
+from .faces import OUTLINES, Face
 
 # Of a glyph: components of components may be many.
 _MOST_SEGMENTS = 200_000
@@ -61,8 +63,11 @@ class Font:
         self._file = face.opened()
         self.units_per_em = float(max(self._file["head"].unitsPerEm, 1))
         self._order = self._file.getGlyphOrder()
-        self._glyphs = self._file.getGlyphSet(location=self.location or None)
+        self._glyphs = None
+        if any(tag in self._file for tag in OUTLINES):
+            self._glyphs = self._file.getGlyphSet(location=self.location or None)
         self._drawn: dict[int, Glyph] = {}
+        self._looks: dict[int, ColorGroup | Bitmap | str | None] = {}
 
     @cached_property
     def characters(self) -> Mapping[int, int]:
@@ -73,8 +78,40 @@ class Font:
 
     @property
     def is_colored(self) -> bool:
-        """Whether its letters have colors, which outlines do not."""
+        """Whether its letters have colors."""
         return any(tag in self._file for tag in ("COLR", "SVG ", "sbix", "CBDT"))
+
+    def look(self, number: int) -> ColorGroup | Bitmap | str | None:
+        """What a glyph looks like in colors, read once; None where it has none.
+
+        A text says why its colors cannot be had.
+        """
+        if number not in self._looks:
+            try:
+                self._looks[number] = self._look(self._order[number])
+            except UnknownPaintError as error:
+                self._looks[number] = str(error)
+            except Exception:
+                self._looks[number] = "damaged tables"
+        return self._looks[number]
+
+    def _look(self, name: str) -> ColorGroup | Bitmap | str | None:
+        found: ColorGroup | Bitmap | None = None
+        if self._colors is not None:
+            found = self._colors.layers(name)
+        if found is None and self._bitmaps is not None:
+            found = self._bitmaps.bitmap(name)
+        if found is None and "SVG " in self._file and "COLR" not in self._file:
+            return "drawings of letters"
+        return found
+
+    @cached_property
+    def _colors(self) -> ColorTable | None:
+        return ColorTable(self._file) if "COLR" in self._file else None
+
+    @cached_property
+    def _bitmaps(self) -> BitmapTable | None:
+        return BitmapTable(self._file, self.units_per_em) if has_bitmaps(self._file) else None
 
     @cached_property
     def tables(self) -> Any:
@@ -108,14 +145,18 @@ class Font:
 
     def advance(self, number: int) -> float:
         """How far a glyph leads, in units of the font."""
-        return float(self._glyphs[self._order[number]].width)
+        name = self._order[number]
+        if self._glyphs is None:
+            return float(self._file["hmtx"].metrics[name][0])
+        return float(self._glyphs[name].width)
 
     def glyph(self, number: int) -> Glyph:
         """The outline of a glyph, read once; an empty one where it is damaged."""
         if number not in self._drawn:
             pen = _Pen(self._glyphs)
             try:
-                self._glyphs[self._order[number]].draw(pen)
+                if self._glyphs is not None:
+                    self._glyphs[self._order[number]].draw(pen)
             except Exception:
                 pen = _Pen(self._glyphs)
             self._drawn[number] = Glyph(bytes(pen.letters), pen.numbers)

@@ -80,9 +80,11 @@ def _parts(child: SvgElement, context: Context, sources: Sources) -> Iterator[Cl
         return
     if child.tag == "text":
         # Fonts take modules that those who draw no text need not wait for.
-        from .text import drawn_text
+        from .text import TextPiece, drawn_text
 
         for piece in drawn_text(child, place, sources).pieces:
+            if not isinstance(piece, TextPiece):
+                continue
             sources.budget.take_segments(len(piece.outline), 0.0)
             yield ClipPart(piece.outline, "nonzero", place.matrix, place.clips)
     if child.tag not in BASIC_SHAPES or child.tag == "line":

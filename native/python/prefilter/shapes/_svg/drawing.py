@@ -237,10 +237,14 @@ class Walk:
 
     def _paint_text(self, element: SvgElement, context: Context) -> None:
         # Fonts take modules that those who draw no text need not wait for.
+        from .colored_letters import ColoredPiece, draw_colored
         from .text import drawn_text
 
         drawn = drawn_text(element, context, self.sources)
         for piece in drawn.pieces:
+            if isinstance(piece, ColoredPiece):
+                draw_colored(piece, context, self.sources)
+                continue
             place = replace(context, style=piece.style)
             outline = _Drawn(piece.outline, piece.box, drawn.bounds)
             self._paint_outline(piece.element, place, outline)

@@ -5,7 +5,9 @@
 import unicodedata
 from collections.abc import Sequence
 
+from .._fonts.bitmaps import Bitmap
 from .._fonts.collection import Fonts, Wanted
+from .._fonts.color_layers import ColorGroup
 from .._fonts.font import Font
 from .text_characters import Character, Span
 from .values import UnknownUnitError, as_length
@@ -114,15 +116,19 @@ class Lettering:
                 self.warnings.unsupported(f"font '{name[:60]}'", effect, line)
         return self._found[span]
 
-    def _font_of(self, letter: str, span: Span) -> Font | None:
-        found = self._any_font_of(letter, span)
-        if found is not None and found.is_colored and not letter.isspace():
-            self.warnings.unsupported(
-                f"font '{found.face.family[:60]}'", "drawn without its colors", span.element.line
-            )
-        return found
+    def look_of(self, font: Font, glyph: int, span: Span) -> ColorGroup | Bitmap | None:
+        """What a glyph looks like in colors; None where it has none that can be drawn."""
+        look = font.look(glyph) if font.is_colored else None
+        if not isinstance(look, str):
+            return look
+        self.warnings.unsupported(
+            f"font '{font.face.family[:60]}'",
+            f"drawn without its colors: it has {look}",
+            span.element.line,
+        )
+        return None
 
-    def _any_font_of(self, letter: str, span: Span) -> Font | None:
+    def _font_of(self, letter: str, span: Span) -> Font | None:
         fonts = self._fonts_for(span)
         code = ord(letter)
         for font in fonts:

@@ -8,6 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from .._fonts.font import Glyph
+from .colored_letters import ColoredLetter, ColoredPiece
 from .context import Context, Sources
 from .document import SvgElement
 from .lettering import Lettering
@@ -46,7 +48,7 @@ class DrawnText:
             to the lowest of their font. None where there are none.
     """
 
-    pieces: list[TextPiece]
+    pieces: list[TextPiece | ColoredPiece]
     bounds: Box | None
 
 
@@ -67,7 +69,7 @@ def drawn_text(element: SvgElement, context: Context, sources: Sources) -> Drawn
         for cluster in TextLayout(lettering).lay_out(characters)
         if cluster.matrix is not None and cluster.scale > 0.0
     ]
-    pieces: list[TextPiece] = []
+    pieces: list[TextPiece | ColoredPiece] = []
     for span in dict.fromkeys(character.span for character in characters):
         own = [cluster for cluster in clusters if cluster.span is span]
         if own and span.style.visibility == "visible":
@@ -75,17 +77,26 @@ def drawn_text(element: SvgElement, context: Context, sources: Sources) -> Drawn
     return DrawnText(pieces, _bounds(clusters))
 
 
-def _pieces(span: Span, clusters: Sequence[Cluster], lettering: Lettering) -> Iterator[TextPiece]:
+def _pieces(
+    span: Span, clusters: Sequence[Cluster], lettering: Lettering
+) -> Iterator[TextPiece | ColoredPiece]:
     """Yields the letters of a span between the lines below and above them."""
     lines = [(line, each) for each in span.line() for line in each.lines]
     for name in ("underline", "overline"):
         for line, owner in lines:
             if line == name:
                 yield from _piece(owner, _line(name, owner, clusters, lettering))
-    letters = Outline()
+    letters, colored = Outline(), []
     for cluster in clusters:
-        _add_letters(cluster, letters)
+        for glyph, matrix in _placed(cluster):
+            look = lettering.look_of(cluster.font, glyph, span)
+            if look is None:
+                _add_letter(cluster.font.glyph(glyph), matrix, letters)
+            else:
+                colored.append(ColoredLetter(cluster.font, look, matrix))
     yield from _piece(span, letters)
+    if colored:
+        yield ColoredPiece(span.element, span.style, colored)
     for line, owner in lines:
         if line == "line-through":
             yield from _piece(owner, _line(line, owner, clusters, lettering))
@@ -101,22 +112,27 @@ def _piece(span: Span, outline: Outline) -> Iterator[TextPiece]:
         yield TextPiece(span.element, style, outline, box)
 
 
-def _add_letters(cluster: Cluster, outline: Outline) -> None:
+def _placed(cluster: Cluster) -> Iterator[tuple[int, Matrix]]:
+    """Yields glyphs, and what leads from units of their font to those of the text."""
     assert cluster.matrix is not None
     scale, at = cluster.scale, 0.0
+    wide = scale * cluster.stretch
     for shaped in cluster.glyphs:
-        glyph = cluster.font.glyph(shaped.glyph)
-        if glyph.letters:
-            wide = scale * cluster.stretch
-            x, y = wide * (at + shaped.x), -scale * shaped.y
-            own: Matrix = (wide, 0.0, wide * cluster.font.skew, -scale, x, y)
-            a, b, c, d, e, f = multiplied(cluster.matrix, own)
-            points = np.frombuffer(glyph.numbers).reshape(-1, 2)
-            moved = np.empty_like(points)
-            moved[:, 0] = a * points[:, 0] + c * points[:, 1] + e
-            moved[:, 1] = b * points[:, 0] + d * points[:, 1] + f
-            outline.extend(glyph.letters, array("d", moved.tobytes()))
+        x, y = wide * (at + shaped.x), -scale * shaped.y
+        own: Matrix = (wide, 0.0, wide * cluster.font.skew, -scale, x, y)
+        yield shaped.glyph, multiplied(cluster.matrix, own)
         at += shaped.advance
+
+
+def _add_letter(glyph: Glyph, matrix: Matrix, outline: Outline) -> None:
+    if not glyph.letters:
+        return
+    a, b, c, d, e, f = matrix
+    points = np.frombuffer(glyph.numbers).reshape(-1, 2)
+    moved = np.empty_like(points)
+    moved[:, 0] = a * points[:, 0] + c * points[:, 1] + e
+    moved[:, 1] = b * points[:, 0] + d * points[:, 1] + f
+    outline.extend(glyph.letters, array("d", moved.tobytes()))
 
 
 def _line(name: str, owner: Span, clusters: Sequence[Cluster], lettering: Lettering) -> Outline:
