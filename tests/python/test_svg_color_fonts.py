@@ -194,11 +194,32 @@ def svg_gradient(
             radial((300, 250, 200, 250, 250, 50), ((0, GREEN), (1, RED))),
             svg_gradient("radial", (250, 250, 50, 300, 250, 200)),
         ),
+        # To a point.
+        (
+            radial((300, 250, 200, 250, 250, 0), ((0, GREEN), (1, RED))),
+            svg_gradient("radial", (250, 250, 0, 300, 250, 200)),
+        ),
     ],
 )
 def test_gradients(drawn, paint, gradient):
     found = drawn(glyph(A, paint))
     near(found, image(gradient + units(box(600, "url(#g)"))))
+
+
+@pytest.mark.parametrize(
+    "paint",
+    [
+        radial((300, 250, 0, 100, 250, 0)),
+        radial((300, 250, 100, 300, 250, 100)),
+        radial((300, 250, 100, 300, 250, 200), ((-2, RED), (-1.5, GREEN))),
+        radial((300, 250, 0, 300, 250, 200), ((0.5, RED), (0.5, GREEN))),
+        linear(100, 0, 100, 0, 100, 50),
+        linear(100, 0, 200, 0, 300, 0),
+        linear(100, 0, 200, 0, 100, 50, ((0.5, RED),)),
+    ],
+)
+def test_odd_gradients_are_drawn(drawn, paint):
+    assert drawn(glyph(A, paint))[..., 3].sum() > 0.0
 
 
 @pytest.mark.parametrize(

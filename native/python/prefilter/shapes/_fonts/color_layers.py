@@ -265,9 +265,12 @@ class _Reading:
             numbers = _between(numbers, first, last)
         if kind == 6:
             x0, y0, r0, x1, y1, r1 = numbers
-            if r0 > r1:
+            if r1 <= 0.0:
+                # The last circle is the one that must have a radius.
                 stops = [ColorStop(1.0 - s.offset, s.color, s.alpha) for s in reversed(stops)]
                 x0, y0, r0, x1, y1, r1 = x1, y1, r1, x0, y0, r0
+            if r1 <= 0.0:
+                return ColorFill(glyph, matrix, "solid", (), (stops[0],), "pad", paint_matrix)
             numbers = (x1, y1, r1, x0, y0, max(r0, 0.0))
         name = "linear" if kind == 4 else "radial"
         return ColorFill(glyph, matrix, name, numbers, tuple(stops), spread, paint_matrix)
