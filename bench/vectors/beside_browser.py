@@ -28,7 +28,7 @@ from PIL import Image, ImageDraw
 from prefilter.shapes.svg_image import SvgPicture
 
 from bench.report import Report, add_json_option
-from bench.vectors.browser import Browser, Wanted
+from bench.vectors.browser import Browser, Wanted, premultiplied
 from bench.vectors.drawings import FAR, NEAR, SHARE, SIDE, referred
 
 WORST = 30
@@ -82,9 +82,7 @@ def drawn(path: Path, resvg: str, fonts: Path | None) -> Drawn | str:
         reference = path.with_suffix(".png")
         if reference.exists():
             with Image.open(reference) as file:
-                straight = np.asarray(file.convert("RGBA"), np.float64)
-            theirs = straight.copy()
-            theirs[..., :3] *= straight[..., 3:] / 255.0
+                theirs = premultiplied(np.asarray(file.convert("RGBA")))
             height, width = theirs.shape[:2]
             place, scale = None, width / picture.width
         else:
@@ -191,6 +189,7 @@ def main() -> None:
     parser.add_argument("--browser", default="chromium", help="(default: %(default)s)")
     parser.add_argument("--resvg", default="resvg", help="the program (default: %(default)s)")
     parser.add_argument("--fonts", type=Path, help="a folder of fonts, for all three")
+    parser.add_argument("--kept", type=Path, help="a folder in which Chromium's pictures stay")
     parser.add_argument("--sheet", type=Path, help="write the worst drawings to this image")
     parser.add_argument("--jobs", type=int, default=2, help="processes (default: %(default)s)")
     add_json_option(parser)
@@ -201,7 +200,7 @@ def main() -> None:
     work = partial(
         compared,
         folder=options.folder,
-        browser=Browser(options.browser, options.fonts),
+        browser=Browser(options.browser, options.fonts, options.kept),
         draw=partial(drawn, resvg=options.resvg, fonts=options.fonts),
     )
     batches = [paths[begin : begin + AT_ONCE] for begin in range(0, len(paths), AT_ONCE)]

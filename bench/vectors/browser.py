@@ -3,6 +3,7 @@
 """Drawings as Chromium shows them: many on a page, photographed without a window."""
 
 import base64
+import hashlib
 import os
 import re
 import subprocess
@@ -65,22 +66,44 @@ class Wanted:
 class Browser:
     """Chromium, with fonts of one folder alone where one is given."""
 
-    def __init__(self, program: str, fonts: Path | None) -> None:
-        """Takes the program, and the folder."""
+    def __init__(self, program: str, fonts: Path | None, kept: Path | None = None) -> None:
+        """Takes the program, the folder, and one in which pictures are kept for later runs."""
         self._program = program
         self._fonts = fonts
+        self._kept = kept
+        if kept is not None:
+            kept.mkdir(parents=True, exist_ok=True)
 
     def shown(self, drawings: Iterable[Wanted]) -> dict[Path, Pixels | None]:
         """Returns pictures, premultiplied, in 0..255, the top row first; None for what failed."""
         found: dict[Path, Pixels | None] = {}
-        for batch in _batches(drawings):
+        missing: list[Wanted] = []
+        for one in drawings:
+            kept = self._kept_as(one)
+            if kept is not None and kept.exists():
+                with Image.open(kept) as file:
+                    found[one.path] = premultiplied(np.asarray(file.convert("RGBA")))
+            else:
+                missing.append(one)
+        for batch in _batches(missing):
             pictures = self._page(batch)
             if pictures is None:
                 pictures = [(self._page([one]) or [None])[0] for one in batch]
-            found.update((one.path, each) for one, each in zip(batch, pictures, strict=True))
+            for one, each in zip(batch, pictures, strict=True):
+                found[one.path] = premultiplied(each) if each is not None else None
+                kept = self._kept_as(one)
+                if each is not None and kept is not None:
+                    Image.fromarray(each).save(kept)
         return found
 
-    def _page(self, drawings: list[Wanted]) -> list[Pixels | None] | None:
+    def _kept_as(self, one: Wanted) -> Path | None:
+        if self._kept is None:
+            return None
+        text = f"{one.path.name} {one.width} {one.height} {one.scale:.9g} {self._fonts} "
+        name = hashlib.sha256(text.encode() + one.path.read_bytes()).hexdigest()[:32]
+        return self._kept / f"{name}.png"
+
+    def _page(self, drawings: list[Wanted]) -> list[NDArray[np.uint8] | None] | None:
         """One page of drawings below each other; None where the browser does not manage."""
         with tempfile.TemporaryDirectory() as folder:
             page, target = Path(folder) / "page.html", Path(folder) / "page.png"
@@ -103,12 +126,10 @@ class Browser:
             if not target.exists():
                 return None
             with Image.open(target) as file:
-                pixels = np.asarray(file.convert("RGBA"), np.float64)
+                pixels = np.asarray(file.convert("RGBA"))
         if pixels.shape[:2] != (size[1], size[0]):
             return None
-        pixels = pixels.copy()
-        pixels[..., :3] *= pixels[..., 3:] / 255.0
-        found: list[Pixels | None] = []
+        found: list[NDArray[np.uint8] | None] = []
         top = 0
         for one in drawings:
             found.append(pixels[top : top + one.height, : one.width])
@@ -122,6 +143,13 @@ class Browser:
             settings.write_text(_font_settings(self._fonts, folder), encoding="utf-8")
             found["FONTCONFIG_FILE"] = str(settings)
         return found
+
+
+def premultiplied(straight: NDArray[np.uint8]) -> Pixels:
+    """Returns a picture with its colors multiplied by alpha."""
+    found = straight.astype(np.float64)
+    found[..., :3] *= found[..., 3:] / 255.0
+    return found
 
 
 def _batches(drawings: Iterable[Wanted]) -> Iterator[list[Wanted]]:

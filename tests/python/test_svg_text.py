@@ -134,7 +134,7 @@ def test_baselines(boxes, baseline, down):
 
 
 @pytest.mark.parametrize(
-    ("shift", "up"), [("super", 3.0), ("sub", -1.0), ("4", 4.0), ("-50%", -5.0), ("baseline", 0.0)]
+    ("shift", "up"), [("super", 5.0), ("sub", -5.0), ("4", 4.0), ("-50%", -5.0), ("baseline", 0.0)]
 )
 def test_baseline_shift(boxes, shift, up):
     outer, inner = boxes(text(f'A<tspan fill="red" baseline-shift="{shift}">A</tspan>'))
@@ -144,11 +144,13 @@ def test_baseline_shift(boxes, shift, up):
 def test_shifts_of_nested_elements_add_up(boxes):
     inner = '<tspan baseline-shift="2"><tspan baseline-shift="3">A</tspan></tspan>'
     near(boxes(text(inner))[0][3], 45)
+    # As in browsers the outermost counts, too.
+    near(boxes(text(inner, 'baseline-shift="1"'))[0][3], 44)
 
 
 @pytest.mark.parametrize(
     ("line", "top", "bottom"),
-    [("underline", 50.75, 51.25), ("overline", 42.0, 42.5), ("line-through", 47.25, 47.75)],
+    [("underline", 50.5, 51.5), ("overline", 41, 42), ("line-through", 46.8333, 47.8333)],
 )
 def test_lines(boxes, line, top, bottom):
     drawn = boxes(text("A A", f'text-decoration="{line}"'))

@@ -38,12 +38,6 @@ class Metrics:
     ascent: float
     descent: float
     x_height: float
-    underline: float
-    underline_thickness: float
-    strikeout: float
-    strikeout_thickness: float
-    subscript: float
-    superscript: float
 
 
 class Font:
@@ -120,27 +114,20 @@ class Font:
 
     @cached_property
     def metrics(self) -> Metrics:
-        """How high letters are, and where lines go."""
+        """How high letters are."""
         em = self.units_per_em
         file = self._file
-        hhea, os2, post = file.get("hhea"), file.get("OS/2"), file.get("post")
+        hhea, os2 = file.get("hhea"), file.get("OS/2")
         ascent = hhea.ascent if hhea else 0.8 * em
         descent = hhea.descent if hhea else -0.2 * em
         if os2 and (os2.fsSelection & (1 << 7) or (ascent == 0 and descent == 0)):
             ascent, descent = os2.sTypoAscender, os2.sTypoDescender
-        thickness = (post.underlineThickness if post else 0) or 0.05 * em
         x_height = getattr(os2, "sxHeight", 0) if os2 else 0
         x_height = x_height if x_height > 0 else 0.45 * (ascent - descent)
         return Metrics(
             ascent=ascent / em,
             descent=descent / em,
             x_height=x_height / em,
-            underline=((post.underlinePosition if post else 0) or -0.1 * em) / em,
-            underline_thickness=thickness / em,
-            strikeout=((os2.yStrikeoutPosition if os2 else 0) or 0.5 * x_height) / em,
-            strikeout_thickness=((os2.yStrikeoutSize if os2 else 0) or thickness) / em,
-            subscript=(os2.ySubscriptYOffset if os2 else 0.2 * em) / em,
-            superscript=(os2.ySuperscriptYOffset if os2 else 0.4 * em) / em,
         )
 
     def advance(self, number: int) -> float:

@@ -83,8 +83,7 @@ class Lettering:
 
     def raised(self, span: Span) -> float:
         """How far `baseline-shift` moves a span and those around it down, in pixels."""
-        # It says nothing of the outermost element, which has no line around it.
-        return -sum(self._raise_of(each) for each in span.line() if each.around)
+        return -sum(self._raise_of(each) for each in span.line())
 
     def _raise_of(self, span: Span) -> float:
         size = span.style.font_size
@@ -95,7 +94,8 @@ class Lettering:
             if font is None:
                 return 0.0
             metrics = font.metrics
-            return size * (-metrics.subscript if span.shift == "sub" else metrics.superscript)
+            half = 0.5 * (metrics.ascent - metrics.descent) * size
+            return half if span.shift == "super" else -half
         try:
             length = as_length(span.shift)
         except UnknownUnitError:

@@ -20,6 +20,9 @@ from .text_layout import Cluster, TextLayout
 from .tree import Box
 from .values import Matrix, multiplied
 
+# Of lines at letters, in sizes of these.
+_LINE_THICKNESS = 0.1
+
 
 @dataclass(frozen=True, slots=True)
 class TextPiece:
@@ -85,7 +88,7 @@ def _pieces(
     for name in ("underline", "overline"):
         for line, owner in lines:
             if line == name:
-                yield from _piece(owner, _line(name, owner, clusters, lettering))
+                yield from _piece(owner, _line(name, owner, span, clusters, lettering))
     letters, colored = Outline(), []
     for cluster in clusters:
         for glyph, matrix in _placed(cluster):
@@ -99,7 +102,7 @@ def _pieces(
         yield ColoredPiece(span.element, span.style, colored)
     for line, owner in lines:
         if line == "line-through":
-            yield from _piece(owner, _line(line, owner, clusters, lettering))
+            yield from _piece(owner, _line(line, owner, span, clusters, lettering))
 
 
 def _piece(span: Span, outline: Outline) -> Iterator[TextPiece]:
@@ -135,17 +138,21 @@ def _add_letter(glyph: Glyph, matrix: Matrix, outline: Outline) -> None:
     outline.extend(glyph.letters, array("d", moved.tobytes()))
 
 
-def _line(name: str, owner: Span, clusters: Sequence[Cluster], lettering: Lettering) -> Outline:
-    """A line of an element at letters in it, straight as far as they stand on one."""
+def _line(
+    name: str, owner: Span, span: Span, clusters: Sequence[Cluster], lettering: Lettering
+) -> Outline:
+    """A line of an element at letters of one in it, straight as far as they stand on one."""
     outline = Outline()
-    font = lettering.font_of_span(owner)
+    font = lettering.font_of_span(span)
     if font is None:
         return outline
-    metrics, size = font.metrics, owner.style.font_size
-    middle, thickness = {
-        "underline": (metrics.underline, metrics.underline_thickness),
-        "overline": (metrics.ascent, metrics.underline_thickness),
-        "line-through": (metrics.strikeout, metrics.strikeout_thickness),
+    metrics, size = font.metrics, span.style.font_size
+    # As in browsers, whatever the font says, and as large as the letters are.
+    thickness = _LINE_THICKNESS
+    middle = {
+        "underline": -thickness,
+        "overline": metrics.ascent + thickness,
+        "line-through": metrics.ascent / 3.0,
     }[name]
     raised = lettering.shift_of(owner)
     strips: list[tuple[Matrix, float, float]] = []
