@@ -460,6 +460,15 @@ def test_pictures_may_be_those_of_other_letters(tmp_path):
     near(image(text("V"), [path]), image(text("A"), [path]))
 
 
+def test_pictures_of_letters_are_read_and_counted_once(tmp_path, monkeypatch):
+    path = with_sbix(tmp_path / "font.ttf")
+    monkeypatch.setattr("prefilter.shapes._svg.limits.MOST_TEXELS", 40)
+    assert image(text("AAAA", 'style="font-size:20px"'), [path]).any()
+    monkeypatch.setattr("prefilter.shapes._svg.limits.MOST_TEXELS", 20)
+    with pytest.raises(ValueError, match="images of more than 20 pixels"):
+        image(text("A"), [path])
+
+
 def test_pictures_lead_as_far_as_their_font_says(tmp_path):
     path = with_cbdt(tmp_path / "font.ttf")
     found = image(text('A<tspan fill="red">A</tspan>', 'style="font-size:50px"'), [path])

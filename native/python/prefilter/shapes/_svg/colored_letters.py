@@ -104,18 +104,20 @@ class _Letters:
         self, bitmap: Bitmap, matrix: Matrix, clips: tuple[Clip, ...], target: Group
     ) -> None:
         width, height = size_of(bitmap.data)
-        self._sources.budget.take_texels(width * height)
-        try:
-            texels = read_picture(bitmap.data)
-        except PictureError as error:
-            self._sources.warnings.broken("letter", f"left out, {error}", self._line)
-            return
+        known = self._sources.letters
+        if bitmap not in known:
+            self._sources.budget.take_texels(width * height)
+            try:
+                known[bitmap] = read_picture(bitmap.data)
+            except PictureError as error:
+                self._sources.warnings.broken("letter", f"left out, {error}", self._line)
+                return
         wide, high = width * bitmap.unit, height * bitmap.unit
         top = bitmap.edge if bitmap.is_top else bitmap.edge + high
         unit = multiplied(matrix, (wide, 0.0, 0.0, -high, bitmap.left, top))
         box = carried((0.0, 0.0, 1.0, 1.0), unit)
         is_linear = self._colors.is_linear
-        target.items.append(Picture(texels, unit, False, is_linear, clips, box, self._line))
+        target.items.append(Picture(known[bitmap], unit, False, is_linear, clips, box, self._line))
 
     def _draw_group(
         self,

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from .._fonts.bitmaps import Bitmap
 from .basic_shapes import read_shape
 from .document import Document, SvgElement
 from .font_places import FontPlaces
@@ -13,6 +14,7 @@ from .lengths import Units, read_length
 from .limits import Budget
 from .outline import Outline
 from .paint_servers import Colors, PaintServers
+from .pictures import Texels
 from .styles import Style, StyleSheets
 from .tree import Clip, Group
 from .values import Length, Matrix, Paint, as_paint
@@ -29,6 +31,7 @@ class Sources:
         waiting: The elements to be drawn, of which the next one is the last.
         outlines: Those that are known, by element.
         circular: Elements whose masks would mask themselves.
+        letters: The texels of letters that are pictures, read once.
     """
 
     document: Document
@@ -41,6 +44,7 @@ class Sources:
     waiting: list[tuple[SvgElement, "Context"]] = field(default_factory=list)
     outlines: dict[tuple[SvgElement, Units], Outline | None] = field(default_factory=dict)
     circular: set[SvgElement] = field(default_factory=set)
+    letters: dict[Bitmap, Texels] = field(default_factory=dict)
 
     def pixels(self, element: SvgElement, name: str, default: Length, units: Units) -> float:
         """An attribute of an element, or what stands for it where there is none."""

@@ -31,12 +31,13 @@ _UNITS = {
     "in": 96.0,
     "cm": 96.0 / 2.54,
     "mm": 96.0 / 25.4,
+    "q": 24.0 / 25.4,
     "pt": 96.0 / 72.0,
     "pc": 16.0,
 }
 _FONT_UNITS = {"em": 1.0, "ex": 0.5}
 _OTHER_UNITS = frozenset(
-    ["ch", "rem", "cap", "ic", "lh", "rlh", "vw", "vh", "vi", "vb", "vmin", "vmax", "q"]
+    ["ch", "rem", "cap", "ic", "lh", "rlh", "vw", "vh", "vi", "vb", "vmin", "vmax"]
 )
 
 
