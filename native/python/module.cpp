@@ -11,6 +11,7 @@
 #include "prefilter/base/error.h"
 #include "prefilter/base/memory.h"
 #include "prefilter/base/names.h"
+#include "prefilter/io/random_name.h"
 
 namespace py = pybind11;
 
@@ -128,6 +129,9 @@ PYBIND11_MODULE(_native, m) {
                    : static_cast<double>(bytes);
       },
       "Returns the bytes that can be had without driving others out; infinity where unknown.");
+  m.def("random_name", &prefilter::random_name,
+        "Returns what a file may be called until it is put in place.");
+  m.attr("MACHINE_DIGITS") = prefilter::kMachineDigits;
   // Never destroyed: at exit there may be no interpreter left to destroy it with.
   static auto* const cancelled = new py::exception<Error>(m, "Cancelled");
   cancelled->attr("__module__") = "prefilter";

@@ -2,10 +2,10 @@
 
 #include "prefilter/io/file.h"
 
-#include <random>
 #include <utility>
 
 #include "prefilter/base/error.h"
+#include "prefilter/io/random_name.h"
 
 namespace prefilter {
 namespace {
@@ -20,10 +20,7 @@ using system_file::Kind;
 
 }  // namespace
 
-std::string random_path(const std::string& folder) {
-  std::random_device random;
-  return folder + "/.prefilter-" + std::to_string(random());
-}
+std::string random_path(const std::string& folder) { return folder + "/" + random_name(); }
 
 void throw_system_error(const std::string& what) {
   const std::string why = system_file::last_error();
@@ -104,6 +101,10 @@ void File::link(const std::string& path) {
   if (!system_file::link(handle_, path)) {
     throw_system_error(name_ + ": cannot be named '" + path + "'");
   }
+}
+
+void File::sync() {
+  if (!system_file::sync(handle_)) throw_system_error(name_ + ": cannot write");
 }
 
 void File::copy_permissions(const std::string& from) {

@@ -43,6 +43,8 @@ class File {
   /// Gives it the permissions of another file, where the system gives new files permissions of
   /// their own.
   void copy_permissions(const std::string& from);
+  /// Has the disk hold all that was written.
+  void sync();
   /// Closes it; unlike the destructor, throws where the system had put off an error until now.
   void close();
 

@@ -56,11 +56,14 @@ void StagedFile::commit() {
     file_.link(path);
     path_ = path;
   }
-  file_.close();
+  file_.sync();
+  // It is locked for as long as it has that name, so that nobody takes it for a dead process's.
   if (!system_file::rename(path_, target_)) {
     throw_system_error("'" + target_ + "': cannot be replaced");
   }
   path_.clear();
+  file_.close();
+  system_file::sync_folder(folder_);
 }
 
 }  // namespace prefilter

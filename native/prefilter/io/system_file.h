@@ -17,6 +17,9 @@ constexpr Handle kNone = -1;
 
 enum class Kind { kRegular, kFolder, kOther };
 
+// New files are locked until they are closed, as far as the file system can do that: who looks for
+// what dead processes have left knows by it that they are in use. On Windows none are left.
+//
 // All that can fail says so by what it returns, and last_error() says why. Paths are UTF-8 on
 // Windows, and elsewhere the bytes that the system has.
 
@@ -39,13 +42,21 @@ std::optional<std::uint64_t> size(Handle file);
 std::ptrdiff_t read(Handle file, std::uint64_t offset, std::span<std::byte> bytes);
 std::ptrdiff_t write(Handle file, std::uint64_t offset, std::span<const std::byte> bytes);
 
+/// Has the disk hold what was written, or what the folder lists; not every system syncs folders.
+bool sync(Handle file);
+void sync_folder(const std::string& folder);
+
 /// Gives a file the permissions of another, where a file that is renamed keeps its own.
 bool copy_permissions(const std::string& from, Handle to);
-/// Renames a file that is closed, in place of another one where there is one.
+/// Renames a file, in place of another one where there is one.
 bool rename(const std::string& from, const std::string& to);
 bool remove(const std::string& path);
 
 /// Why the last call of this thread failed.
 std::string last_error();
+
+/// What tells a start of the system from others, if it says so, and what the machine is called.
+std::string boot_name();
+std::string host_name();
 
 }  // namespace prefilter::system_file

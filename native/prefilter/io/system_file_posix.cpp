@@ -2,11 +2,14 @@
 
 // Linux and macOS.
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstdio>
+#include <fstream>
 #include <system_error>
 
 #include "prefilter/io/file.h"
@@ -30,9 +33,22 @@ Handle open_retried(const std::string& path, int flags) {
 
 std::string own_link(Handle file) { return "/proc/self/fd/" + std::to_string(file); }
 
+// Waits for who has found a new file before it was locked, and then removes it.
+void lock(Handle file) {
+  while (::flock(descriptor_of(file), LOCK_EX) != 0 && errno == EINTR) {
+  }
+}
+
+bool is_removed(Handle file) {
+  struct stat status {};
+  return ::fstat(descriptor_of(file), &status) == 0 && status.st_nlink == 0;
+}
+
 Handle create_unnamed([[maybe_unused]] const std::string& folder) {
 #ifdef O_TMPFILE
-  return open_retried(folder, O_RDWR | O_TMPFILE);
+  const Handle file = open_retried(folder, O_RDWR | O_TMPFILE);
+  if (file != kNone) lock(file);
+  return file;
 #else
   return kNone;
 #endif
@@ -42,7 +58,15 @@ Handle create_unnamed([[maybe_unused]] const std::string& folder) {
 
 Handle open(const std::string& path) { return open_retried(path, O_RDONLY | O_NONBLOCK); }
 
-Handle create(const std::string& path) { return open_retried(path, O_RDWR | O_CREAT | O_EXCL); }
+Handle create(const std::string& path) {
+  while (true) {
+    const Handle file = open_retried(path, O_RDWR | O_CREAT | O_EXCL);
+    if (file == kNone) return file;
+    lock(file);
+    if (!is_removed(file)) return file;
+    close(file);
+  }
+}
 
 Handle create_temporary(const std::string& folder) {
   if (const Handle file = create_unnamed(folder); file != kNone) return file;
@@ -102,6 +126,15 @@ std::ptrdiff_t write(Handle file, std::uint64_t offset, std::span<const std::byt
   }
 }
 
+bool sync(Handle file) { return ::fsync(descriptor_of(file)) == 0; }
+
+void sync_folder(const std::string& folder) {
+  const Handle file = open_retried(folder, O_RDONLY | O_DIRECTORY);
+  if (file == kNone) return;
+  ::fsync(descriptor_of(file));
+  close(file);
+}
+
 bool copy_permissions(const std::string& from, Handle to) {
   struct stat status {};
   return ::stat(from.c_str(), &status) == 0 &&
@@ -115,6 +148,19 @@ bool rename(const std::string& from, const std::string& to) {
 bool remove(const std::string& path) { return ::unlink(path.c_str()) == 0; }
 
 std::string last_error() { return std::generic_category().message(errno); }
+
+std::string boot_name() {
+  std::ifstream file("/proc/sys/kernel/random/boot_id");
+  std::string name;
+  std::getline(file, name);
+  return name;
+}
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  if (::gethostname(name.data(), name.size() - 1) != 0) return "";
+  return name.data();
+}
 
 }  // namespace prefilter::system_file
 

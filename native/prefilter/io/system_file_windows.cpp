@@ -203,6 +203,10 @@ std::ptrdiff_t write(Handle file, std::uint64_t offset, std::span<const std::byt
   return -1;
 }
 
+bool sync(Handle file) { return FlushFileBuffers(handle_of(file)) != 0; }
+
+void sync_folder(const std::string&) {}
+
 // Those of a new file follow from its folder.
 bool copy_permissions(const std::string&, Handle) { return true; }
 
@@ -241,6 +245,16 @@ std::string last_error() {
       nullptr, error, 0, text.data(), static_cast<DWORD>(text.size()), nullptr));
   while (!text.empty() && (text.back() == L' ' || text.back() == L'.')) text.pop_back();
   return text.empty() ? "error " + std::to_string(error) : to_text(text);
+}
+
+std::string boot_name() { return ""; }
+
+std::string host_name() {
+  std::wstring name(MAX_COMPUTERNAME_LENGTH + 1, L'\0');
+  DWORD length = static_cast<DWORD>(name.size());
+  if (GetComputerNameW(name.data(), &length) == 0) return "";
+  name.resize(length);
+  return to_text(name);
 }
 
 }  // namespace prefilter::system_file

@@ -15,6 +15,10 @@ VERSION: Final[str]
 
 def available_memory() -> float: ...
 
+MACHINE_DIGITS: Final[int]
+
+def random_name() -> str: ...
+
 class Cancelled(Exception): ...  # noqa: N818
 
 class Surface:
