@@ -15,7 +15,6 @@ floats too, as such an image is not converted on load.
 """
 
 import os
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -24,6 +23,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 from numpy.typing import NDArray
+from prefilter._border.claims import temporary_folder
 from prefilter._work.picture import (
     LINEAR_REC709_NAMES,
     Encoding,
@@ -178,11 +178,10 @@ def _has_integer_file(image: bpy.types.Image) -> bool:
         return False
     if image.packed_file is None:
         return openimageio.holds_integers(bpy.path.abspath(image.filepath, library=image.library))
-    with tempfile.TemporaryDirectory() as folder:
-        copy = os.path.join(folder, "picture")
-        with open(copy, "wb") as file:
-            file.write(image.packed_file.data)
-        return openimageio.holds_integers(copy)
+    with temporary_folder() as folder:
+        copy = folder / "picture"
+        copy.write_bytes(image.packed_file.data)
+        return openimageio.holds_integers(str(copy))
 
 
 def check_untiled(image: bpy.types.Image) -> None:
@@ -268,11 +267,10 @@ def _tile_file(image: bpy.types.Image, number: int, who: str) -> Iterator[str]:
     path = str(tile_path(image, number))
     packed = next((file for file in image.packed_files if file.tile_number == number), None)
     if packed is not None:
-        with tempfile.TemporaryDirectory() as folder:
-            copy = os.path.join(folder, os.path.basename(path))
-            with open(copy, "wb") as file:
-                file.write(packed.packed_file.data)
-            yield copy
+        with temporary_folder() as folder:
+            copy = folder / os.path.basename(path)
+            copy.write_bytes(packed.packed_file.data)
+            yield str(copy)
         return
     if not os.path.isfile(path):
         raise ValueError(f"{who}: there is no file '{path}'; save the image first")

@@ -11,6 +11,7 @@ from types import ModuleType
 from prefilter._work.openimageio import (
     TILE_SIZE,
     Check,
+    check_whole,
     color_convert,
     find_by,
     holds_integers,
@@ -24,6 +25,7 @@ from . import own_modules
 __all__ = (
     "TILE_SIZE",
     "Check",
+    "check_whole",
     "color_convert",
     "holds_integers",
     "module",

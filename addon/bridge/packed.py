@@ -2,7 +2,6 @@
 
 """Images that are packed into the .blend file, as files beside it."""
 
-from functools import partial
 from pathlib import Path
 
 import bpy
@@ -69,8 +68,7 @@ def unpack(image: bpy.types.Image) -> list[Path]:
     try:
         for tile, path in new.items():
             staging.check_writable(path)
-            write = partial(Path.write_bytes, data=tiles[tile])
-            staged.append(staging.stage_with(path, write))
+            staged.append(staging.stage_data(path, tiles[tile]))
         staging.commit_all(staged)
     finally:
         for file in staged:

@@ -76,7 +76,7 @@ class PREFILTER_OT_add_preset(_OfKind, AddPresetBase, bpy.types.Operator):
     def add(self, context: bpy.types.Context, filepath: str) -> None:
         """Writes a preset; Blender 4.x cannot where Python is 3.13."""
         text = self.kind.written(getattr(context.scene, self.kind.group))
-        Path(filepath).write_text(text, encoding="utf-8")
+        _write(Path(filepath), text.encode())
 
 
 class PREFILTER_OT_reset_settings(_OfKind, bpy.types.Operator):
@@ -164,10 +164,10 @@ class PREFILTER_OT_import_preset(_PresetFile, bpy.types.Operator):
 
 
 def _write(target: Path, data: bytes) -> None:
-    """Writes a file beside its target, and renames it."""
-    from prefilter._border.staging import stage_bytes
+    """Replaces a file, or makes a new one."""
+    from prefilter._border.staging import write_output
 
-    stage_bytes(target, lambda file: file.write(data)).commit()
+    write_output(target, lambda file: file.write(data))
 
 
 def panel(kind: Kind) -> type[bpy.types.Panel]:

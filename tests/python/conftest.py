@@ -4,6 +4,8 @@
 
 import os
 import sys
+import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -96,3 +98,12 @@ def pytest_collection_modifyitems(items):
     for item in items:
         if item.path.name in SAME_IN_ANY_PYTHON:
             item.add_marker(pytest.mark.once)
+
+
+@pytest.fixture
+def quick_path() -> Iterator[Path]:
+    """A folder for many small files that are waited for: in memory, where the system has that."""
+    place = "/dev/shm"
+    is_there = os.access(place, os.W_OK)
+    with tempfile.TemporaryDirectory(dir=place if is_there else None) as folder:
+        yield Path(folder)

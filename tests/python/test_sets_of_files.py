@@ -34,15 +34,15 @@ for number in range(int(sys.argv[1]), 1 << 30):
     print(number, flush=True)
 """
 
-# Dies by the signal that nobody can catch, just before or after one of the calls that change files.
+# Dies by the signal that nobody can catch, just before one of the calls that change files.
 DYING = """
 import os
 import signal
 import sys
 from pathlib import Path
-from prefilter._border import replacing, staging
+from prefilter._border import claims, staging
 
-count, calls = int(sys.argv[1]), 0
+count, stage, calls = int(sys.argv[1]), sys.argv[2], 0
 
 def counted(original):
     def call(*arguments, **keywords):
@@ -53,17 +53,23 @@ def counted(original):
         return original(*arguments, **keywords)
     return call
 
-folders = [Path(one) for one in sys.argv[2:]]
-files = [
-    staging.stage_with(folders[i % len(folders)] / f"{i}.txt", lambda path: path.write_text("new"))
-    for i in range(6)
-]
-for name in ("replace", "link"):
+for name in ("replace", "link", "unlink", "fsync", "mkdir", "rmdir"):
     setattr(os, name, counted(getattr(os, name)))
-Path.unlink = counted(Path.unlink)
-replacing._end = counted(replacing._end)
-replacing._begun = counted(replacing._begun)
-staging.commit_all(files)
+for name in ("say", "unsay", "end"):
+    setattr(claims.Claim, name, counted(getattr(claims.Claim, name)))
+folders = [Path(one) for one in sys.argv[3:]]
+targets = [folders[i % len(folders)] / f"{i}.txt" for i in range(6)]
+if stage == "folder":
+    def write(path):
+        for target in targets:
+            path.with_name(target.name).write_text("new")
+    staging.stage_folder(targets[0], write).commit()
+elif stage == "data":
+    staging.commit_all([staging.stage_data(target, b"new") for target in targets])
+else:
+    staging.commit_all(
+        [staging.stage_with(target, lambda path: path.write_text("new")) for target in targets]
+    )
 """
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="the signal is that of other systems")
@@ -76,56 +82,71 @@ def texts(*folders):
     return sorted((path.name, path.read_text()) for path in plain), len(found) - len(plain)
 
 
-def make_folders(tmp_path, count):
-    folders = [tmp_path / f"folder {number}" for number in range(count)]
+def make_folders(quick_path, count):
+    folders = [quick_path / f"folder {number}" for number in range(count)]
     for folder in folders:
         folder.mkdir()
     return folders
+
+
+def die(number, stage, *folders):
+    """Writes a set, and is killed at a call; tells whether it came to that."""
+    child = os.fork()
+    if not child:
+        sys.argv[1:] = [str(number), stage, *map(str, folders)]
+        try:
+            exec(DYING, {})
+        finally:
+            os._exit(0 if sys.exc_info()[0] is None else 1)
+    _, status = os.waitpid(child, 0)
+    assert status in (0, signal.SIGKILL)
+    return status != 0
+
+
+def write_next(folder):
+    staging.stage_data(folder / "next.txt", b"next").commit()
+    (folder / "next.txt").unlink()
 
 
 def environment():
     return {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
 
 
-@pytest.mark.parametrize("count", [1, 2])
-@pytest.mark.parametrize("old", [(), range(COUNT), range(1, COUNT, 2)])
-def test_a_kill_at_any_call_leaves_the_old_set_or_the_new_one(tmp_path, count, old):
+@pytest.mark.parametrize(
+    ("stage", "count"), [("data", 1), ("data", 2), ("path", 1), ("path", 2), ("folder", 1)]
+)
+@pytest.mark.parametrize("old", [(), range(1, COUNT, 2), range(COUNT)])
+def test_a_kill_at_any_call_leaves_the_old_set_or_the_new_one(quick_path, stage, count, old):
     outcomes = []
-    for number in range(1, 100):
-        place = tmp_path / str(number)
+    for number in range(1, 200):
+        place = quick_path / str(number)
         place.mkdir()
         folders = make_folders(place, count)
         for i in old:
             (folders[i % count] / f"{i}.txt").write_text("old")
         before, _ = texts(*folders)
-        run = subprocess.run(
-            [sys.executable, "-c", DYING, str(number), *map(str, folders)],
-            env=environment(),
-            timeout=60,
-        )
-        # The next one that writes there, into any of the folders.
-        folder = folders[number % count]
-        staging.stage_with(folder / "next.txt", lambda path: path.write_text("next")).commit()
-        (folder / "next.txt").unlink()
-        after, _ = texts(*folders)
-        new = [(f"{i}.txt", "new") for i in range(COUNT)]
-        assert after in (before, new), number
+        killed = die(number, stage, *folders)
+        # The next one that writes there, into any of the folders first.
+        for folder in (folders[number % count], *folders):
+            write_next(folder)
+            after, _ = texts(*folders)
+            new = [(f"{i}.txt", "new") for i in range(COUNT)]
+            assert after in (before, new), number
+        assert not list(place.rglob(".prefilter-*"))
         outcomes.append(after == new)
-        assert not list(place.rglob("*.set")) or count > 1
-        if run.returncode == 0:
+        if not killed:
             break
-        assert run.returncode == -signal.SIGKILL
     # Kills came before the first renaming, after the last, and in between.
-    assert run.returncode == 0
+    assert not killed
     assert len(outcomes) > COUNT + len(old)
     assert outcomes == sorted(outcomes)
     assert not outcomes[0]
     assert outcomes[-2]
 
 
-def test_kills_at_random_moments_leave_one_round(tmp_path):
+def test_kills_at_random_moments_leave_one_round(quick_path):
     chance = random.Random(5)
-    (folder,) = make_folders(tmp_path, 1)
+    (folder,) = make_folders(quick_path, 1)
     last = 0
     for _ in range(12):
         writer = subprocess.Popen(
@@ -149,55 +170,72 @@ def test_kills_at_random_moments_leave_one_round(tmp_path):
             assert last in (int(told[-1]), int(told[-1]) + 1)
 
 
-def test_one_who_lives_is_left_alone(tmp_path):
-    target = tmp_path / "a.txt"
+def test_one_who_lives_is_left_alone(quick_path):
+    target = quick_path / "a.txt"
     target.write_text("old")
-    kept = [(target, replacing.second_name(target)), (tmp_path / "b.txt", None)]
-    with replacing.journal(kept, []):
-        target.write_text("new")
+    new = quick_path / "new"
+    new.write_text("new")
+    with replacing.undone_on_failure([(new, target), (new, quick_path / "b.txt")]):
+        new.rename(target)
         run = subprocess.run(
             [
                 *(sys.executable, "-c"),
                 "import sys; from pathlib import Path; from prefilter._border import replacing;"
                 "replacing.recover(Path(sys.argv[1]))",
-                str(tmp_path),
+                str(quick_path),
             ],
             env=environment(),
             timeout=60,
         )
         assert run.returncode == 0
         assert target.read_text() == "new"
-        assert len(list(tmp_path.glob("*.set"))) == 1
-    assert list(tmp_path.glob("*.set")) == []
+        assert len(list(quick_path.glob("*.set"))) == 1
+    assert list(quick_path.glob("*.set")) == []
 
 
-@pytest.mark.parametrize("text", ["", "{", '{"kept": [["a.txt", ".prefilter-0.txt"]]}'])
-def test_journals_that_say_nothing_are_removed(tmp_path, text):
-    target = tmp_path / "a.txt"
+@pytest.mark.parametrize("text", ["", "{", '{"kept": [["a.txt", ".prefilter-1-0.txt", [4, 5]]]}'])
+def test_journals_that_say_nothing_are_removed(quick_path, text):
+    target = quick_path / "a.txt"
     target.write_text("text")
-    (tmp_path / ".prefilter-1.set").write_text(text)
-    (tmp_path / "own.set").write_text("mine")
-    replacing.recover(tmp_path)
-    assert texts(tmp_path) == ([("a.txt", "text"), ("own.set", "mine")], 0)
+    (quick_path / ".prefilter-1.set").write_text(text)
+    (quick_path / "own.set").write_text("mine")
+    replacing.recover(quick_path)
+    assert texts(quick_path) == ([("a.txt", "text"), ("own.set", "mine")], 0)
 
 
-def test_a_folder_that_was_moved(tmp_path):
-    (old,) = make_folders(tmp_path, 1)
-    (old / "a.txt").write_text("new")
-    (old / ".prefilter-0.txt").write_text("old")
-    (old / ".prefilter-2.txt").write_text("unfinished")
-    text = {"kept": [["a.txt", ".prefilter-0.txt"]], "written": [".prefilter-2.txt"]}
-    (old / ".prefilter-1.set").write_text(json.dumps(text))
-    new = old.rename(tmp_path / "elsewhere")
+def left_by_a_dead_process(folder):
+    """A set of which one file was replaced, and the other was not there before."""
+    entries = []
+    for number, name in enumerate("ab"):
+        (folder / f"{name}.txt").write_text("new")
+        found = (folder / f"{name}.txt").stat()
+        kept = None if number else ".prefilter-1-0.txt"
+        entries.append([f"{name}.txt", kept, [found.st_size, found.st_mtime_ns]])
+    (folder / ".prefilter-1-0.txt").write_text("old")
+    (folder / ".prefilter-1.set").write_text(json.dumps({"kept": entries}))
+
+
+def test_a_folder_that_was_moved(quick_path):
+    (old,) = make_folders(quick_path, 1)
+    left_by_a_dead_process(old)
+    new = old.rename(quick_path / "elsewhere")
     replacing.recover(new)
     assert texts(new) == ([("a.txt", "old")], 0)
 
 
-def test_an_empty_set(tmp_path):
+def test_what_others_have_written_since_stays(quick_path):
+    left_by_a_dead_process(quick_path)
+    for name in ("a.txt", "b.txt"):
+        (quick_path / name).write_text("newer")
+    replacing.recover(quick_path)
+    assert texts(quick_path) == ([("a.txt", "newer"), ("b.txt", "newer")], 0)
+
+
+def test_an_empty_set(quick_path):
     staging.commit_all([])
-    assert texts(tmp_path) == ([], 0)
+    assert texts(quick_path) == ([], 0)
 
 
-def test_folders_that_cannot_be_listed(tmp_path):
-    replacing.recover(tmp_path / "missing")
+def test_folders_that_cannot_be_listed(quick_path):
+    replacing.recover(quick_path / "missing")
     replacing.recover(Path(__file__))

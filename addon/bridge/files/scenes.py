@@ -136,15 +136,15 @@ def save(target: Path, names: Sequence[str]) -> None:
     staged: staging.StagedFile | staging.StagedFolder
     try:
         if extension == ".blend":
-            staged = staging.stage_with(
-                target,
-                lambda path: bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True),
-            )
+            staged = staging.stage_with(target, _write_blend)
         else:
             staged = staging.stage_folder(target, _export)
     except (RuntimeError, OSError) as error:
         raise OSError(f"file '{target}': cannot write it: {_reason(error)}") from error
-    staged.commit()
+    try:
+        staged.commit()
+    finally:
+        staged.discard()
 
 
 def _export(path: Path) -> None:
@@ -166,11 +166,33 @@ def _reason(error: RuntimeError | OSError) -> str:
 
 
 def save_open(path: str) -> None:
-    """Saves the .blend file that is open, as Blender does; raises OSError where that fails."""
+    """Saves the .blend file that is open; its earlier versions are kept as Blender keeps them.
+
+    Raises:
+        OSError: It cannot be written.
+    """
+    target = Path(os.path.realpath(path))
     try:
-        bpy.ops.wm.save_as_mainfile(filepath=path)
-    except RuntimeError as error:
-        raise OSError(f"--save: cannot write '{path}': {str(error).strip()}") from error
+        staged = staging.stage_with(target, _write_blend)
+    except (RuntimeError, OSError) as error:
+        raise OSError(f"--save: cannot write '{path}': {_reason(error)}") from error
+    try:
+        _keep_versions(target, bpy.context.preferences.filepaths.save_version)
+        staged.commit()
+    finally:
+        staged.discard()
+
+
+def _write_blend(path: Path) -> None:
+    bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True)
+
+
+def _keep_versions(target: Path, count: int) -> None:
+    """Gives earlier files the endings .blend1, .blend2 and so on; none is missing at any time."""
+    names = [Path(f"{target}{number or ''}") for number in range(count + 1)]
+    for number in reversed(range(count)):
+        if names[number].exists():
+            staging.keep(names[number], names[number + 1])
 
 
 def _load_one(path: str, *, is_first: bool) -> None:

@@ -5,14 +5,14 @@
 import os
 from pathlib import Path
 
-from prefilter._border.replacing import beside
 from prefilter._border.staging import (
     StagedFile,
     StagedFolder,
     check_target,
     check_writable,
     commit_all,
-    stage_bytes,
+    keep,
+    stage_data,
     stage_folder,
     stage_with,
 )
@@ -20,13 +20,13 @@ from prefilter._border.staging import (
 __all__ = (
     "StagedFile",
     "StagedFolder",
-    "beside",
     "check_output",
     "check_plain_target",
     "check_target",
     "check_writable",
     "commit_all",
-    "stage_bytes",
+    "keep",
+    "stage_data",
     "stage_folder",
     "stage_with",
 )

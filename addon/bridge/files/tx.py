@@ -247,9 +247,8 @@ def stage(texture: Texture, levels: Sequence[FloatArray], check: Check) -> stagi
     time = os.stat(texture.path).st_mtime_ns
     # OpenImageIO chooses the format by the extension.
     extension = ".exr" if texture.is_float else ".tif"
-    temporary = staging.beside(texture.path, extension)
-    staged = staging.StagedFile(temporary, texture.path)
-    try:
+
+    def write(temporary: Path) -> None:
         full = reader.read_image(0, 0, 0, spec.nchannels, spec.format)
         writer = oiio.ImageOutput.create(str(temporary))
         mode = "AppendMIPLevel" if writer.supports("mipmap") else "AppendSubimage"
@@ -264,13 +263,13 @@ def stage(texture: Texture, levels: Sequence[FloatArray], check: Check) -> stagi
             raise OSError(f"cannot write '{temporary}': {writer.geterror()}")
         # An OpenEXR file is finished when its writer goes.
         del writer
+        openimageio.check_whole(temporary)
         os.utime(temporary, ns=(time, time))
-    except BaseException:
-        staged.discard()
-        raise
+
+    try:
+        return staging.stage_with(texture.path, write, extension)
     finally:
         reader.close()
-    return staged
 
 
 def _maker() -> Any:

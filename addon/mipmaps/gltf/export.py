@@ -2,7 +2,6 @@
 
 """The textures of a glTF export: read as the file has them, fitted, and put into their places."""
 
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -11,6 +10,7 @@ from typing import Any
 
 import bpy
 import prefilter
+from prefilter._border.claims import temporary_folder
 from prefilter._work.mipmaps import contents, lookups
 from prefilter._work.mipmaps.outputs import Outputs
 
@@ -141,8 +141,8 @@ class Export:
         roles = {use.role for use, _ in picture.shown}
         content: str = next(role for role in ("normal", "color", "data") if role in roles)
         thresholds = [use.threshold for use, _ in picture.shown if use.threshold is not None]
-        with tempfile.TemporaryDirectory(prefix="prefilter-") as folder:
-            texels = _read(picture, Path(folder), is_data=content != "color")
+        with temporary_folder() as folder:
+            texels = _read(picture, folder, is_data=content != "color")
             if thresholds and content == "color" and texels.shape[2] == 4:
                 content = "cutout"
             texels = contents.as_content(texels, content)
@@ -152,7 +152,7 @@ class Export:
                 surfaces = meshes.ImageSurfaces()
                 if settings.filter not in TEXTURE_SPACE_FILTERS:
                     settings = replace(settings, filter="ls-bilinear")
-            target = Path(folder) / _FILE
+            target = folder / _FILE
             bake = Bake(source.on_surfaces(texels, surfaces, settings, content), Outputs(target))
             bake.compute(lambda _: True)
             try:

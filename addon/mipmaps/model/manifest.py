@@ -5,7 +5,6 @@
 import json
 import os
 from collections.abc import Iterable, Iterator, Sequence
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -49,8 +48,7 @@ class Manifest:
         self._images = list(_entries(rows, set(written), target.parent))
         text = json.dumps({"images": self._images}, indent=2, ensure_ascii=False) + "\n"
         self._target = target
-        write = partial(Path.write_text, data=text, encoding="utf-8")
-        self.staged_files: Sequence[StagedFile] = [staging.stage_with(target, write)]
+        self.staged_files: Sequence[StagedFile] = [staging.stage_data(target, text.encode())]
 
     def stage_images(self) -> None:
         """Makes none."""

@@ -141,14 +141,14 @@ def test_no_file_is_there_before_all_are(addon, model, tmp_path, monkeypatch):
 
 
 def test_all_files_or_none(addon, model, tmp_path, monkeypatch):
-    commit = addon("bridge.files.staging").StagedFile.commit
+    put = addon("bridge.files.staging").StagedFile.put
 
     def fails(self):
         if self.target.name == "leaf.ktx2":
             raise OSError("there is no more room")
-        commit(self)
+        put(self)
 
-    monkeypatch.setattr(addon("bridge.files.staging").StagedFile, "commit", fails)
+    monkeypatch.setattr(addon("bridge.files.staging").StagedFile, "put", fails)
     result = run("bake", model, "--all", "--output", tmp_path / "out")
     assert result.returncode == 1
     assert "error: no image was baked" in result.stderr

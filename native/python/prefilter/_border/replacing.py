@@ -4,33 +4,22 @@
 
 Several files cannot be renamed at once. So while a set is put into place, a journal beside it says
 under which names the earlier files are kept. Who is killed in between leaves it there, and whoever
-writes into the folder next puts the earlier files back.
+writes into the folder next puts the earlier files back. Each step is on the disk before the next
+one counts on it, so that holds where the power fails, too.
 """
 
 import json
 import os
 import shutil
-import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
 
-if sys.platform == "win32":
-    import msvcrt
-else:
-    import fcntl
+from .claims import JOURNAL, Claim, sweep, sweep_claim
 
 Kept = tuple[Path, Path | None]
 """A target, and the second name of the file that was there; None where there was none."""
-
-_JOURNAL = ".set"
-
-
-def beside(target: Path, suffix: str | None = None) -> Path:
-    """Returns a name in the folder of a target that nobody else thinks of, with its suffix."""
-    ending = target.suffix if suffix is None else suffix
-    return target.with_name(f".prefilter-{os.urandom(4).hex()}{ending}")
 
 
 def rename(new: Path, target: Path) -> None:
@@ -44,19 +33,123 @@ def rename(new: Path, target: Path) -> None:
         raise
 
 
-def second_name(target: Path) -> Path | None:
+def sync(path: Path) -> None:
+    """Has the disk hold what a file, or a folder, has; some systems cannot do that for folders.
+
+    Raises:
+        OSError: There is no room for what was written.
+    """
+    is_folder = path.is_dir()
+    if is_folder and os.name == "nt":
+        return
+    descriptor = os.open(path, os.O_RDWR if os.name == "nt" else os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    except OSError:
+        if not is_folder:
+            raise
+    finally:
+        os.close(descriptor)
+
+
+@contextmanager
+def undone_on_failure(pairs: Sequence[tuple[Path, Path]]) -> Iterator[None]:
+    """Replaces files, all of them or none: this undoes what was done in a context that fails.
+
+    Args:
+        pairs: The new files under their temporary names, and their targets.
+
+    Raises:
+        OSError: The journal cannot be written; or the context has failed, and what the message
+            names cannot be undone.
+    """
+    folders = list(dict.fromkeys(target.parent for _, target in pairs))
+    with _claimed(folders) as claims:
+        kept: list[Kept] = []
+        try:
+            for _, target in pairs:
+                kept.append((target, _second_name(target, claims[target.parent])))
+            _begin(claims, pairs, kept)
+            yield
+            for folder in folders:
+                sync(folder)
+            claims[folders[0]].unsay()  # Now the set is there.
+        except BaseException as error:
+            lost = [text for target, earlier in kept if (text := _put_back(target, earlier))]
+            if lost:
+                for claim in claims.values():
+                    claim.leave()
+                claims.clear()
+                raise OSError("; ".join([str(error), *lost])) from error
+            raise
+        for _, earlier in kept:
+            if earlier is not None:
+                earlier.unlink(missing_ok=True)
+
+
+def link_or_copy(path: Path, other: Path) -> None:
+    """Gives a file a second name, or where that cannot be has the disk hold it twice."""
+    try:
+        os.link(path, other)
+    except OSError:
+        try:
+            shutil.copy2(path, other)
+            sync(other)
+        except BaseException:
+            other.unlink(missing_ok=True)
+            raise
+
+
+def recover(folder: Path) -> None:
+    """Undoes what runs have left half done that were killed, and removes what they have left.
+
+    Raises:
+        OSError: Files cannot be put back.
+    """
+    sweep(folder, _undo)
+
+
+@contextmanager
+def _claimed(folders: Sequence[Path]) -> Iterator[dict[Path, Claim]]:
+    """Journals, one a folder, that end with the context, unless they are taken out before."""
+    claims: dict[Path, Claim] = {}
+    try:
+        for folder in folders:
+            claims[folder] = Claim(folder, JOURNAL)
+        yield claims
+    finally:
+        for claim in reversed(claims.values()):  # Others refer to the first.
+            claim.end()
+
+
+def _begin(
+    claims: dict[Path, Claim], pairs: Sequence[tuple[Path, Path]], kept: Sequence[Kept]
+) -> None:
+    """Has the disk hold the journals, and the names of all that they speak of."""
+    first, *others = claims.values()
+    place = first.path.parent
+    entries = [
+        [_said(target, place), _said(earlier, place), _identity(new)]
+        for (new, _), (target, earlier) in zip(pairs, kept, strict=True)
+    ]
+    first.say(json.dumps({"kept": entries}).encode())
+    # Whoever writes into another folder of the set finds the way from there.
+    for claim in others:
+        claim.say(json.dumps({"see": str(first.path)}).encode())
+    for folder in claims:
+        sync(folder)
+
+
+def _second_name(target: Path, claim: Claim) -> Path | None:
     """Gives a file a second name that outlasts its replacement; None where there is no file."""
     if not target.exists():
         return None
-    other = beside(target)
-    try:
-        os.link(target, other)
-    except OSError:  # Some file systems have no links.
-        shutil.copy2(target, other)
+    other = claim.beside(target.suffix)
+    link_or_copy(target, other)
     return other
 
 
-def put_back(target: Path, earlier: Path | None) -> str:
+def _put_back(target: Path, earlier: Path | None) -> str:
     """Undoes a replacement; returns what is to be told where that fails, else nothing."""
     try:
         if earlier is None:
@@ -71,99 +164,39 @@ def put_back(target: Path, earlier: Path | None) -> str:
     return ""
 
 
-@contextmanager
-def journal(kept: Sequence[Kept], written: Iterable[Path]) -> Iterator[None]:
-    """Has the next run undo replacements if this one is killed before the context ends.
-
-    Args:
-        kept: What is about to be replaced.
-        written: The new files under their temporary names, which then are removed.
-    """
-    folders = list(dict.fromkeys(target.parent for target, _ in kept))
-    first = folders[0]
-    text = {
-        "kept": [[_said(target, first), _said(earlier, first)] for target, earlier in kept],
-        "written": [_said(path, first) for path in written],
-    }
-    begun = [_begun(first, text)]
+def _undo(path: Path, file: BinaryIO) -> bool:
+    """Does what a journal says; one that is damaged was not in use yet."""
+    if path.suffix != JOURNAL:
+        return True
     try:
-        # Whoever writes into another folder of the set finds the way from there.
-        begun += [_begun(folder, {"see": str(begun[0][0])}) for folder in folders[1:]]
-        yield
-    finally:
-        for path, file in begun:  # Once the first has ended, the set is there.
-            _end(path, file)
+        text = json.loads(file.read() or b"{}")
+    except ValueError:
+        text = {}
+    failed = [
+        told
+        for target, earlier, identity in text.get("kept", [])
+        if (told := _put_back_again(path.parent, target, earlier, identity))
+    ]
+    if failed:
+        raise OSError("; ".join(failed))
+    return "see" not in text or sweep_claim(Path(text["see"]), _undo)
 
 
-def recover(folder: Path) -> None:
-    """Undoes what runs have left half done that were killed while they replaced files."""
-    try:
-        found = [Path(one) for one in os.scandir(folder) if one.name.endswith(_JOURNAL)]
-    except OSError:
-        return
-    for path in found:
-        if path.name.startswith(".prefilter-"):
-            _undo(path)
-
-
-def _begun(folder: Path, text: dict[str, object]) -> tuple[Path, BinaryIO]:
-    """Writes a journal, which stays locked, so that others know that its writer lives."""
-    while True:
-        path = beside(folder / "set", _JOURNAL)
-        file = path.open("xb")
-        with suppress(OSError):  # Some file systems have no locks.
-            _lock(file, waits=True)
-        file.write(json.dumps(text).encode())
-        file.flush()
-        if path.exists():  # Else somebody has removed it as one that nobody has locked.
-            return path, file
-        file.close()
-
-
-def _end(path: Path, file: BinaryIO) -> None:
-    """Ends a journal: an empty one undoes nothing."""
-    file.truncate(0)
-    file.close()
-    path.unlink(missing_ok=True)
-
-
-def _undo(path: Path) -> None:
-    """Does what a journal says, unless its writer lives; one that is damaged was not in use yet."""
-    try:
-        file = path.open("r+b")
-    except OSError:
-        return
-    with file:
-        try:
-            _lock(file, waits=False)
-            text = json.loads(file.read() or b"{}")
-        except OSError:
-            return
-        except ValueError:
-            text = {}
-        failed = [
-            told
-            for target, earlier in text.get("kept", [])
-            if (told := _put_back_again(path.parent, target, earlier))
-        ]
-        for name in text.get("written", []):
-            (path.parent / name).unlink(missing_ok=True)
-        if "see" in text:
-            _undo(Path(text["see"]))
-        if failed:
-            raise OSError("; ".join(failed))
-        file.truncate(0)
+def _put_back_again(folder: Path, target: str, earlier: str | None, identity: Sequence[int]) -> str:
+    """Undoes one replacement, unless that was done before, or somebody has written there since."""
     with suppress(OSError):
-        path.unlink()
+        if _identity(folder / target) == list(identity):
+            if earlier is None:
+                return _put_back(folder / target, None)
+            if (folder / earlier).exists():
+                return _put_back(folder / target, folder / earlier)
+    return ""
 
 
-def _put_back_again(folder: Path, target: str, earlier: str | None) -> str:
-    """Undoes one replacement; one that was undone before has no second name left."""
-    if earlier is None:
-        return put_back(folder / target, None)
-    if not (folder / earlier).exists():
-        return ""
-    return put_back(folder / target, folder / earlier)
+def _identity(path: Path) -> list[int]:
+    """Returns what tells a file from others that it gets the name of, also after a move."""
+    found = path.stat()
+    return [found.st_size, found.st_mtime_ns]
 
 
 def _said(path: Path | None, folder: Path) -> str | None:
@@ -171,11 +204,3 @@ def _said(path: Path | None, folder: Path) -> str | None:
     if path is None:
         return None
     return path.name if path.parent == folder else str(path.absolute())
-
-
-def _lock(file: BinaryIO, *, waits: bool) -> None:
-    """Locks a file until it is closed; raises OSError where another process has done so."""
-    if sys.platform == "win32":
-        msvcrt.locking(file.fileno(), msvcrt.LK_LOCK if waits else msvcrt.LK_NBLCK, 1)
-    else:
-        fcntl.flock(file, fcntl.LOCK_EX | (0 if waits else fcntl.LOCK_NB))

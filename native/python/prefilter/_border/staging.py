@@ -8,68 +8,143 @@ The package and the add-on write all files by this, but for those that the libra
 import os
 import shutil
 import stat
+import threading
 from collections.abc import Callable, Sequence
-from contextlib import ExitStack
-from dataclasses import dataclass
+from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO, cast
 
+from .._native import random_name
+from . import claims, stopping
 from .input import as_path
-from .replacing import Kept, beside, journal, put_back, recover, rename, second_name
+from .replacing import link_or_copy, recover, rename, sync, undone_on_failure
 
 Output = str | os.PathLike[str] | BinaryIO
 
 _WRITE_BITS = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
 _KINDS = {stat.S_IFDIR: "folder", stat.S_IFIFO: "pipe", stat.S_IFSOCK: "socket"}
+_NEW_MODE = 0o666  # What the user's umask takes away aside.
+_nameless_left = threading.BoundedSemaphore(64)
+"""Files without a name have to stay open, and a process may have a thousand open files or so."""
 
 
-@dataclass(frozen=True)
 class StagedFile:
-    """A finished file under a temporary name, in the folder of its target."""
+    """A finished file in the folder of its target, under a temporary name or without one."""
 
-    temporary: Path
-    target: Path
+    def __init__(
+        self, target: Path, named: Path | None = None, nameless: BinaryIO | None = None
+    ) -> None:
+        """Takes a file that is on the disk.
+
+        Args:
+            target: What it is to replace.
+            named: Its temporary name, of the claim on the target's folder; that ends with it.
+            nameless: Instead, the open file that has none.
+        """
+        self.target = target
+        self._name = named
+        self._is_claimed = named is not None
+        self._nameless = nameless
 
     def commit(self) -> None:
-        """Renames the file into place; it gets the mode of a file that it replaces."""
+        """Puts the file into place; it gets the mode of a file that it replaces."""
+        commit_all([self])
+
+    def name(self) -> Path:
+        """Returns the temporary name, which is given now if there was none."""
+        if self._name is None:
+            assert self._nameless is not None
+            path = self.target.with_name(random_name() + self.target.suffix)
+            # The only way there leads through a symbolic link, which is followed by linkat alone.
+            anywhere = os.open(self.target.parent, os.O_RDONLY)
+            try:
+                os.link(_own_link(self._nameless), path, src_dir_fd=anywhere)
+            finally:
+                os.close(anywhere)
+            self._name = path
+        return self._name
+
+    def put(self) -> None:
+        """Renames the file into place."""
         check_regular(self.target)
+        name = self.name()
         if self.target.exists():
-            shutil.copymode(self.target, self.temporary)
-        rename(self.temporary, self.target)
+            shutil.copymode(self.target, name)
+        rename(name, self.target)
 
     def discard(self) -> None:
         """Removes the temporary file, if it is still there."""
-        self.temporary.unlink(missing_ok=True)
+        if self._name is not None:
+            self._name.unlink(missing_ok=True)
+        if self._nameless is not None:
+            with suppress(OSError):  # What it still held back is not wanted.
+                self._nameless.close()
+            self._nameless = None
+            _nameless_left.release()
+        if self._is_claimed:
+            self._is_claimed = False
+            claims.give_back(self.target.parent)
 
 
-@dataclass(frozen=True)
 class StagedFolder:
     """A finished file with those that go with it, in a temporary folder beside its target."""
 
-    temporary: Path
-    target: Path
+    def __init__(self, target: Path, folder: Path) -> None:
+        """Takes a folder whose name is of the claim on the target's folder."""
+        self.target = target
+        self._folder = folder
+        self._is_claimed = True
+
+    def make(self, write: Callable[[Path], object]) -> None:
+        """Has a function write the files."""
+        self._folder.mkdir()
+        write(self._folder / self.target.name)
+        if not (self._folder / self.target.name).exists():
+            raise OSError(f"'{self.target}' was not written")
+        for path in self._folder.iterdir():
+            sync(path)
 
     def commit(self) -> None:
         """Moves the files into place, the target last, and removes the folder."""
-        written = sorted(self.temporary.iterdir(), key=lambda path: path.name == self.target.name)
-        commit_all([StagedFile(path, self.target.with_name(path.name)) for path in written])
+        written = sorted(self._folder.iterdir(), key=lambda path: path.name == self.target.name)
+        commit_all([_InFolder(self.target.with_name(path.name), path) for path in written])
         self.discard()
 
     def discard(self) -> None:
         """Removes the temporary folder."""
-        shutil.rmtree(self.temporary, ignore_errors=True)
+        shutil.rmtree(self._folder, ignore_errors=True)
+        if self._is_claimed:
+            self._is_claimed = False
+            claims.give_back(self.target.parent)
 
 
-def stage_with(target: Path, write: Callable[[Path], object]) -> StagedFile:
+class _InFolder(StagedFile):
+    """A file of a temporary folder, which is removed with that."""
+
+    def __init__(self, target: Path, named: Path) -> None:
+        super().__init__(target, named)
+        self._is_claimed = False
+
+
+def stage_with(
+    target: Path, write: Callable[[Path], object], suffix: str | None = None
+) -> StagedFile:
     """Has a function write a file beside its target, by its path.
+
+    Args:
+        target: What the file is to replace.
+        write: Writes a new file.
+        suffix: What the path ends in; as the target does if None.
 
     Raises:
         OSError: The file cannot be written.
     """
     recover(target.parent)
-    staged = StagedFile(beside(target), target)
+    claim = claims.take(target.parent)
+    staged = StagedFile(target, claim.beside(target.suffix if suffix is None else suffix))
     try:
-        write(staged.temporary)
+        write(staged.name())
+        sync(staged.name())
     except BaseException:
         staged.discard()
         raise
@@ -77,17 +152,29 @@ def stage_with(target: Path, write: Callable[[Path], object]) -> StagedFile:
 
 
 def stage_bytes(target: Path, write: Callable[[BinaryIO], object]) -> StagedFile:
-    """Has a function write into a file beside its target.
+    """Has a function write into a new file, which has no name yet where the system can do that.
 
     Raises:
         OSError: The file cannot be written.
     """
+    nameless = _nameless(target.parent)
+    if nameless is None:
+        return stage_with(target, lambda path: _write_new(path, write))
+    staged = StagedFile(target, nameless=nameless)
+    try:
+        recover(target.parent)
+        write(nameless)
+        nameless.flush()
+        os.fsync(nameless.fileno())
+    except BaseException:
+        staged.discard()
+        raise
+    return staged
 
-    def write_new(path: Path) -> None:
-        with path.open("xb") as file:
-            write(file)
 
-    return stage_with(target, write_new)
+def stage_data(target: Path, data: bytes) -> StagedFile:
+    """Writes bytes into a new file, as `stage_bytes` does."""
+    return stage_bytes(target, lambda file: file.write(data))
 
 
 def stage_folder(target: Path, write: Callable[[Path], object]) -> StagedFolder:
@@ -97,16 +184,26 @@ def stage_folder(target: Path, write: Callable[[Path], object]) -> StagedFolder:
         OSError: The file cannot be written.
     """
     recover(target.parent)
-    staged = StagedFolder(beside(target, ""), target)
-    staged.temporary.mkdir()
+    staged = StagedFolder(target, claims.take(target.parent).beside(""))
     try:
-        write(staged.temporary / target.name)
-        if not (staged.temporary / target.name).exists():
-            raise OSError(f"'{target}' was not written")
+        staged.make(write)
     except BaseException:
         staged.discard()
         raise
     return staged
+
+
+def keep(path: Path, other: Path) -> None:
+    """Gives a file a second name, in the same folder, at once: what has that name is replaced.
+
+    Raises:
+        OSError: That cannot be done.
+    """
+    staged = stage_with(other, lambda new: link_or_copy(path, new))
+    try:
+        staged.commit()
+    finally:
+        staged.discard()
 
 
 def write_output(output: Path | BinaryIO, write: Callable[[BinaryIO], object]) -> None:
@@ -117,9 +214,8 @@ def write_output(output: Path | BinaryIO, write: Callable[[BinaryIO], object]) -
     staged = stage_bytes(output, write)
     try:
         staged.commit()
-    except BaseException:
+    finally:
         staged.discard()
-        raise
 
 
 def commit_all(files: Sequence[StagedFile]) -> None:
@@ -132,28 +228,19 @@ def commit_all(files: Sequence[StagedFile]) -> None:
         OSError: One cannot be put into place, and the others are as they were; but for those that
             the message names.
     """
-    for folder in dict.fromkeys(file.target.parent for file in files):
-        recover(folder)
-    if len(files) < 2:
+    folders = list(dict.fromkeys(file.target.parent for file in files))
+    with stopping.held():
+        for folder in folders:
+            recover(folder)
+        if len(files) == 1:
+            files[0].put()
+            sync(folders[0])
+        elif files:
+            with undone_on_failure([(file.name(), file.target) for file in files]):
+                for file in files:
+                    file.put()
         for file in files:
-            file.commit()
-        return
-    kept: list[Kept] = []
-    with ExitStack() as stack:
-        try:
-            for file in files:
-                kept.append((file.target, second_name(file.target)))
-            stack.enter_context(journal(kept, [file.temporary for file in files]))
-            for file in files:
-                file.commit()
-        except BaseException as error:
-            lost = [text for target, earlier in kept if (text := put_back(target, earlier))]
-            if lost:
-                raise OSError("; ".join([str(error), *lost])) from error
-            raise
-    for _, earlier in kept:
-        if earlier is not None:
-            earlier.unlink(missing_ok=True)
+            file.discard()
 
 
 def as_output(path: Output) -> Path | BinaryIO:
@@ -214,3 +301,29 @@ def _is_writable(path: Path) -> bool:
         # What marks folders there as read-only means that they have a look of their own.
         return True
     return os.access(path, os.W_OK) and bool(path.stat().st_mode & _WRITE_BITS)
+
+
+def _nameless(folder: Path) -> BinaryIO | None:
+    """Opens a file that is gone when it is closed, unless it is named before; None without such."""
+    if not hasattr(os, "O_TMPFILE") or not _nameless_left.acquire(blocking=False):
+        return None
+    try:
+        file = os.fdopen(os.open(folder, os.O_TMPFILE | os.O_RDWR, _NEW_MODE), "w+b")
+    except OSError:
+        _nameless_left.release()
+        return None
+    claims.lock_new(file)
+    if os.path.exists(_own_link(file)):
+        return file
+    file.close()
+    _nameless_left.release()
+    return None
+
+
+def _own_link(file: BinaryIO) -> str:
+    return f"/proc/self/fd/{file.fileno()}"
+
+
+def _write_new(path: Path, write: Callable[[BinaryIO], object]) -> None:
+    with path.open("xb") as file:
+        write(file)

@@ -2,9 +2,10 @@
 
 """OpenImageIO's own Python module, as far as pictures need it; imported when it is needed."""
 
+import itertools
 import shutil
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
@@ -12,6 +13,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+from .._border.claims import temporary_folder
 
 FloatArray = NDArray[np.float32]
 
@@ -208,6 +211,55 @@ def write_picture(
     message = output.geterror()
     if not (output.close() and written):
         raise OSError(f"file '{path}': cannot be written: {message or output.geterror()}")
+    del output  # An OpenEXR file is finished when its writer goes.
+    check_whole(path)
+
+
+def check_whole(path: Path) -> None:
+    """Reads a file that was written, band by band: writers say nothing of what fails at the end.
+
+    Raises:
+        OSError: It cannot be read as a whole.
+    """
+    reader = module().ImageInput.open(str(path))
+    if reader is None:
+        raise OSError(f"'{path.name}' was not written as a whole; is the disk full?")
+    try:
+        if not all(_is_read(reader, *place) for place in _bands(reader)):
+            raise OSError(
+                f"'{path.name}' was not written as a whole; is the disk full? {reader.geterror()}"
+            )
+    finally:
+        reader.close()
+
+
+def _bands(reader: Any) -> Iterator[tuple[int, int, int, int]]:
+    """Yields each image of a file, in bands: the number of it and of its level, first and last row.
+
+    Levels are parts of an image in some formats, and images in others.
+    """
+    for image in itertools.count():
+        for level in itertools.count():
+            if not reader.seek_subimage(image, level):
+                if not level:
+                    return
+                break
+            spec = reader.spec()
+            rows = max(1, _PIXELS_A_BAND // (TILE_SIZE * spec.width)) * TILE_SIZE
+            for first in range(spec.y, spec.y + spec.height, rows):
+                yield image, level, first, min(first + rows, spec.y + spec.height)
+
+
+def _is_read(reader: Any, image: int, level: int, first: int, end: int) -> bool:
+    spec = reader.spec()
+    if spec.tile_width:
+        x = spec.x, spec.x + spec.width
+        pixels = reader.read_tiles(
+            image, level, *x, first, end, 0, 1, 0, spec.nchannels, spec.format
+        )
+    else:
+        pixels = reader.read_scanlines(image, level, first, end, 0, 0, spec.nchannels, spec.format)
+    return pixels is not None
 
 
 def write_texture(
@@ -238,11 +290,11 @@ def write_texture(
         OSError: The file cannot be written.
     """
     oiio = module()
-    with tempfile.TemporaryDirectory(prefix="prefilter-", dir=_work_folder(path)) as folder:
+    with temporary_folder(_work_folder(path)) as folder:
         level_files = []
         for number, level in enumerate(levels[1:], start=1):
             check()
-            level_file = str(Path(folder) / f"{number}.tif")
+            level_file = str(folder / f"{number}.tif")
             _write_level(level_file, _buffer(level, has_alpha), number)
             level_files.append(level_file)
         check()
@@ -258,10 +310,11 @@ def write_texture(
         config.attribute("maketx:mipimages", _PATH_SEPARATOR.join(level_files))
 
         full = _buffer(levels[0], has_alpha)
-        made = str(Path(folder) / f"texture{path.suffix}")
+        made = str(folder / f"texture{path.suffix}")
         if not oiio.ImageBufAlgo.make_texture(oiio.MakeTxTexture, full, made, config):
             raise OSError(f"cannot write '{made}': {oiio.geterror()}")
         shutil.move(made, path)
+    check_whole(path)
 
 
 def _work_folder(path: Path) -> str:

@@ -23,6 +23,7 @@ from .._border.arguments import (
     set_options,
 )
 from .._border.arrays import as_threads
+from .._border.replacing import recover
 from .._border.staging import as_target
 from .alignment import ScanAlignment
 from .choice import Classes, as_choice
@@ -322,6 +323,7 @@ def reconstruct_file(
     options.are_sides_known = cloud.are_sides_known
     report = ReconstructionReport()
     rest = as_progress(cloud.rest(progress))
+    recover(place.parent)
     found = _native.reconstruct_file(cloud.points, os.fsencode(place), options, rest)
     _fill_in(report, found, cloud)
     return report

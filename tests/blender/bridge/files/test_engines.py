@@ -230,18 +230,18 @@ def test_failure_leaves_no_png_and_no_other(bake, addon, tmp_path, monkeypatch):
     bake(image, "out.png")
     before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
     module = staging
-    original, calls = module.stage_with, []
+    original, calls = module.stage_bytes, []
 
     def fail_at_the_third(target, write):
-        def write_some(path):
-            write(path)
+        def write_some(file):
+            write(file)
             if len(calls) == 3:
                 raise OSError("no space")
 
         calls.append(target)
         return original(target, write_some)
 
-    monkeypatch.setattr(module, "stage_with", fail_at_the_third)
+    monkeypatch.setattr(module, "stage_bytes", fail_at_the_third)
     other = scenes.image("Other", scenes.noise(16, 16, seed=5))
     with pytest.raises(OSError, match="no space"):
         bake(other, "out.png")

@@ -397,14 +397,14 @@ def test_volumes_are_written_all_or_none(tmp_path, addon, monkeypatch):
     earlier = tmp_path / "out.First.vdb"
     earlier.write_bytes(b"earlier")
     staged = addon("bridge.files.staging").StagedFile
-    commit = staged.commit
+    put = staged.put
 
     def failing(self):
         if self.target.name == "out.Second.vdb":
             raise OSError("the disk is full")
-        commit(self)
+        put(self)
 
-    monkeypatch.setattr(staged, "commit", failing)
+    monkeypatch.setattr(staged, "put", failing)
     with pytest.raises(RuntimeError, match="the disk is full"):
         voxelize(output="volume", depth=4, filepath=str(tmp_path / "out.vdb"))
     assert [path.name for path in tmp_path.iterdir()] == ["out.First.vdb"]

@@ -217,9 +217,7 @@ def _stage_numbered(
         for number, level in enumerate(linear_levels if picture.is_float else stored_levels):
             check()
             data = png.encoded(_png_pixels(picture, level), is_srgb=is_srgb)
-            staged.append(
-                staging.stage_with(numbered(target, number), partial(Path.write_bytes, data=data))
-            )
+            staged.append(staging.stage_data(numbered(target, number), data))
     except BaseException:
         for file in staged:
             file.discard()

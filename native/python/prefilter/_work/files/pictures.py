@@ -32,9 +32,7 @@ def stage(
         OSError: The file cannot be written.
     """
     if target.suffix.lower() == ".png":
-        return staging.stage_with(
-            target, lambda path: path.write_bytes(png.encoded(pixels, is_srgb=not is_data))
-        )
+        return staging.stage_data(target, png.encoded(pixels, is_srgb=not is_data))
     flipped = np.ascontiguousarray(pixels[::-1], np.float32)
     return staging.stage_with(
         target,

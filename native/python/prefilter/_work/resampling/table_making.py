@@ -2,14 +2,13 @@
 
 """Sampling tables: built or loaded anywhere, then written as files."""
 
-import tempfile
 from collections.abc import Sequence
-from functools import partial
 from pathlib import Path
 
 import prefilter
 
 from ..._border import staging
+from ..._border.claims import temporary_folder
 from ..._options.resampling import METHODS, TABLE_FILTERS
 from ..._options.tables import LANGUAGES, TableSettings
 from ...sampling.sampling_table import STANDARD_TARGETS
@@ -59,8 +58,8 @@ class TableMaking:
         self._table = self._made(share(progress, 0.0, _BUILT))
         go_on(progress, _BUILT)
         for target in self.targets:
-            write = partial(_write, self._table, target.suffix.lower().removeprefix("."))
-            self._staged.append(staging.stage_with(target, write))
+            source = _source(self._table, target.suffix.lower().removeprefix("."))
+            self._staged.append(staging.stage_data(target, source.encode()))
         if not self.targets:
             self.source = _source(self._table, self.settings.language)
         go_on(progress, 1.0)
@@ -130,13 +129,9 @@ def _proof(table: "prefilter.SamplingTable") -> list[str]:
 
 def _source(table: "prefilter.SamplingTable", language: str) -> str:
     if language == "json":
-        with tempfile.TemporaryDirectory() as folder:
-            copy = Path(folder) / "table.json"
+        with temporary_folder() as folder:
+            copy = folder / "table.json"
             table.save(copy)
             return copy.read_text(encoding="utf-8")
     written = {"glsl": table.glsl, "hlsl": table.hlsl, "osl": table.osl}
     return written[language]()
-
-
-def _write(table: "prefilter.SamplingTable", language: str, path: Path) -> None:
-    path.write_text(_source(table, language), encoding="utf-8")

@@ -3,12 +3,12 @@
 """Pictures: PNG, JPEG, GIF and WebP, read by Pillow or by OpenImageIO, whichever there is."""
 
 import io
-import tempfile
 from importlib import import_module
-from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
+
+from ..._border.claims import temporary_folder
 
 Texels = npt.NDArray[np.uint8]
 
@@ -50,8 +50,8 @@ def _by_openimageio(data: bytes) -> Texels:
     from ..._work import openimageio
 
     try:
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / f"image{ending_of(data)}"
+        with temporary_folder() as folder:
+            path = folder / f"image{ending_of(data)}"
             path.write_bytes(data)
             values, _ = openimageio.read_pixels(path)
     except (OSError, ValueError) as error:
