@@ -2,21 +2,16 @@
 
 """`blender --background --command prefilter ...`: the operators without a window."""
 
-import sys
 from collections.abc import Sequence
 from importlib import import_module
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 import bpy
-import prefilter
-
-from .core.outcome import FAILURES
 
 if TYPE_CHECKING:
     import argparse
 
-_CANCELED = 130  # 128 + SIGINT
 _PROGRAM = "blender --background --command prefilter"
 
 
@@ -41,20 +36,15 @@ class Commands:
 
         Returns:
             The exit status: 0, 1 for a failure that was told on stderr, 2 for wrong arguments, 130
-            after Ctrl-C.
+            after Ctrl-C, 143 after SIGTERM.
         """
-        try:
-            options = self.parser().parse_args(arguments)
-            options.execute(options)
-        except SystemExit as end:
-            return end.code if isinstance(end.code, int) else 0
-        except prefilter.Cancelled:
-            print("prefilter: canceled", file=sys.stderr)
-            return _CANCELED
-        except FAILURES as error:
-            print(f"prefilter: error: {error}", file=sys.stderr)
-            return 1
-        return 0
+        from prefilter._command.program import ended
+
+        return ended(lambda: self._run(arguments))
+
+    def _run(self, arguments: Sequence[str]) -> None:
+        options = self.parser().parse_args(arguments)
+        options.execute(options)
 
     def parser(self) -> "argparse.ArgumentParser":
         """Returns what reads the arguments."""

@@ -2,13 +2,20 @@
 
 """What the commands share: options, progress, messages."""
 
-from prefilter._command.telling import ProgressLine, add_command, check_ending, done, tell, warn
+from prefilter._command.telling import (
+    add_command,
+    check_ending,
+    done,
+    progress_line,
+    tell,
+    warn,
+)
 
 __all__ = (
-    "ProgressLine",
     "add_command",
     "check_ending",
     "done",
+    "progress_line",
     "tell",
     "warn",
 )

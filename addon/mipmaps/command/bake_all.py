@@ -120,14 +120,11 @@ def _list(model: ModelBake) -> None:
 
 def _bake(model: ModelBake) -> None:
     """Bakes image after image, writes them together, and tells of each what was done."""
-    progress = command.ProgressLine()
-    try:
+    with command.progress_line() as progress:
         while model.next_name:
             _read(model)(progress)
             model.stage_images()
         written = model.write()
-    finally:
-        progress.end()
     for outcome in written:
         command.tell(outcome)
     command.warn(f"image '{one.image}' is not baked: {one.reason}" for one in model.results.failed)

@@ -4,7 +4,6 @@
 
 import argparse
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import bpy
@@ -74,11 +73,8 @@ def _plot(options: argparse.Namespace) -> None:
         )
     )
     assert isinstance(work, Bake)
-    progress = command.ProgressLine()
-    try:
+    with command.progress_line() as progress:
         curves = errors.measure(work.source, list(dict.fromkeys(filters)), progress)
-    finally:
-        progress.end()
     staged = []
     try:
         for target in targets:
@@ -86,8 +82,7 @@ def _plot(options: argparse.Namespace) -> None:
                 draw = partial(new_images.save_png, pixels=figure.draw(curves))
                 staged.append(staging.stage_with(target, draw))
             else:
-                write = partial(Path.write_text, data=curves.table())
-                staged.append(staging.stage_with(target, write))
+                staged.append(staging.stage_data(target, curves.table().encode()))
         staging.commit_all(staged)
     finally:
         for file in staged:

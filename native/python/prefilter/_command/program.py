@@ -4,12 +4,12 @@
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from importlib import import_module
 
 from .. import _native
+from .._border import stopping
 
-CANCELED = 130  # 128 + SIGINT
 COMMANDS = {
     "mipmaps": "make the mipmap levels of a texture, weighted by the meshes that wear it",
     "resize": "make a picture larger or smaller",
@@ -28,24 +28,35 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     Returns:
         The exit status: 0, 1 for a failure that was told on stderr, 2 for wrong arguments, 130
-        after Ctrl-C.
+        after Ctrl-C, 143 after SIGTERM.
     """
     words = list(sys.argv[1:] if arguments is None else arguments)
-    try:
-        options = parser(words[:1]).parse_args(words)
-        from .._work.outcome import FAILURES
-    except SystemExit as end:
-        return end.code if isinstance(end.code, int) else 0
-    try:
-        options.execute(options)
-    except SystemExit as end:
-        return end.code if isinstance(end.code, int) else 0
-    except _native.Cancelled:
-        print("prefilter: canceled", file=sys.stderr)
-        return CANCELED
-    except FAILURES as error:
-        print(f"prefilter: error: {error}", file=sys.stderr)
-        return 1
+    return ended(lambda: _run(words))
+
+
+def _run(words: Sequence[str]) -> None:
+    options = parser(words[:1]).parse_args(words)
+    options.execute(options)
+
+
+def ended(run: Callable[[], object]) -> int:
+    """Runs a command; returns its exit status, of which stderr says why it is not 0."""
+    from .._work.outcome import FAILURES
+
+    with stopping.heeded():
+        try:
+            run()
+        except SystemExit as end:
+            return end.code if isinstance(end.code, int) else 0
+        except BaseException as error:
+            # What was interrupted may fail in any way, as operators of Blender do.
+            if stopping.asked() or isinstance(error, (_native.Cancelled, KeyboardInterrupt)):
+                print("prefilter: canceled", file=sys.stderr)
+                return stopping.status()
+            if not isinstance(error, FAILURES):
+                raise
+            print(f"prefilter: error: {error}", file=sys.stderr)
+            return 1
     return 0
 
 

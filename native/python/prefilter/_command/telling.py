@@ -4,13 +4,14 @@
 
 import argparse
 import os
-import signal
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
 
+from .._border import stopping
 from .._work.outcome import Outcome
-from .._work.progress import Work
+from .._work.progress import Work, go_on
 
 
 def add_command(commands: Any, name: str, purpose: str, *notes: str) -> argparse.ArgumentParser:
@@ -37,13 +38,13 @@ def check_ending(options: argparse.Namespace, name: str, path: str, allowed: Seq
 
 def done(work: Work) -> Outcome:
     """Computes and writes, with a line of progress."""
-    progress = ProgressLine()
-    try:
-        work.compute(progress)
-        return work.write()
-    finally:
-        work.discard()
-        progress.end()
+    with progress_line() as progress:
+        try:
+            work.compute(progress)
+            go_on(progress, 1.0)
+            return work.write()
+        finally:
+            work.discard()
 
 
 def tell(outcome: Outcome) -> None:
@@ -60,19 +61,27 @@ def warn(warnings: Iterable[str]) -> None:
         print(f"prefilter: warning: {warning}", file=sys.stderr)
 
 
+@contextmanager
+def progress_line() -> Iterator["ProgressLine"]:
+    """A line for as long as the context lasts, in which signals stop the work by it alone."""
+    with stopping.held():
+        line = ProgressLine()
+        try:
+            yield line
+        finally:
+            line.end()
+
+
 class ProgressLine:
     """Shows progress on stderr: one line that changes on a terminal, else a line each quarter.
 
-    Ctrl-C has the work stop at its next report; a second one ends the program. Blender by itself
-    waits for the second one.
+    Ctrl-C, or SIGTERM, has the work stop at its next report; a second one ends the program.
     """
 
     def __init__(self) -> None:
         """Shows nothing yet."""
         self._step = 1 if sys.stderr.isatty() else 25
         self._shown = -1
-        self._is_stopped = False
-        signal.signal(signal.SIGINT, self._stop)
 
     def __call__(self, fraction: float) -> bool:
         """Shows how much is done, and says whether to go on."""
@@ -81,14 +90,9 @@ class ProgressLine:
             self._shown = percent
             line = f"prefilter: {percent:3d} %"
             print(line, end="\r" if self._step == 1 else "\n", file=sys.stderr, flush=True)
-        return not self._is_stopped
+        return not stopping.asked()
 
     def end(self) -> None:
         """Leaves the line."""
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
         if self._step == 1 and self._shown >= 0:
             print(file=sys.stderr)
-
-    def _stop(self, *_: object) -> None:
-        self._is_stopped = True
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
