@@ -231,18 +231,23 @@ def test_failures_leave_nothing(scan, tmp_path):
     assert {file.name: file.read_bytes() for file in tmp_path.iterdir()} == before
 
 
-def test_ctrl_c_leaves_nothing(scan, tmp_path, addon, monkeypatch):
+@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_ctrl_c_leaves_nothing(scan, tmp_path, addon, monkeypatch, number, status):
     """As a user presses it who sees the first line of progress."""
     module = telling
 
     class Interrupted(module.ProgressLine):
+        _is_sent = False
+
         def __call__(self, fraction):
-            os.kill(os.getpid(), signal.SIGINT)
+            if not self._is_sent:
+                self._is_sent = True
+                os.kill(os.getpid(), number)
             return super().__call__(fraction)
 
     monkeypatch.setattr(module, "ProgressLine", Interrupted)
     for name in ("out.ply", "out.stl"):
         result = run("reconstruct", scan, tmp_path / name, *DEPTH)
-        assert result.returncode == 130
+        assert result.returncode == status
         assert result.stderr.strip().endswith("prefilter: canceled")
     assert [path.name for path in tmp_path.iterdir()] == ["scan.ply"]

@@ -104,7 +104,7 @@ class BooleanFile:
             f"{amount(len(triangles), 'triangle')}, volume {tree.volume:.4g}"
         )
         made = [Part(name, positions, triangles, None)]
-        self._staged = staging.stage_with(self._target, lambda path: mesh_files.write(path, made))
+        self._staged = mesh_files.stage(self._target, made)
         go_on(progress, 1.0)
 
     def write(self) -> Outcome:

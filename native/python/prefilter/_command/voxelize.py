@@ -101,7 +101,7 @@ class VoxelFile:
             except ValueError as error:
                 raise ValueError(f"mesh '{mesh.name}': {error}") from error
         go_on(progress, _COMPUTED)
-        self._staged = staging.stage_with(self._target, lambda path: mesh_files.write(path, made))
+        self._staged = mesh_files.stage(self._target, made)
         go_on(progress, 1.0)
 
     def write(self) -> Outcome:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 import prefilter
 
+from .._border.staging import StagedFile, stage_bytes
 from .matrices import product
 from .wording import listed
 
@@ -69,14 +70,14 @@ def without_seams(part: Part) -> Part:
     return Part(part.name, places, np.asarray(triangles, np.int64), None)
 
 
-def write(path: Path, parts: Sequence[Part]) -> None:
-    """Writes positions and triangles, in a format that the ending of the path says.
+def stage(target: Path, parts: Sequence[Part]) -> StagedFile:
+    """Writes positions and triangles, in a format that the ending of the target says.
 
     Raises:
         OSError: The file cannot be written.
     """
     trimesh = _trimesh()
-    kind = path.suffix.lower().removeprefix(".")
+    kind = target.suffix.lower().removeprefix(".")
     meshes = [trimesh.Trimesh(one.positions, one.triangles, process=False) for one in parts]
     if len(meshes) == 1 or kind in {"ply", "stl"}:
         made = trimesh.util.concatenate(meshes) if len(meshes) > 1 else meshes[0]
@@ -84,7 +85,7 @@ def write(path: Path, parts: Sequence[Part]) -> None:
         made = trimesh.Scene()
         for part, mesh in zip(parts, meshes, strict=True):
             made.add_geometry(mesh, node_name=part.name, geom_name=part.name)
-    made.export(str(path), file_type=kind)
+    return stage_bytes(target, lambda file: made.export(file, file_type=kind))
 
 
 def surfaces(parts: Sequence[Part]) -> tuple[list[prefilter.Surface], list[str], list[str]]:
