@@ -1,0 +1,282 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Whether anything is lost where files cannot be written: on full disks of 30 sizes, in a folder
+that is read-only, and in one that is gone before the file is there.
+
+Disks are file systems in memory, which root can mount; else no file may grow beyond a size. After
+each run there must be the earlier files, and an exit status that is not 0; or the new files as
+they are elsewhere, and 0. Nothing else may be left.
+
+usage: disk_full.py [PATTERN] [--sizes N] [--json FILE]
+  scripts/run python3 bench/reliability/disk_full.py            writers of the package, the command
+  scripts/run blender --background --python-exit-code 1 --python bench/reliability/disk_full.py
+"""
+
+import argparse
+import contextlib
+import io
+import os
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT))
+
+from bench import report  # noqa: E402
+from bench.reliability import writers  # noqa: E402
+from bench.reliability.writers import Writer  # noqa: E402
+
+EARLIER = b"earlier"
+_PAGE = 4096
+_END_OF_FBX = bytes.fromhex("f85a8c6adef5d97eece90ce3758f290b")
+
+
+class Trial:
+    """A writer, what it reads, and what it writes where there is room."""
+
+    def __init__(self, writer: Writer, sources: Path, place: Path) -> None:
+        """Runs it once."""
+        self.writer, self.sources = writer, sources
+        with tempfile.TemporaryDirectory(dir=place) as name:
+            out = Path(name)
+            self.prepare(out)
+            status = self.first_status(out)
+            self.new = contents(out)
+        if status or any(self.new.get(name) in (None, EARLIER) for name in writer.targets):
+            raise ValueError(f"{writer.kind} {writer.name}: {status}, {sorted(self.new)}")
+
+    def first_status(self, out: Path) -> int:
+        """Runs it once."""
+        return quietly(self.writer, self.sources, out)
+
+    def prepare(self, out: Path) -> None:
+        """Puts earlier files into a folder."""
+        for name in self.writer.targets:
+            (out / name).write_bytes(EARLIER)
+        if self.writer.in_place:
+            shutil.copy(self.sources / self.writer.in_place, out)
+
+    def earlier(self) -> dict[str, bytes]:
+        """Returns what `prepare` puts there."""
+        found = dict.fromkeys(self.writer.targets, EARLIER)
+        if self.writer.in_place:
+            found[self.writer.in_place] = (self.sources / self.writer.in_place).read_bytes()
+        return found
+
+    def state(self, found: dict[str, bytes]) -> str:
+        """Returns "old" or "new" where files are just these, else what they are."""
+        if found == self.earlier():
+            return "old"
+        if found.keys() == self.new.keys() and all(
+            data == self.new[name] or is_whole(name, data) for name, data in found.items()
+        ):
+            return "new"
+        return f"neither: { ({name: len(data) for name, data in found.items()}) }"
+
+
+def is_whole(name: str, data: bytes) -> bool:
+    """Tells whether a file that is never the same, as it says when it was written, is whole."""
+    if data == EARLIER:
+        return False
+    if name.endswith((".exr", ".tif")):
+        from prefilter._work import openimageio
+
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / name
+            path.write_bytes(data)
+            try:
+                openimageio.check_whole(path)
+            except OSError:
+                return False
+        return True
+    if name.endswith(".fbx"):
+        return data.startswith(b"Kaydara FBX Binary") and data.endswith(_END_OF_FBX)
+    if name.endswith((".blend", ".blend1")):
+        return data.startswith(b"BLENDER") and b"ENDB" in data[-64:]
+    return False
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    """Returns what is in a folder."""
+    return {path.name: path.read_bytes() if path.is_file() else b"" for path in folder.iterdir()}
+
+
+def quietly(writer: Writer, sources: Path, out: Path) -> int:
+    """Runs a writer; what it prints is not shown."""
+    with open(os.devnull, "w") as nowhere:
+        kept = [os.dup(stream) for stream in (1, 2)]
+        sys.stdout.flush()
+        for stream in (1, 2):
+            os.dup2(nowhere.fileno(), stream)
+        try:
+            text = io.StringIO()
+            with contextlib.redirect_stdout(text), contextlib.redirect_stderr(text):
+                return writer.run(sources, out)
+        finally:
+            for stream, old in enumerate(kept, start=1):
+                os.dup2(old, stream)
+                os.close(old)
+
+
+@contextlib.contextmanager
+def disk(place: Path, size: int) -> Iterator[Path | None]:
+    """Mounts a file system of a size; None where that cannot be done."""
+    folder = place / "disk"
+    folder.mkdir(exist_ok=True)
+    mount = ["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", str(folder)]
+    can = sys.platform == "linux" and shutil.which("mount") is not None
+    if not can or subprocess.run(mount, capture_output=True, check=False).returncode:
+        yield None
+        return
+    try:
+        yield folder
+    finally:
+        subprocess.run(["umount", "--lazy", str(folder)], check=True)
+
+
+@contextlib.contextmanager
+def small_files(place: Path, size: int) -> Iterator[Path]:
+    """Lets no file grow beyond a size."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    try:
+        with tempfile.TemporaryDirectory(dir=place) as name:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+            try:
+                yield Path(name)
+            finally:
+                resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    finally:
+        signal.signal(signal.SIGXFSZ, handler)
+
+
+def on_full_disks(trial: Trial, place: Path, count: int) -> tuple[list[str], bool]:
+    """Tries disks from one that has room for what is there to one that has room for all.
+
+    Returns:
+        What was found in each, and whether they were disks, and not limits of files.
+    """
+    old = sum(-(-len(data) // _PAGE) for data in trial.earlier().values())
+    most = old + 3 * sum(-(-len(data) // _PAGE) for data in trial.new.values()) + 4
+    found, are_disks = [], True
+    for i in range(count):
+        pages = old + (most - old) * i // max(1, count - 1)
+        with disk(place, pages * _PAGE) as mounted:
+            if mounted is not None:
+                found.append(_tried(trial, mounted))
+                continue
+        are_disks = False
+        largest = max(map(len, trial.new.values()))
+        with small_files(place, max(len(EARLIER), largest * i // max(1, count - 1))) as folder:
+            found.append(_tried(trial, folder))
+    return found, are_disks
+
+
+def _tried(trial: Trial, out: Path) -> str:
+    trial.prepare(out)
+    status = quietly(trial.writer, trial.sources, out)
+    return outcome(trial.state(contents(out)), status)
+
+
+def outcome(state: str, status: int) -> str:
+    """Returns a state that fits an exit status, else both."""
+    fits = (state == "new") == (status == 0) and state in ("old", "new")
+    return state if fits else f"{state}, status {status}"
+
+
+def read_only(trial: Trial, place: Path) -> str:
+    """Tries a folder that nobody may write to."""
+    with tempfile.TemporaryDirectory(dir=place) as name:
+        out = Path(name)
+        trial.prepare(out)
+        out.chmod(0o555)
+        status = quietly(trial.writer, trial.sources, out)
+        out.chmod(0o755)
+        return outcome(trial.state(contents(out)), status)
+
+
+def vanishing(trial: Trial, place: Path) -> str:
+    """Tries a folder that is moved away as soon as something is written into it."""
+    with tempfile.TemporaryDirectory(dir=place) as name:
+        out, elsewhere = Path(name) / "out", Path(name) / "elsewhere"
+        out.mkdir()
+        trial.prepare(out)
+        moved = []
+
+        def watch(event: str, arguments: tuple[object, ...]) -> None:
+            if event == "os.rename" and not moved and out.exists():
+                moved.append(True)
+                out.rename(elsewhere)
+
+        sys.addaudithook(watch)
+        status = quietly(trial.writer, trial.sources, out)
+        moved.append(True)
+        if not elsewhere.exists():
+            return outcome(trial.state(contents(out)), status)
+        left = trial.state(
+            {k: v for k, v in contents(elsewhere).items() if k[:11] != ".prefilter-"}
+        )
+        if out.exists() and contents(out):
+            return f"neither: {sorted(contents(out))}, status {status}"
+        return outcome(left, status)
+
+
+def summary(found: list[str]) -> str:
+    """Returns how often there was what."""
+    others = sorted({one for one in found if one not in ("old", "new")})
+    text = f"{found.count('old')} old, {found.count('new')} new"
+    return (
+        f"{text}, {len(found) - found.count('old') - found.count('new')} {others}"
+        if others
+        else text
+    )
+
+
+def main() -> None:
+    """Tries every writer of this program."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("pattern", nargs="?", default="")
+    parser.add_argument("--sizes", type=int, default=30)
+    report.add_json_option(parser)
+    arguments = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else []
+    in_blender = "bpy" in sys.modules
+    options = parser.parse_args(arguments if in_blender else None)
+    kinds = ("blender",) if in_blender else ("package", "command")
+    told = report.Report()
+    rows, bad, tried = [], 0, 0
+    with tempfile.TemporaryDirectory() as name:
+        sources, place = Path(name) / "sources", Path(name)
+        sources.mkdir()
+        writers.make_sources(sources)
+        if in_blender:
+            writers.make_scene(sources)
+        for writer in writers.of_kind(*kinds):
+            if not re.search(options.pattern, f"{writer.kind} {writer.name}"):
+                continue
+            trial = Trial(writer, sources, place)
+            full, are_disks = on_full_disks(trial, place, options.sizes)
+            others = [read_only(trial, place), vanishing(trial, place)]
+            rows.append([f"{writer.kind}: {writer.name}", summary(full), *others])
+            print("  ".join(rows[-1]), flush=True)
+            tried += len(full) + len(others)
+            bad += sum(one not in ("old", "new") for one in (*full, *others))
+    told.table(
+        "Files that cannot be written",
+        ["Writer", "Full disk", "Read-only", "Gone"],
+        rows,
+        "writers",
+    )
+    kind = "disks" if are_disks else "limits of the size of files"
+    told.verdict(not bad, f"{tried} runs, on {kind}: old files and a failure, or new ones and none")
+    told.finish(options.json)
+
+
+if __name__ == "__main__":
+    main()

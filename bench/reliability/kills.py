@@ -1,0 +1,219 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Whether anything is lost where a program is killed: at every call that changes names or waits
+for the disk, or at random moments.
+
+After each kill the next run in that folder, which here only recovers, must leave the earlier files
+or the new ones, all of a set, and nothing else. kill_at_call.cpp plants the kills at calls. A
+random moment lies between the first of several runs in a row and the time that two of them take;
+Blender is ready by then.
+
+usage: kills.py calls|random [PATTERN] [--count N] [--json FILE]
+  cmake --preset bench && cmake --build build/bench --target prefilter_kill_at_call
+  scripts/run python3 bench/reliability/kills.py calls
+  scripts/run python3 bench/reliability/kills.py random --count 200
+"""
+
+import argparse
+import itertools
+import os
+import random
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT))
+
+from bench import report  # noqa: E402
+from bench.reliability import writers  # noqa: E402
+from bench.reliability.disk_full import Trial, contents  # noqa: E402
+from bench.reliability.writers import Writer  # noqa: E402
+
+LIBRARY = ROOT / "build" / "bench" / "libprefilter_kill_at_call.so"
+_MANY = "1000000"
+
+
+@dataclass
+class Found:
+    """What there was after kills.
+
+    Attributes:
+        old: How often the earlier files.
+        new: How often the new ones.
+        left: How often something of the dead was there until the next run.
+        others: What else there was.
+    """
+
+    old: int = 0
+    new: int = 0
+    left: int = 0
+    others: list[str] = field(default_factory=list)
+
+    @property
+    def count(self) -> int:
+        """How many kills there were."""
+        return self.old + self.new + len(self.others)
+
+    def add(self, trial: Trial, out: Path) -> None:
+        """Looks at a folder, as it is after the next run."""
+        from prefilter._border import replacing
+
+        self.left += any(name.startswith(".prefilter-") for name in contents(out))
+        replacing.recover(out)
+        state = trial.state({k: v for k, v in contents(out).items() if not k.endswith(".blend@")})
+        if state == "old":
+            self.old += 1
+        elif state == "new":
+            self.new += 1
+        else:
+            self.others.append(state)
+
+
+def command(writer: Writer, *arguments: object) -> list[str]:
+    """Returns what runs a writer in a process of its own."""
+    program = str(Path(__file__).with_name("writers.py"))
+    words = [f"{writer.kind}:{writer.name}", *map(str, arguments)]
+    if writer.is_blenders:
+        blender = ["blender", "--background", "--python-exit-code", "1", "--python"]
+        return [*blender, program, "--", *words]
+    return [sys.executable, program, *words]
+
+
+def run(words: list[str], **variables: str) -> subprocess.CompletedProcess[str]:
+    """Runs a program with more variables in its environment."""
+    environment = {**os.environ, **variables}
+    return subprocess.run(words, capture_output=True, text=True, env=environment, check=False)
+
+
+def at_calls(trial: Trial, place: Path, library: Path) -> Found:
+    """Kills a writer at its first call that changes names, at the second, and so on."""
+    found = Found()
+    for number in itertools.count(1):
+        with tempfile.TemporaryDirectory(dir=place) as name:
+            out = Path(name)
+            trial.prepare(out)
+            plan = {"LD_PRELOAD": str(library), "PREFILTER_KILL_IN": name}
+            done = run(
+                command(trial.writer, trial.sources, out), **plan, PREFILTER_KILL_AT=str(number)
+            )
+            if done.returncode == 0:
+                return found
+            if abs(done.returncode) not in (signal.SIGKILL, 128 + signal.SIGKILL):
+                raise OSError(f"status {done.returncode}: {done.stderr[-500:]}")
+            found.add(trial, out)
+    raise AssertionError
+
+
+def at_random(trial: Trial, place: Path, count: int, chance: random.Random) -> Found:
+    """Kills a writer that runs again and again."""
+    found = Found()
+    span = _seconds(trial, place)
+    for _ in range(count):
+        with tempfile.TemporaryDirectory(dir=place) as name:
+            out = Path(name)
+            trial.prepare(out)
+            process = _begun(trial, out)
+            time.sleep(chance.uniform(0, 2 * span))
+            process.kill()
+            process.communicate()
+            found.add(trial, out)
+    return found
+
+
+def _seconds(trial: Trial, place: Path) -> float:
+    """Returns how long one of several runs in a row takes."""
+    with tempfile.TemporaryDirectory(dir=place) as name:
+        out = Path(name)
+        trial.prepare(out)
+        process = _begun(trial, out)
+        assert process.stdout is not None
+        began = time.monotonic()
+        _wait_for_begin(process.stdout)
+        taken = time.monotonic() - began
+        process.kill()
+        process.communicate()
+    return taken
+
+
+def _begun(trial: Trial, out: Path) -> subprocess.Popen[str]:
+    """Starts a writer, and waits until it works."""
+    process = subprocess.Popen(
+        command(trial.writer, trial.sources, out, _MANY),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+    )
+    assert process.stdout is not None
+    _wait_for_begin(process.stdout)
+    return process
+
+
+def _wait_for_begin(lines: Iterable[str]) -> None:
+    for line in lines:
+        if line.strip() == "begins":
+            return
+    raise OSError("the writer has ended")
+
+
+class InProcess(Trial):
+    """A trial whose first run, too, is in a process of its own."""
+
+    def first_status(self, out: Path) -> int:
+        """Runs it once."""
+        return run(command(self.writer, self.sources, out)).returncode
+
+
+def main() -> None:
+    """Kills every writer that there is."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("way", choices=("calls", "random"))
+    parser.add_argument("pattern", nargs="?", default="")
+    parser.add_argument("--count", type=int, default=10)
+    report.add_json_option(parser)
+    options = parser.parse_args()
+    if options.way == "calls" and not LIBRARY.exists():
+        raise SystemExit(f"{LIBRARY} is to be built first")
+    chance, told, rows = random.Random(1), report.Report(), []
+    kills, bad = 0, 0
+    with tempfile.TemporaryDirectory() as name:
+        sources, place = Path(name) / "sources", Path(name)
+        sources.mkdir()
+        writers.make_sources(sources)
+        has_blender = shutil.which("blender") is not None and not run(scene(sources)).returncode
+        kinds = ("package", "command", *(("blender",) if has_blender else ()))
+        for writer in writers.of_kind(*kinds):
+            if not re.search(options.pattern, f"{writer.kind} {writer.name}"):
+                continue
+            trial = InProcess(writer, sources, place)
+            if options.way == "calls":
+                found = at_calls(trial, place, LIBRARY)
+            else:
+                found = at_random(trial, place, options.count, chance)
+            cells = [found.count, found.old, found.new, found.left, len(found.others)]
+            rows.append([f"{writer.kind}: {writer.name}", *map(str, cells)])
+            print("  ".join(rows[-1]), *sorted(set(found.others))[:5], flush=True)
+            kills += found.count
+            bad += len(found.others)
+    head = ["Writer", "Kills", "Old files", "New files", "Names until the next run", "Others"]
+    told.table("After kills", head, rows, options.way)
+    told.verdict(not bad, f"{kills} kills: the old files or the new ones, and nothing else")
+    told.finish(options.json)
+
+
+def scene(sources: Path) -> list[str]:
+    """Returns what makes the scene."""
+    program = str(Path(__file__).with_name("writers.py"))
+    blender = ["blender", "--background", "--python-exit-code", "1", "--python", program]
+    return [*blender, "--", "scene", str(sources)]
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Whatever writes files, where it cannot or is killed: a little of bench/reliability.
+
+The programs there try 30 sizes of disks, and 200 kills.
+"""
+
+import os
+import random
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+
+from bench.reliability import disk_full, kills, writers
+
+pytestmark = pytest.mark.skipif(os.name == "nt", reason="disks of other systems")
+
+WRITERS = writers.of_kind("package", "command")
+
+
+@pytest.fixture(scope="module")
+def sources(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("sources")
+    writers.make_sources(folder)
+    return folder
+
+
+@pytest.fixture
+def trial(request, sources, quick_path):
+    if request.param.kind == "command":
+        for name in ("OpenImageIO", "trimesh"):
+            pytest.importorskip(name, reason="scripts/decoders.txt is not installed")
+    return disk_full.Trial(request.param, sources, quick_path)
+
+
+def each(chosen):
+    return pytest.mark.parametrize(
+        "trial", chosen, indirect=True, ids=lambda one: f"{one.kind} {one.name}"
+    )
+
+
+@each(WRITERS)
+def test_files_that_cannot_be_written(trial, quick_path):
+    found, _ = disk_full.on_full_disks(trial, quick_path, 4)
+    assert set(found) <= {"old", "new"}
+    assert found[0] == "old"
+    assert found[-1] == "new"
+    assert disk_full.read_only(trial, quick_path) == "old"
+    assert disk_full.vanishing(trial, quick_path) in ("old", "new")
+
+
+def test_limits_of_files_are_full_disks_for_others_than_root(sources, quick_path, monkeypatch):
+    monkeypatch.setenv("PATH", "")
+    trial = disk_full.Trial(writers.named("package", "write_ktx2"), sources, quick_path)
+    found, are_disks = disk_full.on_full_disks(trial, quick_path, 5)
+    assert not are_disks
+    assert found == ["old"] * 4 + ["new"]
+
+
+@each([writers.named("package", name) for name in ("write_exr", "reconstruct_file")])
+def test_kills_at_random_moments(trial, quick_path):
+    found = kills.at_random(trial, quick_path, 5, random.Random(7))
+    assert found.others == []
+    assert found.count == 5
+
+
+@each([writers.named("command", "mipmaps to .png")])
+def test_a_command_that_is_killed(trial, quick_path):
+    found = kills.at_random(trial, quick_path, 5, random.Random(8))
+    assert found.others == []
+
+
+def test_what_is_neither_old_nor_new_is_told(sources, quick_path):
+    """Else no trial could fail."""
+    trial = disk_full.Trial(writers.named("package", "write_ktx2"), sources, quick_path)
+    assert trial.state(trial.earlier()) == "old"
+    assert trial.state(trial.new) == "new"
+    cut = {name: data[:-1] for name, data in trial.new.items()}
+    for other in (cut, {}, {**trial.new, "left": b""}):
+        assert trial.state(other).startswith("neither")
+    assert disk_full.outcome("old", 1) == "old"
+    assert disk_full.outcome("new", 0) == "new"
+    assert disk_full.outcome("old", 0) == "old, status 0"
+    assert disk_full.outcome("new", 1) == "new, status 1"
