@@ -15,6 +15,8 @@ usage: kills.py calls|random [PATTERN] [--count N] [--json FILE]
 """
 
 import argparse
+import contextlib
+import io
 import itertools
 import os
 import random
@@ -25,9 +27,10 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterable
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import IO
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
@@ -39,6 +42,9 @@ from bench.reliability.writers import Writer  # noqa: E402
 
 LIBRARY = ROOT / "build" / "bench" / "libprefilter_kill_at_call.so"
 _MANY = "1000000"
+
+
+Begin = Callable[[Trial, Path], "Running"]
 
 
 @dataclass
@@ -112,39 +118,73 @@ def at_calls(trial: Trial, place: Path, library: Path) -> Found:
     raise AssertionError
 
 
-def at_random(trial: Trial, place: Path, count: int, chance: random.Random) -> Found:
-    """Kills a writer that runs again and again."""
+def at_random(
+    trial: Trial, place: Path, count: int, chance: random.Random, begin: Begin | None = None
+) -> Found:
+    """Kills a writer that runs again and again.
+
+    Args:
+        trial: The writer.
+        place: Where folders are made.
+        count: How many kills.
+        chance: Where random moments come from.
+        begin: Starts it; as a program of its own if None.
+    """
+    begin = begin or begin_program
     found = Found()
-    span = _seconds(trial, place)
+    span = _seconds(trial, place, begin)
     for _ in range(count):
         with tempfile.TemporaryDirectory(dir=place) as name:
             out = Path(name)
             trial.prepare(out)
-            process = _begun(trial, out)
+            running = begin(trial, out)
+            running.wait_for_begin()
             time.sleep(chance.uniform(0, 2 * span))
-            process.kill()
-            process.communicate()
+            running.kill()
             found.add(trial, out)
     return found
 
 
-def _seconds(trial: Trial, place: Path) -> float:
+def _seconds(trial: Trial, place: Path, begin: Begin) -> float:
     """Returns how long one of several runs in a row takes."""
     with tempfile.TemporaryDirectory(dir=place) as name:
         out = Path(name)
         trial.prepare(out)
-        process = _begun(trial, out)
-        assert process.stdout is not None
+        running = begin(trial, out)
+        running.wait_for_begin()
         began = time.monotonic()
-        _wait_for_begin(process.stdout)
+        running.wait_for_begin()
         taken = time.monotonic() - began
-        process.kill()
-        process.communicate()
+        running.kill()
     return taken
 
 
-def _begun(trial: Trial, out: Path) -> subprocess.Popen[str]:
-    """Starts a writer, and waits until it works."""
+class Running:
+    """A writer that runs again and again, and says each time that it begins."""
+
+    def __init__(self, number: int, said: IO[str], program: subprocess.Popen[str] | None) -> None:
+        """Takes the number of the process, and what it prints."""
+        self._number, self._said, self._program = number, said, program
+
+    def wait_for_begin(self) -> None:
+        """Waits until it begins; raises OSError where it has ended."""
+        for line in self._said:
+            if line.strip() == "begins":
+                return
+        raise OSError("the writer has ended")
+
+    def kill(self) -> None:
+        """Kills it."""
+        os.kill(self._number, signal.SIGKILL)
+        if self._program is None:
+            os.waitpid(self._number, 0)
+        else:
+            self._program.wait()
+        self._said.close()
+
+
+def begin_program(trial: Trial, out: Path) -> Running:
+    """Starts a writer in a program of its own."""
     process = subprocess.Popen(
         command(trial.writer, trial.sources, out, _MANY),
         stdout=subprocess.PIPE,
@@ -152,23 +192,54 @@ def _begun(trial: Trial, out: Path) -> subprocess.Popen[str]:
         text=True,
     )
     assert process.stdout is not None
-    _wait_for_begin(process.stdout)
-    return process
+    return Running(process.pid, process.stdout, process)
 
 
-def _wait_for_begin(lines: Iterable[str]) -> None:
-    for line in lines:
-        if line.strip() == "begins":
-            return
-    raise OSError("the writer has ended")
+def begin_copy(trial: Trial, out: Path) -> Running:
+    """Starts a writer in a copy of this process, which must not have used threads."""
+    reads, writes = os.pipe()
+    child = os.fork()
+    if not child:
+        os.close(reads)  # So that it ends with this process.
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, 1)
+        os.dup2(nowhere, 2)
+        try:
+            while os.write(writes, b"begins\n"):
+                trial.writer.run(trial.sources, out)
+        finally:
+            os._exit(1)
+    os.close(writes)
+    return Running(child, os.fdopen(reads), None)
 
 
-class InProcess(Trial):
-    """A trial whose first run, too, is in a process of its own."""
+def begin_quickly(writer: Writer) -> Begin:
+    """Returns what starts a writer; what it imports is imported once."""
+    if writer.is_blenders:
+        return begin_program
+    import prefilter
+    from prefilter._command import program
+
+    with contextlib.suppress(SystemExit), contextlib.redirect_stdout(io.StringIO()):
+        program.parser()
+    for name in prefilter.__all__:
+        getattr(prefilter, name)
+    return begin_copy
+
+
+class Apart(Trial):
+    """A trial whose first run, too, is in a process of its own: no thread is left in this one."""
 
     def first_status(self, out: Path) -> int:
         """Runs it once."""
         return run(command(self.writer, self.sources, out)).returncode
+
+    def is_whole(self, name: str, data: bytes) -> bool:
+        """Reads it in a copy of this process."""
+        child = os.fork()
+        if not child:
+            os._exit(0 if super().is_whole(name, data) else 1)
+        return not os.waitpid(child, 0)[1]
 
 
 def main() -> None:
@@ -192,11 +263,15 @@ def main() -> None:
         for writer in writers.of_kind(*kinds):
             if not re.search(options.pattern, f"{writer.kind} {writer.name}"):
                 continue
-            trial = InProcess(writer, sources, place)
+            if missing := writer.missing():
+                told.note(f"{writer.kind} {writer.name} left out: there is no {missing}")
+                continue
+            trial = Apart(writer, sources, place)
             if options.way == "calls":
                 found = at_calls(trial, place, LIBRARY)
             else:
-                found = at_random(trial, place, options.count, chance)
+                begin = begin_quickly(writer)
+                found = at_random(trial, place, options.count, chance, begin)
             cells = [found.count, found.old, found.new, found.left, len(found.others)]
             rows.append([f"{writer.kind}: {writer.name}", *map(str, cells)])
             print("  ".join(rows[-1]), *sorted(set(found.others))[:5], flush=True)

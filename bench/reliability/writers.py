@@ -11,6 +11,7 @@ prints a line before each, and exits with the status of the last one.
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -45,6 +46,11 @@ class Writer:
         if self.call is not None:
             return "package"
         return "blender" if self.is_blenders else "command"
+
+    def missing(self) -> str:
+        """Returns the module that it needs and this Python lacks; empty for none."""
+        needed = ("OpenImageIO", "trimesh") if self.kind == "command" else ()
+        return next((name for name in needed if find_spec(name) is None), "")
 
     def run(self, sources: Path, out: Path) -> int:
         """Runs it once; returns the exit status."""
