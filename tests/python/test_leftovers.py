@@ -32,6 +32,8 @@ def living(work):
     waits, ends = os.pipe()
     child = os.fork()
     if not child:
+        os.close(told)
+        os.close(ends)  # So that it ends with this process.
         kept = work()
         os.write(tells, b"x")
         os.read(waits, 1)

@@ -10,7 +10,9 @@ import random
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
+from prefilter._work import openimageio
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
@@ -71,6 +73,25 @@ def test_kills_at_random_moments(trial, quick_path):
 def test_a_command_that_is_killed(trial, quick_path):
     found = kills.at_random(trial, quick_path, 5, random.Random(8))
     assert found.others == []
+
+
+@pytest.mark.parametrize("ending", [".exr", ".tif"])
+def test_pictures_that_are_cut_anywhere_are_found(tmp_path, ending):
+    """Their writers tell success on a full disk."""
+    pytest.importorskip("OpenImageIO", reason="scripts/decoders.txt is not installed")
+    path = tmp_path / f"a{ending}"
+    levels = [np.random.default_rng(i).random((64 >> i, 64 >> i, 3), np.float32) for i in range(7)]
+    if ending == ".exr":
+        openimageio.write_picture(path, levels[0], "scene_linear")
+    else:
+        shared = {"color_space": "scene_linear", "wrap_modes": "black,black", "has_alpha": False}
+        openimageio.write_texture(path, levels, pixel_type="float", check=lambda: None, **shared)
+    contents = path.read_bytes()
+    openimageio.check_whole(path)
+    for cut in (0, 1, 100, *range(4096, len(contents), 4096)):
+        path.write_bytes(contents[:cut])
+        with pytest.raises(OSError, match=rf"'a{ending}' was not written as a whole"):
+            openimageio.check_whole(path)
 
 
 def test_what_is_neither_old_nor_new_is_told(sources, quick_path):

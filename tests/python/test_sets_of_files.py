@@ -231,6 +231,38 @@ def test_what_others_have_written_since_stays(quick_path):
     assert texts(quick_path) == ([("a.txt", "newer"), ("b.txt", "newer")], 0)
 
 
+@pytest.mark.parametrize("count", [1, 3])
+@pytest.mark.parametrize("stage", ["data", "path"])
+def test_files_are_on_the_disk_before_they_replace_others(quick_path, monkeypatch, count, stage):
+    events = []
+    fsync, replace = os.fsync, os.replace
+
+    def told_fsync(descriptor):
+        events.append(("on the disk", os.fstat(descriptor).st_ino))
+        fsync(descriptor)
+
+    def told_replace(new, target):
+        events.append(("replaces", os.stat(new).st_ino))
+        replace(new, target)
+
+    monkeypatch.setattr(os, "fsync", told_fsync)
+    monkeypatch.setattr(os, "replace", told_replace)
+    targets = [quick_path / f"{i}.txt" for i in range(count)]
+    if stage == "data":
+        files = [staging.stage_data(target, b"new") for target in targets]
+    else:
+        files = [staging.stage_with(t, lambda path: path.write_text("new")) for t in targets]
+    staging.commit_all(files)
+    for target in targets:
+        number = target.stat().st_ino
+        assert events.index(("on the disk", number)) < events.index(("replaces", number))
+    folder = ("on the disk", quick_path.stat().st_ino)
+    last = max(i for i, (what, _) in enumerate(events) if what == "replaces")
+    assert folder in events[last:]
+    # What the journal says is there before it counts.
+    assert count == 1 or folder in events[: events.index(("replaces", targets[0].stat().st_ino))]
+
+
 def test_an_empty_set(quick_path):
     staging.commit_all([])
     assert texts(quick_path) == ([], 0)

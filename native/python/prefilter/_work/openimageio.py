@@ -223,7 +223,8 @@ def check_whole(path: Path) -> None:
     """
     reader = module().ImageInput.open(str(path))
     if reader is None:
-        raise OSError(f"'{path.name}' was not written as a whole; is the disk full?")
+        reason = module().geterror()
+        raise OSError(f"'{path.name}' was not written as a whole; is the disk full? {reason}")
     try:
         if not all(_is_read(reader, *place) for place in _bands(reader)):
             raise OSError(
