@@ -2,7 +2,7 @@
 
 """Arguments that several functions take, checked once, here at the border."""
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
 import numpy as np
@@ -12,6 +12,7 @@ Wrap = str | tuple[str, str]
 Bounds = tuple[float | None, float | None]
 Check = Callable[[Any], object]
 Options = TypeVar("Options")
+Item = TypeVar("Item")
 
 
 def as_name(argument: str, name: object) -> str:
@@ -57,7 +58,17 @@ def as_bounds(bounds: Bounds | None) -> Bounds:
 
 
 def _is_pair(value: object) -> bool:
-    return isinstance(value, Sequence | np.ndarray) and len(value) == 2
+    if isinstance(value, np.ndarray):
+        return value.ndim > 0 and len(value) == 2  # Others have no length.
+    return isinstance(value, Sequence) and len(value) == 2
+
+
+def as_items(argument: str, items: Iterable[Item], needed: str) -> list[Item]:
+    """What is in a list, a tuple or the like; `needed` says of what."""
+    try:
+        return list(items)
+    except TypeError:
+        raise ValueError(f"{argument}: {items!r}; {needed} is needed") from None
 
 
 def as_progress(progress: ProgressCallback | None) -> ProgressCallback | None:

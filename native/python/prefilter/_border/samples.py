@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from .arguments import Check, as_int, as_wrap
+from .arguments import Check, as_int, as_items, as_wrap
 from .arrays import (
     FloatArray,
     as_array,
@@ -30,7 +30,10 @@ def as_pyramid(levels: Sequence[npt.ArrayLike]) -> list[np.ndarray]:
     """
     if not isinstance(levels, Sequence) or isinstance(levels, str | bytes):
         raise ValueError(f"levels: a {type(levels).__name__}; a list of arrays is needed")
-    found = [_as_level(f"levels: level {k}", level) for k, level in enumerate(levels)]
+    found = [
+        _as_level(f"levels: level {k}", level)
+        for k, level in enumerate(as_items("levels", levels, "a list of images"))
+    ]
     for k, level in enumerate(found):
         if (level.dtype, level.shape[2]) != (found[0].dtype, found[0].shape[2]):
             raise ValueError(

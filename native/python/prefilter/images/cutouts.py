@@ -12,6 +12,7 @@ from .._border.arguments import (
     Check,
     ProgressCallback,
     Wrap,
+    as_items,
     as_number,
     as_progress,
     as_wrap,
@@ -71,7 +72,10 @@ def keep_coverage(
     options = set_options(_native.CoverageOptions(), _CHECKS, locals())
     if not isinstance(levels, Sequence):
         raise ValueError(f"levels: a {type(levels).__name__}; a list of arrays is needed")
-    images = [as_image(f"levels: level {k}", level) for k, level in enumerate(levels)]
+    images = [
+        as_image(f"levels: level {k}", level)
+        for k, level in enumerate(as_items("levels", levels, "a list of images"))
+    ]
     kept = _native.keep_coverage(images, as_surfaces(surface), options, as_progress(progress))
     made = [images[0].copy(), *kept]
     return [in_form_of(level, image) for level, image in zip(levels, made, strict=True)]

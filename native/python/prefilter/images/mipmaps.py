@@ -16,6 +16,7 @@ from .._border.arguments import (
     ProgressCallback,
     Wrap,
     as_bounds,
+    as_items,
     as_level_count,
     as_name,
     as_number,
@@ -247,7 +248,10 @@ def mipmap_error(
     if not isinstance(levels, Sequence):
         raise ValueError(f"levels: a {type(levels).__name__}; a list of arrays is needed")
     errors = _native.mipmap_error(
-        [as_image(f"levels: level {k}", level) for k, level in enumerate(levels)],
+        [
+            as_image(f"levels: level {k}", level)
+            for k, level in enumerate(as_items("levels", levels, "a list of images"))
+        ],
         as_image("image", image),
         as_surfaces(surface),
         values.ravel().tolist(),
@@ -289,7 +293,10 @@ def seam_contrast(
         raise ValueError(f"levels: a {type(levels).__name__}; a list of arrays is needed")
     return np.array(
         _native.seam_contrast(
-            [as_image(f"levels: level {k}", level) for k, level in enumerate(levels)],
+            [
+                as_image(f"levels: level {k}", level)
+                for k, level in enumerate(as_items("levels", levels, "a list of images"))
+            ],
             as_surfaces(surface),
             as_wrap(wrap),
             as_progress(progress),

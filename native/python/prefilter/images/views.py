@@ -16,6 +16,7 @@ from .._border.arguments import (
     ProgressCallback,
     Wrap,
     as_bounds,
+    as_items,
     as_name,
     as_number,
     as_progress,
@@ -87,7 +88,10 @@ def fit_to_views(
     if not isinstance(levels, Sequence):
         raise ValueError(f"levels: a {type(levels).__name__}; a list of arrays is needed")
     options = set_options(_native.ViewFitOptions(), _CHECKS, locals())
-    images = [as_image(f"levels: level {k}", level) for k, level in enumerate(levels)]
+    images = [
+        as_image(f"levels: level {k}", level)
+        for k, level in enumerate(as_items("levels", levels, "a list of images"))
+    ]
     made: list[npt.NDArray[Any]] = _native.fit_to_views(
         images, as_surfaces(surface), options, as_progress(progress)
     )

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _native
-from .._border.arguments import ProgressCallback, as_progress
+from .._border.arguments import ProgressCallback, as_items, as_progress
 from .._border.arrays import as_corner_uvs, as_mesh, as_threads
 
 
@@ -44,6 +44,6 @@ def uv_charts(
     points, indices = as_mesh(positions, triangles)
     maps = [
         as_corner_uvs(f"uvs[{i}]", one, indices, len(points), np.float32)
-        for i, one in enumerate(uvs)
+        for i, one in enumerate(as_items("uvs", uvs, "a list of UV maps"))
     ]
     return _native.uv_charts(points, indices, maps, as_progress(progress), as_threads(threads))

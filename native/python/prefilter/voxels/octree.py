@@ -16,6 +16,7 @@ from .._border.arguments import (
     Check,
     ProgressCallback,
     as_int,
+    as_items,
     as_name,
     as_number,
     as_progress,
@@ -476,7 +477,7 @@ def _as_sources(
     if sources is None:
         return []
     checked = []
-    for i, source in enumerate(sources):
+    for i, source in enumerate(as_items("sources", sources, "a list of meshes")):
         if not isinstance(source, (tuple, list)) or len(source) not in (2, 3):
             raise ValueError(
                 f"sources: item {i} is a {type(source).__name__}; (positions, triangles) or "
