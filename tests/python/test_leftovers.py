@@ -3,7 +3,6 @@
 """What processes leave that die: the next one removes it, and nothing of those that live."""
 
 import os
-import resource
 import signal
 import tempfile
 import time
@@ -12,6 +11,7 @@ import pytest
 from prefilter import _native
 from prefilter._border import claims, replacing, staging
 
+resource = pytest.importorskip("resource", reason="Windows has no such limits")
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="the signal is that of other systems")
 
 

@@ -5,7 +5,6 @@
 The programs there try 30 sizes of disks, and 200 kills.
 """
 
-import os
 import random
 import sys
 from pathlib import Path
@@ -14,11 +13,10 @@ import numpy as np
 import pytest
 from prefilter._work import openimageio
 
+pytest.importorskip("resource", reason="Windows has no such limits")
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from bench.reliability import disk_full, kills, writers
-
-pytestmark = pytest.mark.skipif(os.name == "nt", reason="disks of other systems")
 
 WRITERS = writers.of_kind("package", "command")
 
