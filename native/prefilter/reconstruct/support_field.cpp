@@ -30,6 +30,8 @@ constexpr double kAway = -0.25;
 // farther off: around its rim a sheet turns within a cell or two, and would end folded.
 constexpr double kFacing = 0.7;
 constexpr double kTurned = 2.0;
+// But so near that what fills a hole, as a step between two levels, still does.
+constexpr double kMostTurned = 3.0;
 // Where normals cancel each other, to so much of their lengths, they face all ways.
 constexpr double kAligned = 0.5;
 
@@ -164,7 +166,8 @@ void SupportLevel::look(const FacingPoint& point, double side, int reach, Suppor
     if (distance < static_cast<double>(best->distance)) {
       const double facing = facing_of(cell, point.normal);
       if (facing < kAway) return;
-      const double felt = (1.0 + kTurned * std::max(0.0, kFacing - facing)) * distance;
+      const double turned = (1.0 + kTurned * std::max(0.0, kFacing - facing)) * distance;
+      const double felt = std::max(distance, std::min(turned, kMostTurned));
       if (felt >= static_cast<double>(best->distance)) return;
       *best = {static_cast<float>(felt), cell.spacing};
     }
