@@ -34,15 +34,13 @@ void CellColors::append_color(const Paint& paint, std::vector<ChannelValues>* co
 bool CellColors::append_constant_full(std::uint32_t end, std::uint32_t behind,
                                       const LayerSet& full) {
   Veil sum;
-  for (std::uint32_t layer = full.highest_below(end);
-       layer != LayerSet::kNone && (behind == LayerSet::kNone || layer > behind) &&
-       sum.passing >= kLeastPassing;
-       layer = full.highest_below(layer)) {
+  full.each_between(end, behind, [&](std::uint32_t layer) {
     const Veil& veil = veils_[layer];
     // All four, of which those beyond the channels are not looked at.
     for (int c = 0; c < kMaxChannels; ++c) sum.color[c] += sum.passing * veil.color[c];
     sum.passing *= veil.passing;
-  }
+    return sum.passing >= kLeastPassing;
+  });
   full_.push_back(sum);
   return sum.passing >= kLeastPassing;
 }

@@ -5,146 +5,98 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 
 #include "prefilter/base/vectors.h"
-#include "prefilter/outline/fill_rule.h"
 
 namespace prefilter {
 namespace {
 
-constexpr int kRows = CellSamples::kRows;
-constexpr int kColumns = CellSamples::kColumns;
+constexpr int kSide = CellSamples::kSide;
+constexpr std::uint64_t kAll = ~std::uint64_t{0};
 
-// What is behind so much is less than a sixtieth of 1/255: of a sample, and of all of them.
-constexpr float kLeastPassing = 1.0F / 16384.0F;
-constexpr double kLeastLeft = CellSamples::kCount / 16384.0;
+// What is behind so much is less than a sixtieth of 1/255, all of it together.
+constexpr double kLeastPassing = 1.0 / 16384.0;
+constexpr double kLeastLeft = CellSamples::kCount * kLeastPassing;
 
-// How far the samples of a row are to the right, in columns: numbers of rows, shuffled.
-constexpr std::array<float, kRows> kOffsets = [] {
-  std::array<float, kRows> offsets{};
-  for (unsigned row = 0; row < kRows; ++row) {
-    unsigned mixed = (row * 83 + 7) % kRows;
-    mixed ^= mixed >> 3;
-    mixed = mixed * 91 % kRows;
-    mixed ^= mixed >> 4;
-    offsets[row] = (static_cast<float>(mixed) + 0.5F) / kRows;
-  }
-  return offsets;
-}();
+constexpr int kLanes = 4;
+using Floats = Vector<float, kLanes>;
+using Words = Vector<std::int32_t, kLanes>;
 
-double sample_y(int row) { return (row + 0.5) / kRows - 0.5; }
-
-// The first row of samples at a height or above it.
-int first_row_above(double y) {
-  return std::clamp(static_cast<int>(std::ceil((y + 0.5) * kRows - 0.5)), 0, kRows);
-}
-
-// As many rows as a vector holds of a type.
-template <typename T>
-constexpr int kLanes = 16 / static_cast<int>(sizeof(T));
-template <typename T>
-using Lanes = Vector<T, kLanes<T>>;
-
-template <typename Values>
-Values load(const auto* from) {
-  Values values;
+Floats load(const float* from) {
+  Floats values;
   std::memcpy(&values, from, sizeof(values));
   return values;
 }
 
-void store(const auto& values, auto* to) { std::memcpy(to, &values, sizeof(values)); }
+void store(const Floats& values, float* to) { std::memcpy(to, &values, sizeof(values)); }
 
-// Masks of four rows by their bits.
+Floats all_of(float value) { return Floats{value, value, value, value}; }
+
+float sum_of(const Floats& values) { return (values[0] + values[1]) + (values[2] + values[3]); }
+
+// Masks of four samples by their bits.
 constexpr auto kMasks = [] {
-  std::array<std::array<std::int32_t, 4>, 16> masks{};
+  std::array<std::array<std::int32_t, kLanes>, 16> masks{};
   for (unsigned bits = 0; bits < 16; ++bits) {
-    for (unsigned row = 0; row < 4; ++row) masks[bits][row] = (bits >> row & 1) != 0 ? -1 : 0;
+    for (unsigned i = 0; i < kLanes; ++i) masks[bits][i] = (bits >> i & 1) != 0 ? -1 : 0;
   }
   return masks;
 }();
 
-// Numbers of four rows from one on, or 0 where a word has no bit.
-Lanes<float> masked(const Lanes<float>& values, std::uint64_t word, int row) {
-  return std::bit_cast<Lanes<float>>(std::bit_cast<Lanes<std::int32_t>>(values) &
-                                     load<Lanes<std::int32_t>>(kMasks[word >> row & 15].data()));
+// The numbers of four samples from one on, or 0 where a word has no bit.
+Floats masked(const Floats& values, std::uint64_t word, int sample) {
+  Words mask;
+  std::memcpy(&mask, kMasks[word >> sample & 15].data(), sizeof(mask));
+  return std::bit_cast<Floats>(std::bit_cast<Words>(values) & mask);
 }
 
-// A bit of each of eight bytes that are -1 or 0.
-std::uint64_t bits_of(std::uint64_t bytes) {
-  return (bytes & 0x8040201008040201u) * 0x0101010101010101u >> 56;
-}
-
-// A bit of each of 16 rows that is not 0.
-template <typename Count>
-std::uint64_t bits_of_rows(const std::array<Lanes<Count>, 16 / kLanes<Count>>& rows) {
-  std::array<std::int8_t, 16> masks;
-  for (int part = 0; part < 16 / kLanes<Count>; ++part) {
-    store(convert<Vector<std::int8_t, kLanes<Count>>>(rows[part] != Lanes<Count>{}),
-          masks.data() + part * kLanes<Count>);
+// Eight words of eight bytes each: byte i of word j becomes byte j of word i.
+void turn_bytes(const std::uint64_t* from, std::uint64_t* to) {
+  using Bytes = Vector<std::int8_t, 16>;
+  using Pairs = Vector<std::int16_t, 8>;
+  using Fours = Vector<std::int32_t, 4>;
+  std::array<Pairs, 4> pairs;  // of two rows each, byte by byte
+  for (int i = 0; i < 4; ++i) {
+    Bytes rows;
+    std::memcpy(&rows, from + 2 * i, sizeof(rows));
+    pairs[i] = std::bit_cast<Pairs>(
+        shuffle<0, 8, 1, 9, 2, 10, 3, 11, 4, 12, 5, 13, 6, 14, 7, 15>(rows, rows));
   }
-  const auto words = std::bit_cast<std::array<std::uint64_t, 2>>(masks);
-  return bits_of(words[0]) | bits_of(words[1]) << 8;
-}
-
-// Whether a layer fills what it winds around an odd number of times: where no number can be beyond
-// 1 and -1, both rules say so.
-bool fills_odd(const CellLayer& layer) {
-  if (layer.fill_rule == FillRule::kEvenOdd) return true;
-  std::int64_t least = layer.base;
-  std::int64_t most = layer.base;
-  for (const SideStep& step : layer.steps) (step.winding < 0 ? least : most) += step.winding;
-  for (const StackArc& arc : layer.arcs) (arc.winding < 0 ? least : most) += arc.winding;
-  return least >= -1 && most <= 1;
-}
-
-// The winding numbers left of each row.
-std::array<std::int32_t, kRows> left_windings(const CellLayer& layer) {
-  std::array<std::int32_t, kRows> left;
-  left.fill(layer.base);
-  for (const SideStep& step : layer.steps) {
-    for (int row = first_row_above(step.y); row < kRows; ++row) left[row] += step.winding;
+  std::array<Fours, 4> fours;  // of rows 0 to 3: bytes 0 to 3, 4 to 7; the same of rows 4 to 7
+  for (int i = 0; i < 2; ++i) {
+    fours[2 * i] =
+        std::bit_cast<Fours>(shuffle<0, 8, 1, 9, 2, 10, 3, 11>(pairs[2 * i], pairs[2 * i + 1]));
+    fours[2 * i + 1] =
+        std::bit_cast<Fours>(shuffle<4, 12, 5, 13, 6, 14, 7, 15>(pairs[2 * i], pairs[2 * i + 1]));
   }
-  return left;
+  for (int i = 0; i < 2; ++i) {
+    const Fours low = shuffle<0, 4, 1, 5>(fours[i], fours[i + 2]);
+    const Fours high = shuffle<2, 6, 3, 7>(fours[i], fours[i + 2]);
+    std::memcpy(to + 4 * i, &low, sizeof(low));
+    std::memcpy(to + 4 * i + 2, &high, sizeof(high));
+  }
 }
 
-// Calls use(row, column) for the first sample right of a line in each row that it passes; behind
-// the last column there is none.
-void for_steps_of_line(Point2 low, Point2 high, const auto& use) {
-  const int begin = first_row_above(low.y);
-  const int end = first_row_above(high.y);
-  if (begin >= end) return;
-  const double slope = (high.x - low.x) / (high.y - low.y);
-  const auto step = static_cast<float>(slope * kColumns / kRows);
-  const auto first =
-      static_cast<float>((low.x + (sample_y(begin) - low.y) * slope + 0.5) * kColumns + 1.0);
-  std::array<std::int32_t, kRows> columns;
-  for (int row = begin; row < end; ++row) {
-    const float column = first + step * static_cast<float>(row - begin) - kOffsets[row];
-    columns[row] =
-        static_cast<std::int32_t>(std::min(std::max(column, 0.0F), static_cast<float>(kColumns)));
-  }
-  for (int row = begin; row < end; ++row) use(row, columns[row]);
+// From the cell's center.
+Point2 place_of(int block, int sample) {
+  const int column = 8 * (block % 8) + sample % 8;
+  const int row = 8 * (block / 8) + sample / 8;
+  return {(column + 0.5) / kSide - 0.5, (row + 0.5) / kSide - 0.5};
 }
 
 }  // namespace
-
-Point2 CellSamples::place(int row, int column) {
-  return {(column + static_cast<double>(kOffsets[row])) / kColumns - 0.5, sample_y(row)};
-}
 
 CellSamples::CellSamples(const StackArcs& stack_arcs, int channels, bool keeps_places)
     : stack_arcs_(stack_arcs),
       channels_(channels),
       keeps_places_(keeps_places),
-      narrow_steps_(kCount + kRows),
-      wide_steps_(kCount + kRows),
+      bits_(stack_arcs),
       passing_(kCount),
       values_(keeps_places ? channels : 0, Samples(kCount)) {}
 
 void CellSamples::begin() {
-  for (auto& words : open_) words.fill(~std::uint64_t{0});
+  open_.fill(kAll);
   is_opaque_ = true;
   passing_all_ = 1.0;
   left_ = kCount;
@@ -153,166 +105,114 @@ void CellSamples::begin() {
   if (keeps_places_) let_some_pass();
 }
 
-template <typename Use>
-void CellSamples::for_steps(const StackArc& arc, const Use& use) const {
-  if (arc.curve == StackArc::kLine) {
-    for_steps_of_line(arc.low, arc.high, use);
-    return;
-  }
-  const StackCurve& curve = stack_arcs_.curve(arc);
-  const ParametricCurve& whole = stack_arcs_.piece(curve).curve;
-  // A line where the middle of the arc is closer to it than a sample to the next.
-  constexpr int kMostLines = 8;
-  const Point2 middle = whole.at(0.5 * (curve.t_begin + curve.t_end)) - center_;
-  const Point2 way = arc.high - arc.low;
-  const double off = std::fabs(cross(way, middle - arc.low));
-  const bool is_straight = off * 16.0 * kColumns < std::max(std::fabs(way.x), way.y);
-  if (is_straight) {
-    for_steps_of_line(arc.low, arc.high, use);
-    return;
-  }
-  const bool rises = whole.at(curve.t_begin).y < whole.at(curve.t_end).y;
-  Point2 low = arc.low;
-  for (int i = 1; i <= kMostLines; ++i) {
-    const double share = static_cast<double>(rises ? i : kMostLines - i) / kMostLines;
-    Point2 high = arc.high;
-    if (i < kMostLines) {
-      high = whole.at(curve.t_begin + share * (curve.t_end - curve.t_begin)) - center_;
-      high.y = std::clamp(high.y, low.y, arc.high.y);
-    }
-    if (high.y > low.y) for_steps_of_line(low, high, use);
-    low = high;
-  }
-}
-
-void CellSamples::fill_odd(const CellLayer& layer) {
-  constexpr int kAll = kColumns * kWords;
-  std::array<std::uint64_t, kAll + kWords> flips{};  // behind the last column, too
-  for (const StackArc& arc : layer.arcs) {
-    if (arc.winding % 2 == 0) continue;
-    for_steps(arc, [&flips](int row, int column) {
-      flips[column * kWords + row / kWordRows] ^= std::uint64_t{1} << (row % kWordRows);
-    });
-  }
-  std::array<std::uint64_t, kWords> odd{};
-  if (layer.base % 2 != 0) odd.fill(~std::uint64_t{0});
-  for (const SideStep& step : layer.steps) {
-    if (step.winding % 2 == 0) continue;
-    for (int row = first_row_above(step.y); row < kRows; ++row) {
-      odd[row / kWordRows] ^= std::uint64_t{1} << (row % kWordRows);
-    }
-  }
-  for (int column = 0; column < kColumns; ++column) {
-    for (int word = 0; word < kWords; ++word) {
-      odd[word] ^= flips[column * kWords + word];
-      filled_[column][word] = odd[word];
-    }
-  }
-}
-
-// Leaves steps of 0.
-template <typename Count>
-void CellSamples::fill_by_windings(const CellLayer& layer, std::vector<Count>* steps) {
-  const auto left = left_windings(layer);
-  for (int row = 0; row < kRows; ++row) (*steps)[row] = static_cast<Count>(left[row]);
-  for (const StackArc& arc : layer.arcs) {
-    for_steps(arc, [steps = steps->data(), winding = arc.winding](int row, int column) {
-      Count& step = steps[column * kRows + row];
-      step = static_cast<Count>(step + winding);
-    });
-  }
-  for (auto& words : filled_) words = {};
-  for (int block = 0; block < kRows; block += 16) {
-    std::array<Lanes<Count>, 16 / kLanes<Count>> windings{};
-    Count* step = steps->data() + block;
-    for (int column = 0; column < kColumns; ++column, step += kRows) {
-      for (int part = 0; part < 16 / kLanes<Count>; ++part) {
-        windings[part] += load<Lanes<Count>>(step + part * kLanes<Count>);
-        store(Lanes<Count>{}, step + part * kLanes<Count>);
-      }
-      filled_[column][block / kWordRows] |= bits_of_rows<Count>(windings) << (block % kWordRows);
-    }
-    std::fill_n(step, 16, Count{0});
-  }
-}
-
-void CellSamples::fill(const CellLayer& layer) {
-  if (fills_odd(layer)) {
-    fill_odd(layer);
-    return;
-  }
-  std::int64_t most = std::abs(static_cast<std::int64_t>(layer.base));
-  for (const SideStep& step : layer.steps) most += std::abs(step.winding);
-  for (const StackArc& arc : layer.arcs) most += std::abs(arc.winding);
-  if (most <= 127) {
-    fill_by_windings(layer, &narrow_steps_);
-  } else {
-    fill_by_windings(layer, &wide_steps_);
+void CellSamples::take_blocks(const SampleRows& filled) {
+  for (int row = 0; row < kBlockSide; ++row) {
+    turn_bytes(filled.data() + row * kBlockSide, filled_blocks_.data() + row * kBlockSide);
   }
 }
 
 void CellSamples::let_some_pass() {
   if (!is_opaque_) return;
   is_opaque_ = false;
-  constexpr Lanes<float> kAll = {1.0F, 1.0F, 1.0F, 1.0F};
-  for (int i = 0; i < kCount; i += kLanes<float>) {
-    const int row = i % kRows;
-    const std::uint64_t word = open_[i / kRows][row / kWordRows];
-    store(masked(kAll, word, row % kWordRows), passing_.data() + i);
+  behind_.fill({});
+  open_blocks_ = 0;
+  take_blocks(open_);
+  const Floats all = all_of(1.0F);
+  for (int block = 0; block < kBlocks; ++block) {
+    const std::uint64_t open = filled_blocks_[block];
+    block_left_[block] = static_cast<float>(std::popcount(open));
+    if (open != 0) open_blocks_ |= std::uint64_t{1} << block;
+    float* passing = passing_.data() + block * kBlockCount;
+    for (int i = 0; i < kBlockCount; i += kLanes) store(masked(all, open, i), passing + i);
   }
 }
 
 // Takes what is filled from what passes all or nothing; returns how much that was.
-double CellSamples::take_opaque() {
+double CellSamples::take_opaque(const SampleRows& filled) {
   int taken = 0;
-  for (int column = 0; column < kColumns; ++column) {
-    for (int word = 0; word < kWords; ++word) {
-      std::uint64_t& open = open_[column][word];
-      const std::uint64_t filled = filled_[column][word];
-      taken += std::popcount(filled & open);
-      open &= ~filled;
-    }
+  for (int row = 0; row < kSide; ++row) {
+    taken += std::popcount(filled[row] & open_[row]);
+    open_[row] &= ~filled[row];
   }
   return taken;
 }
 
-// Likewise a share of what passes, in a word of a column; returns what passed where it is filled.
-float CellSamples::take_passing(int column, int word, const ChannelValues& color, float opaque) {
-  const std::uint64_t filled = filled_[column][word];
-  const int first = column * kRows + word * kWordRows;
-  Lanes<float> sums{};
-  Lanes<float> most{};
-  for (int row = 0; row < kWordRows; row += kLanes<float>) {
-    float* at = passing_.data() + first + row;
-    auto passing = load<Lanes<float>>(at);
-    const Lanes<float> share = masked(passing, filled, row);
-    sums += share;
-    passing -= share * opaque;
-    store(passing, at);
-    most = select(passing > most, passing, most);
+// Brings the samples of a block up to date.
+void CellSamples::take_behind(int block) {
+  Behind& behind = behind_[block];
+  if (behind.passing == 1.0F && behind.color == Behind{}.color) return;
+  float* passing = passing_.data() + block * kBlockCount;
+  for (int i = 0; i < kBlockCount; i += kLanes) {
+    const Floats old = load(passing + i);
     for (std::size_t c = 0; c < values_.size(); ++c) {
-      float* values = values_[c].data() + first + row;
-      store(load<Lanes<float>>(values) + share * static_cast<float>(color[c]), values);
+      float* values = values_[c].data() + block * kBlockCount + i;
+      store(load(values) + old * behind.color[c], values);
+    }
+    store(old * behind.passing, passing + i);
+  }
+  block_left_[block] *= behind.passing;
+  behind = {};
+}
+
+// Takes a share of what passes where a block is filled; returns what passed there.
+float CellSamples::take_part(int block, const ChannelValues& color, float opaque) {
+  const std::uint64_t filled = filled_blocks_[block];
+  // Where values are kept, with what was put behind all of the block.
+  Behind behind;
+  if (keeps_places_) std::swap(behind, behind_[block]);
+  Floats taken{};
+  Floats left{};
+  for (int i = 0; i < kBlockCount; i += kLanes) {
+    float* at = passing_.data() + block * kBlockCount + i;
+    const Floats old = load(at);
+    const Floats passing = old * behind.passing;
+    const Floats share = masked(passing, filled, i);
+    const Floats rest = passing - share * opaque;
+    taken += share;
+    left += rest;
+    store(rest, at);
+    for (std::size_t c = 0; c < values_.size(); ++c) {
+      float* values = values_[c].data() + block * kBlockCount + i;
+      store(load(values) + (old * behind.color[c] + share * static_cast<float>(color[c])), values);
     }
   }
-  if (std::max({most[0], most[1], most[2], most[3]}) < kLeastPassing) open_[column][word] = 0;
-  return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+  block_left_[block] = sum_of(left);
+  return sum_of(taken) * behind_[block].passing;
 }
 
 double CellSamples::take_passing(const ChannelValues& color, float opaque) {
   double sum = 0.0;
-  for (int column = 0; column < kColumns; ++column) {
-    for (int word = 0; word < kWords; ++word) {
-      if ((filled_[column][word] & open_[column][word]) == 0) continue;
-      sum += static_cast<double>(take_passing(column, word, color, opaque));
+  for (std::uint64_t blocks = open_blocks_; blocks != 0; blocks &= blocks - 1) {
+    const int block = std::countr_zero(blocks);
+    if (filled_blocks_[block] == 0) continue;
+    Behind& behind = behind_[block];
+    if (filled_blocks_[block] == kAll) {
+      sum += static_cast<double>(block_left_[block] * behind.passing);
+      for (std::size_t c = 0; c < values_.size(); ++c) {
+        behind.color[c] += behind.passing * static_cast<float>(color[c]);
+      }
+      behind.passing *= 1.0F - opaque;
+    } else {
+      sum += static_cast<double>(take_part(block, color, opaque));
+    }
+    constexpr auto kLeastInBlock = static_cast<float>(kBlockCount * kLeastPassing);
+    if (block_left_[block] * behind.passing < kLeastInBlock) {
+      open_blocks_ &= ~(std::uint64_t{1} << block);
     }
   }
   return sum;
 }
 
-void CellSamples::put_constant_behind(const ChannelValues& color, double opacity) {
+void CellSamples::put_constant_behind(const SampleRows& filled, const ChannelValues& color,
+                                      double opacity) {
   if (opacity < 1.0) let_some_pass();
-  const double sum = is_opaque_ ? take_opaque() : take_passing(color, static_cast<float>(opacity));
+  double sum = 0.0;
+  if (is_opaque_) {
+    sum = take_opaque(filled);
+  } else {
+    take_blocks(filled);
+    sum = take_passing(color, static_cast<float>(opacity));
+  }
   left_ -= sum * opacity;
   for (int c = 0; c < channels_; ++c) sums_[c] += passing_all_ * sum * color[c];
 }
@@ -324,28 +224,34 @@ void CellSamples::put_powers_behind(const std::array<ColorPowers, kMaxChannels>&
     return of(0) + u * (of(1) + u * of(3) + v * of(4)) + v * (of(2) + v * of(5));
   };
   double taken = 0.0;
-  for (int i = 0; i < kCount; ++i) {
-    const int row = i % kRows;
-    if ((filled_[i / kRows][row / kWordRows] >> (row % kWordRows) & 1) == 0) continue;
-    const Point2 point = place(row, i / kRows);
-    const auto u = static_cast<float>(point.x);
-    const auto v = static_cast<float>(point.y);
-    for (int c = 0; c < channels_; ++c) values_[c][i] += passing_[i] * at(color[c], u, v);
-    const float share = passing_[i] * std::clamp(at(opacity, u, v), 0.0F, 1.0F);
-    passing_[i] -= share;
-    taken += static_cast<double>(share);
+  for (int block = 0; block < kBlocks; ++block) {
+    if (filled_blocks_[block] == 0) continue;
+    take_behind(block);
+    for (std::uint64_t filled = filled_blocks_[block]; filled != 0; filled &= filled - 1) {
+      const int sample = std::countr_zero(filled);
+      const int i = block * kBlockCount + sample;
+      const Point2 point = place_of(block, sample);
+      const auto u = static_cast<float>(point.x);
+      const auto v = static_cast<float>(point.y);
+      for (int c = 0; c < channels_; ++c) values_[c][i] += passing_[i] * at(color[c], u, v);
+      const float share = passing_[i] * std::clamp(at(opacity, u, v), 0.0F, 1.0F);
+      passing_[i] -= share;
+      block_left_[block] -= share;
+      taken += static_cast<double>(share);
+    }
   }
   left_ -= taken;
 }
 
 // What opacity holds is the same in all channels.
-void CellSamples::put_nodes_behind(std::span<const ChannelValues> color,
+void CellSamples::put_nodes_behind(const SampleRows& filled, std::span<const ChannelValues> color,
                                    std::span<const ChannelValues> opacity,
                                    const CellColors& colors) {
   std::array<ColorPowers, kMaxChannels> color_powers;
   std::array<ColorPowers, kMaxChannels> opacity_powers;
   colors.powers(color, &color_powers);
   colors.powers(opacity, &opacity_powers);
+  take_blocks(filled);
   put_powers_behind(color_powers, opacity_powers[0]);
 }
 
@@ -359,9 +265,10 @@ void CellSamples::put_full_behind(std::span<const Veil> veils, const CellColors&
     passing_all_ *= veil.passing;
     return;
   }
-  for (auto& words : filled_) words.fill(~std::uint64_t{0});
+  SampleRows all;
+  all.fill(kAll);
   if (veils.size() == 1) {
-    put_constant_behind(veils[0].color, 1.0 - veils[0].passing);
+    put_constant_behind(all, veils[0].color, 1.0 - veils[0].passing);
     return;
   }
   std::vector<ChannelValues> values;
@@ -370,7 +277,7 @@ void CellSamples::put_full_behind(std::span<const Veil> veils, const CellColors&
     values.push_back(veil.color);
     opacities.push_back({1.0 - veil.passing});
   }
-  put_nodes_behind(values, opacities, colors);
+  put_nodes_behind(all, values, opacities, colors);
 }
 
 bool CellSamples::are_equal(const CellLayer& a, const CellLayer& b) const {
@@ -383,13 +290,13 @@ bool CellSamples::are_equal(const CellLayer& a, const CellLayer& b) const {
 // Puts a layer behind, together with those below it that fill the same. Returns the last of them.
 std::size_t CellSamples::put_layer_behind(std::size_t i, std::span<const CellLayer> layers,
                                           CellColors* colors) {
-  fill(layers[i]);
+  const SampleRows& filled = bits_.fill(layers[i], center_);
   if (colors->nodes() > 1) {
     std::vector<ChannelValues> opacities;
     for (const ChannelValues& value : colors->color(i)) {
       opacities.push_back({colors->opacity(value)});
     }
-    put_nodes_behind(colors->color(i), opacities, *colors);
+    put_nodes_behind(filled, colors->color(i), opacities, *colors);
     return i;
   }
   Veil veil;
@@ -401,18 +308,23 @@ std::size_t CellSamples::put_layer_behind(std::size_t i, std::span<const CellLay
          are_equal(layers[i], layers[i + 1])) {
     put(colors->color(++i)[0]);
   }
-  put_constant_behind(veil.color, 1.0 - veil.passing);
+  put_constant_behind(filled, veil.color, 1.0 - veil.passing);
   return i;
 }
 
 // Where it does not pass any more.
 void CellSamples::take_background(const ChannelValues& background) {
   const double hidden = kCount - passing_all_ * left_;
-  for (int c = 0; c < channels_; ++c) {
-    sums_[c] -= hidden * background[c];
-    if (!keeps_places_) continue;
-    const auto value = static_cast<float>(background[c]);
-    for (int i = 0; i < kCount; ++i) values_[c][i] -= (1.0F - passing_[i]) * value;
+  for (int c = 0; c < channels_; ++c) sums_[c] -= hidden * background[c];
+  if (!keeps_places_) return;
+  for (int block = 0; block < kBlocks; ++block) {
+    take_behind(block);
+    for (int c = 0; c < channels_; ++c) {
+      const auto value = static_cast<float>(background[c]);
+      for (int i = block * kBlockCount; i < (block + 1) * kBlockCount; ++i) {
+        values_[c][i] -= (1.0F - passing_[i]) * value;
+      }
+    }
   }
 }
 
@@ -429,32 +341,49 @@ void CellSamples::compose(int column, int row, std::span<const CellLayer> layers
   take_background(colors->background());
 }
 
+// Of values that are the same all over what is around a sample, so that of a cell of one color the
+// moments are exact.
 void CellSamples::moments(int channel, int degree, double* out) const {
   std::fill_n(out, (degree + 1) * (degree + 1), 0.0);
   if (!keeps_places_) {
     out[0] = sums_[channel] / kCount;
     return;
   }
-  // Of each row, of u^a.
-  std::array<std::array<float, kRows>, Kernel::kMostDegree + 1> along{};
-  for (int column = 0; column < kColumns; ++column) {
-    const float* values = values_[channel].data() + column * kRows;
-    for (int row = 0; row < kRows; ++row) {
-      const float u = (static_cast<float>(column) + kOffsets[row]) / kColumns - 0.5F;
-      float value = values[row];
-      for (int a = 0; a <= degree; ++a) {
-        along[a][row] += value;
-        value *= u;
-      }
+  // The means of x^a from side to side of what is `width` wide around a place.
+  const auto mean_powers = [degree](double place, double width, auto* powers) {
+    double low = 1.0;
+    double high = 1.0;
+    for (int a = 0; a <= degree; ++a) {
+      low *= place - 0.5 * width;
+      high *= place + 0.5 * width;
+      (*powers)[a] = (high - low) / (width * (a + 1));
+    }
+  };
+  constexpr int kRowsTogether = 4;
+  constexpr int kVectors = kSide / kLanes;
+  // Of each column: the sums over rows of y^b.
+  std::array<std::array<Floats, kVectors>, Kernel::kMostDegree + 1> up{};
+  for (int first = 0; first < kSide; first += kRowsTogether) {
+    std::array<double, Kernel::kMostDegree + 1> powers;
+    constexpr double kHeight = double{kRowsTogether} / kSide;
+    mean_powers(first * (1.0 / kSide) + 0.5 * kHeight - 0.5, kHeight, &powers);
+    for (int i = 0; i < kVectors; ++i) {
+      const int block = first / kBlockSide * kBlockSide + i * kLanes / kBlockSide;
+      const int sample = first % kBlockSide * kBlockSide + i * kLanes % kBlockSide;
+      const float* values = values_[channel].data() + block * kBlockCount + sample;
+      Floats sum = load(values);
+      for (int row = 1; row < kRowsTogether; ++row) sum += load(values + row * kBlockSide);
+      for (int b = 0; b <= degree; ++b) up[b][i] += sum * static_cast<float>(powers[b]);
     }
   }
-  for (int row = 0; row < kRows; ++row) {
-    double power = 1.0 / kCount;
-    for (int b = 0; b <= degree; ++b) {
-      for (int a = 0; a <= degree; ++a) {
-        out[a * (degree + 1) + b] += static_cast<double>(along[a][row]) * power;
+  for (int column = 0; column < kSide; ++column) {
+    std::array<double, Kernel::kMostDegree + 1> powers;
+    mean_powers((column + 0.5) / kSide - 0.5, 1.0 / kSide, &powers);
+    for (int a = 0; a <= degree; ++a) {
+      for (int b = 0; b <= degree; ++b) {
+        out[a * (degree + 1) + b] +=
+            powers[a] * static_cast<double>(up[b][column / kLanes][column % kLanes]) / kCount;
       }
-      power *= sample_y(row);
     }
   }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Cells that more arcs pass than an image can show: winding numbers summed up on a fine grid.
+// Cells that more arcs pass than an image can show: their layers, put one behind another sample by
+// sample.
 #pragma once
 
 #include <array>
@@ -10,20 +11,16 @@
 
 #include "prefilter/raster/cell_colors.h"
 #include "prefilter/raster/row_layers.h"
+#include "prefilter/raster/sample_bits.h"
 
 namespace prefilter {
 
-/// Rows of samples, each farther to the right than the one below by another part of their distance,
-/// in no order that edges could have, too. So an edge of any direction is off by what lies between
-/// half of two rows at the most, and mostly by a tenth of that.
+/// Samples are in blocks of 8 x 8: what fills all of a block counts for the block, and only what
+/// fills part of it for each sample, so that a layer takes time in proportion to its boundary.
 class CellSamples {
  public:
-  static constexpr int kRows = 128;
-  static constexpr int kColumns = 32;
-  static constexpr int kCount = kRows * kColumns;
-
-  /// Where a sample is, from the cell's center.
-  static Point2 place(int row, int column);
+  static constexpr int kSide = SampleBits::kSide;
+  static constexpr int kCount = SampleBits::kCount;
 
   /// With `keeps_places` there are moments of any degree; else only of degree 0, of colors that are
   /// constant.
@@ -36,28 +33,28 @@ class CellSamples {
   void moments(int channel, int degree, double* out) const;
 
  private:
-  static constexpr int kWordRows = 64;
-  static constexpr int kWords = kRows / kWordRows;
+  static constexpr int kBlockSide = 8;
+  static constexpr int kBlockCount = kBlockSide * kBlockSide;
+  static constexpr int kBlocks = kCount / kBlockCount;
 
-  using Samples = std::vector<float>;  // by columns, and in those by rows
-  // A bit a row, of each column.
-  using Bits = std::array<std::array<std::uint64_t, kWords>, kColumns>;
+  using Samples = std::vector<float>;  // by blocks, and in those by rows
+  // What was put behind all of a block's samples since they were looked at one by one.
+  struct Behind {
+    std::array<float, kMaxChannels> color{};
+    float passing = 1.0F;
+  };
 
   void begin();
-  template <typename Use>
-  void for_steps(const StackArc& arc, const Use& use) const;
-  void fill_odd(const CellLayer& layer);
-  template <typename Count>
-  void fill_by_windings(const CellLayer& layer, std::vector<Count>* steps);
-  void fill(const CellLayer& layer);
   void let_some_pass();
-  double take_opaque();
-  float take_passing(int column, int word, const ChannelValues& color, float opaque);
+  double take_opaque(const SampleRows& filled);
+  void take_blocks(const SampleRows& filled);
   double take_passing(const ChannelValues& color, float opaque);
-  void put_constant_behind(const ChannelValues& color, double opacity);
+  float take_part(int block, const ChannelValues& color, float opaque);
+  void take_behind(int block);
+  void put_constant_behind(const SampleRows& filled, const ChannelValues& color, double opacity);
   void put_powers_behind(const std::array<ColorPowers, kMaxChannels>& color,
                          const ColorPowers& opacity);
-  void put_nodes_behind(std::span<const ChannelValues> color,
+  void put_nodes_behind(const SampleRows& filled, std::span<const ChannelValues> color,
                         std::span<const ChannelValues> opacity, const CellColors& colors);
   void put_full_behind(std::span<const Veil> veils, const CellColors& colors);
   bool are_equal(const CellLayer& a, const CellLayer& b) const;
@@ -69,16 +66,18 @@ class CellSamples {
   int channels_;
   bool keeps_places_;
   Point2 center_;
-  std::vector<std::int8_t> narrow_steps_;  // a column more than there are samples; 0 between layers
-  std::vector<std::int32_t> wide_steps_;   // likewise
-  Bits filled_{};                          // by the layer in hand
-  // What passes through what is there already: all or nothing, as `open_` tells, or `passing_`,
-  // which does not show where it is not open; times `passing_all_`.
+  SampleBits bits_;
+  // What passes through what is there already: all or nothing, as `open_` tells, or `passing_`
+  // times `behind_[].passing`; times `passing_all_`.
   bool is_opaque_ = true;
-  Bits open_{};
+  SampleRows open_{};
   Samples passing_;
+  std::array<Behind, kBlocks> behind_{};
+  std::array<float, kBlocks> block_left_{};  // the sums of passing_
+  std::uint64_t open_blocks_ = 0;
+  std::array<std::uint64_t, kBlocks> filled_blocks_{};  // by the layer in hand
   double passing_all_ = 1.0;
-  double left_ = kCount;         // the sum of that, without passing_all_
+  double left_ = kCount;         // the sum of what passes, without passing_all_
   std::vector<Samples> values_;  // of each channel, where they are kept
   ChannelValues sums_{};         // or their sums
 };

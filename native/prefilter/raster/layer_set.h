@@ -36,6 +36,22 @@ class LayerSet {
       layer /= 64;
     }
   }
+  /// Calls use(layer) for those below `end` and above `behind`, which may be kNone, from the
+  /// highest until it returns false. Returns whether it never did.
+  template <typename Use>
+  bool each_between(std::uint32_t end, std::uint32_t behind, const Use& use) const {
+    const std::uint32_t least = behind == kNone ? 0 : behind + 1;
+    for (std::uint32_t top = highest_below(end); top != kNone && top >= least;
+         top = highest_below(top / 64 * 64)) {
+      std::uint64_t bits = levels_[0][top / 64] & (~std::uint64_t{0} >> (63 - top % 64));
+      for (; bits != 0; bits ^= std::uint64_t{1} << highest(bits)) {
+        const std::uint32_t layer = top / 64 * 64 + highest(bits);
+        if (layer < least) return true;
+        if (!use(layer)) return false;
+      }
+    }
+    return true;
+  }
   /// The highest one below `end`, or kNone.
   std::uint32_t highest_below(std::uint32_t end) const {
     for (std::size_t level = 0; level < levels_.size(); ++level) {

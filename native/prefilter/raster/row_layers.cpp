@@ -12,8 +12,10 @@ namespace {
 
 // The logarithm of RowLayers::kLeastPassing, and a bit.
 constexpr double kLeastDepth = -16.2;
+// That of 1/16384: of what passes less in all, samples show nothing.
+constexpr double kLeastSampledDepth = -9.71;
 
-// Through so many layers it is looked what they hide, all at once.
+// After so many layers that fill cells it is looked what they hide, all at once.
 constexpr int kLayersTogether = 16;
 
 // How much passes through a paint at most.
@@ -66,6 +68,7 @@ void RowLayers::make_row(int row, StackArcs* arcs) {
   open_.reset(columns_);
   depth_steps_.assign(static_cast<std::size_t>(columns_) + 1, 0.0);
   layers_until_closing_ = kLayersTogether;
+  arc_counts_.assign(static_cast<std::size_t>(columns_), 0);
   arcs_.clear();
   steps_.clear();
   records_.clear();
@@ -76,7 +79,7 @@ void RowLayers::make_row(int row, StackArcs* arcs) {
     const std::size_t first = arcs_.size();
     arcs->append(layer, open_, &arcs_);
     if (arcs_.size() > first) add_layer(layer.layer, first);
-    if (--layers_until_closing_ == 0) close_hidden();
+    if (layers_until_closing_ <= 0) close_hidden();
   }
   sort_by_columns(records_, columns_, &first_record_, &sorted_records_);
   sort_by_columns(changes_, columns_, &first_change_, &sorted_changes_);
@@ -133,6 +136,7 @@ void RowLayers::add_cell(std::uint32_t layer, int column, std::size_t first_arc,
     add_full(layer, column, column + 1);
     return;
   }
+  arc_counts_[column] += static_cast<std::uint32_t>(arcs.size());
   const auto first_step = static_cast<std::uint32_t>(steps_.size());
   steps_.insert(steps_.end(), own_steps_.begin(), own_steps_.end());
   records_.push_back({layer, rules_[layer], column, base_, first_step,
@@ -149,6 +153,7 @@ void RowLayers::add_full(std::uint32_t layer, int begin, int end) {
     changes_.push_back({begin, layer, true});
     changes_.push_back({end, layer, false});
   }
+  if (full_end_ < 0) --layers_until_closing_;
   full_end_ = end;
   if (depths_[layer] >= kLeastDepth) {
     depth_steps_[begin] += depths_[layer];
@@ -165,7 +170,10 @@ void RowLayers::close_hidden() {
   double depth = 0.0;
   for (int column = 0; column < columns_; ++column) {
     depth += depth_steps_[column];
-    if (depth < kLeastDepth && open_.is_open(column)) open_.close(column);
+    const bool is_sampled = arc_counts_[column] > kMostSweptArcs;
+    if (depth < (is_sampled ? kLeastSampledDepth : kLeastDepth) && open_.is_open(column)) {
+      open_.close(column);
+    }
   }
 }
 

@@ -37,6 +37,9 @@ class RowLayers {
  public:
   /// Of layers that let less pass in all nothing is seen in a float.
   static constexpr double kLeastPassing = 1e-7;
+  /// With more arcs a cell is sampled: moments hold 31 regions to the right of some, one over
+  /// another.
+  static constexpr std::size_t kMostSweptArcs = 60;
 
   RowLayers(const LayerStack& stack, int channels);
 
@@ -90,6 +93,7 @@ class RowLayers {
   OpenColumns open_;
   std::vector<double> depth_steps_;  // of the layers so far, from column to column
   int layers_until_closing_ = 0;
+  std::vector<std::uint32_t> arc_counts_;  // of the layers so far, of each column
   std::vector<StackArc> arcs_;
   std::vector<SideStep> steps_;
   std::vector<Record> records_;

@@ -43,11 +43,12 @@ void StackArcs::begin_band(const LayerStack& stack, const CellFilter& filter, in
     const EdgeList& edges = stack.layers[i].edges;
     if (edges.high() < low || edges.low() > high) continue;
     const std::size_t first = pieces_.size();
-    edges.for_pieces_between(window_.first_row, window_.end_row, filter,
-                             [&](const MonotoneCurve& piece, bool backward) {
-                               if (piece.begin.y == piece.end.y) return;
-                               pieces_.push_back({piece, backward ? 1 : -1});
-                             });
+    edges.for_pieces_between(
+        window_.first_row, window_.end_row, filter, [&](const MonotoneCurve& piece, bool backward) {
+          if (piece.begin.y == piece.end.y) return;
+          const Point2 way = piece.end - piece.begin;
+          pieces_.push_back({piece, backward ? 1 : -1, way.x / way.y, kNoRow, {}});
+        });
     if (pieces_.size() > first) {
       layers_.push_back({static_cast<std::uint32_t>(i), first, pieces_.size()});
     }
@@ -69,24 +70,65 @@ void StackArcs::append_left(double y_begin, double y_end, int sign,
   arcs->push_back({{0.0, y_begin - center}, {0.0, y_end - center}, -1, sign, StackArc::kLine});
 }
 
+// Where a piece passes a height that it has inside.
+StackArcs::Place StackArcs::passing(const Piece& piece, double y) const {
+  const MonotoneCurve& curve = piece.curve;
+  if (curve.curve.kind == CurveKind::kLine) {
+    return {0.0, {curve.begin.x + (y - curve.begin.y) * piece.slope, y}};
+  }
+  const double t = crossing(curve, 1, y, curve.t_begin);
+  const auto [left, right] = std::minmax(curve.begin.x, curve.end.x);
+  return {t, {std::clamp(curve.curve.at(t).x, left, right), y}};
+}
+
+// Rows come from below, so that a piece comes into one where it came out of the last.
+void StackArcs::take_part(std::uint32_t index) {
+  Piece& piece = pieces_[index];
+  Place low{piece.curve.t_begin, piece.curve.begin};
+  Place high{piece.curve.t_end, piece.curve.end};
+  if (low.point.y > high.point.y) std::swap(low, high);
+  const int row = row_.first_row;
+  if (high.point.y <= row || low.point.y >= row_.end_row) return;
+  if (low.point.y < row) low = piece.entered_row == row ? piece.entered : passing(piece, row);
+  if (high.point.y > row_.end_row) {
+    high = passing(piece, row_.end_row);
+    piece.entered_row = row_.end_row;
+    piece.entered = high;
+  }
+  const auto column_of = [this](double x) {
+    const double last = row_.end_column - 1;
+    return static_cast<int>(std::floor(std::clamp<double>(x, row_.first_column, last))) -
+           row_.first_column;
+  };
+  const auto [left, right] = std::minmax(low.point.x, high.point.x);
+  parts_.push_back({index, low, high, column_of(left - 1e-6), column_of(right + 1e-6) + 1});
+}
+
+// Returns whether some of the layer may be in columns that are open.
+bool StackArcs::take_parts(const Layer& layer, const OpenColumns& open) {
+  parts_.clear();
+  int first = row_.end_column - row_.first_column;
+  int end = 0;
+  for (std::size_t i = layer.first_piece; i < layer.end_piece; ++i) {
+    const std::size_t count = parts_.size();
+    take_part(static_cast<std::uint32_t>(i));
+    if (parts_.size() == count) continue;
+    first = std::min(first, parts_.back().first_column);
+    end = std::max(end, parts_.back().end_column);
+  }
+  return first < end && open.next(first, end) < end;
+}
+
 // Of a piece in cells that are not seen only the heights count. Returns false where it passes
 // others.
-bool StackArcs::append_hidden(const Piece& piece, const OpenColumns& open,
+bool StackArcs::append_hidden(const RowPart& part, const OpenColumns& open,
                               std::vector<StackArc>* arcs) const {
-  const Point2& begin = piece.curve.begin;
-  const Point2& end = piece.curve.end;
-  const double first = row_.first_column;
-  const double last = row_.end_column - 1;
-  const double left = std::clamp(std::min(begin.x, end.x) - 1e-6, first, last + 0.5);
-  const double right = std::clamp(std::max(begin.x, end.x) + 1e-6, first, last + 0.5);
-  const int low_column = static_cast<int>(std::floor(left)) - row_.first_column;
-  const int end_column = static_cast<int>(std::floor(right)) - row_.first_column + 1;
-  if (open.next(low_column, end_column) < end_column) return false;
-  if (std::max(begin.x, end.x) >= row_.end_column) return false;
-  const double y_begin = std::clamp<double>(begin.y, row_.first_row, row_.end_row);
-  const double y_end = std::clamp<double>(end.y, row_.first_row, row_.end_row);
-  append_left(y_begin, y_end, piece.sign, arcs);
-  arcs->back().column = low_column;
+  if (open.next(part.first_column, part.end_column) < part.end_column) return false;
+  if (std::max(part.low.point.x, part.high.point.x) >= row_.end_column) return false;
+  const Piece& piece = pieces_[part.piece];
+  const bool rises = piece.curve.begin.y < piece.curve.end.y;
+  append_left(part.low.point.y, part.high.point.y, rises ? piece.sign : -piece.sign, arcs);
+  arcs->back().column = part.first_column;
   return true;
 }
 
@@ -102,37 +144,51 @@ void StackArcs::append_line(const Piece& piece, std::vector<StackArc>* arcs) con
   cut_line_to_cells(piece.curve.begin, piece.curve.end, row_, add_line, add_left);
 }
 
-void StackArcs::append_curve(std::uint32_t index, std::vector<StackArc>* arcs) {
-  const Piece& piece = pieces_[index];
+void StackArcs::append_curve(const RowPart& part, std::vector<StackArc>* arcs) {
+  const Piece& piece = pieces_[part.piece];
+  const bool rises = piece.curve.begin.y < piece.curve.end.y;
   const auto add_arc = [&](int column, int row, const CellArc& arc) {
     if (arc.begin.y == arc.end.y) return;
     const Point2 center{column + 0.5, row + 0.5};
     StackArc made{arc.begin - center, arc.end - center, column - row_.first_column, piece.sign,
                   static_cast<std::uint32_t>(curves_.size())};
-    if (made.low.y > made.high.y) {
+    if (!rises) {
       std::swap(made.low, made.high);
       made.winding = -piece.sign;
     }
     arcs->push_back(made);
-    curves_.push_back({index, arc.t_begin, arc.t_end});
+    curves_.push_back({part.piece, arc.t_begin, arc.t_end});
   };
+  const Place& begin = rises ? part.low : part.high;
+  const Place& end = rises ? part.high : part.low;
+  if (part.first_column + 1 == part.end_column &&
+      std::min(begin.point.x, end.point.x) >= row_.first_column &&
+      std::max(begin.point.x, end.point.x) <= row_.end_column) {
+    add_arc(part.first_column + row_.first_column, row_.first_row,
+            {begin.t, end.t, begin.point, end.point});
+    return;
+  }
+  MonotoneCurve in_row = piece.curve;
+  in_row.t_begin = begin.t;
+  in_row.begin = begin.point;
+  in_row.t_end = end.t;
+  in_row.end = end.point;
   const auto add_left = [&](int, double y_begin, double y_end) {
     append_left(y_begin, y_end, piece.sign, arcs);
   };
-  cut_to_cells(piece.curve, row_, add_arc, add_left);
+  cut_to_cells(in_row, row_, add_arc, add_left);
 }
 
 void StackArcs::append(const Layer& layer, const OpenColumns& open, std::vector<StackArc>* arcs) {
+  if (!take_parts(layer, open)) return;
   const std::size_t first = arcs->size();
-  for (std::size_t i = layer.first_piece; i < layer.end_piece; ++i) {
-    const Piece& piece = pieces_[i];
-    const auto [low, high] = std::minmax(piece.curve.begin.y, piece.curve.end.y);
-    if (high <= row_.first_row || low >= row_.end_row) continue;
-    if (append_hidden(piece, open, arcs)) continue;
+  for (const RowPart& part : parts_) {
+    if (append_hidden(part, open, arcs)) continue;
+    const Piece& piece = pieces_[part.piece];
     if (piece.curve.curve.kind == CurveKind::kLine) {
       append_line(piece, arcs);
     } else {
-      append_curve(static_cast<std::uint32_t>(i), arcs);
+      append_curve(part, arcs);
     }
   }
   sort_by_columns(first, arcs);

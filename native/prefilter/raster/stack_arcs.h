@@ -50,7 +50,8 @@ class StackArcs {
 
   void begin_row(int row);
   /// Appends the arcs of a layer in the row, by columns. What lies left of the window is in column
-  /// -1, and what lies in columns that are not open is in any of those.
+  /// -1, and what lies in columns that are not open is in any of those. Of a layer that is in none
+  /// that are open there are no arcs.
   void append(const Layer& layer, const OpenColumns& open, std::vector<StackArc>* arcs);
   const StackCurve& curve(const StackArc& arc) const { return curves_[arc.curve]; }
   /// Whether they are the same, as far as five places tell.
@@ -59,19 +60,41 @@ class StackArcs {
   const MonotoneCurve& piece(const StackCurve& curve) const { return pieces_[curve.piece].curve; }
 
  private:
+  // Where a piece is at a height.
+  struct Place {
+    double t = 0.0;
+    Point2 point;
+  };
   struct Piece {
     MonotoneCurve curve;
     int sign = 1;
+    double slope = 0.0;  // of lines: x by y
+    // Where it came out of the row below.
+    int entered_row = kNoRow;
+    Place entered;
   };
+  // What is in the row of a piece.
+  struct RowPart {
+    std::uint32_t piece = 0;
+    Place low;
+    Place high;
+    // From the window's first, and within the window.
+    int first_column = 0;
+    int end_column = 0;
+  };
+  static constexpr int kNoRow = INT32_MIN;
   // What tells an arc from others: where it is at five places. Curves up to degree 3, and conics,
   // are told by so many.
   using Places = std::array<double, 12>;
 
   Places places_of(const StackArc& arc) const;
-  bool append_hidden(const Piece& piece, const OpenColumns& open,
+  Place passing(const Piece& piece, double y) const;
+  void take_part(std::uint32_t index);
+  bool take_parts(const Layer& layer, const OpenColumns& open);
+  bool append_hidden(const RowPart& part, const OpenColumns& open,
                      std::vector<StackArc>* arcs) const;
   void append_line(const Piece& piece, std::vector<StackArc>* arcs) const;
-  void append_curve(std::uint32_t index, std::vector<StackArc>* arcs);
+  void append_curve(const RowPart& part, std::vector<StackArc>* arcs);
   void append_left(double y_begin, double y_end, int sign, std::vector<StackArc>* arcs) const;
   void sort_by_columns(std::size_t first, std::vector<StackArc>* arcs);
   void merge_equal(std::size_t first, std::vector<StackArc>* arcs);
@@ -83,6 +106,7 @@ class StackArcs {
   std::vector<Layer> layers_;
   std::vector<Piece> pieces_;
   GridWindow row_;
+  std::vector<RowPart> parts_;
   std::vector<StackCurve> curves_;
   std::vector<StackArc> sorted_;
   std::vector<std::uint32_t> first_;  // of each column

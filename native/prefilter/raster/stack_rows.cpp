@@ -12,9 +12,7 @@ namespace prefilter {
 namespace {
 
 constexpr double kMomentUnit = 1.0 / (1 << kMomentBits);
-// With more arcs a cell is not swept: moments hold 31 regions to the right of some, one over
-// another.
-constexpr std::size_t kMostArcs = 60;
+constexpr std::size_t kMostArcs = RowLayers::kMostSweptArcs;
 
 // About the steps of a sweep, of arcs of which some cross.
 constexpr std::size_t steps_of(std::size_t arcs) { return 3 * arcs * arcs; }

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "outline/outline_oracle.h"
+#include "prefilter/outline/arrangement.h"
 #include "prefilter/outline/resolve_soon.h"
 #include "prefilter/outline/visible_pieces.h"
 #include "prefilter/raster/rasterize.h"
@@ -272,36 +273,55 @@ TEST(StackRows, WindingNumbersThatNothingCancelsFill) {
 }
 
 // For half planes in a cell: the share of it, and that of its samples.
-TEST(CellSamples, NoEdgeIsOffByMoreThanAStepOfBytes) {
-  constexpr int kDirections = 360;
+// A half-plane in one pixel, far beyond it on the other sides.
+Outline half_plane(const Point2& across, double height) {
+  const Point2 along{-across.y, across.x};
+  const Point2 center{0.5, 0.5};
+  Outline outline;
+  outline.move_to(center + height * across - 4.0 * along);
+  outline.line_to(center + height * across + 4.0 * along);
+  outline.line_to(center - 4.0 * across + 4.0 * along);
+  outline.line_to(center - 4.0 * across - 4.0 * along);
+  outline.close();
+  return outline;
+}
+
+TEST(SampleBits, NoEdgeIsOffByMoreThanAStepOfBytes) {
   double worst = 0.0;
-  std::vector<double> heights(CellSamples::kCount);
+  double squares = 0.0;
+  int count = 0;
+  std::mt19937 random(12);
+  std::uniform_real_distribution<double> unit(-0.5, 0.5);
   const auto compare = [&](double turn) {
     const Point2 across{std::cos(turn), std::sin(turn)};
-    for (int i = 0; i < CellSamples::kCount; ++i) {
-      const Point2 place = CellSamples::place(i % CellSamples::kRows, i / CellSamples::kRows);
-      heights[i] = place.x * across.x + place.y * across.y;
-    }
-    std::sort(heights.begin(), heights.end());
     // The integral of a trapezoid: how long a line at a height is in the cell.
     const double a = std::max(1e-9, std::min(std::fabs(across.x), std::fabs(across.y)));
     const double b = std::max(std::fabs(across.x), std::fabs(across.y));
     const auto square = [](double x) { return x > 0.0 ? x * x : 0.0; };
-    for (int i = 0; i < CellSamples::kCount; ++i) {
-      const double up = heights[i] + 0.5 * (a + b);
+    for (int i = 0; i < 60; ++i) {
+      const double height = (a + b) * unit(random);
+      const double up = height + 0.5 * (a + b);
       const double share =
           (square(up) - square(up - a) - square(up - b) + square(up - a - b)) / (2.0 * a * b);
-      // Just before the sample and just behind.
-      worst = std::max({worst, std::fabs(share - i / double{CellSamples::kCount}),
-                        std::fabs(share - (i + 1) / double{CellSamples::kCount})});
+      Paint white;
+      white.constant = {1.0};
+      const std::vector<Shape> shapes = {{half_plane(across, height), FillRule::kNonzero, white}};
+      const Drawn found = drawn<0>(shapes, "box", 1, 1, 0);
+      const double off = found.values[0] - kBackground[0] - share * (1.0 - kBackground[0]);
+      worst = std::max(worst, std::fabs(off));
+      squares += off * off;
+      ++count;
     }
   };
+  constexpr int kDirections = 360;
   for (int i = 0; i < kDirections; ++i) compare(i * 6.283185307179586 / kDirections);
   for (int i = -40; i <= 40; ++i) {
     compare(std::atan(i / 128.0));
     compare(std::atan(i / 128.0) + 1.5707963267948966);
   }
-  EXPECT_LE(worst, 1.0 / 255.0);
+  // Of full contrast it is 4/3 of that.
+  EXPECT_LE(worst / 0.75, 1.0 / 255.0);
+  EXPECT_LE(std::sqrt(squares / count) / 0.75, 1.0 / 1500.0);
 }
 
 // All that cells are sampled for, where there is little enough for a sweep.
@@ -347,7 +367,7 @@ TEST(StackRows, SampledHatchesAreWhatSweptOnesAre) {
       const Drawn swept = drawn<0>(shapes, "box", 5, 5, std::size_t{1} << 40);
       const Drawn sampled = drawn<0>(shapes, "box", 5, 5, 0);
       for (std::size_t i = 0; i < swept.values.size(); ++i) {
-        EXPECT_NEAR(swept.values[i], sampled.values[i], 3.0 / 255.0) << slope << " " << i;
+        EXPECT_NEAR(swept.values[i], sampled.values[i], 1.0 / 255.0) << slope << " " << i;
       }
     }
   }
@@ -422,6 +442,27 @@ TEST(StackRows, WorkIsBounded) {
     EXPECT_GT(found.work.sampled_cells, 100u);
     EXPECT_LT(found.work.swept_steps, std::size_t{1} << 29);
   }
+}
+
+// Few enough to be looked at, but too many of them meet.
+TEST(StackRows, MeetingsOfCurvesAreBounded) {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> place(0.0, 64.0);
+  const auto point = [&] { return Point2{place(random), place(random)}; };
+  const auto curves = [&](int count) {
+    Outline outline;
+    outline.move_to(point());
+    for (int i = 0; i < count; ++i) outline.curve_to(std::vector<Point2>{point(), point()});
+    outline.close();
+    return outline;
+  };
+  std::optional<Outline> changed;
+  EXPECT_TRUE(resolve_soon(curves(40), FillRule::kNonzero, {}, &changed));
+  const Outline many = curves(220);
+  Arrangement arrangement(std::vector<const Outline*>{&many}, kPrecisions[0]);
+  EXPECT_EQ(arrangement.cut(ArrangementEffort::kBounded, {}), CutOutcome::kTooMany);
+  Arrangement whole(std::vector<const Outline*>{&many}, kPrecisions[0]);
+  EXPECT_EQ(whole.cut(ArrangementEffort::kAny, {}), CutOutcome::kCut);
 }
 
 TEST(StackRows, EqualContoursAreOne) {
