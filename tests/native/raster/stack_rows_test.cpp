@@ -444,24 +444,22 @@ TEST(StackRows, WorkIsBounded) {
   }
 }
 
-// Few enough to be looked at, but too many of them meet.
+// Few enough to be looked at, but all of them meet: a grid of slices between curves and their
+// chords.
 TEST(StackRows, MeetingsOfCurvesAreBounded) {
-  std::mt19937 random(9);
-  std::uniform_real_distribution<double> place(0.0, 64.0);
-  const auto point = [&] { return Point2{place(random), place(random)}; };
-  const auto curves = [&](int count) {
-    Outline outline;
-    outline.move_to(point());
-    for (int i = 0; i < count; ++i) outline.curve_to(std::vector<Point2>{point(), point()});
-    outline.close();
-    return outline;
-  };
-  std::optional<Outline> changed;
-  EXPECT_TRUE(resolve_soon(curves(40), FillRule::kNonzero, {}, &changed));
-  const Outline many = curves(220);
-  Arrangement arrangement(std::vector<const Outline*>{&many}, kPrecisions[0]);
-  EXPECT_EQ(arrangement.cut(ArrangementEffort::kBounded, {}), CutOutcome::kTooMany);
-  Arrangement whole(std::vector<const Outline*>{&many}, kPrecisions[0]);
+  Outline grid;
+  for (int i = 0; i < 60; ++i) {
+    grid.move_to({i + 0.5, 0.0});
+    grid.curve_to(std::vector<Point2>{{i + 1.0, 32.0}, {i + 0.5, 64.0}});
+    grid.close();
+    grid.move_to({0.0, i + 0.5});
+    grid.curve_to(std::vector<Point2>{{32.0, i + 1.0}, {64.0, i + 0.5}});
+    grid.close();
+  }
+  const std::vector<const Outline*> outlines{&grid};
+  Arrangement bounded(outlines, kPrecisions[0]);
+  EXPECT_EQ(bounded.cut(ArrangementEffort::kBounded, {}), CutOutcome::kTooMany);
+  Arrangement whole(outlines, kPrecisions[0]);
   EXPECT_EQ(whole.cut(ArrangementEffort::kAny, {}), CutOutcome::kCut);
 }
 
