@@ -4,8 +4,19 @@
 
 #include <algorithm>
 #include <cassert>
+#include <vector>
 
 namespace prefilter {
+namespace {
+
+// By factors: vectors that are told so for each contour would be copied for each.
+template <typename T>
+void reserve_more(std::size_t count, std::vector<T>* values) {
+  const std::size_t needed = values->size() + count;
+  if (needed > values->capacity()) values->reserve(std::max(needed, 2 * values->capacity()));
+}
+
+}  // namespace
 
 void Outline::move_to(const Point2& point) {
   contours_.push_back({static_cast<std::uint32_t>(points_.size()),
@@ -61,8 +72,8 @@ void Outline::append(const Outline& other) {
 }
 
 void Outline::reserve(std::size_t points, std::size_t segments) {
-  points_.reserve(points_.size() + points);
-  segments_.reserve(segments_.size() + segments);
+  reserve_more(points, &points_);
+  reserve_more(segments, &segments_);
 }
 
 std::span<const Outline::Segment> Outline::contour(std::size_t index) const {
