@@ -385,10 +385,11 @@ def test_a_pattern_is_what_its_tiles_are():
     )
 
 
-def test_patterns_finer_than_pixels_are_their_mean():
+@pytest.mark.parametrize("side", [0.01, 0.07])
+def test_patterns_finer_than_pixels_are_their_mean(side):
     pattern = (
-        '<pattern id="p" width="0.01" height="0.02" patternUnits="userSpaceOnUse">'
-        '<rect width="0.01" height="0.005" fill="red"/></pattern>'
+        f'<pattern id="p" width="{side}" height="{2 * side}" patternUnits="userSpaceOnUse">'
+        f'<rect width="{side}" height="{side / 2}" fill="red"/></pattern>'
     )
     made = drawn(pattern + box(20, 20, 60, 60, 'fill="url(#p)"'))
     np.testing.assert_allclose(

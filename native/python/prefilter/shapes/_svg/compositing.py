@@ -34,6 +34,8 @@ Window = tuple[int, int, int, int]
 _MOST_TILED = 20_000
 _MOST_TILES = 4_000
 _SMALLEST_TILE, _LARGEST_TILE = 16, 2048
+# Pixels: of tiles that are smaller all filters see the mean alone, to a thousandth of 1/255.
+_LEAST_SEEN = 1 / 16
 # Layers within layers: each holds an image.
 _MOST_DEPTH = 48
 MOST_LAYER_PIXELS = 1 << 32
@@ -271,16 +273,20 @@ class Compositor:
     def _tiled(self, pattern: Pattern, whole: Matrix, window: Window) -> FloatArray:
         """The same by one tile as an image."""
         left, top, right, bottom = pattern.tile
-        columns, rows = (
-            min(max(math.ceil(_native.hypot(*axis) * side), _SMALLEST_TILE), _LARGEST_TILE)
-            for axis, side in ((whole[:2], right - left), (whole[2:4], bottom - top))
+        sides = (
+            _native.hypot(*whole[:2]) * (right - left),
+            _native.hypot(*whole[2:4]) * (bottom - top),
         )
+        columns, rows = (min(max(math.ceil(side), _SMALLEST_TILE), _LARGEST_TILE) for side in sides)
         scale = (columns / (right - left), 0.0, 0.0, rows / (bottom - top), 0.0, 0.0)
         to_tile = multiplied(scale, (1.0, 0.0, 0.0, 1.0, -left, -top))
         tile = self._nested(self._layering.placed(pattern.group, to_tile), (0, 0, columns, rows))
         moved = multiplied(to_tile, inverse(whole))
         moved = multiplied(moved, (1.0, 0.0, 0.0, 1.0, window[0], window[1]))
         size = window[2] - window[0], window[3] - window[1]
+        if max(sides) < _LEAST_SEEN:
+            mean = tile.sum(axis=0, dtype=np.float64).sum(axis=0) / (columns * rows)
+            return np.broadcast_to(mean.astype(np.float32), (size[1], size[0], 4)).copy()
         return tiled_pixels(tile, moved, *size, self._threads)
 
 

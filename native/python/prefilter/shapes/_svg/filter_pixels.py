@@ -62,9 +62,7 @@ def _by_means(pixels: FloatArray, deviation: float, axis: int) -> FloatArray:
 def _mean(pixels: FloatArray, before: int, after: int, axis: int) -> FloatArray:
     """The mean over pixels beside each other; beyond the edges all is 0."""
     length = pixels.shape[axis]
-    at = np.arange(length)
-    high = np.minimum(at + after + 1, length)
-    low = np.maximum(at - before, 0)
+    ahead, behind = min(after + 1, length), min(before, length)
     found = np.empty_like(pixels)
     # Sums are of some rows or columns at a time, as those of all take twice the memory of pixels.
     for first in range(0, pixels.shape[1 - axis], _STRIP):
@@ -72,7 +70,11 @@ def _mean(pixels: FloatArray, before: int, after: int, axis: int) -> FloatArray:
         lines = pixels[:, part].swapaxes(0, 1) if axis == 0 else pixels[part]
         sums = np.zeros((lines.shape[0], length + 1, lines.shape[2]))
         np.cumsum(lines, axis=1, dtype=np.float64, out=sums[:, 1:])
-        means = (sums[:, high] - sums[:, low]) / (before + after + 1)
+        means = np.empty_like(lines, np.float64)
+        means[:, : length - ahead] = sums[:, ahead:length]
+        means[:, length - ahead :] = sums[:, length:]
+        means[:, behind:] -= sums[:, : length - behind]
+        means /= before + after + 1
         if axis == 0:
             found[:, part] = means.swapaxes(0, 1)
         else:
