@@ -91,16 +91,18 @@ TEST(SupportField, SamplesSupportWhatFacesAsTheyDo) {
 TEST(SupportField, WhatIsTurnedIsFartherFromSamples) {
   const Leaves leaves(testing::sphere_cloud(20000));
   SupportField field(leaves.slabs, 1.0, 3);
-  const Vector3 p = {32.0 + 22.4 + 3.0, 32.0, 30.0};
-  const auto at_angle = [&](double degrees) {
+  const auto at_angle = [&](double away, double degrees) {
     const double angle = degrees * 3.14159265358979 / 180.0;
+    const Vector3 p = {32.0 + 22.4 + away, 32.0, 30.0};
     return field.at({p, {std::cos(angle), std::sin(angle), 0.0}}, kDepth).distance;
   };
-  const float facing = at_angle(0.0);
-  EXPECT_EQ(at_angle(30.0), facing);
+  const float facing = at_angle(1.0, 0.0);
+  EXPECT_EQ(at_angle(1.0, 30.0), facing);
   // By cosines: 1 + 2 * (0.7 - 0.5), and 1 + 2 * 0.7. Samples beside may face it more.
-  EXPECT_NEAR(at_angle(60.0), 1.4F * facing, 0.1F * facing);
-  EXPECT_NEAR(at_angle(90.0), 2.4F * facing, 0.3F * facing);
+  EXPECT_NEAR(at_angle(1.0, 60.0), 1.4F * facing, 0.1F * facing);
+  EXPECT_NEAR(at_angle(1.0, 90.0), 2.4F * facing, 0.3F * facing);
+  // What is far enough to be cut is no farther for it.
+  EXPECT_EQ(at_angle(3.2, 90.0), at_angle(3.2, 0.0));
 }
 
 TEST(SupportField, StraysSupportNothing) {
