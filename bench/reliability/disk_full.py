@@ -35,6 +35,8 @@ from bench.reliability.writers import Writer  # noqa: E402
 
 EARLIER = b"earlier"
 _PAGE = 4096
+# How Zstandard begins, and the table that its seekable format ends with.
+_ZSTANDARD, _SEEK_TABLE = b"\x28\xb5\x2f\xfd", b"\xb1\xea\x92\x8f"
 _END_OF_FBX = bytes.fromhex("f85a8c6adef5d97eece90ce3758f290b")
 
 
@@ -103,6 +105,8 @@ def is_whole(name: str, data: bytes) -> bool:
     if name.endswith(".fbx"):
         return data.startswith(b"Kaydara FBX Binary") and data.endswith(_END_OF_FBX)
     if name.endswith((".blend", ".blend1")):
+        if data.startswith(_ZSTANDARD):  # As Blender 5 writes them.
+            return data.endswith(_SEEK_TABLE)
         return data.startswith(b"BLENDER") and b"ENDB" in data[-64:]
     return False
 

@@ -286,7 +286,8 @@ def make_scene(folder: Path) -> None:
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     bpy.ops.mesh.primitive_cube_add()
     material = bpy.data.materials.new("Painted")
-    material.use_nodes = True
+    if bpy.app.version < (5, 0, 0):
+        material.use_nodes = True
     tree = material.node_tree
     principled = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
     for name, socket in (("paint.png", "Base Color"), ("other.png", "Emission Color")):
