@@ -23,10 +23,12 @@ sys.path.append(str(Path(__file__).resolve().parents[1] / "python"))
 
 HERE = Path(__file__).parent
 PACKAGE = "bl_ext.user_default.prefilter"
-# Arguments, numbers, files of our own: the tests of these are the same whichever Blender runs them.
+# Arguments, numbers, files and windows of our own: the tests of these are the same whichever Blender runs them.
 SAME_IN_ANY_BLENDER = {
     "bridge/files/test_engines.py",
+    "bridge/test_wipe_window.py",
     "core/test_jobs.py",
+    "core/test_queue.py",
     "mipmaps/test_bad_inputs.py",
     "mipmaps/test_contents.py",
     "mipmaps/test_mipmap_commands.py",
@@ -42,6 +44,7 @@ SAME_IN_ANY_BLENDER = {
     "resampling/test_sampling_table_command.py",
     "scans/test_scan_commands.py",
     "shapes/test_shape_commands.py",
+    "test_nothing_lost.py",
     "voxels/test_voxel_commands.py",
 }
 TEXTURED = Path(__file__).resolve().parents[3] / "shared" / "data" / "textured"
