@@ -57,6 +57,7 @@ def test_charts_lie_beside_each_other():
     monkey = bpy.context.object
     monkey.modifiers.new("Subdivision", "SUBSURF").levels = 2
     bpy.ops.object.modifier_apply(modifier="Subdivision")
+    monkey.data.uv_layers.remove(monkey.data.uv_layers[0])
     bpy.data.objects["Scan"].select_set(True)
     size = 1024
     assert bpy.ops.prefilter.paint_texture(size=size) == {"FINISHED"}
