@@ -23,7 +23,8 @@ sys.path.append(str(Path(__file__).resolve().parents[1] / "python"))
 
 HERE = Path(__file__).parent
 PACKAGE = "bl_ext.user_default.prefilter"
-# Arguments, numbers, files and windows of our own: the tests of these are the same whichever Blender runs them.
+# Arguments, numbers, files and windows of our own: the tests of these are the same whichever
+# Blender runs them.
 SAME_IN_ANY_BLENDER = {
     "bridge/files/test_engines.py",
     "bridge/test_wipe_window.py",
