@@ -263,7 +263,7 @@ def stage(texture: Texture, levels: Sequence[FloatArray], check: Check) -> stagi
             raise OSError(f"cannot write '{temporary}': {writer.geterror()}")
         # An OpenEXR file is finished when its writer goes.
         del writer
-        openimageio.check_whole(temporary)
+        openimageio.check_whole(temporary, 1 + len(levels))
         os.utime(temporary, ns=(time, time))
 
     try:
