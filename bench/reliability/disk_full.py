@@ -16,7 +16,6 @@ import argparse
 import contextlib
 import io
 import os
-import re
 import resource
 import shutil
 import signal
@@ -265,12 +264,7 @@ def main() -> None:
         writers.make_sources(sources)
         if in_blender:
             writers.make_scene(sources)
-        for writer in writers.of_kind(*kinds):
-            if not re.search(options.pattern, f"{writer.kind} {writer.name}"):
-                continue
-            if missing := writer.missing():
-                told.note(f"{writer.kind} {writer.name} left out: there is no {missing}")
-                continue
+        for writer in writers.chosen(options.pattern, kinds, told):
             trial = Trial(writer, sources, place)
             full, are_disks = on_full_disks(trial, place, options.sizes)
             others = [read_only(trial, place), vanishing(trial, place)]

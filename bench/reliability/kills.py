@@ -20,7 +20,6 @@ import io
 import itertools
 import os
 import random
-import re
 import shutil
 import signal
 import subprocess
@@ -260,12 +259,7 @@ def main() -> None:
         writers.make_sources(sources)
         has_blender = shutil.which("blender") is not None and not run(scene(sources)).returncode
         kinds = ("package", "command", *(("blender",) if has_blender else ()))
-        for writer in writers.of_kind(*kinds):
-            if not re.search(options.pattern, f"{writer.kind} {writer.name}"):
-                continue
-            if missing := writer.missing():
-                told.note(f"{writer.kind} {writer.name} left out: there is no {missing}")
-                continue
+        for writer in writers.chosen(options.pattern, kinds, told):
             trial = Apart(writer, sources, place)
             if options.way == "calls":
                 found = at_calls(trial, place, LIBRARY)

@@ -8,14 +8,18 @@ Runs one, COUNT times in turn, into a folder: `SOURCES` holds what `make_sources
 prints a line before each, and exits with the status of the last one.
 """
 
+import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from bench.report import Report
 
 SIDE = 64
 
@@ -232,6 +236,17 @@ WRITERS = [
 def of_kind(*kinds: str) -> list[Writer]:
     """Returns the writers of some programs."""
     return [writer for writer in WRITERS if writer.kind in kinds]
+
+
+def chosen(pattern: str, kinds: Iterable[str], told: "Report") -> Iterator[Writer]:
+    """Yields the writers that a pattern names and that can run here; says which cannot."""
+    for writer in of_kind(*kinds):
+        if not re.search(pattern, f"{writer.kind} {writer.name}"):
+            continue
+        if missing := writer.missing():
+            told.note(f"{writer.kind} {writer.name} left out: there is no {missing}")
+            continue
+        yield writer
 
 
 def named(kind: str, name: str) -> Writer:

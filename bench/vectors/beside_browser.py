@@ -17,7 +17,6 @@ of those without a warning are within 2.
 import argparse
 import math
 import multiprocessing
-import sys
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -27,9 +26,9 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 from prefilter.shapes.svg_image import SvgPicture
 
-from bench.report import Report, add_json_option
+from bench.report import Report
 from bench.vectors.browser import Browser, Wanted, premultiplied
-from bench.vectors.drawings import FAR, NEAR, SHARE, SIDE, referred
+from bench.vectors.drawings import FAR, NEAR, SHARE, SIDE, arguments, referred
 
 WORST = 30
 THUMBNAIL = 200
@@ -185,18 +184,9 @@ def told(found: list[Compared], failed: list[tuple[str, str]], report: Report) -
 def main() -> None:
     """Compares and prints."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("folder", type=Path)
     parser.add_argument("--browser", default="chromium", help="(default: %(default)s)")
-    parser.add_argument("--resvg", default="resvg", help="the program (default: %(default)s)")
-    parser.add_argument("--fonts", type=Path, help="a folder of fonts, for all three")
     parser.add_argument("--kept", type=Path, help="a folder in which Chromium's pictures stay")
-    parser.add_argument("--sheet", type=Path, help="write the worst drawings to this image")
-    parser.add_argument("--jobs", type=int, default=2, help="processes (default: %(default)s)")
-    add_json_option(parser)
-    options = parser.parse_args()
-    paths = sorted(options.folder.rglob("*.svg"))
-    if not paths:
-        sys.exit(f"{options.folder} holds no SVG files")
+    options, paths = arguments(parser)
     work = partial(
         compared,
         folder=options.folder,

@@ -163,12 +163,11 @@ def told(found: list[Compared], report: Report) -> None:
     report.verdict(not far, f"{len(far)} are beyond 8/255 without a warning (0 asked)")
 
 
-def main() -> None:
-    """Compares and prints."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+def arguments(parser: argparse.ArgumentParser) -> tuple[argparse.Namespace, list[Path]]:
+    """Reads the arguments of programs that compare a folder of drawings, and finds these."""
     parser.add_argument("folder", type=Path)
     parser.add_argument("--resvg", default="resvg", help="the program (default: %(default)s)")
-    parser.add_argument("--fonts", type=Path, help="a folder of fonts, for both")
+    parser.add_argument("--fonts", type=Path, help="a folder of fonts, for all programs")
     parser.add_argument("--sheet", type=Path, help="write the worst drawings to this image")
     parser.add_argument("--jobs", type=int, default=2, help="processes (default: %(default)s)")
     add_json_option(parser)
@@ -176,6 +175,13 @@ def main() -> None:
     paths = sorted(options.folder.rglob("*.svg"))
     if not paths:
         sys.exit(f"{options.folder} holds no SVG files")
+    return options, paths
+
+
+def main() -> None:
+    """Compares and prints."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    options, paths = arguments(parser)
     one = partial(compared, resvg=options.resvg, fonts=options.fonts)
     with multiprocessing.Pool(options.jobs) as pool:
         found = pool.map(one, paths, chunksize=4)

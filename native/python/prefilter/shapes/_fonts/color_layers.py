@@ -9,11 +9,10 @@ from functools import cached_property
 from typing import Any, TypeAlias
 
 from ... import _native
+from ..affine import IDENTITY, Matrix, multiplied
 
-Matrix: TypeAlias = tuple[float, float, float, float, float, float]
 Color: TypeAlias = tuple[float, float, float, float]
 
-_IDENTITY: Matrix = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
 _TEXT_COLOR = 0xFFFF
 _SPREADS = ("pad", "repeat", "reflect")
 MOST_PAINTS = 4096
@@ -111,8 +110,8 @@ class ColorTable:
             return None
         fills = (
             ColorFill(
-                self.number(layer.name), _IDENTITY, "solid", (),
-                (self.stop(0.0, layer.colorID, 1.0),), "pad", _IDENTITY,
+                self.number(layer.name), IDENTITY, "solid", (),
+                (self.stop(0.0, layer.colorID, 1.0),), "pad", IDENTITY,
             )
             for layer in layers[:MOST_PAINTS]
         )  # fmt: skip
@@ -174,7 +173,7 @@ class _Reading:
         self._depth = 0
 
     def group(self, paint: Any) -> ColorGroup:
-        return ColorGroup(tuple(self._items(paint, _IDENTITY)))
+        return ColorGroup(tuple(self._items(paint, IDENTITY)))
 
     def _items(self, paint: Any, matrix: Matrix) -> Iterator[ColorFill | ColorGroup]:
         """Yields what a paint consists of; the matrix leads to the units of the glyph."""
@@ -191,11 +190,11 @@ class _Reading:
         elif kind == 11:
             yield from self._items(self._table.paint_of(paint.Glyph), matrix)
         elif 12 <= kind < 32:
-            yield from self._items(paint.Paint, _multiplied(matrix, _transform(paint)))
+            yield from self._items(paint.Paint, multiplied(matrix, _transform(paint)))
         elif kind == 32:
             yield from self._composite(paint, matrix)
         else:
-            yield self._fill(paint, None, _IDENTITY, matrix)
+            yield self._fill(paint, None, IDENTITY, matrix)
         self._depth -= 1
 
     def _cut(self, paint: Any, matrix: Matrix) -> Iterator[ColorFill | ColorGroup]:
@@ -205,7 +204,7 @@ class _Reading:
         for _ in range(MOST_DEPTH):
             if not 12 <= _kind_of(inner) < 32:
                 break
-            paint_matrix = _multiplied(paint_matrix, _transform(inner))
+            paint_matrix = multiplied(paint_matrix, _transform(inner))
             inner = inner.Paint
         if 2 <= _kind_of(inner) < 10:
             yield self._fill(inner, glyph, matrix, paint_matrix)
@@ -305,7 +304,7 @@ def _transform(paint: Any) -> Matrix:
     if kind not in (18, 22, 26, 30):
         return found
     x, y = float(paint.centerX), float(paint.centerY)
-    return _multiplied(_multiplied((1.0, 0.0, 0.0, 1.0, x, y), found), (1.0, 0.0, 0.0, 1.0, -x, -y))
+    return multiplied(multiplied((1.0, 0.0, 0.0, 1.0, x, y), found), (1.0, 0.0, 0.0, 1.0, -x, -y))
 
 
 def _line_of(paint: Any) -> tuple[float, ...] | None:
@@ -329,16 +328,3 @@ def _between(numbers: tuple[float, ...], first: float, last: float) -> tuple[flo
     half = len(numbers) // 2
     ends = tuple(zip(numbers[:half], numbers[half:], strict=True))
     return tuple(a + (b - a) * share for share in (first, last) for a, b in ends)
-
-
-def _multiplied(outer: Matrix, inner: Matrix) -> Matrix:
-    a, b, c, d, e, f = outer
-    g, h, i, j, k, m = inner
-    return (
-        a * g + c * h,
-        b * g + d * h,
-        a * i + c * j,
-        b * i + d * j,
-        a * k + c * m + e,
-        b * k + d * m + f,
-    )

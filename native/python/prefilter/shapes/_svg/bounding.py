@@ -4,13 +4,14 @@
 
 from dataclasses import replace
 
+from ..affine import IDENTITY
 from .basic_shapes import BASIC_SHAPES
 from .context import Context, Sources
 from .document import SvgElement
 from .nesting import children, moved, used, viewport
 from .tags import GROUPS, NOT_DRAWN
 from .tree import Box, carried, joined
-from .values import IDENTITY, Length
+from .values import Length
 
 _ZERO = Length(0.0)
 

@@ -5,6 +5,7 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
+from ..affine import multiplied
 from .basic_shapes import BASIC_SHAPES
 from .bounding import object_bounds
 from .clips import clip_of
@@ -13,7 +14,7 @@ from .document import SvgElement
 from .nesting import moved, used
 from .tags import NOT_DRAWN
 from .tree import Clip, ClipPart
-from .values import as_paint, multiplied
+from .values import as_paint
 
 
 def clipped(element: SvgElement, context: Context, sources: Sources) -> Context | None:

@@ -4,9 +4,9 @@
 
 from collections.abc import Sequence
 
+from ..affine import Matrix
 from .outline import Outline
 from .tree import Box, Clip, ClipPart, carried, common, joined
-from .values import Matrix
 
 
 def clip_of(parts: Sequence[ClipPart], clips: tuple[Clip, ...]) -> Clip:

@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from ... import _native
 from ...images.pixel_filters import PIXEL_FILTERS
+from ..affine import Matrix, inverse, multiplied
 from ..rasterization import rasterize
 from ..shape import Shape
 from .blending import blended
@@ -24,7 +25,6 @@ from .limits import TooLargeError
 from .outlining import Outlining
 from .resampled import picture_pixels, tiled_pixels
 from .tree import Box, Clip, Group, Mask, Painted, Pattern, Picture, carried, common
-from .values import Matrix, inverse, multiplied
 
 FloatArray = npt.NDArray[np.float32]
 Window = tuple[int, int, int, int]

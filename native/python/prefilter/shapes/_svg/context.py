@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from .._fonts.bitmaps import Bitmap
+from ..affine import Matrix
 from .basic_shapes import read_shape
 from .document import Document, SvgElement
 from .font_places import FontPlaces
@@ -17,7 +18,7 @@ from .paint_servers import Colors, PaintServers
 from .pictures import Texels
 from .styles import Style, StyleSheets
 from .tree import Clip, Group
-from .values import Length, Matrix, Paint, as_paint
+from .values import Length, Paint, as_paint
 from .warnings import Warnings
 
 

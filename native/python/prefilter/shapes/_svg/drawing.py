@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
+from ..affine import IDENTITY, Matrix, determinant, multiplied
 from ..shape import Shape
 from .basic_shapes import BASIC_SHAPES
 from .clip_paths import clipped
@@ -26,7 +27,7 @@ from .painting import paint_order, resolved, stroke_of
 from .styles import UNSUPPORTED, Style, StyleSheets
 from .tags import NOT_DRAWN
 from .tree import Box, Clip, Group, Painted, Stroke, carried
-from .values import IDENTITY, Matrix, Paint, determinant, multiplied
+from .values import Paint
 from .warnings import Warnings
 
 Tell = Callable[[float], None]

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 import tinycss2
 
+from ..affine import Matrix
 from .filter_steps import Matrix5, saturating, turning_hues
 from .lengths import Units
 from .tree import Filter, Step
-from .values import Color, Matrix, as_color, as_length, url_of
+from .values import Color, as_color, as_length, url_of
 
 MOST_FUNCTIONS = 32
 _DEGREES = {"deg": 1.0, "grad": 0.9, "rad": 180.0 / np.pi, "turn": 360.0}

@@ -10,10 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from ... import _native
+from ..affine import Matrix, inverse, multiplied
 from .filtering import filtered, is_upright, reach_of
 from .resampled import turned_pixels
 from .tree import Box, Filter, Group, carried, common
-from .values import Matrix, inverse, multiplied
 
 FloatArray = npt.NDArray[np.float32]
 Window = tuple[int, int, int, int]

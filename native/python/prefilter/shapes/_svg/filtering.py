@@ -14,13 +14,13 @@ import numpy as np
 import numpy.typing as npt
 
 from ...images.color import to_linear, to_srgb
+from ..affine import Matrix, inverse, multiplied
 from .blending import blended
 from .filter_pixels import blurred, composited, recolored, shifted, transferred
 from .lighting import lit
 from .neighborhoods import convolved, extreme, tiled
 from .tree import Box, Filter, Group, Step, carried
 from .turbulence import noise
-from .values import Matrix, inverse, multiplied
 
 FloatArray = npt.NDArray[np.float32]
 Slices = tuple[slice, slice]

@@ -4,6 +4,7 @@
 
 from dataclasses import replace
 
+from ..affine import IDENTITY, multiplied
 from .bounding import object_bounds
 from .context import Context, Sources
 from .document import SvgElement
@@ -15,7 +16,7 @@ from .masks import box_in_units, shares_of
 from .nesting import ancestors
 from .styles import Style
 from .tree import Box, Filter, Group, Step, carried
-from .values import IDENTITY, Length, multiplied
+from .values import Length
 
 # Products of larger numbers would leave the range of floats.
 _LARGEST = 1e9

@@ -4,9 +4,9 @@
 
 from collections.abc import Iterator
 
+from ..affine import IDENTITY, Matrix
 from .layering import Layering
 from .tree import Group, Painted, Pattern, Picture
-from .values import IDENTITY, Matrix
 from .warnings import Warnings
 
 

@@ -8,6 +8,7 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
+from ..affine import Matrix, multiplied
 from .beside import ElsewhereError, Place, read_address
 from .clips import box_clip
 from .context import Context, Sources
@@ -19,7 +20,7 @@ from .page import Page
 from .paint_servers import Colors
 from .pictures import PictureError, ending_of, read_picture, size_of
 from .tree import Clip, Group, Picture, carried
-from .values import Length, Matrix, multiplied
+from .values import Length
 from .viewports import ViewBox, placed
 
 _ZERO, _AUTO = Length(0.0), Length(-1.0)

@@ -5,9 +5,9 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from ..affine import IDENTITY, Matrix
 from .filtering import reach_of
 from .tree import Box, Clip, Group, Item, Painted, Pattern, carried, common, joined, leaves
-from .values import IDENTITY, Matrix
 
 _MOST_COMPARED = 200
 

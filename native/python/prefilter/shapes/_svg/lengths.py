@@ -6,8 +6,9 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from ..affine import IDENTITY, Matrix, multiplied
 from .document import SvgElement
-from .values import IDENTITY, Length, Matrix, UnknownUnitError, as_length, as_origin, multiplied
+from .values import Length, UnknownUnitError, as_length, as_origin
 from .warnings import Warnings
 
 _ALONG_X = frozenset(("x", "x1", "x2", "cx", "fx", "rx", "width", "refX", "markerWidth"))

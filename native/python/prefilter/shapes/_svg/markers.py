@@ -7,13 +7,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from ... import _native
+from ..affine import IDENTITY, Matrix, multiplied
 from .clips import box_clip
 from .context import Context, Sources, paints_of
 from .document import SvgElement
 from .nesting import SHOWN, children
 from .outline import Outline
 from .tree import Group
-from .values import IDENTITY, Length, Matrix, as_number, multiplied, rotation
+from .values import Length, as_number, rotation
 from .viewports import as_view_box, placed
 
 MARKED = ("path", "line", "polyline", "polygon")

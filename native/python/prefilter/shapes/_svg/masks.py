@@ -4,6 +4,7 @@
 
 from dataclasses import replace
 
+from ..affine import Matrix, multiplied
 from .bounding import object_bounds
 from .clips import box_clip
 from .context import Context, Sources
@@ -12,7 +13,7 @@ from .lengths import Units
 from .nesting import children
 from .paint_servers import Colors
 from .tree import Box, Group, Mask
-from .values import Length, Matrix, multiplied
+from .values import Length
 
 _DEFAULTS = {"x": -10.0, "y": -10.0, "width": 120.0, "height": 120.0}
 

@@ -5,13 +5,14 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
+from ..affine import IDENTITY, multiplied
 from .basic_shapes import BASIC_SHAPES
 from .clips import box_clip
 from .context import Context, Sources, paints_of
 from .document import SvgElement
 from .lengths import about_origin
 from .tags import GROUPS
-from .values import IDENTITY, Length, as_transform, multiplied
+from .values import Length, as_transform
 from .viewports import as_view_box, placed
 
 _ZERO, _WHOLE = Length(0.0), Length(100.0, "%")

@@ -8,11 +8,11 @@ from dataclasses import asdict
 import numpy as np
 
 from ... import _native
+from ..affine import Matrix, determinant, multiplied
 from ..shape import Shape
 from .filtering import is_upright
 from .paint_servers import Gradient
 from .tree import Box, Clip, Group, Painted, Picture, common, holds
-from .values import Matrix, determinant, multiplied
 
 # How far the outline of a stroke may be off, in pixels: 8-bit images do not show it.
 _STROKE_TOLERANCE = 1.0 / 1024.0

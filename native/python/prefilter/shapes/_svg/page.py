@@ -6,11 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..affine import Matrix, multiplied
 from .context import Sources
 from .lengths import read_length
 from .paint_servers import Colors
 from .tree import Box
-from .values import Length, Matrix, as_background, multiplied
+from .values import Length, as_background
 from .viewports import MOST_UNITS, ViewBox, as_view_box, placed
 
 _WHOLE = Length(100.0, "%")

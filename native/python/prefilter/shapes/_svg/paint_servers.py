@@ -9,20 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ... import _native
+from ..affine import IDENTITY, Matrix, determinant, multiplied
 from ..shape import Shape
 from .document import Document, SvgElement
 from .lengths import Units, about_origin, read_length
 from .styles import StyleSheets
-from .values import (
-    IDENTITY,
-    Color,
-    Length,
-    Matrix,
-    as_number,
-    as_transform,
-    determinant,
-    multiplied,
-)
+from .values import Color, Length, as_number, as_transform
 from .warnings import Warnings
 
 GRADIENTS = ("linearGradient", "radialGradient")

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..affine import inverse, multiplied
 from .bounding import object_bounds
 from .context import Context, HeldPaint, Sources
 from .document import SvgElement
@@ -15,7 +16,7 @@ from .paint_servers import GRADIENTS, Gradient
 from .patterns import pattern_of
 from .tags import OTHER_PAINTS
 from .tree import Box, Pattern, Stroke
-from .values import Color, Paint, inverse, multiplied
+from .values import Color, Paint
 
 _MOST_DASHES = 100_000
 

@@ -4,6 +4,7 @@
 
 from collections.abc import Mapping
 
+from ..affine import IDENTITY, Matrix, determinant, multiplied
 from .clips import box_clip
 from .context import Context, Sources
 from .document import SvgElement
@@ -11,7 +12,7 @@ from .lengths import Units, about_origin, read_length
 from .masks import shares_of
 from .nesting import SHOWN, children
 from .tree import Box, Clip, Group, Pattern
-from .values import IDENTITY, Length, Matrix, as_transform, determinant, multiplied
+from .values import Length, as_transform
 from .viewports import MOST_UNITS, as_view_box, placed
 
 _NAMES = ("x", "y", "width", "height")

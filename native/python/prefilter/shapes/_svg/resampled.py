@@ -11,8 +11,8 @@ from ... import _native
 from ...images.color import to_linear
 from ...images.resizing import resize
 from ...sampling.resampling import resample
+from ..affine import Matrix, inverse, multiplied
 from .tree import Picture
-from .values import Matrix, inverse, multiplied
 
 FloatArray = npt.NDArray[np.float32]
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .._fonts.font import Glyph
+from ..affine import Matrix, multiplied
 from .colored_letters import ColoredLetter, ColoredPiece
 from .context import Context, Sources
 from .document import SvgElement
@@ -18,7 +19,6 @@ from .styles import Style
 from .text_characters import Span, TextReader
 from .text_layout import Cluster, TextLayout
 from .tree import Box
-from .values import Matrix, multiplied
 
 # Of lines at letters, in sizes of these.
 _LINE_THICKNESS = 0.1

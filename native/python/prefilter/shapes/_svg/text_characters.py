@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
+from ..affine import IDENTITY
 from .basic_shapes import BASIC_SHAPES, read_shape
 from .context import Context, Sources
 from .document import SvgElement
@@ -15,7 +16,7 @@ from .outline import read_path
 from .styles import Style
 from .text_style import TextStyle
 from .text_tracks import Track
-from .values import IDENTITY, Length, UnknownUnitError, as_length, as_transform
+from .values import Length, UnknownUnitError, as_length, as_transform
 
 INNER = ("tspan", "textPath", "a", "tref", "altGlyph")
 """Elements whose text is part of the text element around them."""

@@ -18,9 +18,10 @@ from .._fonts.shaping import (
     scripts_in,
     shape,
 )
+from ..affine import Matrix, multiplied
 from .lettering import Lettering
 from .text_characters import Character, Fitted, Span
-from .values import Matrix, multiplied, rotation
+from .values import rotation
 
 _SPACES = (" ", "\u00a0")
 

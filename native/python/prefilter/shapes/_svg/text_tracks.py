@@ -5,8 +5,8 @@
 import numpy as np
 import numpy.typing as npt
 
+from ..affine import Matrix
 from .outline import Outline
-from .values import Matrix
 
 _STEPS = 256
 _MOST_STEPS = 1_000_000

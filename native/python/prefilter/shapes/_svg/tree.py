@@ -9,9 +9,9 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from ..affine import Matrix
 from .outline import Outline
 from .paint_servers import Gradient
-from .values import Matrix
 
 Box: TypeAlias = tuple[float, float, float, float]
 """Left, top, right, bottom."""

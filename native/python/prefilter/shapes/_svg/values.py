@@ -13,13 +13,12 @@ import tinycss2
 import tinycss2.color4
 
 from ... import _native
+from ..affine import IDENTITY, Matrix, multiplied
 
-Matrix: TypeAlias = tuple[float, float, float, float, float, float]
 """a, b, c, d, e, f: (x, y) goes to (a x + c y + e, b x + d y + f)."""
 Color: TypeAlias = tuple[float, float, float, float]
 """Red, green, blue, alpha in [0, 1]; sRGB, not multiplied by alpha."""
 
-IDENTITY: Matrix = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
 BLACK: Color = (0.0, 0.0, 0.0, 1.0)
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
@@ -206,32 +205,6 @@ def _color_of(token: Any) -> Color | str | None:
 def _tokens(text: str) -> list[Any]:
     tokens = tinycss2.parse_component_value_list(text, skip_comments=True)
     return [token for token in tokens if token.type != "whitespace"]
-
-
-def multiplied(outer: Matrix, inner: Matrix) -> Matrix:
-    """What applies the inner matrix, then the outer one."""
-    a, b, c, d, e, f = outer
-    g, h, i, j, k, m = inner
-    return (
-        a * g + c * h,
-        b * g + d * h,
-        a * i + c * j,
-        b * i + d * j,
-        a * k + c * m + e,
-        b * k + d * m + f,
-    )
-
-
-def determinant(matrix: Matrix) -> float:
-    return matrix[0] * matrix[3] - matrix[1] * matrix[2]
-
-
-def inverse(matrix: Matrix) -> Matrix:
-    """What undoes a matrix whose determinant is not 0."""
-    a, b, c, d, e, f = matrix
-    scale = 1.0 / determinant(matrix)
-    a, b, c, d = d * scale, -b * scale, -c * scale, a * scale
-    return (a, b, c, d, -(a * e + c * f), -(b * e + d * f))
 
 
 @lru_cache(maxsize=4096)

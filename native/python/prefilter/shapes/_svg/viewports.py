@@ -5,7 +5,8 @@
 import re
 from dataclasses import dataclass
 
-from .values import Matrix, leading_numbers
+from ..affine import Matrix
+from .values import leading_numbers
 
 _ALIGNMENT = re.compile(r"x(Min|Mid|Max)Y(Min|Mid|Max)(?:\s+(meet|slice))?")
 # A side has at most so many units; what is larger or smaller is a mistake.

@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Affine matrices of drawings and fonts.
+
+(a, b, c, d, e, f) leads from (x, y) to (a x + c y + e, b x + d y + f).
+"""
+
+from typing import TypeAlias
+
+Matrix: TypeAlias = tuple[float, float, float, float, float, float]
+IDENTITY: Matrix = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
+
+
+def multiplied(outer: Matrix, inner: Matrix) -> Matrix:
+    """What applies the inner matrix, then the outer one."""
+    a, b, c, d, e, f = outer
+    g, h, i, j, k, m = inner
+    return (
+        a * g + c * h,
+        b * g + d * h,
+        a * i + c * j,
+        b * i + d * j,
+        a * k + c * m + e,
+        b * k + d * m + f,
+    )
+
+
+def determinant(matrix: Matrix) -> float:
+    return matrix[0] * matrix[3] - matrix[1] * matrix[2]
+
+
+def inverse(matrix: Matrix) -> Matrix:
+    """What undoes a matrix whose determinant is not 0."""
+    a, b, c, d, e, f = matrix
+    scale = 1.0 / determinant(matrix)
+    a, b, c, d = d * scale, -b * scale, -c * scale, a * scale
+    return (a, b, c, d, -(a * e + c * f), -(b * e + d * f))
