@@ -41,6 +41,13 @@ template <typename InCell, typename LeftOfWindow>
 void cut_line_to_cells(Point2 begin, Point2 end, const GridWindow& window, const InCell& in_cell,
                        const LeftOfWindow& left_of_window);
 
+/// The same for what rises from `begin` to `end`, where x_at(y) and y_at(x) say; x_at() stays
+/// between both ends.
+template <typename XAt, typename YAt, typename InCell, typename LeftOfWindow>
+void cut_rising_to_cells(Point2 begin, Point2 end, const XAt& x_at, const YAt& y_at,
+                         const GridWindow& window, const InCell& in_cell,
+                         const LeftOfWindow& left_of_window);
+
 namespace internal {
 
 // The cell that a curve is in at a coordinate, from where it goes on rising or falling.
@@ -175,20 +182,14 @@ void cut_to_cells(const MonotoneCurve& piece, const GridWindow& window, const In
   }
 }
 
-template <typename InCell, typename LeftOfWindow>
-void cut_line_to_cells(Point2 begin, Point2 end, const GridWindow& window, const InCell& in_cell,
-                       const LeftOfWindow& left_of_window) {
+template <typename XAt, typename YAt, typename InCell, typename LeftOfWindow>
+void cut_rising_to_cells(Point2 begin, Point2 end, const XAt& x_at, const YAt& y_at,
+                         const GridWindow& window, const InCell& in_cell,
+                         const LeftOfWindow& left_of_window) {
   if (!(begin.y < end.y)) return;
   if (end.y <= window.first_row || begin.y >= window.end_row) return;
   if (std::min(begin.x, end.x) >= window.end_column) return;
   const bool x_rises = end.x >= begin.x;
-  const double slope = (end.x - begin.x) / (end.y - begin.y);
-  const double rise = (end.y - begin.y) / (end.x - begin.x);
-  const double x_low = std::min(begin.x, end.x);
-  const double x_high = std::max(begin.x, end.x);
-  const auto x_at = [&](double y) {
-    return std::clamp(begin.x + (y - begin.y) * slope, x_low, x_high);
-  };
   const int left = window.first_column - 1;
   Point2 from = begin;
   if (from.y < window.first_row)
@@ -206,7 +207,7 @@ void cut_line_to_cells(Point2 begin, Point2 end, const GridWindow& window, const
       const bool passes = x_rises ? column < window.end_column && line < to.x
                                   : column >= window.first_column && line > to.x;
       if (!passes) break;
-      const Point2 at{line, std::clamp(begin.y + (line - begin.x) * rise, from.y, to.y)};
+      const Point2 at{line, std::clamp(y_at(line), from.y, to.y)};
       if (column == left) {
         left_of_window(row, from.y, at.y);
       } else if (column < window.end_column) {
@@ -225,6 +226,19 @@ void cut_line_to_cells(Point2 begin, Point2 end, const GridWindow& window, const
     from = to;
     ++row;
   }
+}
+
+template <typename InCell, typename LeftOfWindow>
+void cut_line_to_cells(Point2 begin, Point2 end, const GridWindow& window, const InCell& in_cell,
+                       const LeftOfWindow& left_of_window) {
+  const double slope = (end.x - begin.x) / (end.y - begin.y);
+  const double rise = (end.y - begin.y) / (end.x - begin.x);
+  const double x_low = std::min(begin.x, end.x);
+  const double x_high = std::max(begin.x, end.x);
+  cut_rising_to_cells(
+      begin, end,
+      [&](double y) { return std::clamp(begin.x + (y - begin.y) * slope, x_low, x_high); },
+      [&](double x) { return begin.y + (x - begin.x) * rise; }, window, in_cell, left_of_window);
 }
 
 }  // namespace prefilter

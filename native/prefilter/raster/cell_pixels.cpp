@@ -8,7 +8,8 @@
 
 namespace prefilter {
 
-CellPixels::CellPixels(const CellFilter& filter, int width) : filter_(filter), width_(width) {
+CellPixels::CellPixels(const CellFilter& filter, int width)
+    : filter_(filter), width_(width), is_box_(filter.taps == 1 && filter.degree == 0) {
   const int count = filter.degree + 1;
   const auto along = [&](int tap, int power) {
     double sum = 0.0;
@@ -94,6 +95,14 @@ void CellPixels::add_full(int column, int row, double share, std::span<const Col
 }
 
 void CellPixels::add_constant(int begin, int end, int row, std::span<const double> color) {
+  if (is_box_) {
+    add_row(begin, end, row, [&](int first, int last, double* out) {
+      for (int column = first; column < last; ++column) {
+        for (const double value : color) *out++ += value;
+      }
+    });
+    return;
+  }
   for (int column = begin; column < end; ++column) {
     for_pixels_over(column, row, [&](double* values, int ox, int oy) {
       const double share = full_[oy * filter_.taps + ox][0];

@@ -40,6 +40,7 @@ class CellPixels {
 
   const CellFilter& filter_;
   int width_;
+  bool is_box_;  // which weighs a cell by 1 in its own pixel
   int first_row_ = 0;
   int end_row_ = 0;
   BandValues* values_ = nullptr;

@@ -19,19 +19,30 @@ struct StackLayer {
   EdgeList edges;
   FillRule fill_rule = FillRule::kNonzero;
   const Paint* paint = nullptr;  // of any kind but kLinearStops
+  bool winds_once = false;       // whether that is known
 };
 
 struct LayerStack {
   std::vector<StackLayer> layers;  // from the lowest
   bool is_constant = true;         // whether all colors are
+  /// Whether layers are put over each other by what they cover of pixels, as CompositedRows does,
+  /// so that only some pixels are looked at more closely.
+  bool is_composited = false;
   /// What layers are of that are no shapes.
   std::deque<Outline> outlines;
   std::deque<Paint> paints;
 };
 
-/// Shapes over each other, which must outlive it.
+/// What a stack is made of.
+struct StackShape {
+  const Outline* outline = nullptr;
+  FillRule fill_rule = FillRule::kNonzero;
+  const Paint* paint = nullptr;
+  bool winds_once = false;
+};
+
+/// Shapes over each other, from the lowest, of which the outlines and paints must outlive it.
+LayerStack stack_of(std::span<const StackShape> shapes);
 LayerStack stack_of(std::span<const Shape> shapes);
-/// Some of them, by their numbers in rising order.
-LayerStack stack_of(std::span<const Shape> shapes, std::span<const std::uint32_t> chosen);
 
 }  // namespace prefilter

@@ -19,6 +19,16 @@ class OpenColumns {
     left_ = count;
     words_.assign(static_cast<std::size_t>(count) / 64 + 1, ~std::uint64_t{0});
   }
+  void close_all(int count) {
+    count_ = count;
+    left_ = 0;
+    words_.assign(static_cast<std::size_t>(count) / 64 + 1, 0);
+  }
+  /// Opens those of up to 16 closed ones by their bits, from a multiple of 16 on.
+  void open(int column, std::uint16_t bits) {
+    words_[static_cast<std::size_t>(column) / 64] |= std::uint64_t{bits} << (column % 64);
+    left_ += std::popcount(bits);
+  }
   bool any() const { return left_ > 0; }
   bool is_open(int column) const {
     return (words_[static_cast<std::size_t>(column) / 64] >> (column % 64) & 1) != 0;

@@ -10,6 +10,7 @@
 #include "prefilter/outline/resolve_soon.h"
 #include "prefilter/outline/shared_edges.h"
 #include "prefilter/outline/visible_pieces.h"
+#include "prefilter/raster/box_coverage.h"
 #include "prefilter/raster/gradient_strips.h"
 #include "prefilter/raster/shape_groups.h"
 
@@ -135,6 +136,7 @@ class LayerMaker {
 struct Single {
   std::optional<Outline> changed;
   bool is_clear = true;
+  bool is_told = false;  // whether it was looked for
 };
 
 // Shapes that are apart from all others.
@@ -142,6 +144,8 @@ struct Group {
   std::vector<std::uint32_t> shapes;  // numbers, from the lowest
   /// Where they are not beside each other, so that they only have to be added.
   bool is_covered = false;
+  /// Where they are then put over each other pixel by pixel.
+  bool is_composited = false;
   /// What is seen of them then, where that can be told.
   std::optional<std::vector<VisiblePiece>> pieces;
 };
@@ -190,11 +194,13 @@ class LayerFinder {
 
   void add_to(std::span<const Paint> paints, RasterLayers* out) {
     LayerMaker maker(options_.method, out);
+    std::vector<std::uint32_t> composited;
     std::vector<std::uint32_t> stacked;
     for (Group& group : groups_) {
       if (group.is_covered) {
         if (!group.pieces) {
-          stacked.insert(stacked.end(), group.shapes.begin(), group.shapes.end());
+          auto& numbers = group.is_composited ? composited : stacked;
+          numbers.insert(numbers.end(), group.shapes.begin(), group.shapes.end());
           continue;
         }
         for (VisiblePiece& piece : *group.pieces) {
@@ -219,16 +225,48 @@ class LayerFinder {
         }
       }
     }
-    // In one, so that it has the steps of one, however many groups there are.
-    std::sort(stacked.begin(), stacked.end());
-    if (!stacked.empty()) out->stacks.push_back(stack_of(shapes_, stacked));
+    add_stack(&composited, &maker, out);
+    if (!composited.empty()) out->stacks.back().is_composited = true;
+    add_stack(&stacked, &maker, out);
   }
 
  private:
+  // Several groups in one, so that it has the steps of one, however many groups there are.
+  void add_stack(std::vector<std::uint32_t>* numbers, LayerMaker* maker, RasterLayers* out) {
+    if (numbers->empty()) return;
+    std::sort(numbers->begin(), numbers->end());
+    std::vector<StackShape> shapes;
+    for (const std::uint32_t i : *numbers) {
+      const Shape& shape = shapes_[i];
+      Single& single = singles_[i];
+      const bool winds_once = shape.winds_once || (single.is_told && single.is_clear);
+      const Outline& outline =
+          single.changed ? maker->keep(*std::move(single.changed)) : shape.outline;
+      shapes.push_back({&outline, shape.fill_rule, &shape.paint, winds_once});
+    }
+    out->stacks.push_back(stack_of(shapes));
+  }
+
+  // Whether shapes of constant colors may be put over each other pixel by pixel: those that cover
+  // the image very often take less in other ways.
+  bool may_composite(std::span<const Box2> boxes) const {
+    if (options_.method != RasterMethod::kScanline || options_.filter != "box") return false;
+    if (std::max(options_.width, options_.height) > kMostBoxPixels) return false;
+    constexpr double kMostImages = 64.0;
+    double area = 0.0;
+    for (const Box2& box : boxes) {
+      if (box.empty()) continue;
+      const double width = std::min(box.high.x, options_.width + 0.0) - std::max(box.low.x, 0.0);
+      const double height = std::min(box.high.y, options_.height + 0.0) - std::max(box.low.y, 0.0);
+      area += std::max(width, 0.0) * std::max(height, 0.0);
+    }
+    return area <= kMostImages * options_.width * options_.height;
+  }
+
   void group_shapes(std::uint32_t first) {
     if (options_.method == RasterMethod::kWavelet) {
       // That leaves contours open where shapes do not cover each other.
-      groups_.push_back({{}, true, {}});
+      groups_.push_back({{}, true, false, {}});
       for (std::uint32_t i = first; i < shapes_.size(); ++i) groups_[0].shapes.push_back(i);
       return;
     }
@@ -236,8 +274,9 @@ class LayerFinder {
     for (std::uint32_t i = first; i < shapes_.size(); ++i) {
       if (!shapes_[i].outline.empty()) boxes[i] = control_box(shapes_[i].outline);
     }
+    may_composite_ = may_composite(boxes);
     for (std::vector<std::uint32_t>& group : groups_apart(boxes)) {
-      groups_.push_back({std::move(group), false, {}});
+      groups_.push_back({std::move(group), false, false, {}});
     }
   }
 
@@ -246,6 +285,7 @@ class LayerFinder {
     if (shape.winds_once) return;
     if (options_.method == RasterMethod::kWavelet && is_left_open(shape.outline)) return;
     Single& single = singles_[i];
+    single.is_told = true;
     single.is_clear = resolve_soon(shape.outline, shape.fill_rule, progress, &single.changed);
   }
 
@@ -258,6 +298,11 @@ class LayerFinder {
       group->is_covered = count > 1 && !are_beside(group->shapes);
     }
     if (!group->is_covered) return;
+    group->is_composited =
+        may_composite_ && std::all_of(group->shapes.begin(), group->shapes.end(), [&](auto i) {
+          return shapes_[i].paint.kind == Paint::Kind::kConstant;
+        });
+    if (group->is_composited) return;
     std::vector<CoveringLayer> layers;
     for (const std::uint32_t i : group->shapes) {
       layers.push_back({&shapes_[i].outline, shapes_[i].fill_rule, is_opaque(shapes_[i].paint)});
@@ -279,6 +324,7 @@ class LayerFinder {
   std::span<const Shape> shapes_;
   const RasterOptions& options_;
   std::vector<Single> singles_;
+  bool may_composite_ = false;
   std::vector<Group> groups_;
 };
 

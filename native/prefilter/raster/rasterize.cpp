@@ -20,6 +20,7 @@
 #include "prefilter/base/unit_bytes.h"
 #include "prefilter/raster/band_values.h"
 #include "prefilter/raster/box_coverage.h"
+#include "prefilter/raster/composited_rows.h"
 #include "prefilter/raster/coverage_rows.h"
 #include "prefilter/raster/local_color.h"
 #include "prefilter/raster/moment_rows.h"
@@ -109,6 +110,10 @@ class BandMaker {
     first_row_ = first_row;
     end_row_ = end_row;
     values_.reset(pixels_.width, end_row - first_row, job_.channels, job_.background);
+    // First, as it goes over what is there.
+    for (const LayerStack& stack : job_.stacks) {
+      if (stack.is_composited) add_composited(stack);
+    }
     for (const RasterLayer& layer : job_.layers) {
       if (filter_.to_cell(layer.edges.high()) < filter_.first_cell(first_row)) continue;
       if (filter_.to_cell(layer.edges.low()) > filter_.first_cell(end_row - 1) + filter_.taps) {
@@ -123,6 +128,7 @@ class BandMaker {
       }
     }
     for (const LayerStack& stack : job_.stacks) {
+      if (stack.is_composited) continue;
       if (stack.is_constant) {
         add_stack<N>(stack);
       } else {
@@ -191,6 +197,14 @@ class BandMaker {
         [&](int row, int begin, int end, std::uint32_t steps) {
           values_.add(values_.row(row - first_row_), begin, end, coverage_of(steps), color);
         });
+  }
+
+  void add_composited(const LayerStack& stack) {
+    CompositedRows composited(stack, pixels_.width, job_.channels);
+    composited.put_over(first_row_, end_row_, job_.background, &values_);
+    StackRows<N> rows(stack, filter_, job_.background, job_.channels, pixels_.width,
+                      pixels_.height);
+    rows.add_marked(first_row_, end_row_, composited, &values_);
   }
 
   template <int M>

@@ -62,10 +62,10 @@ RowLayers::RowLayers(const LayerStack& stack, int channels) : full_(stack.layers
   }
 }
 
-void RowLayers::make_row(int row, StackArcs* arcs) {
+void RowLayers::make_row(int row, const OpenColumns& wanted, StackArcs* arcs) {
   for (const Change& change : changes_) full_.erase(change.layer);
   columns_ = arcs->window().end_column - arcs->window().first_column;
-  open_.reset(columns_);
+  open_ = wanted;
   depth_steps_.assign(static_cast<std::size_t>(columns_) + 1, 0.0);
   layers_until_closing_ = kLayersTogether;
   arc_counts_.assign(static_cast<std::size_t>(columns_), 0);
@@ -76,6 +76,7 @@ void RowLayers::make_row(int row, StackArcs* arcs) {
   arcs->begin_row(row);
   for (const StackArcs::Layer& layer : arcs->layers()) {
     if (!open_.any()) break;
+    if (!arcs->is_open(layer, open_)) continue;
     const std::size_t first = arcs_.size();
     arcs->append(layer, open_, &arcs_);
     if (arcs_.size() > first) add_layer(layer.layer, first);

@@ -43,7 +43,8 @@ class RowLayers {
 
   RowLayers(const LayerStack& stack, int channels);
 
-  void make_row(int row, StackArcs* arcs);
+  /// Of the columns that are wanted; what is in others is left out.
+  void make_row(int row, const OpenColumns& wanted, StackArcs* arcs);
   /// How many layers are in a cell, and how many arcs. Columns are from the window's first.
   std::size_t layer_count(int column) const {
     return first_record_[column + 1] - first_record_[column];

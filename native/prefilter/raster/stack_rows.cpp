@@ -13,9 +13,13 @@ namespace {
 
 constexpr double kMomentUnit = 1.0 / (1 << kMomentBits);
 constexpr std::size_t kMostArcs = RowLayers::kMostSweptArcs;
+// Areas are not held as moments are; curves are several arcs then.
+constexpr std::size_t kMostArcsForAreas = 250;
 
-// About the steps of a sweep, of arcs of which some cross.
-constexpr std::size_t steps_of(std::size_t arcs) { return 3 * arcs * arcs; }
+// About the steps of a sweep, of arcs of which some cross; those for areas are shorter.
+constexpr std::size_t steps_of(std::size_t arcs, bool are_for_areas) {
+  return (are_for_areas ? 1 : 3) * arcs * arcs;
+}
 
 // A row of a number of steps for all rows.
 std::size_t share_of_row(std::size_t steps, int height) {
@@ -42,16 +46,17 @@ StackRows<N>::StackRows(const LayerStack& stack, const CellFilter& filter,
 // Says up to how many arcs cells are swept.
 template <int N>
 void StackRows<N>::plan_row() {
-  std::array<std::size_t, kMostArcs + 1> cells{};  // by arcs
+  std::array<std::size_t, kMostArcsForAreas + 1> cells{};  // by arcs
+  const std::size_t most = finds_areas_ ? kMostArcsForAreas : kMostArcs;
   const int columns = arcs_.window().end_column - arcs_.window().first_column;
   for (int column = 0; column < columns; ++column) {
     if (layers_.layer_count(column) == 0) continue;
     const std::size_t arcs = layers_.arc_count(column);
-    if (arcs <= kMostArcs) ++cells[arcs];
+    if (arcs <= most) ++cells[arcs];
   }
   std::size_t steps = 0;
-  for (most_arcs_ = 0; most_arcs_ < kMostArcs; ++most_arcs_) {
-    steps += cells[most_arcs_ + 1] * steps_of(most_arcs_ + 1);
+  for (most_arcs_ = 0; most_arcs_ < most; ++most_arcs_) {
+    steps += cells[most_arcs_ + 1] * steps_of(most_arcs_ + 1, finds_areas_);
     if (steps > sweep_steps_) break;
   }
 }
@@ -60,12 +65,30 @@ template <int N>
 void StackRows<N>::add_values(int first_row, int end_row, BandValues* values) {
   pixels_.begin(first_row, end_row, values);
   arcs_.begin_band(stack_, filter_, width_, first_row, end_row);
-  for (int row = arcs_.window().first_row; row < arcs_.window().end_row; ++row) add_row(row);
+  finds_areas_ = false;
+  const GridWindow& window = arcs_.window();
+  for (int row = window.first_row; row < window.end_row; ++row) {
+    wanted_.reset(window.end_column - window.first_column);
+    add_row(row);
+  }
+}
+
+template <int N>
+void StackRows<N>::add_marked(int first_row, int end_row, const CompositedRows& marks,
+                              BandValues* values) {
+  pixels_.begin(first_row, end_row, values);
+  arcs_.begin_band(stack_, filter_, width_, first_row, end_row, &marks);
+  finds_areas_ = true;
+  for (int row = first_row; row < end_row; ++row) {
+    if (!marks.has_marks(row)) continue;
+    marks.marked_columns(row, &wanted_);
+    add_row(row);
+  }
 }
 
 template <int N>
 void StackRows<N>::add_row(int row) {
-  layers_.make_row(row, &arcs_);
+  layers_.make_row(row, wanted_, &arcs_);
   plan_row();
   const int first = arcs_.window().first_column;
   const int columns = arcs_.window().end_column - first;
@@ -73,12 +96,24 @@ void StackRows<N>::add_row(int row) {
     layers_.enter(column);
     if (layers_.layers().empty()) {
       const int end = layers_.next_change(column);
-      add_run(first + column, first + end, row);
+      add_wanted(column, end, row);
       column = end;
     } else {
       add_cell(first + column, row);
       ++column;
     }
+  }
+}
+
+// Runs of cells that are wanted.
+template <int N>
+void StackRows<N>::add_wanted(int begin, int end, int row) {
+  const int first = arcs_.window().first_column;
+  while ((begin = wanted_.next(begin, end)) < end) {
+    int last = begin + 1;
+    while (last < end && wanted_.is_open(last)) ++last;
+    add_run(first + begin, first + last, row);
+    begin = last;
   }
 }
 
@@ -112,12 +147,23 @@ void StackRows<N>::add_cell(int column, int row) {
   const auto seen = layers.first(colors_.look_at(CellSweep::kMostLayers + 1));
   std::size_t arcs = 0;
   for (const CellLayer& layer : seen) arcs += layer.arcs.size();
-  if (arcs <= most_arcs_ && seen.size() <= CellSweep::kMostLayers &&
-      sweep_.sweep(column, row, seen, 16 * steps_of(arcs) + 256)) {
-    ++work_.swept_cells;
-    work_.swept_steps += sweep_.work();
-    add_swept(column, row);
-    return;
+  const std::size_t most_work = 16 * steps_of(arcs, false) + 256;
+  if (arcs <= most_arcs_ && seen.size() <= CellSweep::kMostLayers) {
+    if (finds_areas_) {
+      if (areas_.find(seen, colors_, most_work)) {
+        ++work_.swept_cells;
+        work_.swept_steps += areas_.work();
+        const std::span<const double> mean(areas_.mean());
+        pixels_.add_constant(column, column + 1, row,
+                             mean.first(static_cast<std::size_t>(channels_)));
+        return;
+      }
+    } else if (sweep_.sweep(column, row, seen, most_work)) {
+      ++work_.swept_cells;
+      work_.swept_steps += sweep_.work();
+      add_swept(column, row);
+      return;
+    }
   }
   ++work_.sampled_cells;
   add_sampled(column, row);

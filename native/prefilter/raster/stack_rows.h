@@ -8,10 +8,12 @@
 
 #include "prefilter/moments/arc_moments.h"
 #include "prefilter/raster/band_values.h"
+#include "prefilter/raster/cell_areas.h"
 #include "prefilter/raster/cell_colors.h"
 #include "prefilter/raster/cell_pixels.h"
 #include "prefilter/raster/cell_samples.h"
 #include "prefilter/raster/cell_sweep.h"
+#include "prefilter/raster/composited_rows.h"
 #include "prefilter/raster/layer_stack.h"
 #include "prefilter/raster/row_layers.h"
 #include "prefilter/raster/stack_arcs.h"
@@ -43,10 +45,13 @@ class StackRows {
   /// Adds to `values`, those of the pixel rows [first_row, end_row), what the stack shows less the
   /// background.
   void add_values(int first_row, int end_row, BandValues* values);
+  /// The same of the box filter and constant colors, for the pixels that are marked alone.
+  void add_marked(int first_row, int end_row, const CompositedRows& marks, BandValues* values);
   const StackWork& work() const { return work_; }
 
  private:
   void add_row(int row);
+  void add_wanted(int begin, int end, int row);
   void add_run(int begin, int end, int row);
   void add_cell(int column, int row);
   void add_swept(int column, int row);
@@ -59,12 +64,15 @@ class StackRows {
   const CellFilter& filter_;
   int channels_;
   int width_;
-  std::size_t sweep_steps_;  // for a row
+  bool finds_areas_ = false;  // which the box filter and constant colors ask for
+  std::size_t sweep_steps_;   // for a row
   std::size_t most_arcs_ = 0;
   StackArcs arcs_;
+  OpenColumns wanted_;
   RowLayers layers_;
   CellColors colors_;
   CellSweep sweep_;
+  CellAreas areas_;
   CellSamples samples_;
   CellPixels pixels_;
   StackWork work_;

@@ -17,6 +17,8 @@
 #include "prefilter/outline/arrangement.h"
 #include "prefilter/outline/resolve_soon.h"
 #include "prefilter/outline/visible_pieces.h"
+#include "prefilter/raster/composited_rows.h"
+#include "prefilter/raster/parabolas.h"
 #include "prefilter/raster/rasterize.h"
 
 namespace prefilter {
@@ -128,17 +130,41 @@ class Points {
   std::vector<std::vector<Chain>> chains_;
 };
 
-template <int N>
-void expect_like_outlines(const std::vector<Shape>& shapes, std::string_view filter, int side) {
+// What is seen of each shape as outlines that are only added up. Colors are opaque where they
+// change.
+Image of_visible_pieces(const std::vector<Shape>& shapes, std::string_view filter, int side) {
+  std::vector<CoveringLayer> layers;
+  for (const Shape& shape : shapes) {
+    layers.push_back({&shape.outline, shape.fill_rule, shape.paint.constant[3] >= 1.0});
+  }
+  const auto pieces = visible_pieces(layers, ArrangementEffort::kAny);
+  EXPECT_TRUE(pieces);
+  std::vector<Shape> apart;
+  for (const VisiblePiece& piece : *pieces) {
+    double passing = 1.0;
+    for (const std::uint32_t veil : piece.veils) passing *= 1.0 - shapes[veil].paint.constant[3];
+    Paint paint = shapes[piece.layer].paint;
+    const double alpha = paint.constant[3];
+    for (std::size_t c = 0; c < paint.constant.size(); ++c) {
+      paint.constant[c] = passing * (paint.constant[c] - alpha * kBackground[c]);
+    }
+    apart.push_back({piece.outline, FillRule::kNonzero, paint, true});
+  }
   RasterOptions options;
   options.width = side;
   options.height = side;
   options.filter = filter;
-  options.background = {kBackground.begin(), kBackground.end()};
-  std::vector<CoveringLayer> layers;
-  for (const Shape& shape : shapes) layers.push_back({&shape.outline, shape.fill_rule, true});
-  ASSERT_TRUE(visible_pieces(layers, ArrangementEffort::kBounded));
-  const Image expected = rasterize(shapes, options);
+  options.overlap = Overlap::kAdd;
+  Image image = rasterize(apart, options);
+  for (std::size_t i = 0; i < image.data.size(); ++i) {
+    image.data[i] += static_cast<float>(kBackground[i % 4]);
+  }
+  return image;
+}
+
+template <int N>
+void expect_like_outlines(const std::vector<Shape>& shapes, std::string_view filter, int side) {
+  const Image expected = of_visible_pieces(shapes, filter, side);
   const Drawn found = drawn<N>(shapes, filter, side, side);
   EXPECT_EQ(found.work.sampled_cells, 0u);
   EXPECT_GT(found.work.swept_cells, 0u);
@@ -270,6 +296,123 @@ TEST(StackRows, WindingNumbersThatNothingCancelsFill) {
   const Drawn found = drawn<0>({{outline, FillRule::kNonzero, paint}}, "box", 30, 30);
   EXPECT_EQ(found.work.swept_cells + found.work.sampled_cells, 0u);
   for (const double value : found.values) ASSERT_NEAR(value, 1.0, 1e-6);
+}
+
+// Put over each other by what they cover of pixels, those with a mark cell by cell. Where
+// `is_told`, outlines are known to wind once. Returns the values, and how many cells were swept.
+Drawn composited(const std::vector<Shape>& shapes, int side, bool is_told) {
+  std::vector<Outline> outlines;
+  for (const Shape& shape : shapes) {
+    std::optional<Outline> changed;
+    if (is_told) {
+      EXPECT_TRUE(resolve_soon(shape.outline, shape.fill_rule, {}, &changed));
+    }
+    outlines.push_back(changed ? *changed : shape.outline);
+  }
+  std::vector<StackShape> of_stack;
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    of_stack.push_back({&outlines[i], shapes[i].fill_rule, &shapes[i].paint, is_told});
+  }
+  const LayerStack stack = stack_of(of_stack);
+  BandValues values;
+  values.reset(side, side, 4, kBackground);
+  CompositedRows rows(stack, side, 4);
+  StackRows<0> cells(stack, *find_cell_filter("box"), kBackground, 4, side, side);
+  rows.put_over(0, side, kBackground, &values);
+  cells.add_marked(0, side, rows, &values);
+  Drawn out{{}, cells.work()};
+  for (int row = 0; row < side; ++row) {
+    out.values.insert(out.values.end(), values.row(row), values.row(row) + side * 4);
+  }
+  return out;
+}
+
+void expect_composited_like_outlines(const std::vector<Shape>& shapes, int side) {
+  const Image expected = of_visible_pieces(shapes, "box", side);
+  for (const bool is_told : {true, false}) {
+    const Drawn found = composited(shapes, side, is_told);
+    EXPECT_EQ(found.work.sampled_cells, 0u);
+    for (std::size_t i = 0; i < found.values.size(); ++i) {
+      ASSERT_NEAR(found.values[i], expected.data[i], 1e-6) << is_told << " " << i;
+    }
+  }
+}
+
+TEST(CompositedRows, AreWhatOutlinesAre) {
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    const double alpha = seed % 2 == 0 ? 1.0 : 0.4;
+    expect_composited_like_outlines(tangles(5, 6, 45.0, alpha, seed), 45);
+  }
+}
+
+// Level edges make no difference from pixel to pixel, and end beyond the image.
+TEST(CompositedRows, LevelEdges) {
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> place(-6.0, 36.0);
+  for (const double alpha : {1.0, 0.7}) {
+    std::vector<Shape> shapes;
+    for (int i = 0; i < 10; ++i) {
+      Outline outline = box({place(random), place(random)}, {place(random), place(random)});
+      const double y = place(random);
+      outline.append(box({-20.0, y}, {50.0, y + 7.5}));
+      outline.append(box({-20.0, y + 0.25}, {50.0, y + 0.75}));
+      const FillRule rule = i % 2 == 0 ? FillRule::kNonzero : FillRule::kEvenOdd;
+      shapes.push_back({outline, rule, painted(&random, alpha)});
+    }
+    expect_composited_like_outlines(shapes, 30);
+  }
+}
+
+TEST(CompositedRows, OnlyCellsWhereOutlinesMeetAreSwept) {
+  std::mt19937 random(3);
+  const auto shape = [&](const Outline& outline) {
+    return Shape{outline, FillRule::kNonzero, painted(&random, 1.0)};
+  };
+  // Two edges of the second box are over the first one's area, and cross its edges in two cells.
+  const Shape first = shape(box({2.5, 2.5}, {20.5, 20.5}));
+  const Shape second = shape(box({10.5, 10.5}, {28.5, 28.5}));
+  EXPECT_EQ(composited({first, second}, 30, true).work.swept_cells, 2u);
+  // What is over both leaves nothing to look at.
+  const Shape third = shape(box({1.0, 1.0}, {29.0, 29.0}));
+  EXPECT_EQ(composited({first, second, third}, 30, true).work.swept_cells, 0u);
+}
+
+TEST(Parabolas, AreWhereCurvesAre) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> place(0.0, 30.0);
+  double heights = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    std::vector<Point2> controls;
+    for (int k = 0; k < 3 + i % 3; ++k) controls.push_back({place(random), place(random)});
+    const double weight = i % 6 == 0 ? 0.8 : 0.0;
+    for_monotone_pieces(controls, weight, [&](const MonotoneCurve& piece, bool) {
+      std::vector<Parabola> parabolas;
+      append_parabolas(
+          piece, [](const Point2&, const Point2&) { return true; }, &parabolas);
+      for (const Parabola& parabola : parabolas) {
+        ASSERT_LT(parabola.low.y, parabola.high.y);
+        for (const double share : {0.0, 0.3, 0.6, 1.0}) {
+          const double t = (1.0 - share) * parabola.t_low + share * parabola.t_high;
+          const Point2 point = piece.curve.at(t);
+          const double height = std::min(1.0, parabola.high.y - parabola.low.y);
+          const double x = parabola.x_at(point.y);
+          ASSERT_LE(std::fabs(x - point.x) * height, kParabolaError) << i << " " << t;
+          if (std::fabs(parabola.high.x - parabola.low.x) > 1e-3) {
+            ASSERT_NEAR(parabola.x_at(parabola.y_at(x)), x, 1e-9) << i << " " << t;
+          }
+          ASSERT_NEAR(parabola.x_at(point.y), piece.curve.at(parabola.t_at(point.y)).x, 0.02);
+        }
+        heights += parabola.high.y - parabola.low.y;
+      }
+      heights -= std::fabs(piece.end.y - piece.begin.y);
+      // Where it does not matter they are chords.
+      parabolas.clear();
+      append_parabolas(
+          piece, [](const Point2&, const Point2&) { return false; }, &parabolas);
+      ASSERT_LE(parabolas.size(), 1u);
+    });
+  }
+  EXPECT_NEAR(heights, 0.0, 1e-9);
 }
 
 // For half planes in a cell: the share of it, and that of its samples.
