@@ -18,7 +18,7 @@ constexpr std::size_t kMostArcsForAreas = 250;
 
 // About the steps of a sweep, of arcs of which some cross; those for areas are shorter.
 constexpr std::size_t steps_of(std::size_t arcs, bool are_for_areas) {
-  return (are_for_areas ? 1 : 3) * arcs * arcs;
+  return are_for_areas ? (arcs * arcs + 1) / 2 : 3 * arcs * arcs;
 }
 
 // A row of a number of steps for all rows.
