@@ -15,8 +15,9 @@ namespace {
 constexpr int kSide = CellSamples::kSide;
 constexpr std::uint64_t kAll = ~std::uint64_t{0};
 
-// What is behind so much is less than a sixtieth of 1/255, all of it together.
-constexpr double kLeastPassing = 1.0 / 16384.0;
+// What is behind so much is a quarter of 1/255, all of it together: with what samples are off by it
+// stays below 1/255.
+constexpr double kLeastPassing = 1.0 / 1024.0;
 constexpr double kLeastLeft = CellSamples::kCount * kLeastPassing;
 
 constexpr int kLanes = 4;

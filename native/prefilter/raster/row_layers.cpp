@@ -12,8 +12,8 @@ namespace {
 
 // The logarithm of RowLayers::kLeastPassing, and a bit.
 constexpr double kLeastDepth = -16.2;
-// That of 1/16384: of what passes less in all, samples show nothing.
-constexpr double kLeastSampledDepth = -9.71;
+// That of 1/1024: of what passes less in all, samples show nothing.
+constexpr double kLeastSampledDepth = -6.94;
 
 // After so many layers that fill cells it is looked what they hide, all at once.
 constexpr int kLayersTogether = 16;
