@@ -6,6 +6,7 @@ import numpy as np
 import prefilter
 
 SIZE = 100
+RED, GREEN = (1.0, 0.0, 0.0), (0.0, 128 / 255, 0.0)
 
 
 def svg(body, attributes='viewBox="0 0 100 100"'):
@@ -47,3 +48,26 @@ def box_of(drawing, index=0, size=SIZE):
 
 def same(one, other):
     np.testing.assert_allclose(one, other, atol=1e-6)
+
+
+def whole(body, size=SIZE, attributes='viewBox="0 0 100 100"', **options):
+    """A drawing rasterized as a whole, without warnings, the top row first."""
+    made, warnings = prefilter.rasterize_svg(svg(body, attributes), size, size, **options)
+    assert warnings == ()
+    return made[::-1]
+
+
+def box(left, top, right, bottom, rest=""):
+    return f'<rect x="{left}" y="{top}" width="{right - left}" height="{bottom - top}" {rest}/>'
+
+
+def by_hand(*boxes, size=SIZE):
+    """Boxes (left, top, right, bottom, color with alpha not multiplied) over each other."""
+    shapes = []
+    for left, top, right, bottom, color in boxes:
+        alpha = color[3] if len(color) > 3 else 1.0
+        shape = prefilter.Shape(color=(*(alpha * value for value in color[:3]), alpha))
+        low, high = SIZE - bottom, SIZE - top
+        shape.add_polygon([(left, low), (right, low), (right, high), (left, high)])
+        shapes.append(shape.transformed([[size / SIZE, 0, 0], [0, size / SIZE, 0]]))
+    return image(shapes, size, size)[::-1]

@@ -2,42 +2,14 @@
 
 """Whole drawings as images: what closed forms say, and other ways to draw the same."""
 
-import base64
-import io
 import math
 
 import numpy as np
 import prefilter
 import pytest
-from drawings import SIZE, image, same, svg
-from prefilter._work.files import png
-from prefilter.shapes._svg.pictures import size_of
+from drawings import GREEN, RED, SIZE, box, by_hand, image, same, svg, whole
 
 HALF = 128 / 255
-RED, GREEN = (1.0, 0.0, 0.0), (0.0, 128 / 255, 0.0)
-
-
-def drawn(body, size=SIZE, attributes='viewBox="0 0 100 100"', **options):
-    """A drawing without warnings, the top row first."""
-    made, warnings = prefilter.rasterize_svg(svg(body, attributes), size, size, **options)
-    assert warnings == ()
-    return made[::-1]
-
-
-def box(left, top, right, bottom, rest=""):
-    return f'<rect x="{left}" y="{top}" width="{right - left}" height="{bottom - top}" {rest}/>'
-
-
-def by_hand(*boxes, size=SIZE):
-    """Boxes (left, top, right, bottom, color with alpha not multiplied) over each other."""
-    shapes = []
-    for left, top, right, bottom, color in boxes:
-        alpha = color[3] if len(color) > 3 else 1.0
-        shape = prefilter.Shape(color=(*(alpha * value for value in color[:3]), alpha))
-        low, high = SIZE - bottom, SIZE - top
-        shape.add_polygon([(left, low), (right, low), (right, high), (left, high)])
-        shapes.append(shape.transformed([[size / SIZE, 0, 0], [0, size / SIZE, 0]]))
-    return image(shapes, size, size)[::-1]
 
 
 def test_half_black_over_white_is_127():
@@ -52,7 +24,7 @@ def test_half_black_over_white_is_127():
         body = box(0, 0, 100, 100, 'fill="white"') + box(-50, -50, 150, 150, rest)
         made, _ = prefilter.rasterize_svg(svg(body), 8, 8, dtype=np.uint8)
         assert (made == (127, 127, 127, 255)).all()
-        light = drawn(body, light="linear")
+        light = whole(body, light="linear")
         # Light halved, and encoded for display; #80 is a little more than half.
         encoded = np.rint(prefilter.to_srgb(light[50:51, 50, :3]) * 255)
         assert (encoded == (187 if "#" in rest else 188)).all()
@@ -75,24 +47,24 @@ def test_what_is_plain_is_as_its_shapes():
 def test_a_group_is_translucent_as_a_whole():
     inner = box(10.5, 10, 50, 50, 'fill="red"') + box(30, 30, 70, 70.5, 'fill="green"')
     expected = by_hand((10.5, 10, 50, 50, RED), (30, 30, 70, 70.5, GREEN)) * np.float32(HALF)
-    same(drawn(f'<g opacity="0.5">{inner}</g>'), expected)
+    same(whole(f'<g opacity="0.5">{inner}</g>'), expected)
     # The same where it is an element with a fill and a stroke.
     rest = 'fill="red" stroke="green" stroke-width="10"'
-    opaque = drawn(box(20, 20, 60, 60, rest))
-    same(drawn(box(20, 20, 60, 60, f'{rest} opacity="0.5"')), opaque * np.float32(HALF))
-    same(drawn(f'<g opacity="0.5"><g opacity="0.5">{inner}</g></g>'), expected * np.float32(HALF))
+    opaque = whole(box(20, 20, 60, 60, rest))
+    same(whole(box(20, 20, 60, 60, f'{rest} opacity="0.5"')), opaque * np.float32(HALF))
+    same(whole(f'<g opacity="0.5"><g opacity="0.5">{inner}</g></g>'), expected * np.float32(HALF))
     # Before something else.
     behind = box(0, 0, 100, 40, 'fill="blue"')
     below = by_hand((0, 0, 100, 40, (0, 0, 1)))
     same(
-        drawn(behind + f'<g opacity="0.5">{inner}</g>'), expected + below * (1 - expected[..., 3:])
+        whole(behind + f'<g opacity="0.5">{inner}</g>'), expected + below * (1 - expected[..., 3:])
     )
 
 
 def test_what_does_not_overlap_needs_no_layer():
     """Where two halves meet within a pixel, nothing shows through."""
     inner = box(10, 10, 30.5, 50, 'fill="red"') + box(30.5, 10, 50, 50, 'fill="red"')
-    same(drawn(f'<g opacity="0.5">{inner}</g>'), by_hand((10, 10, 50, 50, (*RED, HALF))))
+    same(whole(f'<g opacity="0.5">{inner}</g>'), by_hand((10, 10, 50, 50, (*RED, HALF))))
 
 
 @pytest.mark.parametrize(
@@ -125,7 +97,7 @@ def test_clip_paths_cut_exactly(clip, element, expected):
         f'<clipPath id="d">{box(0, 0, 40, 40)}</clipPath>'
     )
     body = f'{defs}<clipPath id="c">{clip}</clipPath>' + element.format('clip-path="url(#c)"')
-    same(drawn(body), by_hand((*expected, (0, 0, 0))))
+    same(whole(body), by_hand((*expected, (0, 0, 0))))
     shapes = prefilter.read_svg(svg(body)).shapes_for(SIZE, SIZE)
     same(image(shapes)[::-1], by_hand((*expected, (0, 0, 0))))
 
@@ -138,17 +110,17 @@ def test_a_clip_path_of_curves_has_its_area():
         '<clipPath id="c"><circle cx="40" cy="50" r="30"/></clipPath>'
         '<circle cx="65" cy="50" r="30" clip-path="url(#c)"/>'
     )
-    assert drawn(body)[..., 3].sum(dtype=float) == pytest.approx(lens, rel=1e-6)
+    assert whole(body)[..., 3].sum(dtype=float) == pytest.approx(lens, rel=1e-6)
 
 
 def test_clip_paths_in_units_of_a_box():
     clip = f'<clipPath id="c" clipPathUnits="objectBoundingBox">{box(0, 0, 0.5, 0.5)}</clipPath>'
     inner = box(20, 20, 40, 40) + box(60, 60, 80, 80) + box(0, 0, 99, 99, 'display="none"')
     expected = by_hand((20, 20, 40, 40, (0, 0, 0)))
-    same(drawn(f'{clip}<g clip-path="url(#c)">{inner}</g>'), expected)
+    same(whole(f'{clip}<g clip-path="url(#c)">{inner}</g>'), expected)
     # Nothing is in a clip path without children, nor in shares of nothing.
-    assert not drawn(f'<clipPath id="c"/><g clip-path="url(#c)">{inner}</g>').any()
-    assert not drawn(f'{clip}<g clip-path="url(#c)"/>').any()
+    assert not whole(f'<clipPath id="c"/><g clip-path="url(#c)">{inner}</g>').any()
+    assert not whole(f'{clip}<g clip-path="url(#c)"/>').any()
 
 
 def test_a_drawing_is_cut_off_at_its_page():
@@ -172,7 +144,7 @@ def test_a_drawing_is_cut_off_at_its_page():
 
 def test_the_language_of_the_whole_does_not_matter():
     body = box(10, 10, 50, 50, 'fill="green"')
-    found = drawn(body, attributes='viewBox="0 0 100 100" systemLanguage="ru"')
+    found = whole(body, attributes='viewBox="0 0 100 100" systemLanguage="ru"')
     same(found, by_hand((10, 10, 50, 50, GREEN)))
 
 
@@ -185,10 +157,10 @@ def test_viewports_cut_off():
         ('viewBox="0 0 5 5"', (10.5, 20, 40, 50)),
     ):
         body = f'<svg x="10.5" y="20" width="29.5" height="30" {attributes}>{inner}</svg>'
-        same(drawn(body), by_hand((*expected, (0, 0, 0))))
+        same(whole(body), by_hand((*expected, (0, 0, 0))))
     symbol = f'<symbol id="s" viewBox="0 0 10 10">{inner}</symbol>'
     same(
-        drawn(f'{symbol}<use href="#s" x="5" y="5" width="20" height="20"/>'),
+        whole(f'{symbol}<use href="#s" x="5" y="5" width="20" height="20"/>'),
         by_hand((5, 5, 25, 25, (0, 0, 0))),
     )
 
@@ -203,7 +175,7 @@ def test_viewports_cut_off():
     ],
 )
 def test_the_page_has_a_background(style, color):
-    made = drawn("", attributes=f'viewBox="0 0 100 100" style="{style}"')
+    made = whole("", attributes=f'viewBox="0 0 100 100" style="{style}"')
     same(made, np.broadcast_to(np.float32(color), made.shape))
     half, _ = prefilter.rasterize_svg(svg("", f'viewBox="0 0 9 9" style="{style}"'), 20, 10)
     same(half[5, [0, 10, 19]], np.float32([(0, 0, 0, 0), color, (0, 0, 0, 0)]))
@@ -257,7 +229,7 @@ def test_blend_modes_are_as_their_formulas(mode):
             ]
             body = box(0, 0, 99, 99, f'fill="{colors[0]}"')
             body += box(0, 0, 99, 99, f'fill="{colors[1]}" style="mix-blend-mode:{mode}"')
-            made = drawn(body)[50, 50]
+            made = whole(body)[50, 50]
             b_alpha, s_alpha = alpha_b / 255, alpha_s / 255
             for channel, (b, s) in enumerate(zip(first, second, strict=True)):
                 mixed = (1 - b_alpha) * s / 255 + b_alpha * formula(mode, b / 255, s / 255)
@@ -278,7 +250,7 @@ def test_blend_modes_of_whole_colors_keep_what_they_say():
             for mode in ("hue", "saturation", "color", "luminosity"):
                 body = box(0, 0, 99, 99, f'fill="rgb{b}"')
                 body += box(0, 0, 99, 99, f'fill="rgb{s}" style="mix-blend-mode:{mode}"')
-                made[mode] = drawn(body)[50, 50, :3].astype(float) * 255
+                made[mode] = whole(body)[50, 50, :3].astype(float) * 255
             for mode in ("hue", "saturation", "color"):
                 assert luminosity(made[mode]) == pytest.approx(luminosity(b), abs=0.01)
             assert luminosity(made["luminosity"]) == pytest.approx(luminosity(s), abs=0.01)
@@ -288,17 +260,17 @@ def test_blend_modes_of_whole_colors_keep_what_they_say():
     gray = box(0, 0, 99, 99, 'fill="rgb(220,40,90)"') + box(
         0, 0, 99, 99, 'fill="#777" style="mix-blend-mode:saturation"'
     )
-    assert np.ptp(drawn(gray)[50, 50, :3]) < 1e-6
+    assert np.ptp(whole(gray)[50, 50, :3]) < 1e-6
 
 
 def test_what_is_isolated_is_mixed_with_nothing_below():
     blending = box(20, 20, 80, 80, 'fill="#808080" style="mix-blend-mode:multiply"')
     behind = box(0, 0, 100, 100, 'fill="red"')
-    mixed = drawn(f"{behind}<g>{blending}</g>")[50, 50]
+    mixed = whole(f"{behind}<g>{blending}</g>")[50, 50]
     np.testing.assert_allclose(mixed, (HALF, 0, 0, 1), atol=1e-6)
     for rest in ('style="isolation:isolate"', 'clip-path="url(#c)"', 'opacity="0.999999"'):
         clip = f'<clipPath id="c">{box(0, 0, 99, 99)}</clipPath>'
-        alone = drawn(f"{behind}{clip}<g {rest}>{blending}</g>")[50, 50]
+        alone = whole(f"{behind}{clip}<g {rest}>{blending}</g>")[50, 50]
         np.testing.assert_allclose(alone, (HALF, HALF, HALF, 1), atol=1e-5)
 
 
@@ -306,7 +278,7 @@ def test_masks_let_through_what_is_bright():
     green = box(0, 0, 100, 100, 'fill="green" mask="url(#m)"')
 
     def masked(attributes, inner, element=green):
-        return drawn(f'<mask id="m" {attributes}>{inner}</mask>{element}')
+        return whole(f'<mask id="m" {attributes}>{inner}</mask>{element}')
 
     white = box(10, 10, 50.5, 50, 'fill="white"')
     same(masked("", white), by_hand((10, 10, 50.5, 50, GREEN)))
@@ -334,10 +306,10 @@ def test_masks_of_masks_are_as_in_browsers():
     green = box(0, 0, 100, 100, 'fill="green" mask="url(#m)"')
     other = '<mask id="n"><rect x="20" y="20" width="10" height="10" fill="white"/></mask>'
     # A mask has none itself; what is in it may have some.
-    whole = f'{other}<mask id="m" mask="url(#n)">{white}</mask>{green}'
-    same(drawn(whole), by_hand((10, 10, 50, 50, GREEN)))
+    outer = f'{other}<mask id="m" mask="url(#n)">{white}</mask>{green}'
+    same(whole(outer), by_hand((10, 10, 50, 50, GREEN)))
     inside = f'{other}<mask id="m"><g mask="url(#n)">{white}</g></mask>{green}'
-    same(drawn(inside), by_hand((20, 20, 30, 30, GREEN)))
+    same(whole(inside), by_hand((20, 20, 30, 30, GREEN)))
 
 
 def test_a_mask_that_closes_a_circle_is_ignored_from_then_on():
@@ -366,22 +338,22 @@ def test_a_pattern_is_what_its_tiles_are():
         for left in range(3, 100, 20)
         for top in range(2, 100, 10)
     ]
-    made = drawn(pattern + box(0, 0, 100, 100, 'fill="url(#p)"'))
+    made = whole(pattern + box(0, 0, 100, 100, 'fill="url(#p)"'))
     same(made[5:95, 5:95], by_hand(*tiles)[5:95, 5:95])
     # In an outline, half opaque, in shares of its box, and turned.
-    made = drawn(pattern + box(20, 20, 60, 60, 'fill="url(#p)" fill-opacity="0.5"'))
+    made = whole(pattern + box(20, 20, 60, 60, 'fill="url(#p)" fill-opacity="0.5"'))
     same(made[20:60, 20:60], by_hand(*tiles)[20:60, 20:60] * np.float32(0.5))
     assert not made[:20].any()
     shares = (
         '<pattern id="p" width="0.5" height="1" patternContentUnits="objectBoundingBox">'
         f"{box(0, 0, 0.25, 1, 'fill=' + chr(34) + 'red' + chr(34))}</pattern>"
     )
-    made = drawn(shares + box(20, 20, 60, 60, 'fill="url(#p)"'))
+    made = whole(shares + box(20, 20, 60, 60, 'fill="url(#p)"'))
     same(made, by_hand((20, 20, 30, 60, RED), (40, 20, 50, 60, RED)))
     turned = pattern.replace("patternUnits", 'patternTransform="rotate(90)" patternUnits')
     same(
-        drawn(turned + box(0, 0, 100, 100, 'fill="url(#p)"')),
-        drawn(turned + box(-9, -9, 109, 109, 'fill="url(#p)"')),
+        whole(turned + box(0, 0, 100, 100, 'fill="url(#p)"')),
+        whole(turned + box(-9, -9, 109, 109, 'fill="url(#p)"')),
     )
 
 
@@ -391,7 +363,7 @@ def test_patterns_finer_than_pixels_are_their_mean(side):
         f'<pattern id="p" width="{side}" height="{2 * side}" patternUnits="userSpaceOnUse">'
         f'<rect width="{side}" height="{side / 2}" fill="red"/></pattern>'
     )
-    made = drawn(pattern + box(20, 20, 60, 60, 'fill="url(#p)"'))
+    made = whole(pattern + box(20, 20, 60, 60, 'fill="url(#p)"'))
     np.testing.assert_allclose(
         made[25:55, 25:55], np.broadcast_to((0.25, 0, 0, 0.25), (30, 30, 4)), atol=1e-3
     )
@@ -405,13 +377,13 @@ def test_markers_are_at_corners_and_turn_with_them():
     line = '<path d="M20 20H60V80" fill="none" stroke-width="5" {}="url(#m)"/>'
 
     def at(orient, name):
-        return drawn(marker.format(orient) + line.format(name))
+        return whole(marker.format(orient) + line.format(name))
 
     same(at("0", "marker-start"), by_hand((10, 15, 30, 25, GREEN)))
     same(at("0", "marker-end"), by_hand((50, 75, 70, 85, GREEN)))
     same(at("auto", "marker-end"), by_hand((55, 70, 65, 90, GREEN)))
     same(at("90deg", "marker-mid"), by_hand((55, 10, 65, 30, GREEN)))
-    middle = drawn(
+    middle = whole(
         '<rect x="-10" y="-5" width="20" height="10" fill="green" '
         'transform="translate(60 20) rotate(45)"/>'
     )
@@ -420,326 +392,5 @@ def test_markers_are_at_corners_and_turn_with_them():
     lent = marker.replace('fill="green"', 'x="-9" width="99" fill="context-stroke"').replace(
         ' width="4" height="2" x', ' height="2" x'
     )
-    made = drawn(lent.format("0") + line.format('stroke="green" marker-start'))
+    made = whole(lent.format("0") + line.format('stroke="green" marker-start'))
     same(made[:, :18], by_hand((10, 15, 30, 25, GREEN))[:, :18])
-
-
-def data_url(texels, kind="png"):
-    return f"data:image/{kind};base64,{base64.b64encode(png.encoded(texels[::-1])).decode()}"
-
-
-def test_images_of_as_many_pixels_are_as_they_are():
-    random = np.random.default_rng(1)
-    texels = random.integers(0, 256, (SIZE, SIZE, 4), np.uint8)
-    expected = texels / np.float32(255)
-    expected[..., :3] *= expected[..., 3:]
-    element = f'<image width="100" height="100" href="{data_url(texels)}"/>'
-    np.testing.assert_allclose(drawn(element), expected, atol=2e-3)
-    linear = prefilter.to_linear(texels[..., :3] / np.float32(255)) * expected[..., 3:]
-    np.testing.assert_allclose(drawn(element, light="linear")[..., :3], linear, atol=2e-3)
-
-
-@pytest.mark.parametrize(
-    ("kind", "options"),
-    [
-        ("gif", {}),
-        ("webp", {"lossless": True}),
-        ("webp", {"quality": 90}),
-        ("webp", {"exif": b"x"}),
-    ],
-)
-def test_other_kinds_of_pictures(kind, options):
-    pillow = pytest.importorskip("PIL.Image")
-    rows = np.zeros((30, 50, 3), np.uint8)
-    rows[:, 20:] = (0, 128, 0)
-    file = io.BytesIO()
-    try:
-        pillow.fromarray(rows).save(file, kind, **options)
-    except (KeyError, OSError):
-        pytest.skip(f"Pillow writes no {kind}")
-    assert size_of(file.getvalue()) == (50, 30)
-    address = f"data:image/{kind};base64,{base64.b64encode(file.getvalue()).decode()}"
-    made = drawn(f'<image width="50" height="30" href="{address}"/>')
-    for x, color in ((10, (0, 0, 0, 1)), (40, (0, 128 / 255, 0, 1)), (60, (0, 0, 0, 0))):
-        np.testing.assert_allclose(made[10, x], color, atol=0.02)
-
-
-def test_where_images_are():
-    flat = np.full((2, 4, 4), 255, np.uint8)
-    href = data_url(flat)
-    for rest, expected in (
-        ('x="10" y="20.5" width="40" height="20"', (10, 20.5, 50, 40.5)),
-        ('width="40" height="40"', (0, 10, 40, 30)),
-        ('width="40" height="40" preserveAspectRatio="xMinYMax"', (0, 20, 40, 40)),
-        ('width="40" height="40" preserveAspectRatio="none"', (0, 0, 40, 40)),
-        ('width="40" height="40" preserveAspectRatio="xMidYMid slice"', (0, 0, 40, 40)),
-        ('width="40"', (0, 0, 40, 20)),
-        ("", (0, 0, 4, 2)),
-    ):
-        made = drawn(f'<image {rest} href="{href}"/>')
-        np.testing.assert_allclose(made, by_hand((*expected, (1, 1, 1))), atol=1e-5)
-    blocks = np.zeros((1, 2, 4), np.uint8)
-    blocks[...] = [[(255, 0, 0, 255), (0, 128, 0, 255)]]
-    rest = 'width="40" height="20" image-rendering="pixelated"'
-    made = drawn(f'<image {rest} href="{data_url(blocks)}"/>')
-    same(made, by_hand((0, 0, 20, 20, RED), (20, 0, 40, 20, GREEN)))
-
-
-@pytest.mark.parametrize("channels", [1, 3, 4])
-def test_pictures_are_the_same_by_either_library(monkeypatch, channels):
-    pytest.importorskip("PIL")
-    pytest.importorskip("OpenImageIO")
-    from prefilter.shapes._svg import pictures
-
-    random = np.random.default_rng(2)
-    for kind in (np.uint8, np.uint16):
-        values = random.integers(0, np.iinfo(kind).max, (5, 7, channels), kind)
-        data = png.encoded(values)
-        first = pictures.read_picture(data)
-        with monkeypatch.context() as patched:
-            patched.setattr(pictures, "import_module", missing)
-            second = pictures.read_picture(data)
-        # Pillow cuts colors of 16 bits off, which are rounded elsewhere.
-        assert np.abs(first.astype(int) - second).max() <= (kind is np.uint16)
-        expected = np.rint(values / (1 if kind is np.uint8 else 257)).astype(np.uint8)[::-1]
-        np.testing.assert_array_equal(second[..., 0], expected[..., 0])
-        alpha = expected[..., 3] if channels == 4 else 255
-        np.testing.assert_array_equal(second[..., 3], np.broadcast_to(alpha, (5, 7)))
-
-
-def missing(name):
-    raise ImportError(name)
-
-
-@pytest.mark.parametrize("aspect", ["xMinYMin", "xMaxYMax slice", "none"])
-def test_drawings_without_a_size_fit_themselves_into_their_place(aspect):
-    inner = svg(box(0, 0, 20, 20, 'fill="green"'), 'viewBox="0 0 20 20"')
-    data = base64.b64encode(inner.encode()).decode()
-    body = (
-        f'<image x="10" y="30" width="80" height="40" preserveAspectRatio="{aspect}" '
-        f'href="data:image/svg+xml;base64,{data}"/>'
-    )
-    expected = (10, 30, 90, 70) if aspect == "none" else (30, 30, 70, 70)
-    same(drawn(body), by_hand((*expected, GREEN)))
-
-
-def test_images_are_read_once_and_counted(monkeypatch):
-    from prefilter.shapes._svg import images, limits
-
-    href = data_url(np.full((4, 4, 4), 255, np.uint8))
-    body = f'<defs><image id="i" width="9" height="9" href="{href}"/></defs>'
-    body += '<use href="#i"/>' * 5
-    count = 0
-
-    def counted(data):
-        nonlocal count
-        count += 1
-        return images_read(data)
-
-    images_read = images.read_picture
-    monkeypatch.setattr(images, "read_picture", counted)
-    same(drawn(body), by_hand((0, 0, 9, 9, (1, 1, 1))))
-    assert count == 1
-    monkeypatch.setattr(limits, "MOST_TEXELS", 15)
-    with pytest.raises(ValueError, match="source: images of more than 15 pixels"):
-        drawn(body)
-
-
-def test_drawings_in_drawings():
-    inner = svg(box(-9, -9, 50, 99, 'fill="red"'), 'width="20" height="10" viewBox="0 0 100 50"')
-    href = "data:image/svg+xml;base64," + base64.b64encode(inner.encode()).decode()
-    made = drawn(f'<image x="10" y="10" width="40" height="40" href="{href}"/>')
-    same(made, by_hand((10, 20, 30, 40, RED)))
-    plain = "data:image/svg+xml," + "".join(f"%{byte:02x}" for byte in inner.encode())
-    same(drawn(f'<image x="10" y="10" width="40" height="40" href="{plain}"/>'), made)
-
-
-def test_images_come_from_the_folder_of_the_drawing_only(tmp_path):
-    folder = tmp_path / "folder"
-    (folder / "deeper").mkdir(parents=True)
-    picture = png.encoded(np.full((2, 2, 4), 255, np.uint8))
-    for path in (folder / "a b.png", folder / "deeper/c.png", tmp_path / "d.png"):
-        path.write_bytes(picture)
-    (folder / "link.png").symlink_to(tmp_path / "d.png")
-    path = folder / "drawing.svg"
-    for href, is_shown in (
-        ("a%20b.png", True),
-        ("deeper/c.png", True),
-        ("../d.png", False),
-        (str(tmp_path / "d.png"), False),
-        ((tmp_path / "d.png").as_uri(), False),
-        ("link.png", False),
-        ("none.png", False),
-        ("http://localhost/a.png", False),
-        ("//localhost/a.png", False),
-    ):
-        path.write_text(svg(f'<image width="100" height="100" href="{href}"/>'))
-        made, warnings = prefilter.rasterize_svg(path, 4, 4)
-        assert (made[..., 3] == 1).all() == is_shown, href
-        assert [warning.name for warning in warnings] == ([] if is_shown else ["<image>"])
-    # Nor does a drawing in a drawing reach out of it.
-    (folder / "inner.svg").write_text(path.read_text().replace("//localhost/a", "a%20b"))
-    path.write_text(svg('<image width="100" height="100" href="inner.svg"/>'))
-    made, warnings = prefilter.rasterize_svg(path, 4, 4)
-    assert len(warnings) == 1
-    assert not made.any()
-
-
-@pytest.mark.parametrize(
-    "body",
-    [
-        '<mask id="m"><g mask="url(#m)"><rect width="9" height="9"/></g></mask><g mask="url(#m)"/>',
-        '<clipPath id="c" clip-path="url(#c)"/><rect width="9" height="9" clip-path="url(#c)"/>',
-        '<pattern id="p" width="1" height="1"><rect width="9" height="9" fill="url(#p)"/></pattern>'
-        '<rect width="9" height="9" fill="url(#p)"/>',
-        '<marker id="m"><path d="M0 0H9" marker-end="url(#m)"/></marker>'
-        '<path d="M0 0H9" marker-end="url(#m)"/>',
-        '<clipPath id="c" transform="scale(0)"><rect width="9" height="9"/></clipPath>'
-        '<rect width="9" height="9" clip-path="url(#c)"/>',
-        '<clipPath id="c"><rect width="1e300" height="1e300"/></clipPath>'
-        '<rect width="9" height="9" clip-path="url(#c)"/>',
-        '<mask id="m" width="1e300"><rect/></mask><rect width="9" height="9" mask="url(#m)"/>',
-        '<pattern id="p" width="1e-300" height="1e300"><rect width="9" height="9"/></pattern>'
-        '<rect width="9" height="9" fill="url(#p)"/>',
-        '<pattern id="p" width="1e-9" height="1e-9" patternUnits="userSpaceOnUse">'
-        '<rect width="9" height="9"/></pattern><rect width="9" height="9" fill="url(#p)"/>',
-        '<image width="1e300" height="1" href="data:image/svg+xml,&lt;svg/&gt;"/>',
-        '<image width="9" height="9" href="data:image/svg+xml,&lt;svg"/>',
-        '<image width="9" height="9" href="data:image/png;base64,iVBORw0KGgoAAAAA"/>',
-        '<image width="9" height="9" href="data:image/jpeg;base64,/9j/4AAQ"/>',
-        '<image width="9" height="9" href="data:"/><image width="9" height="9" href="%"/>',
-        '<marker id="m" markerWidth="1e300" viewBox="0 0 1e-9 1"><rect width="1" height="1"/>'
-        '</marker><path d="M0 0H9V9ZZZM3 3" marker-mid="url(#m)" marker-end="url(#m)"/>',
-        '<g style="mix-blend-mode:hue" opacity="0.5"/><g opacity="nan" style="isolation:x"/>',
-        '<use href="#none" opacity="0.5"/><g mask="none" clip-path="url()"/>',
-    ],
-    ids=lambda body: body[:40],
-)
-def test_odd_drawings_are_drawn(body):
-    for light in ("srgb", "linear"):
-        made, _ = prefilter.rasterize_svg(svg(body), 16, 16, light=light)
-        assert np.isfinite(made).all()
-
-
-def test_layers_have_limits(monkeypatch):
-    inner = box(0, 0, 50, 50) + box(20, 20, 70, 70)
-    deep = '<g opacity="0.9">' * 60 + inner + "</g>" * 60
-    # Each has one group in it, and becomes a layer.
-    with pytest.raises(ValueError, match="source: layers are nested more than 48 deep"):
-        prefilter.rasterize_svg(svg(deep), 8, 8)
-    from prefilter.shapes._svg import compositing
-
-    monkeypatch.setattr(compositing, "MOST_LAYER_PIXELS", 1000)
-    wide = f'<g opacity="0.5">{inner}</g>' * 20
-    with pytest.raises(ValueError, match="source: more than 50000 layers, or of more than 1000"):
-        prefilter.rasterize_svg(svg(wide), 16, 16)
-    monkeypatch.undo()
-    monkeypatch.setattr(compositing, "MOST_LAYERS", 10)
-    with pytest.raises(ValueError, match="source: more than 10 layers"):
-        prefilter.rasterize_svg(svg(wide), 16, 16)
-
-
-def test_boxes_of_groups_in_groups_are_counted(monkeypatch):
-    from prefilter.shapes._svg import limits
-
-    clip = f'<clipPath id="c" clipPathUnits="objectBoundingBox">{box(0, 0, 1, 1)}</clipPath>'
-    body = clip + '<g clip-path="url(#c)">' * 20 + box(0, 0, 50, 50) * 20 + "</g>" * 20
-    same(drawn(body), by_hand((0, 0, 50, 50, (0, 0, 0))))
-    monkeypatch.setattr(limits, "MOST_MEASURED", 500)
-    with pytest.raises(ValueError, match="source: boxes around groups of more than 500 elements"):
-        drawn(body)
-
-
-@pytest.mark.parametrize(
-    "group",
-    [
-        '<g mask="url(#m{})"><rect/></g>',
-        '<rect fill="url(#m{})"/>',
-        '<path marker-mid="url(#m{})"/>',
-    ],
-)
-def test_what_masks_and_others_repeat_is_counted_before_it_is_drawn(monkeypatch, group):
-    from prefilter.shapes._svg.drawing import Walk
-
-    def visited(*_):
-        raise AssertionError
-
-    monkeypatch.setattr(Walk, "_visit", visited)
-    tag = "mask" if "mask=" in group else "pattern" if "fill" in group else "marker"
-    bombs = "".join(f'<{tag} id="m{k}">{group.format(k - 1) * 3}</{tag}>' for k in range(1, 20))
-    with pytest.raises(ValueError, match="masks, patterns and markers repeat more than 250000"):
-        prefilter.rasterize_svg(svg(bombs + group.format(19)), 9, 9)
-
-
-def test_patterns_in_patterns_end():
-    patterns = "".join(
-        f'<pattern id="p{k}" width="1" height="1" patternUnits="userSpaceOnUse">'
-        f'<rect width="0.5" height="1" fill="{f"url(#p{k - 1})" if k else "red"}"/></pattern>'
-        for k in range(8)
-    )
-    made = drawn(patterns + box(20, 20, 60, 60, 'fill="url(#p1)"'))
-    # Half of the columns, of which red is half.
-    np.testing.assert_allclose(made[25:55, 25:55, 3].mean(), 0.5, atol=0.01)
-    assert np.isfinite(drawn(patterns + box(20, 20, 60, 60, 'fill="url(#p7)"'))).all()
-
-
-def test_garbled_drawings_are_drawn_or_refused():
-    random = np.random.default_rng(6)
-    good = svg(
-        '<mask id="m"><rect width="60" height="60" fill="white"/></mask><filter id="f">'
-        '<feGaussianBlur stdDeviation="2"/><feOffset dx="3"/></filter><clipPath id="c">'
-        '<circle r="50"/></clipPath><pattern id="p" width="9" height="9" '
-        'patternUnits="userSpaceOnUse"><rect width="5" height="5"/></pattern>'
-        '<marker id="k" orient="auto"><path d="M0 0H3V3"/></marker>'
-        '<g opacity=".5" mask="url(#m)" filter="url(#f)"><path d="M5 5L50 9 20 70z" '
-        'fill="url(#p)" stroke="red" marker-mid="url(#k)"/></g><g clip-path="url(#c)" '
-        'style="mix-blend-mode:hue"><rect width="40" height="40" transform="rotate(9)"/></g>'
-    )
-    letters = np.frombuffer(b'<>"0123456789.eE-+ ()#%;:,zaMQ', np.uint8)
-    for _ in range(150):
-        data = np.frombuffer(good.encode(), np.uint8).copy()
-        places = random.integers(120, len(data), random.integers(1, 6))
-        data[places] = random.choice(letters, len(places))
-        try:
-            made, _ = prefilter.rasterize_svg(data.tobytes(), 12, 12)
-        except ValueError as error:
-            assert str(error).startswith("source")  # noqa: PT017
-        else:
-            assert np.isfinite(made).all()
-
-
-LAYERED = (
-    f'<mask id="m">{box(0, 0, 60, 60, "fill=" + chr(34) + "#ccc" + chr(34))}</mask>'
-    f'<g mask="url(#m)" opacity="0.4">{box(5, 5, 50.5, 50)}<circle cx="40" cy="40" r="31"/></g>'
-    '<circle cx="60" cy="60" r="30" fill="red" style="mix-blend-mode:soft-light"/>'
-)
-
-
-def test_the_same_bits_by_any_number_of_threads():
-    one, many = (drawn(LAYERED, 200, threads=threads) for threads in (1, 4))
-    np.testing.assert_array_equal(one, many)
-
-
-def test_progress_and_canceling():
-    told = []
-    drawn(LAYERED, progress=told.append)
-    assert told == sorted(told)
-    assert 0.0 <= told[0] <= told[-1] <= 1.0
-    for limit in (0.1, 0.5):
-        with pytest.raises(prefilter.Cancelled):
-            drawn(LAYERED, progress=lambda share, limit=limit: share < limit)
-
-
-def test_bad_arguments():
-    with pytest.raises(ValueError, match="light: 'both' is not one of linear, srgb"):
-        drawn("", light="both")
-    with pytest.raises(ValueError, match="filter: 'sharp' is not one of box"):
-        drawn("", filter="sharp")
-    with pytest.raises(ValueError, match="dtype"):
-        drawn("", dtype=np.uint16)
-    with pytest.raises(ValueError, match="threads: -1"):
-        drawn("", threads=-1)
-    with pytest.raises(ValueError, match="width: 0"):
-        prefilter.rasterize_svg(svg(""), 0, 9)
-    with pytest.raises(ValueError, match="source: no SVG drawing"):
-        prefilter.rasterize_svg("<html/>", 9, 9)

@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Images and drawings within drawings."""
+
+import base64
+import io
+
+import numpy as np
+import prefilter
+import pytest
+from drawings import GREEN, RED, SIZE, box, by_hand, same, svg, whole
+from prefilter._work.files import png
+from prefilter.shapes._svg.pictures import size_of
+
+
+def data_url(texels, kind="png"):
+    return f"data:image/{kind};base64,{base64.b64encode(png.encoded(texels[::-1])).decode()}"
+
+
+def test_images_of_as_many_pixels_are_as_they_are():
+    random = np.random.default_rng(1)
+    texels = random.integers(0, 256, (SIZE, SIZE, 4), np.uint8)
+    expected = texels / np.float32(255)
+    expected[..., :3] *= expected[..., 3:]
+    element = f'<image width="100" height="100" href="{data_url(texels)}"/>'
+    np.testing.assert_allclose(whole(element), expected, atol=2e-3)
+    linear = prefilter.to_linear(texels[..., :3] / np.float32(255)) * expected[..., 3:]
+    np.testing.assert_allclose(whole(element, light="linear")[..., :3], linear, atol=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("kind", "options"),
+    [
+        ("gif", {}),
+        ("webp", {"lossless": True}),
+        ("webp", {"quality": 90}),
+        ("webp", {"exif": b"x"}),
+    ],
+)
+def test_other_kinds_of_pictures(kind, options):
+    pillow = pytest.importorskip("PIL.Image")
+    rows = np.zeros((30, 50, 3), np.uint8)
+    rows[:, 20:] = (0, 128, 0)
+    file = io.BytesIO()
+    try:
+        pillow.fromarray(rows).save(file, kind, **options)
+    except (KeyError, OSError):
+        pytest.skip(f"Pillow writes no {kind}")
+    assert size_of(file.getvalue()) == (50, 30)
+    address = f"data:image/{kind};base64,{base64.b64encode(file.getvalue()).decode()}"
+    made = whole(f'<image width="50" height="30" href="{address}"/>')
+    for x, color in ((10, (0, 0, 0, 1)), (40, (0, 128 / 255, 0, 1)), (60, (0, 0, 0, 0))):
+        np.testing.assert_allclose(made[10, x], color, atol=0.02)
+
+
+def test_where_images_are():
+    flat = np.full((2, 4, 4), 255, np.uint8)
+    href = data_url(flat)
+    for rest, expected in (
+        ('x="10" y="20.5" width="40" height="20"', (10, 20.5, 50, 40.5)),
+        ('width="40" height="40"', (0, 10, 40, 30)),
+        ('width="40" height="40" preserveAspectRatio="xMinYMax"', (0, 20, 40, 40)),
+        ('width="40" height="40" preserveAspectRatio="none"', (0, 0, 40, 40)),
+        ('width="40" height="40" preserveAspectRatio="xMidYMid slice"', (0, 0, 40, 40)),
+        ('width="40"', (0, 0, 40, 20)),
+        ("", (0, 0, 4, 2)),
+    ):
+        made = whole(f'<image {rest} href="{href}"/>')
+        np.testing.assert_allclose(made, by_hand((*expected, (1, 1, 1))), atol=1e-5)
+    blocks = np.zeros((1, 2, 4), np.uint8)
+    blocks[...] = [[(255, 0, 0, 255), (0, 128, 0, 255)]]
+    rest = 'width="40" height="20" image-rendering="pixelated"'
+    made = whole(f'<image {rest} href="{data_url(blocks)}"/>')
+    same(made, by_hand((0, 0, 20, 20, RED), (20, 0, 40, 20, GREEN)))
+
+
+@pytest.mark.parametrize("channels", [1, 3, 4])
+def test_pictures_are_the_same_by_either_library(monkeypatch, channels):
+    pytest.importorskip("PIL")
+    pytest.importorskip("OpenImageIO")
+    from prefilter.shapes._svg import pictures
+
+    random = np.random.default_rng(2)
+    for kind in (np.uint8, np.uint16):
+        values = random.integers(0, np.iinfo(kind).max, (5, 7, channels), kind)
+        data = png.encoded(values)
+        first = pictures.read_picture(data)
+        with monkeypatch.context() as patched:
+            patched.setattr(pictures, "import_module", missing)
+            second = pictures.read_picture(data)
+        # Pillow cuts colors of 16 bits off, which are rounded elsewhere.
+        assert np.abs(first.astype(int) - second).max() <= (kind is np.uint16)
+        expected = np.rint(values / (1 if kind is np.uint8 else 257)).astype(np.uint8)[::-1]
+        np.testing.assert_array_equal(second[..., 0], expected[..., 0])
+        alpha = expected[..., 3] if channels == 4 else 255
+        np.testing.assert_array_equal(second[..., 3], np.broadcast_to(alpha, (5, 7)))
+
+
+def missing(name):
+    raise ImportError(name)
+
+
+@pytest.mark.parametrize("aspect", ["xMinYMin", "xMaxYMax slice", "none"])
+def test_drawings_without_a_size_fit_themselves_into_their_place(aspect):
+    inner = svg(box(0, 0, 20, 20, 'fill="green"'), 'viewBox="0 0 20 20"')
+    data = base64.b64encode(inner.encode()).decode()
+    body = (
+        f'<image x="10" y="30" width="80" height="40" preserveAspectRatio="{aspect}" '
+        f'href="data:image/svg+xml;base64,{data}"/>'
+    )
+    expected = (10, 30, 90, 70) if aspect == "none" else (30, 30, 70, 70)
+    same(whole(body), by_hand((*expected, GREEN)))
+
+
+def test_images_are_read_once_and_counted(monkeypatch):
+    from prefilter.shapes._svg import images, limits
+
+    href = data_url(np.full((4, 4, 4), 255, np.uint8))
+    body = f'<defs><image id="i" width="9" height="9" href="{href}"/></defs>'
+    body += '<use href="#i"/>' * 5
+    count = 0
+
+    def counted(data):
+        nonlocal count
+        count += 1
+        return images_read(data)
+
+    images_read = images.read_picture
+    monkeypatch.setattr(images, "read_picture", counted)
+    same(whole(body), by_hand((0, 0, 9, 9, (1, 1, 1))))
+    assert count == 1
+    monkeypatch.setattr(limits, "MOST_TEXELS", 15)
+    with pytest.raises(ValueError, match="source: images of more than 15 pixels"):
+        whole(body)
+
+
+def test_drawings_in_drawings():
+    inner = svg(box(-9, -9, 50, 99, 'fill="red"'), 'width="20" height="10" viewBox="0 0 100 50"')
+    href = "data:image/svg+xml;base64," + base64.b64encode(inner.encode()).decode()
+    made = whole(f'<image x="10" y="10" width="40" height="40" href="{href}"/>')
+    same(made, by_hand((10, 20, 30, 40, RED)))
+    plain = "data:image/svg+xml," + "".join(f"%{byte:02x}" for byte in inner.encode())
+    same(whole(f'<image x="10" y="10" width="40" height="40" href="{plain}"/>'), made)
+
+
+def test_images_come_from_the_folder_of_the_drawing_only(tmp_path):
+    folder = tmp_path / "folder"
+    (folder / "deeper").mkdir(parents=True)
+    picture = png.encoded(np.full((2, 2, 4), 255, np.uint8))
+    for path in (folder / "a b.png", folder / "deeper/c.png", tmp_path / "d.png"):
+        path.write_bytes(picture)
+    (folder / "link.png").symlink_to(tmp_path / "d.png")
+    path = folder / "drawing.svg"
+    for href, is_shown in (
+        ("a%20b.png", True),
+        ("deeper/c.png", True),
+        ("../d.png", False),
+        (str(tmp_path / "d.png"), False),
+        ((tmp_path / "d.png").as_uri(), False),
+        ("link.png", False),
+        ("none.png", False),
+        ("http://localhost/a.png", False),
+        ("//localhost/a.png", False),
+    ):
+        path.write_text(svg(f'<image width="100" height="100" href="{href}"/>'))
+        made, warnings = prefilter.rasterize_svg(path, 4, 4)
+        assert (made[..., 3] == 1).all() == is_shown, href
+        assert [warning.name for warning in warnings] == ([] if is_shown else ["<image>"])
+    # Nor does a drawing in a drawing reach out of it.
+    (folder / "inner.svg").write_text(path.read_text().replace("//localhost/a", "a%20b"))
+    path.write_text(svg('<image width="100" height="100" href="inner.svg"/>'))
+    made, warnings = prefilter.rasterize_svg(path, 4, 4)
+    assert len(warnings) == 1
+    assert not made.any()
