@@ -70,7 +70,7 @@ class Font:
         numbers = self._file.getReverseGlyphMap()
         return {code: numbers[name] for code, name in names.items() if name in numbers}
 
-    @property
+    @cached_property
     def is_colored(self) -> bool:
         """Whether its letters have colors."""
         return any(tag in self._file for tag in ("COLR", "SVG ", "sbix", "CBDT"))

@@ -10,7 +10,7 @@ from .basic_shapes import BASIC_SHAPES
 from .clips import box_clip
 from .context import Context, Sources, paints_of
 from .document import SvgElement
-from .lengths import about_origin
+from .lengths import Units, about_origin
 from .tags import GROUPS
 from .values import Length, as_transform
 from .viewports import as_view_box, placed
@@ -46,12 +46,14 @@ def moved(element: SvgElement, context: Context, sources: Sources) -> Context:
     """The context within an element: with its style, and in its units."""
     style = sources.sheets.style_below(element, context.style)
     declared = sources.sheets.declared(element)
-    matrix = as_transform(declared.get("transform", ""))
+    turn, origin = declared.get("transform", ""), declared.get("transform-origin", "")
+    if not turn and not origin:
+        return context if style is context.style else replace(context, style=style)
+    matrix = as_transform(turn)
     if matrix is None:
         sources.warnings.broken("transform", "ignored", element.line)
         matrix = IDENTITY
-    units = replace(context, style=style).units
-    turned = about_origin(matrix, declared.get("transform-origin", ""), units)
+    turned = about_origin(matrix, origin, Units(*context.viewport, style.font_size))
     if turned is None:
         sources.warnings.broken("transform-origin", "ignored", element.line)
     matrix = matrix if turned is None else turned

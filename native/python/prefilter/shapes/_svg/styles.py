@@ -150,6 +150,7 @@ _PARSERS: dict[str, Callable[[str], Any]] = {
     "stop-color": as_color,
     "stop-opacity": _share,
 }
+_STYLED = frozenset((*_PARSERS, *PROPERTIES))
 _FIELDS = {name: name.replace("-", "_") for name in (*_PARSERS, "font-size")}
 
 # What draws in another way than it would here, with the values that do nothing.
@@ -170,6 +171,23 @@ _PROPERTIES = frozenset(
 )
 
 
+def _style_below(declared: Mapping[str, str], parent: Style, font_size: float) -> Style:
+    changed: dict[str, Any] = {}
+    if font_size != parent.font_size:
+        changed["font_size"] = font_size
+    if declared.keys() & PROPERTIES.keys():
+        changed["text"] = text_style_below(declared, parent.text, font_size)
+    for name in declared.keys() & _PARSERS.keys():
+        field, text = _FIELDS[name], declared[name]
+        value = getattr(parent, field) if text == "inherit" else _parsed(name, text)
+        if value is not None and not (name == "color" and value == "current"):
+            changed[field] = value
+    for name in _OWN:
+        if name not in changed and getattr(parent, name) != _INITIAL[name]:
+            changed[name] = _INITIAL[name]
+    return replace(parent, **changed) if changed else parent
+
+
 class StyleSheets:
     """The style sheets of a document, and what its elements declare.
 
@@ -183,6 +201,8 @@ class StyleSheets:
         self._warnings = warnings
         self._styles: dict[SvgElement, Style] = {}
         self._declared: dict[SvgElement, dict[str, str]] = {}
+        # By the parent, which is kept so that its number stays its own, and what is declared.
+        self._below: dict[tuple[Any, ...], tuple[Style, Style]] = {}
         found = StyleRules(document, warnings)
         self.font_rules: list[FontRule] = found.font_rules
         matcher = None if found.is_empty else found.matcher
@@ -215,22 +235,17 @@ class StyleSheets:
 
     def style_below(self, element: SvgElement, parent: Style) -> Style:
         """The properties of an element in a place where its parent has those given."""
-        changed: dict[str, Any] = {}
         declared = self._declared[element]
+        size = parent.font_size
         if "font-size" in declared:
-            changed["font_size"] = self._font_size(declared["font-size"], parent, element)
-        if declared.keys() & PROPERTIES.keys():
-            size = changed.get("font_size", parent.font_size)
-            changed["text"] = text_style_below(declared, parent.text, size)
-        for name in declared.keys() & _PARSERS.keys():
-            field, text = _FIELDS[name], declared[name]
-            value = getattr(parent, field) if text == "inherit" else _parsed(name, text)
-            if value is not None and not (name == "color" and value == "current"):
-                changed[field] = value
-        for name in _OWN:
-            if name not in changed and getattr(parent, name) != _INITIAL[name]:
-                changed[name] = _INITIAL[name]
-        return replace(parent, **changed) if changed else parent
+            size = self._font_size(declared["font-size"], parent, element)
+        # Words of a text, and parts of a diagram, mostly say the same again and again.
+        said = tuple((name, text) for name, text in declared.items() if name in _STYLED)
+        key = (id(parent), size, said)
+        found = self._below.get(key)
+        if found is None:
+            found = self._below[key] = (parent, _style_below(dict(said), parent, size))
+        return found[1]
 
     def _font_size(self, text: str, parent: Style, element: SvgElement) -> float:
         if text.lower() in _FONT_SIZES:

@@ -5,6 +5,7 @@
 from array import array
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import cast
 
 import numpy as np
 
@@ -22,6 +23,8 @@ from .tree import Box
 
 # Of lines at letters, in sizes of these.
 _LINE_THICKNESS = 0.1
+# Letters whose points are moved at once.
+_TOGETHER = 256
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,15 +92,15 @@ def _pieces(
         for line, owner in lines:
             if line == name:
                 yield from _piece(owner, _line(name, owner, span, clusters, lettering))
-    letters, colored = Outline(), []
+    plain, colored = [], []
     for cluster in clusters:
         for glyph, matrix in _placed(cluster):
             look = lettering.look_of(cluster.font, glyph, span)
             if look is None:
-                _add_letter(cluster.font.glyph(glyph), matrix, letters)
+                plain.append((cluster.font.glyph(glyph), matrix))
             else:
                 colored.append(ColoredLetter(cluster.font, look, matrix))
-    yield from _piece(span, letters)
+    yield from _piece(span, _letters(plain))
     if colored:
         yield ColoredPiece(span.element, span.style, colored)
     for line, owner in lines:
@@ -110,7 +113,9 @@ def _piece(span: Span, outline: Outline) -> Iterator[TextPiece]:
     found = outline.shape("nonzero").bounds if len(outline) else None
     if found is not None:
         (left, top), (right, bottom) = found
-        style = replace(span.style, fill_rule="nonzero")
+        style = span.style
+        if style.fill_rule != "nonzero":
+            style = replace(style, fill_rule="nonzero")
         box = (float(left), float(top), float(right), float(bottom))
         yield TextPiece(span.element, style, outline, box)
 
@@ -127,15 +132,20 @@ def _placed(cluster: Cluster) -> Iterator[tuple[int, Matrix]]:
         at += shaped.advance
 
 
-def _add_letter(glyph: Glyph, matrix: Matrix, outline: Outline) -> None:
-    if not glyph.letters:
-        return
-    a, b, c, d, e, f = matrix
-    points = np.frombuffer(glyph.numbers).reshape(-1, 2)
-    moved = np.empty_like(points)
-    moved[:, 0] = a * points[:, 0] + c * points[:, 1] + e
-    moved[:, 1] = b * points[:, 0] + d * points[:, 1] + f
-    outline.extend(glyph.letters, array("d", moved.tobytes()))
+def _letters(placed: Sequence[tuple[Glyph, Matrix]]) -> Outline:
+    """Glyphs where they stand, many of them at a time."""
+    outline = Outline()
+    for first in range(0, len(placed), _TOGETHER):
+        some = placed[first : first + _TOGETHER]
+        points = np.concatenate([np.frombuffer(glyph.numbers) for glyph, _ in some]).reshape(-1, 2)
+        counts = [len(glyph.numbers) // 2 for glyph, _ in some]
+        a, b, c, d, e, f = np.repeat([matrix for _, matrix in some], counts, axis=0).T
+        moved = np.empty_like(points)
+        moved[:, 0] = a * points[:, 0] + c * points[:, 1] + e
+        moved[:, 1] = b * points[:, 0] + d * points[:, 1] + f
+        letters = b"".join(glyph.letters for glyph, _ in some)
+        outline.extend(letters, array("d", moved.tobytes()))
+    return outline
 
 
 def _line(
@@ -194,14 +204,13 @@ def _through(matrix: Matrix, x: float, y: float) -> tuple[float, float]:
 
 
 def _bounds(clusters: Sequence[Cluster]) -> Box | None:
-    points = []
-    for cluster in clusters:
-        assert cluster.matrix is not None
-        size, metrics = cluster.span.style.font_size, cluster.font.metrics
-        for x in (0.0, cluster.advance):
-            for y in (-metrics.ascent * size, -metrics.descent * size):
-                points.append(_through(cluster.matrix, x, y))
-    if not points:
+    if not clusters:
         return None
-    xs, ys = zip(*points, strict=True)
-    return min(xs), min(ys), max(xs), max(ys)
+    sizes = np.array([cluster.span.style.font_size for cluster in clusters])
+    metrics = [(cluster.font.metrics.ascent, cluster.font.metrics.descent) for cluster in clusters]
+    x = np.array([(0.0, cluster.advance) for cluster in clusters])[:, :, None]
+    y = (-np.array(metrics) * sizes[:, None])[:, None, :]
+    matrices = np.array([cast(Matrix, cluster.matrix) for cluster in clusters])
+    a, b, c, d, e, f = matrices.T[:, :, None, None]
+    xs, ys = a * x + c * y + e, b * x + d * y + f
+    return float(xs.min()), float(ys.min()), float(xs.max()), float(ys.max())
