@@ -38,17 +38,21 @@ class Commands:
             The exit status: 0, 1 for a failure that was told on stderr, 2 for wrong arguments, 130
             after Ctrl-C, 143 after SIGTERM.
         """
-        from prefilter._command.program import ended
+        from prefilter._command.program import ended, execute
+        from prefilter._command.voices import keep_output_apart
 
-        return ended(lambda: self._run(arguments))
+        def run() -> None:
+            options = self.parser().parse_args(arguments)
+            keep_output_apart()
+            execute(options)
 
-    def _run(self, arguments: Sequence[str]) -> None:
-        options = self.parser().parse_args(arguments)
-        options.execute(options)
+        return ended(run)
 
     def parser(self) -> "argparse.ArgumentParser":
         """Returns what reads the arguments."""
         import argparse
+
+        from prefilter._command.telling import add_progress
 
         parser = argparse.ArgumentParser(
             prog=_PROGRAM,
@@ -62,4 +66,6 @@ class Commands:
             name = f"{__package__}.{subject}.command"
             if find_spec(name) is not None:
                 import_module(name).add(commands)
+        for command in commands.choices.values():
+            add_progress(command)
         return parser

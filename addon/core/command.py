@@ -7,6 +7,8 @@ from prefilter._command.telling import (
     check_ending,
     done,
     progress_line,
+    say,
+    share,
     tell,
     warn,
 )
@@ -16,6 +18,8 @@ __all__ = (
     "check_ending",
     "done",
     "progress_line",
+    "say",
+    "share",
     "tell",
     "warn",
 )

@@ -88,4 +88,4 @@ def _plot(options: argparse.Namespace) -> None:
         for file in staged:
             file.discard()
     command.warn(work.warnings)
-    print(curves.summary())
+    command.say(curves.summary())

@@ -12,6 +12,7 @@ from prefilter._work.files import target_files
 
 from ...bridge import images, meshes
 from ...bridge.files import scenes
+from ...core import command
 from ...core.flags import given
 from ...core.wording import either
 from .. import unnamed, users
@@ -79,7 +80,7 @@ def images_of(
     if name is None:
         chosen, line = unnamed.images_to_bake(objects)
         if line:
-            print(line)
+            command.say(line)
         return chosen, False
     if name not in bpy.data.images and os.path.isfile(name):
         return [images.load("--image", name, is_data=content in {"normal", "data"})], True

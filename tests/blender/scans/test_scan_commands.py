@@ -11,7 +11,7 @@ import clouds
 import numpy as np
 import pytest
 from command_line import assert_fails, loaded, run
-from prefilter._command import telling
+from prefilter._command import voices
 
 DEPTH = ("--depth", 6)
 
@@ -234,18 +234,17 @@ def test_failures_leave_nothing(scan, tmp_path):
 @pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
 def test_ctrl_c_leaves_nothing(scan, tmp_path, addon, monkeypatch, number, status):
     """As a user presses it who sees the first line of progress."""
-    module = telling
 
-    class Interrupted(module.ProgressLine):
+    class Interrupted(voices.Plain):
         _is_sent = False
 
-        def __call__(self, fraction):
+        def progress(self, fraction):
             if not self._is_sent:
                 self._is_sent = True
                 os.kill(os.getpid(), number)
-            return super().__call__(fraction)
+            super().progress(fraction)
 
-    monkeypatch.setattr(module, "ProgressLine", Interrupted)
+    monkeypatch.setitem(voices.VOICES, "plain", Interrupted)
     for name in ("out.ply", "out.stl"):
         result = run("reconstruct", scan, tmp_path / name, *DEPTH)
         assert result.returncode == status

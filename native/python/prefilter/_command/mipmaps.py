@@ -71,7 +71,7 @@ def _run(options: argparse.Namespace) -> None:
         for target in targets:
             recover(target.parent)
         if is_up_to_date(targets, number):
-            print(f"Up to date: {listed(map(str, targets))}")
+            telling.say(f"Up to date: {listed(map(str, targets))}")
             return
     metadata = None if number is None else {KEY: number}
     from . import mipmap_levels  # A run that finds all up to date needs none of it.

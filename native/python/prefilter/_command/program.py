@@ -9,6 +9,7 @@ from importlib import import_module
 
 from .. import _native
 from .._border import stopping
+from . import telling
 
 COMMANDS = {
     "mipmaps": "make the mipmap levels of a texture, weighted by the meshes that wear it",
@@ -35,7 +36,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run(words: Sequence[str]) -> None:
-    options = parser(words[:1]).parse_args(words)
+    execute(parser(words[:1]).parse_args(words))
+
+
+def execute(options: argparse.Namespace) -> None:
+    """Does what arguments say, and tells of it as they say."""
+    telling.speak(options.progress)
     options.execute(options)
 
 
@@ -43,6 +49,7 @@ def ended(run: Callable[[], object]) -> int:
     """Runs a command; returns its exit status, of which stderr says why it is not 0."""
     from .._work.outcome import FAILURES
 
+    telling.speak()
     with stopping.heeded():
         try:
             run()
@@ -51,11 +58,11 @@ def ended(run: Callable[[], object]) -> int:
         except BaseException as error:
             # What was interrupted may fail in any way, as operators of Blender do.
             if stopping.asked() or isinstance(error, (_native.Cancelled, KeyboardInterrupt)):
-                print("prefilter: canceled", file=sys.stderr)
+                telling.cancel()
                 return stopping.status()
             if not isinstance(error, FAILURES):
                 raise
-            print(f"prefilter: error: {error}", file=sys.stderr)
+            telling.fail(str(error))
             return 1
     return 0
 
@@ -78,6 +85,7 @@ def parser(chosen: Sequence[str] = tuple(COMMANDS)) -> argparse.ArgumentParser:
     for name, purpose in COMMANDS.items():
         if name in chosen:
             import_module(f".{name.replace('-', '_')}", __package__).add(commands, purpose)
+            telling.add_progress(commands.choices[name])
         else:
             commands.add_parser(name, help=purpose)
     return found

@@ -4,14 +4,19 @@
 
 import argparse
 import os
-import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
 from .._border import stopping
+from .._work import progress as works
 from .._work.outcome import Outcome
-from .._work.progress import Work, go_on
+from .._work.progress import Progress, Work, go_on
+from .voices import VOICES, Plain
+
+_voice = Plain()
+_share: tuple[int, int] = (0, 1)
+"""The part of the command that its work is now: which of how many."""
 
 
 def add_command(commands: Any, name: str, purpose: str, *notes: str) -> argparse.ArgumentParser:
@@ -26,6 +31,24 @@ def add_command(commands: Any, name: str, purpose: str, *notes: str) -> argparse
     return parser
 
 
+def add_progress(parser: argparse.ArgumentParser) -> None:
+    """Adds the flag that says whom progress is told."""
+    parser.add_argument(
+        "--progress",
+        choices=VOICES,
+        default="plain",
+        metavar="KIND",
+        help="how progress and results are told: plain, for people; openjd, as Open Job "
+        "Description reads them; json, an object a line on standard output (default: plain)",
+    )
+
+
+def speak(kind: str = "plain") -> None:
+    """Has all that follows told in one way; see `add_progress`."""
+    global _voice, _share
+    _voice, _share = VOICES[kind](), (0, 1)
+
+
 def check_ending(options: argparse.Namespace, name: str, path: str, allowed: Sequence[str]) -> str:
     """Returns the extension of a file; ends the program unless it is allowed."""
     # Of several that a name ends in, such as ".ply.gz" and ".gz", the longest one.
@@ -37,7 +60,7 @@ def check_ending(options: argparse.Namespace, name: str, path: str, allowed: Seq
 
 
 def done(work: Work) -> Outcome:
-    """Computes and writes, with a line of progress."""
+    """Computes and writes, and tells of the progress."""
     with progress_line() as progress:
         try:
             work.compute(progress)
@@ -47,52 +70,61 @@ def done(work: Work) -> Outcome:
             work.discard()
 
 
+@contextmanager
+def share(number: int, count: int) -> Iterator[None]:
+    """What is done in this context is one of several works of the same command."""
+    global _share
+    _share = (number, count)
+    try:
+        yield
+    finally:
+        _share = (0, 1)
+
+
+def say(line: str) -> None:
+    """Prints a line."""
+    _voice.say(line)
+
+
 def tell(outcome: Outcome) -> None:
     """Prints what was done, and on stderr what the user should look at."""
     warn(outcome.warnings)
-    for note in outcome.notes:
-        print(note)
-    print(outcome.summary)
+    _voice.tell(outcome)
 
 
 def warn(warnings: Iterable[str]) -> None:
     """Prints warnings on stderr."""
     for warning in warnings:
-        print(f"prefilter: warning: {warning}", file=sys.stderr)
+        _voice.warn(warning)
+
+
+def fail(text: str) -> None:
+    """Prints why the command ends."""
+    _voice.fail(text)
+
+
+def cancel() -> None:
+    """Prints that a signal has ended the command."""
+    _voice.cancel()
 
 
 @contextmanager
-def progress_line() -> Iterator["ProgressLine"]:
-    """A line for as long as the context lasts, in which signals stop the work by it alone."""
-    with stopping.held():
-        line = ProgressLine()
-        try:
-            yield line
-        finally:
-            line.end()
-
-
-class ProgressLine:
-    """Shows progress on stderr: one line that changes on a terminal, else a line each quarter.
+def progress_line() -> Iterator[Progress]:
+    """Progress for as long as the context lasts, in which signals stop the work by it alone.
 
     Ctrl-C, or SIGTERM, has the work stop at its next report; a second one ends the program.
     """
 
-    def __init__(self) -> None:
-        """Shows nothing yet."""
-        self._step = 1 if sys.stderr.isatty() else 25
-        self._shown = -1
-
-    def __call__(self, fraction: float) -> bool:
-        """Shows how much is done, and says whether to go on."""
-        percent = int(100 * fraction) // self._step * self._step
-        if percent > self._shown:
-            self._shown = percent
-            line = f"prefilter: {percent:3d} %"
-            print(line, end="\r" if self._step == 1 else "\n", file=sys.stderr, flush=True)
+    def report(fraction: float) -> bool:
+        _voice.progress(fraction)
         return not stopping.asked()
 
-    def end(self) -> None:
-        """Leaves the line."""
-        if self._step == 1 and self._shown >= 0:
-            print(file=sys.stderr)
+    number, count = _share
+    with stopping.held():
+        try:
+            yield works.share(report, number / count, (number + 1) / count)
+        except BaseException:
+            _voice.end_progress()
+            raise
+        if number + 1 == count:
+            _voice.end_progress()

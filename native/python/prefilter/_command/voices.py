@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""How commands say what they do: to people, to Open Job Description, or to other programs.
+
+Warnings and errors are lines on standard error for all of them, which people read in logs.
+"""
+
+import ctypes
+import json
+import os
+import sys
+from typing import Any, TextIO
+
+from .._work.outcome import Outcome
+
+
+class Plain:
+    """To people: progress on standard error, results on standard output."""
+
+    def __init__(self) -> None:
+        """Has shown no progress yet."""
+        self._shown = -1
+
+    def progress(self, fraction: float) -> None:
+        """Shows how much is done: one line that changes on a terminal, else a line each quarter."""
+        step = 1 if sys.stderr.isatty() else 25
+        percent = self._risen(fraction, step)
+        if percent is not None:
+            line = f"prefilter: {percent:3d} %"
+            print(line, end="\r" if step == 1 else "\n", file=sys.stderr, flush=True)
+
+    def end_progress(self) -> None:
+        """Leaves the line of progress."""
+        if self._shown >= 0 and sys.stderr.isatty():
+            print(file=sys.stderr)
+        self._shown = -1
+
+    def say(self, line: str) -> None:
+        """Prints a line of what was asked for."""
+        print(line, file=output(), flush=True)
+
+    def tell(self, outcome: Outcome) -> None:
+        """Prints what was done."""
+        for note in outcome.notes:
+            self.say(note)
+        self.say(outcome.summary)
+
+    def warn(self, text: str) -> None:
+        """Prints what a user should look at."""
+        print(f"prefilter: warning: {text}", file=sys.stderr, flush=True)
+
+    def fail(self, text: str) -> None:
+        """Prints why the command ends."""
+        print(f"prefilter: error: {text}", file=sys.stderr, flush=True)
+
+    def cancel(self) -> None:
+        """Prints that a signal has ended the command."""
+        print("prefilter: canceled", file=sys.stderr, flush=True)
+
+    def _risen(self, fraction: float, step: int = 1) -> int | None:
+        """Returns percents where they have risen by a step; None where not."""
+        percent = int(100 * fraction) // step * step
+        if percent <= self._shown:
+            return None
+        self._shown = percent
+        return percent
+
+
+class OpenJobDescription(Plain):
+    """To a session of Open Job Description, which reads lines with a certain beginning."""
+
+    def progress(self, fraction: float) -> None:
+        """Prints the percents."""
+        percent = self._risen(fraction)
+        if percent is not None:
+            print(f"openjd_progress: {percent:.1f}", file=output(), flush=True)
+
+    def end_progress(self) -> None:
+        """Starts anew."""
+        self._shown = -1
+
+    def tell(self, outcome: Outcome) -> None:
+        """Prints what was done, which becomes the status of the task."""
+        for note in outcome.notes:
+            self.say(note)
+        self.say(f"openjd_status: {_one_line(outcome.summary)}")
+
+    def fail(self, text: str) -> None:
+        """Prints why the command ends, which becomes that of the task."""
+        super().fail(text)
+        self.say(f"openjd_fail: {_one_line(text)}")
+
+
+class JsonLines(Plain):
+    """To programs: an object a line on standard output, whose only key but "files" is its kind."""
+
+    def progress(self, fraction: float) -> None:
+        """Prints the fraction, for each percent."""
+        percent = self._risen(fraction)
+        if percent is not None:
+            self._print(progress=percent / 100)
+
+    def end_progress(self) -> None:
+        """Starts anew."""
+        self._shown = -1
+
+    def say(self, line: str) -> None:
+        """Prints a line of what was asked for."""
+        self._print(note=line)
+
+    def tell(self, outcome: Outcome) -> None:
+        """Prints what was done, and which files were written."""
+        for note in outcome.notes:
+            self.say(note)
+        self._print(done=outcome.summary, files=outcome.files)
+
+    def warn(self, text: str) -> None:
+        """Prints what a user should look at."""
+        super().warn(text)
+        self._print(warning=text)
+
+    def fail(self, text: str) -> None:
+        """Prints why the command ends."""
+        super().fail(text)
+        self._print(error=text)
+
+    def cancel(self) -> None:
+        """Prints that a signal has ended the command."""
+        super().cancel()
+        self._print(error="canceled")
+
+    def _print(self, **values: Any) -> None:
+        print(json.dumps(values, ensure_ascii=False), file=output(), flush=True)
+
+
+VOICES = {"plain": Plain, "openjd": OpenJobDescription, "json": JsonLines}
+"""By what `--progress` calls them."""
+
+_own_output: TextIO | None = None
+
+
+def output() -> TextIO:
+    """Returns standard output, whatever else it is that prints in this process."""
+    return sys.stdout if _own_output is None else _own_output
+
+
+def keep_output_apart() -> None:
+    """From now on standard output has only what commands say; what else prints goes to stderr.
+
+    Blender's importers print there, and so does Blender itself: what it has not flushed yet as
+    well. So this lasts until the process ends.
+    """
+    global _own_output
+    sys.stdout.flush()
+    _own_output = os.fdopen(os.dup(1), "w", encoding="utf-8", errors="replace")
+    os.dup2(2, 1)
+    if os.name == "posix":
+        # What C has not written yet would come last, after the line that says why a command ends.
+        ctypes.CDLL(None).fflush(None)
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split())
