@@ -15,7 +15,7 @@ from ..bridge import images
 from . import udim
 from .choices import FILE_FORMATS
 
-PLACE = "{name}"
+PLACE = target_files.PLACE
 """What stands for the name of an image in a path."""
 
 

@@ -3,16 +3,19 @@
 """The command `rasterize`."""
 
 import argparse
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import bpy
-from prefilter._command import rasterize
+from prefilter._command import many, rasterize, tasks
+from prefilter._command.many import Pair
 from prefilter._command.program import COMMANDS
+from prefilter._command.rasterize import SVG
 from prefilter._work.files import pictures
 
 from ..bridge.curves import is_curve
-from ..bridge.files import scenes, staging
+from ..bridge.files import scenes
 from ..bridge.uv_layouts import has_uv_map
 from ..core import command, presets
 from ..core.flags import add_flags, tables
@@ -22,8 +25,7 @@ from .memory import Request
 from .properties import RASTERIZE
 from .rasterization import Rasterization
 
-_SVG = ".svg"
-_SOURCES = (_SVG, *scenes.SOURCES)
+_SOURCES = (SVG, *scenes.SOURCES)
 _CURVES = "visible curve or text"
 _MESHES = "visible mesh with a UV map"
 _NOTES = """\
@@ -44,10 +46,8 @@ def add(commands: Any) -> None:
     parser = command.add_command(
         commands, "rasterize", COMMANDS["rasterize"], *tables(RasterizeSettings), _NOTES
     )
-    parser.add_argument("source", metavar="INPUT", help=f"a file: {either(_SOURCES)}")
-    parser.add_argument(
-        "target", metavar="OUTPUT", help=f"the file to write: {either(pictures.ENDINGS)}"
-    )
+    endings = either(_SOURCES), either(pictures.ENDINGS)
+    many.add_arguments(parser, ("INPUT", "OUTPUT"), f"a file: {endings[0]}", endings[1])
     parser.add_argument(
         "--object",
         metavar="NAME",
@@ -59,29 +59,31 @@ def add(commands: Any) -> None:
     parser.add_argument("--uv", action="store_true", help="make a mask of the UV map of a mesh")
     presets.add_flag(parser)
     add_flags(parser, RasterizeSettings)
+    tasks.add_flags(parser, "INPUT")
     parser.set_defaults(execute=_rasterize, usage_error=parser.error)
 
 
 def _rasterize(options: argparse.Namespace) -> None:
-    ending = command.check_ending(options, "INPUT", options.source, _SOURCES)
-    command.check_ending(options, "OUTPUT", options.target, pictures.ENDINGS)
-    if ending == _SVG and (options.uv or options.object):
-        options.usage_error("--object, --uv: an SVG file has neither objects nor a UV map")
-    target = staging.check_output(options.target)
+    rasterize.check_files(options, _SOURCES)
     settings = rasterize.settings_of(options, presets.host(RASTERIZE))
-    if ending == _SVG:
-        request = Request("svg", filepath=str(Path(options.source).absolute()))
+    many.run(options, partial(_rasterize_one, options, settings))
+
+
+def _rasterize_one(options: argparse.Namespace, settings: RasterizeSettings, pair: Pair) -> None:
+    target = pair.checked_target()
+    if pair.source.lower().endswith(SVG):
+        request = Request("svg", filepath=str(Path(pair.source).absolute()))
     elif options.uv:
-        request = Request("uv", [_mesh(options)])
+        request = Request("uv", [_mesh(options, pair.source)])
     else:
-        (objects,) = scenes.load([options.source], _is_wanted(is_curve), _CURVES)
+        (objects,) = scenes.load([pair.source], _is_wanted(is_curve), _CURVES)
         request = Request("curves", scenes.chosen(objects, options.object, _CURVES))
     work = Rasterization.read(request, settings, bpy.context, target=target)
     command.tell(command.done(work))
 
 
-def _mesh(options: argparse.Namespace) -> bpy.types.Object:
-    (objects,) = scenes.load([options.source], _is_wanted(has_uv_map), _MESHES)
+def _mesh(options: argparse.Namespace, path: str) -> bpy.types.Object:
+    (objects,) = scenes.load([path], _is_wanted(has_uv_map), _MESHES)
     found = scenes.chosen(objects, options.object, _MESHES)
     if len(found) > 1:
         options.usage_error(f"--object: choose one of the {len(found)} meshes; --uv takes one")

@@ -6,7 +6,7 @@ The operator and the command are two ways to call this. Every image of a scene i
 what cannot be weighed by a surface keeps the levels that Blender made, and a warning says why.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -89,6 +89,7 @@ class CacheBake:
         self._threads = threads
         self._staged: list[tuple[_Worn, StagedFile]] = []
         self._constant = 0
+        self._is_part = False
 
     @classmethod
     def read(
@@ -148,6 +149,22 @@ class CacheBake:
         made.notes = notes
         return made
 
+    @property
+    def tasks(self) -> dict[Path, list[str]]:
+        """The names of the images by the file that they are read from.
+
+        Those of one file may share a cache file, those of two never do.
+        """
+        found: dict[Path, list[str]] = {}
+        for worn in self._worn:
+            found.setdefault(worn.source.path, []).extend(worn.names)
+        return found
+
+    def keep(self, files: Collection[Path]) -> None:
+        """Leaves all images out but those that are read from some files, as a part of the work."""
+        self._worn = [worn for worn in self._worn if worn.source.path in files]
+        self._is_part = True
+
     def compute(self, progress: Progress) -> None:
         """Lets Blender make the cache files, and stages those with other levels.
 
@@ -159,7 +176,7 @@ class CacheBake:
         try:
             shared = self._make(share(progress, 0.0, _MADE))
             self._bake(shared, share(progress, _MADE, 1.0))
-            if not self._staged and not self._constant:
+            if not (self._staged or self._constant or self._is_part):
                 reasons = "\n".join(self.warnings)
                 raise ValueError(f"scene '{self._scene}': no image could be baked\n{reasons}")
             go_on(progress, 1.0)

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import bpy
+from prefilter._command import tasks
 
 from ..bridge import meshes
 from ..bridge.files import scenes, staging
@@ -23,8 +24,9 @@ Blender makes the cache files, in the folder of its preferences or beside the im
 are then replaced. Existing files are overwritten. When an image file changes, Blender generates its
 cache file again, and you need to bake again. Needs Blender 5.2 LTS or later.
 
-example:
-  prefilter bake-cache scene.blend --save"""
+examples:
+  prefilter bake-cache scene.blend --save
+  prefilter bake-cache scene.blend --task 3/40"""
 
 
 def add(commands: Any) -> None:
@@ -44,11 +46,16 @@ def add(commands: Any) -> None:
     parser.add_argument(
         "--save", action="store_true", help="save FILE with the scene's texture cache turned on"
     )
+    tasks.add_flags(parser, "image file")
     parser.set_defaults(execute=_bake_cache, usage_error=parser.error)
 
 
 def _bake_cache(options: argparse.Namespace) -> None:
     command.check_ending(options, "FILE", options.file, [".blend"])
+    tasks.check(options)
+    for name in ("save", "unpack"):
+        if getattr(options, name) and (options.task or options.list):
+            options.usage_error(f"--{name}: not allowed with --task and --list, but for the whole")
     path = os.path.abspath(options.file)
     scenes.load([path], meshes.may_show_image, "mesh object")
     if options.save:
@@ -65,7 +72,24 @@ def _bake_cache(options: argparse.Namespace) -> None:
         unpack=options.unpack,
         threads=settings_given(options, CacheSettings).threads,
     )
+    if options.list:
+        _list(options, work)
+        return
+    if options.task is not None:
+        work.keep(tasks.chosen(options, list(work.tasks)))
+        if not work.tasks:
+            return
     outcome = command.done(work)
     if options.save:
         scenes.save_open(path)
     command.tell(outcome)
+
+
+def _list(options: argparse.Namespace, work: CacheBake) -> None:
+    if options.json:
+        found = work.tasks.items()
+        tasks.say_json([{"inputs": [str(path)], "images": names} for path, names in found])
+    else:
+        for path, names in work.tasks.items():
+            command.say(f"{path}  {', '.join(names)}")
+    command.warn(work.warnings)

@@ -4,11 +4,13 @@
 
 import argparse
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import bpy
-from prefilter._command import voxelize
+from prefilter._command import many, tasks, voxelize
+from prefilter._command.many import Pair
 from prefilter._command.program import COMMANDS
 from prefilter._command.voxelize import RESOLUTIONS
 
@@ -51,8 +53,8 @@ def add(commands: Any) -> None:
 def _add_voxelize(commands: Any) -> None:
     notes = (*tables(VoxelizeSettings), _VOXELIZE_NOTES)
     parser = command.add_command(commands, "voxelize", COMMANDS["voxelize"], *notes)
-    parser.add_argument("file", metavar="FILE", help=f"a file: {either(scenes.SOURCES)}")
-    parser.add_argument("output", metavar="OUTPUT", help=f"the file to write: {either(_TARGETS)}")
+    endings = either(scenes.SOURCES), either(_TARGETS)
+    many.add_arguments(parser, ("FILE", "OUTPUT"), f"a file: {endings[0]}", endings[1])
     parser.add_argument(
         "--object",
         metavar="NAME",
@@ -62,6 +64,7 @@ def _add_voxelize(commands: Any) -> None:
     )
     presets.add_flag(parser)
     add_flags(parser, VoxelizeSettings, exclusive=RESOLUTIONS)
+    tasks.add_flags(parser, "FILE")
     parser.set_defaults(execute=_voxelize, usage_error=parser.error)
 
 
@@ -92,10 +95,15 @@ def _add_boolean(commands: Any) -> None:
 
 
 def _voxelize(options: argparse.Namespace) -> None:
-    command.check_ending(options, "FILE", options.file, scenes.SOURCES)
-    is_volume = command.check_ending(options, "OUTPUT", options.output, _TARGETS) == _VOLUME
-    target = staging.check_output(options.output)
-    (objects,) = scenes.load([options.file], _is_wanted, _WANTED)
+    for path in options.sources:
+        command.check_ending(options, "FILE", path, scenes.SOURCES)
+    ending = command.check_ending(options, "OUTPUT", options.target, _TARGETS)
+    many.run(options, partial(_voxelize_one, options, is_volume=ending == _VOLUME))
+
+
+def _voxelize_one(options: argparse.Namespace, pair: Pair, *, is_volume: bool) -> None:
+    target = pair.checked_target()
+    (objects,) = scenes.load([pair.source], _is_wanted, _WANTED)
     more = {"output": "volume", "filepath": str(target)} if is_volume else {}
     work = Voxelization.read(
         scenes.chosen(objects, options.object, _WANTED),

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import bpy
+from prefilter._command import tasks
 from prefilter._work.files import target_files
 
 from ...bridge import images
@@ -18,7 +19,7 @@ from ...core import command, presets
 from ...core.flags import add_flags, given, tables
 from ...core.outcome import FAILURES
 from ...core.wording import listed
-from .. import reading, udim, unnamed
+from .. import file_names, reading, udim, unnamed
 from ..choices import ModelSettings, Settings
 from ..gltf.choices import GltfSettings
 from ..properties import BAKE, MODEL
@@ -41,6 +42,7 @@ picture file that no material uses is treated as the texture of all faces, with 
 examples:
   prefilter bake helmet.gltf --all --list
   prefilter bake helmet.gltf --all --output textures/
+  prefilter bake helmet.gltf --all --output textures/ --task 3/5
   prefilter bake helmet.blend --all --output helmet.glb
   prefilter bake scene.blend --image Wood --save
   prefilter bake spot.obj --image spot.png --output spot.exr
@@ -87,16 +89,13 @@ def add(commands: Any) -> None:
         help="with --all, a .json file that says of each image its content, size and format, and "
         "which file has it",
     )
-    parser.add_argument(
-        "--list",
-        action="store_true",
-        help="with --all, only say what would be done, as a table",
-    )
+    tasks.add_flags(parser, "image, or a normal map and its roughness", needs="with --all, ")
     parser.set_defaults(execute=_bake, usage_error=parser.error)
 
 
 def _bake(options: argparse.Namespace) -> None:
     extension = command.check_ending(options, "FILE", options.file, scenes.SOURCES)
+    tasks.check(options)
     settings = _settings(options)
     if options.save and extension != ".blend":
         options.usage_error(f"--save: needs a .blend FILE, found '{options.file}'")
@@ -112,13 +111,15 @@ def _bake(options: argparse.Namespace) -> None:
 
 def _bake_some(options: argparse.Namespace, settings: Settings) -> None:
     """Bakes one image, or the base colors."""
-    for name in ("list", "file_format", "material", "manifest"):
+    for name in ("list", "file_format", "material", "manifest", "task"):
         if getattr(options, name, None):
             flag = name.removeprefix("file_")
             options.usage_error(f"--{flag}: needs --all")
     if not options.save and not settings.filepath:
         options.usage_error("nothing to write: give --output FILE or --save")
     paths = (settings.filepath, settings.roughness_filepath)
+    if any(file_names.PLACE in path for path in paths):
+        options.usage_error(f"--output: {file_names.PLACE} needs --all")
     settings = source.fitted(options, settings, paths)
     if settings.texture_format != "auto" and not any(map(target_files.has_formats, paths)):
         options.usage_error(

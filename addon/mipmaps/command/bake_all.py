@@ -8,21 +8,22 @@ from dataclasses import replace
 from pathlib import Path
 
 import bpy
+from prefilter._command import tasks
 from prefilter._work.files import target_files
 
 from ...bridge import meshes
 from ...bridge.files import scenes, staging
 from ...core import command, presets
-from ...core.doing import read_at_once
 from ...core.flags import given
 from ...core.wording import listed
 from .. import file_names
 from ..choices import NOT_OF_MODELS, ModelSettings, Settings
-from ..model import manifest, table
-from ..model.bake import Compute, ModelBake
-from ..model.plan import image_of, plan
+from ..model import manifest
+from ..model.bake import ModelBake
+from ..model.plan import Job, Plan, image_of, plan
 from ..properties import MODEL
-from . import source
+from . import listing, source
+from .listing import read
 from .source import WANTED
 
 
@@ -43,21 +44,49 @@ def bake_all(options: argparse.Namespace, settings: Settings) -> None:
     paths = file_names.paths(pattern, images, [Path(path)])
     files = {image.name_full: file for image, file in zip(images, paths, strict=True)}
     settings = replace(settings, use_images=options.save, filepath="")
-    listing = manifest.check_target(options.manifest) if options.manifest else None
     if options.list:
-        _list(ModelBake(planned, settings, files, is_rehearsal=True))
+        listing.say(options, planned, settings, files)
         return
-    model = ModelBake(planned, settings, files, manifest=listing)
+    jobs = _jobs(options, planned)
+    if not jobs and options.task is not None:
+        return
+    target = manifest.check_target(options.manifest) if options.manifest else None
+    if _is_part(options):
+        planned = replace(planned, left_out=[])  # That is for the whole to say.
+    _finish(options, ModelBake(planned, settings, files, jobs=jobs, manifest=target), path)
+
+
+def _is_part(options: argparse.Namespace) -> bool:
+    return options.task is not None or options.image is not None
+
+
+def _jobs(options: argparse.Namespace, planned: Plan) -> list[Job]:
+    """Returns what is done here: all, a part, or what bakes one image."""
+    jobs = planned.jobs()
+    if options.image is not None:
+        jobs = [job for job in jobs if options.image in job.images]
+        if not jobs:
+            known = listed(item.image for item in planned.items)
+            raise ValueError(
+                f"--image: found no image '{options.image}' to bake; there are {known}"
+            )
+    return tasks.chosen(options, jobs)
+
+
+def _finish(options: argparse.Namespace, model: ModelBake, path: str) -> None:
+    """Bakes, and tells what has become of the images."""
     try:
         _bake(model)
     finally:
         model.discard()
+    for line in model.results.lines_of_left_out():
+        command.say(line)
+    if _is_part(options) and not (model.results.failed or model.results.outcomes):
+        return
     outcome = model.results.outcome()
     if options.save:
         scenes.save_open(path)
-    for line in model.results.lines_of_left_out():
-        print(line)
-    print(outcome.summary)
+    command.say(outcome.summary)
     if model.results.failed:
         raise ValueError(f"not baked: {listed(one.image for one in model.results.failed)}")
 
@@ -73,8 +102,11 @@ def _pattern(options: argparse.Namespace, chosen: ModelSettings) -> file_names.P
 
 
 def _check(options: argparse.Namespace, settings: Settings, pattern: file_names.Pattern) -> None:
-    if options.image is not None:
-        options.usage_error("--image: not allowed with --all, which bakes every image")
+    if options.image is not None and (options.task or options.list):
+        options.usage_error("--image: not allowed with --task and --list, which are of all images")
+    for name in ("save", "manifest"):
+        if _is_part(options) and getattr(options, name):
+            options.usage_error(f"--{name}: not allowed with --task and --image, but for the whole")
     for name in given(options, Settings):
         if name in NOT_OF_MODELS and name != "filepath":
             flag = f"--{name.replace('_', '-')}".replace("filepath", "output")
@@ -100,35 +132,13 @@ def _check(options: argparse.Namespace, settings: Settings, pattern: file_names.
         )
 
 
-def _list(model: ModelBake) -> None:
-    """Says what a bake would do: reads each image and its surfaces, and computes nothing."""
-    while model.next_name:
-        _read(model)
-    for line in table.lines(model.rows):
-        print(line)
-    for line in model.results.lines_of_left_out():
-        print(line)
-    command.warn(dict.fromkeys(model.warnings))
-    command.warn(
-        f"image '{one.image}' cannot be baked: {one.reason}" for one in model.results.failed
-    )
-    if not model.rows:
-        raise ValueError("there is no image to bake")
-    if model.results.failed:
-        raise ValueError(f"cannot be baked: {listed(one.image for one in model.results.failed)}")
-
-
 def _bake(model: ModelBake) -> None:
     """Bakes image after image, writes them together, and tells of each what was done."""
     with command.progress_line() as progress:
         while model.next_name:
-            _read(model)(progress)
+            read(model)(progress)
             model.stage_images()
         written = model.write()
     for outcome in written:
         command.tell(outcome)
     command.warn(f"image '{one.image}' is not baked: {one.reason}" for one in model.results.failed)
-
-
-def _read(model: ModelBake) -> Compute:
-    return read_at_once(model.reading(bpy.context.evaluated_depsgraph_get()))

@@ -49,8 +49,8 @@ def bake_gltf(options: argparse.Namespace, settings: Settings) -> None:
         scenes.save(target, names)
     command.warn(export.warnings)
     for note in export.notes:
-        print(note)
-    print(f"Baked {counted(export.baked, 'image')} into '{target}'")
+        command.say(note)
+    command.say(f"Baked {counted(export.baked, 'image')} into '{target}'")
     if export.failed:
         raise ValueError(f"not baked: {listed(export.failed)}")
 
@@ -60,7 +60,7 @@ def _check(options: argparse.Namespace) -> None:
     found = {*given(options, Settings), *given(options, ModelSettings)} - _USED
     found |= {
         name
-        for name in ("image", "frames", "save", "list", "manifest")
+        for name in ("image", "frames", "save", "list", "manifest", "task")
         if getattr(options, name, None)
     }
     flags = [

@@ -7,7 +7,7 @@ the others. No more than one image is in memory at a time.
 """
 
 import os
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -44,6 +44,7 @@ class ModelBake:
         settings: Settings,
         files: dict[str, str],
         *,
+        jobs: Sequence[Job] | None = None,
         manifest: Path | None = None,
         is_rehearsal: bool = False,
     ) -> None:
@@ -53,6 +54,7 @@ class ModelBake:
             plan: The images.
             settings: What to do with all of them.
             files: The path of each image, by its full name; empty for none.
+            jobs: Those of the plan that are done; all of them if None.
             manifest: What is written with the files to list them; None for nothing.
             is_rehearsal: Whether images are read to see what would be done: their folders need not
                 be there, and nothing is to be computed.
@@ -64,8 +66,8 @@ class ModelBake:
         self._files = files
         self._manifest = manifest
         self._is_rehearsal = is_rehearsal
-        self._jobs = plan.jobs()
-        self._count = len(plan.items)
+        self._jobs = plan.jobs() if jobs is None else list(jobs)
+        self._count = sum(len(job.images) for job in self._jobs)
         self._done = 0
         self._made_folders: list[Path] = []
         self._computed: list[tuple[Job, AnyBake]] = []

@@ -2,6 +2,7 @@
 
 """The bake into Cycles' texture cache: that renders use it, and that nothing else changes."""
 
+import json
 import os
 
 import bpy
@@ -10,7 +11,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 import scenes
-from command_line import run
+from command_line import assert_fails, run
 from cycles_scenes import (
     BLUE,
     GREEN,
@@ -464,6 +465,34 @@ def test_the_command(tmp_path, scene):
         assert result.returncode in (1, 2)
         assert message in result.stderr
         assert "Traceback" not in result.stderr
+
+
+def test_tasks_make_what_the_whole_makes(scene, tmp_path):
+    for seed, name in enumerate(("one", "two", "same")):
+        path = tmp_path / f"{'one' if name == 'same' else name}.png"
+        image = cycles.write_picture(path, smooth(64, 64, 3, seed=seed % 2), "uint8")
+        if name == "same":
+            image.colorspace_settings.name = "Non-Color"
+        cycles.shown_on(image, name=name)
+    blend = tmp_path / "scene.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(blend))
+    tasks = json.loads(run("bake-cache", blend, "--list", "--json").stdout.splitlines()[-1])
+    assert [task["inputs"] for task in tasks["tasks"]] == [
+        [str(tmp_path / f"{name}.png")] for name in ("one", "two")
+    ]
+    assert not cycles.cache_files(tmp_path)
+    assert run("bake-cache", blend).returncode == 0
+    whole = {path: path.read_bytes() for path in cycles.cache_files(tmp_path)}
+    assert len(whole) == 3
+    for path in whole:
+        path.unlink()
+    for number, count in ((2, 1), (3, 1), (1, 3)):
+        result = run("bake-cache", blend, "--task", f"{number}/3")
+        assert result.returncode == 0, result.stderr
+        assert len(cycles.cache_files(tmp_path)) == count
+    assert {path: path.read_bytes() for path in cycles.cache_files(tmp_path)} == whole
+    for flags in (("--save", "--task", "1/2"), ("--unpack", "--list")):
+        assert_fails(run("bake-cache", blend, *flags), flags[0], status=2)
 
 
 def test_results_do_not_depend_on_threads(scene, tmp_path, addon):

@@ -1,17 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What `resize` and `resample` read and write: a picture file each."""
+"""What `resize` and `resample` read and write: picture files."""
 
 import argparse
-import os
 from pathlib import Path
 
-from .._border.staging import check_target as check_writable
 from .._work.files import pictures
 from .._work.picture import Picture
 from .._work.wording import either
-from . import telling
+from . import many, tasks, telling
 from .host import Host
+from .many import Pair
 
 NOTE = """\
 INPUT is a picture file of any kind. Colors are filtered as light, with alpha as coverage. PNG
@@ -21,15 +20,13 @@ scene-linear, with premultiplied alpha."""
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Adds the arguments that name the files."""
-    parser.add_argument("source", metavar="INPUT", help="a picture file")
-    parser.add_argument(
-        "target", metavar="OUTPUT", help=f"the file to write: {either(pictures.ENDINGS)}"
-    )
+    many.add_arguments(parser, ("INPUT", "OUTPUT"), "a picture file", either(pictures.ENDINGS))
     parser.add_argument(
         "--data",
         action="store_true",
         help="filter values as they are stored, each channel by itself: roughness, masks, normals",
     )
+    tasks.add_flags(parser, "INPUT")
 
 
 def check_target(options: argparse.Namespace) -> None:
@@ -37,8 +34,7 @@ def check_target(options: argparse.Namespace) -> None:
     telling.check_ending(options, "OUTPUT", options.target, pictures.ENDINGS)
 
 
-def read_source(options: argparse.Namespace, host: Host) -> tuple[Picture, Path]:
-    """Returns what INPUT has, and the file to write."""
-    target = Path(os.path.realpath(options.target))
-    check_writable(target)
-    return host.read("INPUT", options.source, is_data=options.data), target
+def read_source(options: argparse.Namespace, host: Host, pair: Pair) -> tuple[Picture, Path]:
+    """Returns what an INPUT has, and the file to write."""
+    target = pair.checked_target()
+    return host.read("INPUT", pair.source, is_data=options.data), target

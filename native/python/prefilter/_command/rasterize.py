@@ -3,13 +3,12 @@
 """The command `rasterize`."""
 
 import argparse
-import os
-from pathlib import Path
+from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from .._border.staging import check_target
 from .._options.flags import add_flags, given, tables
 from .._options.shapes import RasterizeSettings
 from .._work import mesh_endings, mesh_files
@@ -18,11 +17,13 @@ from .._work.shapes.layers import Source, svg_drawing, uv_layers
 from .._work.shapes.layouts import borders
 from .._work.shapes.rasterizing import RasterFile
 from .._work.wording import either
-from . import telling
+from . import many, tasks, telling
 from .host import PLAIN, Host
+from .many import Pair
 
-_SVG = ".svg"
-_SOURCES = (_SVG, *mesh_endings.ENDINGS)
+SVG = ".svg"
+"""The extension of drawings."""
+_SOURCES = (SVG, *mesh_endings.ENDINGS)
 FLAGS = (
     *("filter", "side", "width", "height", "density", "margin", "tile", "uv_margin"),
     *("color", "background_color", "overlap", "light", "font_folder", "pixel_type", "alpha"),
@@ -44,15 +45,14 @@ def add(commands: Any, purpose: str) -> None:
     """Adds the command."""
     notes = (*tables(RasterizeSettings, *FLAGS), _NOTES)
     parser = telling.add_command(commands, "rasterize", purpose, *notes)
-    parser.add_argument("source", metavar="INPUT", help=f"a file: {either(_SOURCES)}")
-    parser.add_argument(
-        "target", metavar="OUTPUT", help=f"the file to write: {either(pictures.ENDINGS)}"
-    )
+    endings = either(_SOURCES), either(pictures.ENDINGS)
+    many.add_arguments(parser, ("INPUT", "OUTPUT"), f"a file: {endings[0]}", endings[1])
     parser.add_argument(
         "--object", metavar="NAME", help="with --uv, the mesh, if there are several"
     )
     parser.add_argument("--uv", action="store_true", help="make a mask of the UV map of a mesh")
     add_flags(parser, RasterizeSettings, *FLAGS)
+    tasks.add_flags(parser, "INPUT")
     parser.set_defaults(execute=_rasterize, usage_error=parser.error)
 
 
@@ -77,29 +77,38 @@ def settings_of(options: argparse.Namespace, host: Host) -> RasterizeSettings:
 
 
 def _rasterize(options: argparse.Namespace) -> None:
-    ending = telling.check_ending(options, "INPUT", options.source, _SOURCES)
-    telling.check_ending(options, "OUTPUT", options.target, pictures.ENDINGS)
-    if ending == _SVG and (options.uv or options.object):
-        options.usage_error("--object, --uv: an SVG file has neither objects nor a UV map")
-    if ending != _SVG and not options.uv:
+    endings = check_files(options, _SOURCES)
+    if endings != {SVG} and not options.uv:
         options.usage_error("--uv: needed for meshes")
-    target = Path(os.path.realpath(options.target))
-    check_target(target)
     settings = settings_of(options, PLAIN)
+    many.run(options, partial(_rasterize_one, options, settings))
+
+
+def check_files(options: argparse.Namespace, allowed: Sequence[str]) -> set[str]:
+    """Returns the extensions of what is read; ends the program unless the files fit the flags."""
+    endings = {telling.check_ending(options, "INPUT", path, allowed) for path in options.sources}
+    telling.check_ending(options, "OUTPUT", options.target, pictures.ENDINGS)
+    if SVG in endings and (options.uv or options.object):
+        options.usage_error("--object, --uv: an SVG file has neither objects nor a UV map")
+    return endings
+
+
+def _rasterize_one(options: argparse.Namespace, settings: RasterizeSettings, pair: Pair) -> None:
+    target = pair.checked_target()
     warnings: list[str] = []
-    if ending == _SVG:
-        source = svg_drawing("INPUT", options.source)
+    if not options.uv:
+        source = svg_drawing("INPUT", pair.source)
     else:
-        source = _layout(options, settings, warnings)
+        source = _layout(options, pair.source, settings, warnings)
     telling.tell(telling.done(RasterFile(source, target, settings, warnings)))
 
 
 def _layout(
-    options: argparse.Namespace, settings: RasterizeSettings, warnings: list[str]
+    options: argparse.Namespace, path: str, settings: RasterizeSettings, warnings: list[str]
 ) -> Source:
     """Returns the UV map of the mesh; adds to the warnings where it has no area."""
     names = [options.object] if options.object else []
-    found = mesh_files.chosen(mesh_files.read("INPUT", [options.source]), names)
+    found = mesh_files.chosen(mesh_files.read("INPUT", [path]), names)
     if len(found) > 1:
         options.usage_error(f"--object: choose one of the {len(found)} meshes; --uv takes one")
     (part,) = found

@@ -12,8 +12,9 @@ from .._options.flags import add_flags, given, tables
 from .._options.options import check
 from .._options.resampling import CORNERS, ResampleSettings
 from .._work.resampling.resampling import Resampling
-from . import picture_arguments, telling
+from . import many, picture_arguments, telling
 from .host import PLAIN, Host
+from .many import Pair
 
 _SIZES = ("width", "height")
 _TRANSFORM = {
@@ -67,7 +68,13 @@ def add(commands: Any, purpose: str, host: Host = PLAIN) -> None:
 def _resample(host: Host, options: argparse.Namespace) -> None:
     picture_arguments.check_target(options)
     settings = _settings(options, host)
-    picture, target = picture_arguments.read_source(options, host)
+    many.run(options, partial(_resample_one, host, options, settings))
+
+
+def _resample_one(
+    host: Host, options: argparse.Namespace, settings: ResampleSettings, pair: Pair
+) -> None:
+    picture, target = picture_arguments.read_source(options, host, pair)
     telling.tell(telling.done(Resampling(picture, settings, target=target)))
 
 

@@ -9,8 +9,9 @@ from typing import Any
 from .._options.flags import add_flags, given, tables
 from .._options.resampling import ResizeSettings
 from .._work.resampling.resizing import Resizing
-from . import picture_arguments, telling
+from . import many, picture_arguments, telling
 from .host import PLAIN, Host
+from .many import Pair
 
 _SIZES = ("percent", "width", "height")
 _NOTES = f"""\
@@ -19,7 +20,8 @@ _NOTES = f"""\
 examples:
   prefilter resize photo.png small.png --percent 25 --filter least-squares
   prefilter resize roughness.png roughness-1k.png --width 1024 --data --wrap repeat
-  prefilter resize sky.exr sky-2k.exr --width 2048 --height 1024 --filter mitchell"""
+  prefilter resize sky.exr sky-2k.exr --width 2048 --height 1024 --filter mitchell
+  prefilter resize *.png half/{{name}}.png --percent 50 --task 2/8"""
 
 
 def add(commands: Any, purpose: str, host: Host = PLAIN) -> None:
@@ -39,10 +41,16 @@ def _resize(host: Host, options: argparse.Namespace) -> None:
         options.usage_error("no size: give --percent, --width or --height")
     if "percent" in sizes and len(sizes) > 1:
         options.usage_error("--percent: not allowed with --width and --height")
-    picture, target = picture_arguments.read_source(options, host)
+    many.run(options, partial(_resize_one, host, options, found, sizes))
+
+
+def _resize_one(
+    host: Host, options: argparse.Namespace, found: dict[str, Any], sizes: list[str], pair: Pair
+) -> None:
+    picture, target = picture_arguments.read_source(options, host, pair)
     if sizes == ["height"]:
         height, width = picture.shape[:2]
-        found["width"] = max(1, round(width * found["height"] / height))
+        found = found | {"width": max(1, round(width * found["height"] / height))}
     more = {"width": found["width"]} if "width" in found else {}
     if sizes:
         more |= {

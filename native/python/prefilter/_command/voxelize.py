@@ -3,7 +3,7 @@
 """The command `voxelize`."""
 
 import argparse
-import os
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -18,8 +18,9 @@ from .._work.voxels import surfaces
 from .._work.voxels.grid import check_memory, choose_grid
 from .._work.wording import Sentence, amount, counted, either
 from ..meshes.measures import measure_mesh
-from . import telling
+from . import many, tasks, telling
 from .host import PLAIN, Host
+from .many import Pair
 
 RESOLUTIONS = ("depth", "voxel_size")
 FLAGS = (
@@ -42,10 +43,8 @@ def add(commands: Any, purpose: str) -> None:
     """Adds the command."""
     notes = (*tables(VoxelizeSettings, *FLAGS), _NOTES)
     parser = telling.add_command(commands, "voxelize", purpose, *notes)
-    parser.add_argument("file", metavar="FILE", help=f"a file: {either(mesh_endings.ENDINGS)}")
-    parser.add_argument(
-        "output", metavar="OUTPUT", help=f"the file to write: {either(mesh_endings.TARGETS)}"
-    )
+    endings = either(mesh_endings.ENDINGS), either(mesh_endings.TARGETS)
+    many.add_arguments(parser, ("FILE", "OUTPUT"), f"a file: {endings[0]}", endings[1])
     parser.add_argument(
         "--object",
         metavar="NAME",
@@ -54,6 +53,7 @@ def add(commands: Any, purpose: str) -> None:
         help="a mesh to voxelize; repeat for several (default: all)",
     )
     add_flags(parser, VoxelizeSettings, *FLAGS, exclusive=RESOLUTIONS)
+    tasks.add_flags(parser, "FILE")
     parser.set_defaults(execute=_voxelize, usage_error=parser.error)
 
 
@@ -147,11 +147,15 @@ class VoxelFile:
 
 
 def _voxelize(options: argparse.Namespace) -> None:
-    telling.check_ending(options, "FILE", options.file, mesh_endings.ENDINGS)
-    telling.check_ending(options, "OUTPUT", options.output, mesh_endings.TARGETS)
-    target = Path(os.path.realpath(options.output))
-    staging.check_target(target)
+    for path in options.sources:
+        telling.check_ending(options, "FILE", path, mesh_endings.ENDINGS)
+    telling.check_ending(options, "OUTPUT", options.target, mesh_endings.TARGETS)
     settings = settings_of(options, PLAIN, VoxelizeSettings)
-    found = mesh_files.chosen(mesh_files.read("FILE", [options.file]), options.object)
+    many.run(options, partial(_voxelize_one, options, settings))
+
+
+def _voxelize_one(options: argparse.Namespace, settings: VoxelizeSettings, pair: Pair) -> None:
+    target = pair.checked_target()
+    found = mesh_files.chosen(mesh_files.read("FILE", [pair.source]), options.object)
     meshes = [mesh_files.without_seams(one) for one in found]
     telling.tell(telling.done(VoxelFile(meshes, target, settings)))

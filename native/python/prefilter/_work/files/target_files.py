@@ -17,6 +17,8 @@ _OTHER_EXTENSIONS = (*_WITH_FORMATS, ".png")
 _MOST_LEVELS = 31
 EXTENSIONS = (*_OF_RENDERERS, *_OTHER_EXTENSIONS)
 """Those that a texture file may have."""
+PLACE = "{name}"
+"""What stands for the name of what is read in the path of what is written."""
 
 
 def check_target(path: str) -> Path:

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Commands that do the same with each of many files: which file becomes which, and the tasks."""
+
+import argparse
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from .._border.staging import check_target
+from .._work.files.target_files import PLACE
+from .._work.outcome import FAILURES
+from .._work.wording import listed
+from . import tasks, telling
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A file to read, and the one to write.
+
+    Attributes:
+        source: The path, as it was given.
+        target: The path, with the name of the source in it.
+    """
+
+    source: str
+    target: str
+
+    def checked_target(self) -> Path:
+        """Returns the absolute path of the file to write, symbolic links resolved.
+
+        Raises:
+            OSError: It cannot be written.
+        """
+        target = Path(os.path.realpath(self.target))
+        check_target(target)
+        return target
+
+
+def add_arguments(
+    parser: argparse.ArgumentParser, names: tuple[str, str], source: str, target: str
+) -> None:
+    """Adds the arguments that name the files.
+
+    Args:
+        parser: Gets them, and the flags that split the work; `run` reads them.
+        names: What the file to read and the one to write are called.
+        source: What may be read.
+        target: What may be written.
+    """
+    parser.add_argument("sources", metavar=names[0], nargs="+", help=f"{source}, or several")
+    parser.add_argument(
+        "target",
+        metavar=names[1],
+        help=f"the file to write: {target}. {PLACE} in it stands for the name of {names[0]} "
+        f"without its extension, and is needed where there are several",
+    )
+
+
+def run(options: argparse.Namespace, do: Callable[[Pair], None]) -> None:
+    """Does something with each file of this task, or lists the tasks.
+
+    A file that fails does not stop the others.
+
+    Raises:
+        ValueError: Some failed; of a single one, whatever `do` raises.
+    """
+    tasks.check(options)
+    pairs = _pairs(options)
+    if options.list:
+        _list(options, pairs)
+        return
+    chosen, failed = tasks.chosen(options, pairs), []
+    for number, pair in enumerate(chosen):
+        with telling.share(number, len(chosen)):
+            try:
+                do(pair)
+            except FAILURES as error:
+                if len(chosen) == 1:
+                    raise
+                telling.warn([f"'{pair.source}': {error}"])
+                failed.append(pair.source)
+    if failed:
+        raise ValueError(f"not done: {listed(failed)}")
+
+
+def _pairs(options: argparse.Namespace) -> list[Pair]:
+    """Returns what is to become of each file; ends the program where files would meet."""
+    sources: Sequence[str] = options.sources
+    if len(sources) > 1 and PLACE not in options.target:
+        options.usage_error(
+            f"found '{options.target}' for {len(sources)} files; {PLACE} is needed in it"
+        )
+    pairs = [Pair(one, options.target.replace(PLACE, Path(one).stem)) for one in sources]
+    if len(pairs) > 1:
+        read = {_identity(pair.source): pair.source for pair in pairs}
+        written: dict[str, str] = {}
+        for pair in pairs:
+            identity = _identity(pair.target)
+            if identity in read:
+                options.usage_error(f"'{pair.target}' is read; choose other files to write")
+            if identity in written:
+                both = listed((written[identity], pair.source))
+                options.usage_error(f"{both} would both become '{pair.target}'")
+            written[identity] = pair.source
+    return pairs
+
+
+def _identity(path: str) -> str:
+    return os.path.realpath(path).casefold()
+
+
+def _list(options: argparse.Namespace, pairs: Sequence[Pair]) -> None:
+    if options.json:
+        tasks.say_json([{"inputs": [pair.source], "files": [pair.target]} for pair in pairs])
+        return
+    width = max(len(pair.source) for pair in pairs)
+    for pair in pairs:
+        telling.say(f"{pair.source:<{width}}  {pair.target}")

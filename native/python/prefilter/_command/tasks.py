@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Work in tasks, which machines of a farm do apart: what they are, and which of them are done here.
+
+Every task leaves the files, byte for byte, that the whole would.
+"""
+
+import argparse
+import json
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from . import telling
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Part:
+    """One of several parts of the tasks, of which each takes every so manieth.
+
+    Attributes:
+        number: Which one, from 1.
+        count: Of how many.
+    """
+
+    number: int
+    count: int
+
+    def of(self, tasks: Sequence[T]) -> list[T]:
+        """Returns the tasks in this part; none where there are fewer of them than parts."""
+        return list(tasks[self.number - 1 :: self.count])
+
+
+def add_flags(parser: argparse.ArgumentParser, thing: str, *, needs: str = "") -> None:
+    """Adds the flags that split the work.
+
+    Args:
+        parser: Gets them; `check` looks at them.
+        thing: What a task does, such as "file".
+        needs: What the help begins with, where another flag is needed too.
+    """
+    parser.add_argument(
+        "--task",
+        metavar="K/N",
+        type=_part,
+        help=f"{needs}do part K of N, from 1/N to N/N; with as many parts as --list has tasks, "
+        f"each is one {thing}",
+    )
+    parser.add_argument(
+        "--list", action="store_true", help=f"{needs}only say what would be done, as a table"
+    )
+    parser.add_argument(
+        "--json", action="store_true", help="with --list, the tasks as JSON, for programs"
+    )
+
+
+def check(options: argparse.Namespace) -> None:
+    """Ends the program where flags do not go together."""
+    if options.json and not options.list:
+        options.usage_error("--json: needs --list")
+    if options.task and options.list:
+        options.usage_error("--task: not allowed with --list, which says all tasks")
+
+
+def chosen(options: argparse.Namespace, tasks: Sequence[T]) -> list[T]:
+    """Returns the tasks that are done here, and says so where there are none."""
+    if options.task is None:
+        return list(tasks)
+    found: list[T] = options.task.of(tasks)
+    if not found:
+        telling.say(f"Nothing to do in part {options.task.number} of {options.task.count}")
+    return found
+
+
+def say_json(tasks: Sequence[Mapping[str, Any]], **more: Any) -> None:
+    """Prints tasks with their numbers, and more, as one JSON object on a line."""
+    numbered = [{"task": number, **task} for number, task in enumerate(tasks, start=1)]
+    telling.say(json.dumps({"tasks": numbered, **more}, ensure_ascii=False))
+
+
+def _part(text: str) -> Part:
+    found = re.fullmatch(r"(\d{1,9})/(\d{1,9})", text, re.ASCII)
+    if found is None or not 1 <= int(found[1]) <= int(found[2]):
+        raise argparse.ArgumentTypeError(f"found '{text}'; K/N is needed, with K from 1 to N")
+    return Part(int(found[1]), int(found[2]))
