@@ -4,6 +4,8 @@
 
 from prefilter._command.telling import (
     add_command,
+    add_skipping,
+    check_can_tell,
     check_ending,
     done,
     progress_line,
@@ -15,6 +17,8 @@ from prefilter._command.telling import (
 
 __all__ = (
     "add_command",
+    "add_skipping",
+    "check_can_tell",
     "check_ending",
     "done",
     "progress_line",

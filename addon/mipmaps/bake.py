@@ -8,11 +8,13 @@ The operator and the command are two ways to call this.
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 from typing import Protocol
 
 import numpy as np
+from prefilter._work import outcome, up_to_date
 from prefilter._work.mipmaps import levels, stretching
-from prefilter._work.mipmaps.outputs import Outputs, staged, summary
+from prefilter._work.mipmaps.outputs import Outputs, made_of, staged, summary
 
 from ..bridge.files.staging import StagedFile, commit_all
 from ..bridge.images import FloatArray, Picture
@@ -33,9 +35,20 @@ class Bake:
     Nothing is written before everything is computed.
     """
 
-    def __init__(self, source: Source, outputs: Outputs) -> None:
-        """Keeps copies of what was read; use `reading.read`."""
+    def __init__(self, source: Source, outputs: Outputs, *, may_skip: bool = False) -> None:
+        """Keeps copies of what was read; use `reading.read`.
+
+        Args:
+            source: The image on its surfaces.
+            outputs: What is made of it.
+            may_skip: Whether files are left alone that were made of the same; files then keep what
+                they were made of.
+        """
         self.source = source
+        self.is_up_to_date = False
+        """Whether `compute` has found that nothing is to be done."""
+        self._may_skip = may_skip
+        self._metadata: dict[str, str] | None = None
         self.warnings = source.warnings
         self._outputs = outputs
         self._notes: list[str] = []
@@ -69,6 +82,13 @@ class Bake:
         """The finished files, beside their targets."""
         return self._staged
 
+    @property
+    def files(self) -> list[Path]:
+        """The files that there are once what was computed is written."""
+        if self.is_up_to_date:
+            return self._outputs.targets
+        return [file.target for file in self._staged]
+
     def compute(self, progress: Progress) -> None:
         """Filters, encodes and stages the file.
 
@@ -78,6 +98,13 @@ class Bake:
             OSError: The file cannot be written.
         """
         go_on(progress, 0.0)
+        if self._may_skip:
+            number = made_of(self.source, self._outputs)
+            self.is_up_to_date = up_to_date.is_up_to_date(self._outputs.targets, number)
+            self._metadata = {up_to_date.KEY: number}
+        if self.is_up_to_date:
+            go_on(progress, 1.0)
+            return
         self._outputs, told = stretching.stretch(self.source, self._outputs, progress)
         self._notes += told
         made, rough, note = levels.filtered(
@@ -99,7 +126,13 @@ class Bake:
     ) -> None:
         """Stages the files, and keeps the levels as level images hold them."""
         source, outputs = self.source, self._outputs
-        stage = partial(staged, settings=source.settings, wrap=source.wrap, check=check)
+        stage = partial(
+            staged,
+            settings=source.settings,
+            wrap=source.wrap,
+            check=check,
+            metadata=self._metadata,
+        )
         texture_format = source.settings.texture_format
         files, self._levels = stage(source.picture, made, outputs.target, texture_format)
         self._staged += files
@@ -138,6 +171,8 @@ class Bake:
 
     def finish(self) -> Outcome:
         """Puts the level images into place; the files are there already."""
+        if self.is_up_to_date:
+            return Outcome(outcome.up_to_date(self._outputs.targets), warnings=self.warnings)
         names: list[str] = []
         for images in self._staged_levels:
             made = images.commit()

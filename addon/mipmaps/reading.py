@@ -53,6 +53,7 @@ class Request:
         writes_image: Whether the image itself is baked; else only the roughness that it is the
             normal map of, for the surfaces of that.
         pictures: What was read of images before, by their full names.
+        may_skip: See `Bake`.
     """
 
     image: bpy.types.Image
@@ -65,6 +66,7 @@ class Request:
     may_lose_channels: bool = False
     writes_image: bool = True
     pictures: Mapping[str, Picture] = field(default_factory=dict)
+    may_skip: bool = False
 
     def picture_of(self, image: bpy.types.Image) -> Picture:
         """The pixels of an image without tiles."""
@@ -233,13 +235,18 @@ def bake_of(
             request.image.name, pictures, level_0.numbers, found, settings, level_0.targets
         )
         bakes = [
-            Bake(on_surfaces(one.picture, one.found, settings, content), Outputs(one.target))
+            Bake(
+                on_surfaces(one.picture, one.found, settings, content),
+                Outputs(one.target),
+                may_skip=request.may_skip,
+            )
             for one in tiles
         ]
         return udim.TiledBake(request.image.name, bakes, warnings)
     target = level_0.targets[0] if level_0.targets else None
     outputs = Outputs(target, rough.roughness, rough.target, request.writes_image)
-    return Bake(on_surfaces(pictures[0], found, settings, content), outputs)
+    source = on_surfaces(pictures[0], found, settings, content)
+    return Bake(source, outputs, may_skip=request.may_skip)
 
 
 def read_roughness(request: Request, level_0: Level0) -> Rough:

@@ -53,6 +53,16 @@ class TiledBake:
         return [name for one in self._bakes for name in one.objects]
 
     @property
+    def is_up_to_date(self) -> bool:
+        """Whether all tiles are; see `Bake.is_up_to_date`."""
+        return all(one.is_up_to_date for one in self._bakes)
+
+    @property
+    def files(self) -> list[Path]:
+        """See `Bake.files`."""
+        return [path for one in self._bakes for path in one.files]
+
+    @property
     def tile_count(self) -> int:
         """How many tiles are baked."""
         return len(self._bakes)

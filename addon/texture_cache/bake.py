@@ -6,14 +6,18 @@ The operator and the command are two ways to call this. Every image of a scene i
 what cannot be weighed by a surface keeps the levels that Blender made, and a warning says why.
 """
 
+from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import bpy
 import numpy as np
 import prefilter
+from numpy.typing import NDArray
+from prefilter._work import up_to_date
 
 from ..bridge import materials, meshes, packed, rendered
 from ..bridge.files import tx
@@ -24,7 +28,7 @@ from ..core.alpha import associated, unassociated
 from ..core.jobs import Progress, at_once, go_on, share
 from ..core.outcome import Outcome
 from ..core.translations import marked
-from ..core.wording import Sentence, counted, listed
+from ..core.wording import Sentence, counted, joined, listed
 from . import states
 
 NEEDED = marked("Blender 5.2 LTS or later with Cycles is needed, for its texture cache")
@@ -33,6 +37,8 @@ NEEDED = marked("Blender 5.2 LTS or later with Cycles is needed, for its texture
 # threads would wait for each other more than they work.
 _MOST_SMALL_TEXELS = 1 << 21
 _CYCLES = "CYCLES"
+_CONSTANT, _UP_TO_DATE = "constant", "up to date"
+"""Why files stay as they are."""
 _MADE = 0.2  # What the progress is once Blender has made its cache files.
 
 
@@ -88,8 +94,10 @@ class CacheBake:
         self._worn = worn
         self._threads = threads
         self._staged: list[tuple[_Worn, StagedFile]] = []
-        self._constant = 0
+        self._left: Counter[str] = Counter()
         self._is_part = False
+        self.may_skip = False
+        """Whether files are left alone that were made of the same; files then keep of what."""
 
     @classmethod
     def read(
@@ -176,7 +184,7 @@ class CacheBake:
         try:
             shared = self._make(share(progress, 0.0, _MADE))
             self._bake(shared, share(progress, _MADE, 1.0))
-            if not (self._staged or self._constant or self._is_part):
+            if not (self._staged or self._left or self._is_part):
                 reasons = "\n".join(self.warnings)
                 raise ValueError(f"scene '{self._scene}': no image could be baked\n{reasons}")
             go_on(progress, 1.0)
@@ -243,16 +251,16 @@ class CacheBake:
             try:
                 if worn.obstacle:
                     raise ValueError(f"{worn.who}: {worn.obstacle}")
-                file = _staged(tx.read(path), worn, advance, threads)
+                file = _staged(tx.read(path), worn, advance, threads, may_skip=self.may_skip)
             except ValueError as error:
                 problems[index] = f"{error}; it keeps Blender's levels"
             else:
-                if file is None:
-                    constant.append(index)
+                if isinstance(file, str):
+                    left.append(file)
                 else:
                     staged[index] = file
 
-        constant: list[int] = []
+        left: list[str] = []
         small: list[Callable[[Progress], None]] = []
         large: list[Callable[[Progress], None]] = []
         for index, (path, worn) in enumerate(shared.items()):
@@ -267,7 +275,7 @@ class CacheBake:
         finally:
             users = list(shared.values())
             self._staged = [(users[index], staged[index]) for index in sorted(staged)]
-            self._constant = len(constant)
+            self._left.update(left)
             self.warnings.extend(problems[index] for index in sorted(problems))
 
     def _summary(self) -> str:
@@ -277,8 +285,11 @@ class CacheBake:
             "Baked PAM into the texture cache of {} ({}), over {}",
             *(counted(names, "image"), counted(self._staged, "file"), counted(objects, "object")),
         )
-        if self._constant:
-            return Sentence("{}; {} of one color stay as they are", done, self._constant)
+        if self._left[_CONSTANT]:
+            constant = self._left[_CONSTANT]
+            done = Sentence("{}; {} of one color stay as they are", done, constant)
+        if self._left[_UP_TO_DATE]:
+            done = joined("; ", [done, f"{self._left[_UP_TO_DATE]} up to date"])
         return done
 
 
@@ -310,17 +321,31 @@ def _on_surfaces(
 
 
 def _staged(
-    texture: tx.Texture, worn: _Worn, progress: Progress, threads: int
-) -> StagedFile | None:
-    """Stages a file; None where the image has one color only."""
+    texture: tx.Texture, worn: _Worn, progress: Progress, threads: int, *, may_skip: bool
+) -> StagedFile | str:
+    """Stages a file, or returns why it stays as it is."""
     if texture.is_constant:
-        return None
+        return _CONSTANT
     wrap = _wrap(worn)
+    number = _made_of(texture, worn, wrap) if may_skip else ""
+    if number and texture.made_of == number:
+        return _UP_TO_DATE
     try:
         levels = _levels(texture, worn, wrap, progress, threads)
     except ValueError as error:
         raise ValueError(f"{worn.who}: {error}") from error
-    return tx.stage(texture, levels, partial(go_on, progress, 1.0))
+    return tx.stage(texture, levels, partial(go_on, progress, 1.0), made_of=number)
+
+
+def _made_of(texture: tx.Texture, worn: _Worn, wrap: str) -> str:
+    """Returns a number, as text, of all that the levels are made of."""
+    arrays: list[NDArray[Any]] = [texture.stored]
+    for surface in worn.surfaces:
+        arrays += [surface.positions, surface.triangles, surface.uvs, surface.areas]
+    flags = [texture.is_encoded, texture.is_float, worn.alpha_covers, worn.source.is_data]
+    return up_to_date.fingerprint_of(
+        arrays, {"wrap": wrap, "flags": flags, "alpha": worn.source.alpha_is_associated}
+    )
 
 
 def _levels(

@@ -46,6 +46,7 @@ def add(commands: Any) -> None:
     parser.add_argument(
         "--save", action="store_true", help="save FILE with the scene's texture cache turned on"
     )
+    command.add_skipping(parser)
     tasks.add_flags(parser, "image file")
     parser.set_defaults(execute=_bake_cache, usage_error=parser.error)
 
@@ -72,6 +73,7 @@ def _bake_cache(options: argparse.Namespace) -> None:
         unpack=options.unpack,
         threads=settings_given(options, CacheSettings).threads,
     )
+    work.may_skip = options.skip_up_to_date
     if options.list:
         _list(options, work)
         return

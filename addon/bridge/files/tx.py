@@ -22,6 +22,7 @@ from typing import Any
 
 import bpy
 import numpy as np
+from prefilter._work.up_to_date import IN_DESCRIPTION, KEY
 
 from .. import images, openimageio
 from ..images import FloatArray
@@ -83,6 +84,7 @@ class Texture:
         is_encoded: Whether colors are sRGB-encoded.
         is_float: Whether the file holds floats.
         is_constant: Whether the image has one color only, and the file one tile of it.
+        made_of: What `stage` was told that its levels were made of; empty if they are Blender's.
     """
 
     path: Path
@@ -90,6 +92,7 @@ class Texture:
     is_encoded: bool
     is_float: bool
     is_constant: bool
+    made_of: str = ""
 
 
 def is_available() -> bool:
@@ -226,10 +229,13 @@ def read(path: Path) -> Texture:
         not is_float and _source_space(path, spec) == _ENCODED_SPACE,
         is_float,
         spec.getattribute("oiio:ConstantColor") is not None,
+        _made_of(spec),
     )
 
 
-def stage(texture: Texture, levels: Sequence[FloatArray], check: Check) -> staging.StagedFile:
+def stage(
+    texture: Texture, levels: Sequence[FloatArray], check: Check, *, made_of: str = ""
+) -> staging.StagedFile:
     """Writes a cache file with other levels beside the file that it is to replace.
 
     Level 0, its metadata and the time of modification stay as they are.
@@ -238,6 +244,7 @@ def stage(texture: Texture, levels: Sequence[FloatArray], check: Check) -> stagi
         texture: The file.
         levels: Levels 1, 2, ... in the encoding of `texture.stored`, row 0 at the bottom.
         check: Called before each level.
+        made_of: What the file is to keep for the next bake; see `up_to_date`.
 
     Raises:
         OSError: The file cannot be written.
@@ -252,7 +259,7 @@ def stage(texture: Texture, levels: Sequence[FloatArray], check: Check) -> stagi
         full = reader.read_image(0, 0, 0, spec.nchannels, spec.format)
         writer = oiio.ImageOutput.create(str(temporary))
         mode = "AppendMIPLevel" if writer.supports("mipmap") else "AppendSubimage"
-        _write(writer, temporary, _first_spec(spec, texture.is_float), "Create", full)
+        _write(writer, temporary, _first_spec(spec, texture.is_float, made_of), "Create", full)
         for level in levels:
             check()
             if spec.format == oiio.HALF:
@@ -305,18 +312,32 @@ def _source_space(path: Path, spec: Any) -> str:
     return found[1]
 
 
-def _first_spec(spec: Any, is_float: bool) -> Any:
+def _first_spec(spec: Any, is_float: bool, made_of: str) -> Any:
     """Returns a spec that writes what was read.
 
     But no `oiio:SHA-1`, which OpenImageIO leaves out when it reads: it is of level 0 alone, and
     readers that go by it would take this file for Blender's.
     """
-    if not is_float:
-        described = ((name, spec.getattribute(name)) for name in _DESCRIBED)
-        text = " ".join(f"{name}={value}" for name, value in described if value is not None)
-        if text:
-            spec.attribute("ImageDescription", text)
+    if is_float:
+        spec.erase_attribute(KEY)
+        if made_of:
+            spec.attribute(KEY, made_of)
+        return spec
+    described = ((name, spec.getattribute(name)) for name in _DESCRIBED)
+    words = [f"{name}={value}" for name, value in described if value is not None]
+    if not words:
+        words = [IN_DESCRIPTION.sub("", spec.getattribute("ImageDescription") or "")]
+    text = " ".join(filter(None, [*words, f"{KEY}={made_of}" if made_of else ""]))
+    spec.erase_attribute("ImageDescription")
+    if text:
+        spec.attribute("ImageDescription", text)
     return spec
+
+
+def _made_of(spec: Any) -> str:
+    """Returns what `stage` has kept in a file; empty where nothing."""
+    found = IN_DESCRIPTION.search(spec.getattribute("ImageDescription") or "")
+    return found[1] if found else str(spec.getattribute(KEY) or "")
 
 
 def _level_spec(oiio: Any, first: Any, pixels: FloatArray) -> Any:

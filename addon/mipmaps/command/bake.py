@@ -5,6 +5,7 @@
 import argparse
 import os
 import re
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ from typing import Any
 import bpy
 from prefilter._command import tasks
 from prefilter._work.files import target_files
+from prefilter._work.up_to_date import LEVELS
 
 from ...bridge import images
 from ...bridge.files import scenes, staging
@@ -89,6 +91,7 @@ def add(commands: Any) -> None:
         help="with --all, a .json file that says of each image its content, size and format, and "
         "which file has it",
     )
+    command.add_skipping(parser)
     tasks.add_flags(parser, "image, or a normal map and its roughness", needs="with --all, ")
     parser.set_defaults(execute=_bake, usage_error=parser.error)
 
@@ -136,6 +139,8 @@ def _bake_some(options: argparse.Namespace, settings: Settings) -> None:
         options.usage_error(
             f"--supercompression: found '{settings.supercompression}', which is for .ktx2 files"
         )
+    if options.skip_up_to_date:
+        _check_skipping(options, paths)
     path = os.path.abspath(options.file)
     objects = source.objects_of(options)
     if options.save:
@@ -161,6 +166,7 @@ def _bake_some(options: argparse.Namespace, settings: Settings) -> None:
                 replace(settings, filepath=target),
                 bpy.context.evaluated_depsgraph_get(),
                 all_faces=is_picture,
+                may_skip=options.skip_up_to_date,
             )
             work = reading.read(request)
             command.tell(command.done(work))
@@ -173,6 +179,13 @@ def _bake_some(options: argparse.Namespace, settings: Settings) -> None:
         scenes.save_open(path)
     if failed:
         raise ValueError(f"not baked: {listed(failed)}")
+
+
+def _check_skipping(options: argparse.Namespace, paths: Iterable[str]) -> None:
+    if options.save:
+        options.usage_error("--skip-up-to-date: not allowed with --save; it looks at files alone")
+    for path in filter(None, paths):
+        command.check_can_tell(options, path, LEVELS)
 
 
 def _frames(text: str) -> tuple[int, int, int]:

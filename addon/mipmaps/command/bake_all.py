@@ -10,6 +10,7 @@ from pathlib import Path
 import bpy
 from prefilter._command import tasks
 from prefilter._work.files import target_files
+from prefilter._work.up_to_date import LEVELS
 
 from ...bridge import meshes
 from ...bridge.files import scenes, staging
@@ -53,7 +54,9 @@ def bake_all(options: argparse.Namespace, settings: Settings) -> None:
     target = manifest.check_target(options.manifest) if options.manifest else None
     if _is_part(options):
         planned = replace(planned, left_out=[])  # That is for the whole to say.
-    _finish(options, ModelBake(planned, settings, files, jobs=jobs, manifest=target), path)
+    skips = options.skip_up_to_date
+    model = ModelBake(planned, settings, files, jobs=jobs, manifest=target, may_skip=skips)
+    _finish(options, model, path)
 
 
 def _is_part(options: argparse.Namespace) -> bool:
@@ -104,6 +107,10 @@ def _pattern(options: argparse.Namespace, chosen: ModelSettings) -> file_names.P
 def _check(options: argparse.Namespace, settings: Settings, pattern: file_names.Pattern) -> None:
     if options.image is not None and (options.task or options.list):
         options.usage_error("--image: not allowed with --task and --list, which are of all images")
+    if options.skip_up_to_date and options.save:
+        options.usage_error("--skip-up-to-date: not allowed with --save; it looks at files alone")
+    if options.skip_up_to_date:
+        command.check_can_tell(options, pattern.text, LEVELS)
     for name in ("save", "manifest"):
         if _is_part(options) and getattr(options, name):
             options.usage_error(f"--{name}: not allowed with --task and --image, but for the whole")

@@ -60,7 +60,7 @@ def _check(options: argparse.Namespace) -> None:
     found = {*given(options, Settings), *given(options, ModelSettings)} - _USED
     found |= {
         name
-        for name in ("image", "frames", "save", "list", "manifest", "task")
+        for name in ("image", "frames", "save", "list", "manifest", "task", "skip_up_to_date")
         if getattr(options, name, None)
     }
     flags = [

@@ -47,6 +47,7 @@ class ModelBake:
         jobs: Sequence[Job] | None = None,
         manifest: Path | None = None,
         is_rehearsal: bool = False,
+        may_skip: bool = False,
     ) -> None:
         """Takes what there is to do.
 
@@ -58,6 +59,7 @@ class ModelBake:
             manifest: What is written with the files to list them; None for nothing.
             is_rehearsal: Whether images are read to see what would be done: their folders need not
                 be there, and nothing is to be computed.
+            may_skip: Whether files that were made of the same are left alone.
         """
         self.rows: list[Row] = []
         self.warnings: list[str] = []
@@ -66,6 +68,7 @@ class ModelBake:
         self._files = files
         self._manifest = manifest
         self._is_rehearsal = is_rehearsal
+        self._may_skip = may_skip
         self._jobs = plan.jobs() if jobs is None else list(jobs)
         self._count = sum(len(job.images) for job in self._jobs)
         self._done = 0
@@ -154,7 +157,9 @@ class ModelBake:
             for job, _ in computed:
                 self.results.fail(job.images, error)
             return []
-        self.results.baked += [name for job, _ in computed for name in job.images]
+        for job, bake in computed:
+            known = self.results.up_to_date if bake.is_up_to_date else self.results.baked
+            known += job.images
         self.results.outcomes += written[: len(bakes)]
         return written
 
@@ -163,7 +168,7 @@ class ModelBake:
         if self._manifest is None or not computed:
             return []
         names = {name for job, _ in computed for name in job.images}
-        written = [file.target for _, bake in computed for file in bake.staged_files]
+        written = [path for _, bake in computed for path in bake.files]
         rows = [row for row in self.rows if row.image in names]
         try:
             _make_folder(self._manifest, self._made_folders)
@@ -222,6 +227,7 @@ class ModelBake:
             may_lose_channels=fits,
             writes_image=pair.normal_map is None or pair.is_normal_map,
             pictures=made.pictures,
+            may_skip=self._may_skip,
         )
         bake = yield from reading.reading(request)
         self.rows += made.rows

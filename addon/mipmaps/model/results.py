@@ -19,12 +19,14 @@ class Results:
         left_out: Those that are not to be baked.
         failed: Those that cannot be baked.
         baked: The names of those that were baked.
+        up_to_date: The names of those whose files were left alone, as they are up to date.
         outcomes: Of the bakes.
     """
 
     left_out: list[LeftOut]
     failed: list[LeftOut] = field(default_factory=list)
     baked: list[str] = field(default_factory=list)
+    up_to_date: list[str] = field(default_factory=list)
     outcomes: list[Outcome] = field(default_factory=list)
 
     def fail(self, names: Iterable[str], error: BaseException) -> None:
@@ -77,6 +79,8 @@ class Results:
         folders = {str(Path(path).parent) for path in files}
         if len(folders) == 1:
             done = Sentence("{} in '{}'", done, folders.pop())
+        if self.up_to_date:
+            done = joined("; ", [done, f"{counted(self.up_to_date, 'image')} up to date"])
         if self.failed:
             failed = listed(one.image for one in self.failed)
             done = Sentence("{}; not baked: {}", done, failed)

@@ -97,3 +97,48 @@ def test_standard_output_is_the_list_alone(model):
     result = run_blender("bake", model, "--all", "--list", "--json")
     assert result.returncode == 0, result.stderr
     assert len(images(json.loads(result.stdout)["tasks"])) == 3
+
+
+def test_what_is_up_to_date_is_left_alone(model, tmp_path):
+    """By what is read: pixels, surfaces and settings, and neither names nor times."""
+    flags = ("--skip-up-to-date",)
+
+    def baked(*more):
+        before = {path.name: path.stat().st_ino for path in (tmp_path / "out").glob("*")}
+        result = run("bake", model, "--all", "--output", tmp_path / "out", *flags, *more)
+        assert result.returncode == 0, result.stderr
+        made = {
+            path.name.removesuffix(".ktx2")
+            for path in (tmp_path / "out").glob("*.ktx2")
+            if path.stat().st_ino != before.get(path.name)
+        }
+        assert f"Baked {len(made)} image" in result.stdout
+        return made
+
+    everything = {"albedo", "normal", "orm", "glow"}
+    assert baked() == everything
+    assert baked() == set()
+    assert baked("--threads", "1", "--manifest", tmp_path / "m.json") == set()
+    listed = json.loads((tmp_path / "m.json").read_text())["images"]
+    assert {one["image"].removesuffix(".png") for one in listed} == everything
+    gltf_files.write_png(tmp_path / "orm.png", scenes.noise(16, 16, seed=9)[..., :3])
+    assert baked() == {"orm", "normal"}
+    assert baked("--task", "1/3", "--filter", "box") <= everything
+    assert baked("--effort", "fast") == everything
+    (tmp_path / "out" / "glow.ktx2").write_bytes(b"")
+    assert baked("--effort", "fast") == {"glow"}
+    text = model.read_text()
+    model.write_text(text.replace('"emissiveFactor"', '"name": "Other", "emissiveFactor"'))
+    assert baked("--effort", "fast") == set()
+
+
+@pytest.mark.parametrize("name", ["exr", "tif"])
+def test_one_image_that_is_up_to_date(model, tmp_path, name):
+    command = ("bake", model, "--image", "glow.png", "--output", tmp_path / f"o.{name}")
+    for words in ("Baked 'glow.png'", "Up to date: '"):
+        result = run(*command, "--skip-up-to-date")
+        assert result.returncode == 0, result.stderr
+        assert words in result.stdout
+    for flags in (("--output", tmp_path / "o.dds"), ("--all", "--output", tmp_path / "o.glb")):
+        result = run("bake", model, *flags, "--skip-up-to-date")
+        assert_fails(result, "--skip-up-to-date", status=2)

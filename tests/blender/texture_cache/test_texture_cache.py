@@ -495,6 +495,38 @@ def test_tasks_make_what_the_whole_makes(scene, tmp_path):
         assert_fails(run("bake-cache", blend, *flags), flags[0], status=2)
 
 
+@pytest.mark.parametrize(("ending", "kind"), [("png", "uint8"), ("exr", "half")])
+def test_what_is_up_to_date_is_left_alone(scene, tmp_path, ending, kind):
+    pixels = smooth(64, 64, 3)
+    cycles.shown_on(cycles.write_picture(tmp_path / f"paint.{ending}", pixels, kind))
+    blend = tmp_path / "scene.blend"
+
+    def made(*flags):
+        bpy.ops.wm.save_as_mainfile(filepath=str(blend))
+        before = {path: path.stat().st_ino for path in cycles.cache_files(tmp_path)}
+        result = run("bake-cache", blend, *flags)
+        assert result.returncode == 0, result.stderr
+        bpy.ops.wm.open_mainfile(filepath=str(blend))
+        (path,) = cycles.cache_files(tmp_path)
+        is_made = path.stat().st_ino != before.get(path)
+        assert is_made != ("; 1 up to date" in result.stdout)
+        return is_made
+
+    skips = "--skip-up-to-date"
+    assert made()
+    plain = contents(tmp_path)[cycles.cache_file(tmp_path)]
+    assert made(skips)
+    level = cycles.level(cycles.cache_file(tmp_path), 1)
+    assert not made(skips)
+    bpy.data.objects["Quad"].data.vertices[0].co.x -= 2.0
+    assert made(skips)
+    assert not made(skips)
+    bpy.data.objects["Quad"].data.vertices[0].co.x += 2.0
+    assert made()
+    assert contents(tmp_path)[cycles.cache_file(tmp_path)] == plain
+    np.testing.assert_array_equal(cycles.level(cycles.cache_file(tmp_path), 1), level)
+
+
 def test_results_do_not_depend_on_threads(scene, tmp_path, addon):
     cycles.shown_on(cycles.write_picture(tmp_path / "paint.png", smooth(128, 64, 4), "uint8"))
     module = addon("texture_cache.bake")

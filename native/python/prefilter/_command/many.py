@@ -4,13 +4,15 @@
 
 import argparse
 import os
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from .._border.staging import check_target
 from .._work.files.target_files import PLACE
-from .._work.outcome import FAILURES
+from .._work.outcome import FAILURES, up_to_date
+from .._work.up_to_date import KEY, PICTURES, fingerprint, is_up_to_date
 from .._work.wording import listed
 from . import tasks, telling
 
@@ -22,10 +24,12 @@ class Pair:
     Attributes:
         source: The path, as it was given.
         target: The path, with the name of the source in it.
+        metadata: What the file to write is to keep, by keys; None for nothing.
     """
 
     source: str
     target: str
+    metadata: Mapping[str, str] | None = None
 
     def checked_target(self) -> Path:
         """Returns the absolute path of the file to write, symbolic links resolved.
@@ -58,16 +62,29 @@ def add_arguments(
     )
 
 
-def run(options: argparse.Namespace, do: Callable[[Pair], None]) -> None:
+def run(
+    options: argparse.Namespace,
+    do: Callable[[Pair], None],
+    settings: Mapping[str, Any] | None = None,
+) -> None:
     """Does something with each file of this task, or lists the tasks.
 
     A file that fails does not stop the others.
+
+    Args:
+        options: The arguments.
+        do: Reads a file, and writes another.
+        settings: All that decides what is made of a file, where what is up to date may be left
+            alone; None where it may not.
 
     Raises:
         ValueError: Some failed; of a single one, whatever `do` raises.
     """
     tasks.check(options)
     pairs = _pairs(options)
+    if settings is not None and options.skip_up_to_date:
+        telling.check_can_tell(options, options.target, PICTURES)
+        do = _skipping(do, settings)
     if options.list:
         _list(options, pairs)
         return
@@ -83,6 +100,20 @@ def run(options: argparse.Namespace, do: Callable[[Pair], None]) -> None:
                 failed.append(pair.source)
     if failed:
         raise ValueError(f"not done: {listed(failed)}")
+
+
+def _skipping(do: Callable[[Pair], None], settings: Mapping[str, Any]) -> Callable[[Pair], None]:
+    """Returns what leaves files alone that are up to date."""
+
+    def do_unless(pair: Pair) -> None:
+        target = pair.checked_target()
+        number = fingerprint([pair.source], settings)
+        if is_up_to_date([target], number):
+            telling.say(up_to_date([target]))
+        else:
+            do(replace(pair, metadata={KEY: number}))
+
+    return do_unless
 
 
 def _pairs(options: argparse.Namespace) -> list[Pair]:

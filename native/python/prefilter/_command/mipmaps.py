@@ -6,13 +6,13 @@ import argparse
 from dataclasses import asdict
 from typing import Any
 
-from .._border.replacing import recover
 from .._options.flags import add_flags, given, tables
 from .._options.mipmaps import FILTERS, TEXTURE_SPACE_FILTERS, Settings
 from .._work import mesh_endings
 from .._work.files import target_files
-from .._work.up_to_date import ENDING, KEY, fingerprint, is_up_to_date
-from .._work.wording import either, listed
+from .._work.outcome import up_to_date
+from .._work.up_to_date import KEY, LEVELS, fingerprint, is_up_to_date
+from .._work.wording import either
 from . import telling
 
 FLAGS = (
@@ -52,12 +52,7 @@ def add(commands: Any, purpose: str) -> None:
         help="a mesh of the files that counts; repeat for several (default: all)",
     )
     add_flags(parser, Settings, *FLAGS, short={"filepath": "-o"})
-    parser.add_argument(
-        "--skip-up-to-date",
-        action="store_true",
-        help="do nothing where the .ktx2 files were made of the same inputs, by their contents, "
-        "with the same settings; the files then keep a number that tells",
-    )
+    telling.add_skipping(parser)
     parser.set_defaults(execute=_run, usage_error=parser.error)
 
 
@@ -68,10 +63,8 @@ def _run(options: argparse.Namespace) -> None:
     number = _fingerprint(options, settings) if options.skip_up_to_date else None
     if number is not None:
         targets = [target_files.check_target(path) for path in _paths(settings)]
-        for target in targets:
-            recover(target.parent)
         if is_up_to_date(targets, number):
-            telling.say(f"Up to date: {listed(map(str, targets))}")
+            telling.say(up_to_date(targets))
             return
     metadata = None if number is None else {KEY: number}
     from . import mipmap_levels  # A run that finds all up to date needs none of it.
@@ -87,8 +80,7 @@ def _paths(settings: Settings) -> list[str]:
 def _fingerprint(options: argparse.Namespace, settings: Settings) -> str:
     """Returns what the files keep; ends the program where one cannot."""
     for path in _paths(settings):
-        if not path.lower().endswith(ENDING):
-            options.usage_error(f"--skip-up-to-date: found '{path}', and only .ktx2 files can tell")
+        telling.check_can_tell(options, path, LEVELS)
     chosen = asdict(settings)
     for name in ("filepath", "roughness_filepath", "roughness", "threads"):
         del chosen[name]

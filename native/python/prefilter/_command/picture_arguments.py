@@ -4,7 +4,9 @@
 
 import argparse
 from pathlib import Path
+from typing import Any
 
+from .._options.flags import given
 from .._work.files import pictures
 from .._work.picture import Picture
 from .._work.wording import either
@@ -27,6 +29,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="filter values as they are stored, each channel by itself: roughness, masks, normals",
     )
     tasks.add_flags(parser, "INPUT")
+    telling.add_skipping(parser)
+
+
+def decisive(options: argparse.Namespace, host: Host, settings: type) -> dict[str, Any]:
+    """Returns all that decides what a command makes of a picture, but for the picture itself.
+
+    Args:
+        options: The arguments.
+        host: Where the command runs.
+        settings: The dataclass of its options.
+    """
+    chosen = host.preset(options) | given(options, settings)
+    chosen.pop("threads", None)
+    more = {name: getattr(options, name, None) for name in ("data", "corners", "rectify", "scale")}
+    return {"command": settings.__name__, "chosen": chosen, **more}
 
 
 def check_target(options: argparse.Namespace) -> None:

@@ -12,6 +12,7 @@ from .._options.flags import add_flags, given, tables
 from .._options.options import check
 from .._options.resampling import CORNERS, ResampleSettings
 from .._work.resampling.resampling import Resampling
+from .._work.up_to_date import fingerprint
 from . import many, picture_arguments, telling
 from .host import PLAIN, Host
 from .many import Pair
@@ -68,14 +69,19 @@ def add(commands: Any, purpose: str, host: Host = PLAIN) -> None:
 def _resample(host: Host, options: argparse.Namespace) -> None:
     picture_arguments.check_target(options)
     settings = _settings(options, host)
-    many.run(options, partial(_resample_one, host, options, settings))
+    decisive = picture_arguments.decisive(options, host, ResampleSettings)
+    if settings.table and options.skip_up_to_date:
+        decisive["table"] = fingerprint([settings.table], {})
+    many.run(options, partial(_resample_one, host, options, settings), decisive)
 
 
 def _resample_one(
     host: Host, options: argparse.Namespace, settings: ResampleSettings, pair: Pair
 ) -> None:
     picture, target = picture_arguments.read_source(options, host, pair)
-    telling.tell(telling.done(Resampling(picture, settings, target=target)))
+    work = Resampling(picture, settings, target=target)
+    work.metadata = pair.metadata
+    telling.tell(telling.done(work))
 
 
 def _settings(options: argparse.Namespace, host: Host) -> ResampleSettings:

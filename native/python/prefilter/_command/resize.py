@@ -41,7 +41,8 @@ def _resize(host: Host, options: argparse.Namespace) -> None:
         options.usage_error("no size: give --percent, --width or --height")
     if "percent" in sizes and len(sizes) > 1:
         options.usage_error("--percent: not allowed with --width and --height")
-    many.run(options, partial(_resize_one, host, options, found, sizes))
+    decisive = picture_arguments.decisive(options, host, ResizeSettings)
+    many.run(options, partial(_resize_one, host, options, found, sizes), decisive)
 
 
 def _resize_one(
@@ -58,4 +59,6 @@ def _resize_one(
             "use_aspect": sizes == ["width"],
         }
     settings = host.settings(options, ResizeSettings, **more)
-    telling.tell(telling.done(Resizing(picture, settings, target=target)))
+    work = Resizing(picture, settings, target=target)
+    work.metadata = pair.metadata
+    telling.tell(telling.done(work))

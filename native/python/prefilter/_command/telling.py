@@ -43,6 +43,24 @@ def add_progress(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_skipping(parser: argparse.ArgumentParser) -> None:
+    """Adds the flag that leaves alone what would be made again."""
+    parser.add_argument(
+        "--skip-up-to-date",
+        action="store_true",
+        help="leave alone what was made of the same inputs, by their contents, with the same "
+        "settings; files then keep a number that tells",
+    )
+
+
+def check_can_tell(options: argparse.Namespace, path: str, allowed: Sequence[str]) -> None:
+    """Ends the program unless a file can keep what it was made of."""
+    if not path.lower().endswith(tuple(allowed)):
+        options.usage_error(
+            f"--skip-up-to-date: found '{path}', and only {', '.join(allowed)} files can tell"
+        )
+
+
 def speak(kind: str = "plain") -> None:
     """Has all that follows told in one way; see `add_progress`."""
     global _voice, _share

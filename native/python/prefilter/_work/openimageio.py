@@ -5,7 +5,7 @@
 import itertools
 import shutil
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
@@ -183,7 +183,12 @@ def _on_canvas(values: NDArray[Any], spec: Any) -> NDArray[Any]:
 
 
 def write_picture(
-    path: Path, pixels: NDArray[Any], color_space: str, *, pixel_type: str = ""
+    path: Path,
+    pixels: NDArray[Any],
+    color_space: str,
+    *,
+    pixel_type: str = "",
+    attributes: Mapping[str, str] | None = None,
 ) -> None:
     """Writes values as a picture file, just as they are.
 
@@ -194,6 +199,7 @@ def write_picture(
         pixels: (h, w, c) array of uint8, uint16 or float32, rows from the top.
         color_space: What to say in `oiio:ColorSpace`.
         pixel_type: "half" for 16-bit floats; the type of the array if empty.
+        attributes: More that the file is to say.
 
     Raises:
         OSError: The file cannot be written.
@@ -202,6 +208,8 @@ def write_picture(
     height, width, channels = pixels.shape
     spec = oiio.ImageSpec(width, height, channels, pixel_type or str(pixels.dtype))
     spec.attribute("oiio:ColorSpace", color_space)
+    for key, value in (attributes or {}).items():
+        spec.attribute(key, value)
     if pixels.dtype.kind == "u":
         spec.attribute("oiio:UnassociatedAlpha", 1)
     output = oiio.ImageOutput.create(str(path))
@@ -213,6 +221,21 @@ def write_picture(
         raise OSError(f"file '{path}': cannot be written: {message or output.geterror()}")
     del output  # An OpenEXR file is finished when its writer goes.
     check_whole(path)
+
+
+def text_attribute(path: Path, name: str) -> str:
+    """Returns a text that a picture file says of itself; empty where it says none.
+
+    Raises:
+        OSError: It cannot be read.
+    """
+    reader = module().ImageInput.open(str(path))
+    if reader is None:
+        raise OSError(_unreadable(path, module().geterror()))
+    try:
+        return str(reader.spec().getattribute(name) or "")
+    finally:
+        reader.close()
 
 
 def check_whole(path: Path, levels: int = 1) -> None:
@@ -287,6 +310,7 @@ def write_texture(
     wrap_modes: str,
     has_alpha: bool,
     check: Check,
+    description: str = "",
 ) -> None:
     """Writes levels, rows from the top, as a tiled mip-mapped TIFF file.
 
@@ -301,6 +325,7 @@ def write_texture(
         wrap_modes: What to say in `wrapmodes`, such as "periodic,clamp".
         has_alpha: Whether a fourth channel is alpha, or one more independent channel.
         check: Called before each level.
+        description: What to say in `ImageDescription`.
 
     Raises:
         OSError: The file cannot be written.
@@ -320,6 +345,8 @@ def write_texture(
         config.tile_width = config.tile_height = TILE_SIZE
         config.attribute("Software", "Prefilter")
         config.attribute("compression", "zip")
+        if description:
+            config.attribute("ImageDescription", description)
         config.attribute("oiio:ColorSpace", color_space)
         config.attribute("wrapmodes", wrap_modes)
         config.attribute("maketx:fileformatname", "tiff")

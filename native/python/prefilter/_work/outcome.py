@@ -2,7 +2,11 @@
 
 """What work ends with."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
+from pathlib import Path
+
+from .wording import listed
 
 FAILURES = (ValueError, OSError, MemoryError)
 """What work raises for a reason that the user can act on."""
@@ -27,3 +31,8 @@ class Outcome:
     files: list[str] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+
+
+def up_to_date(targets: Iterable[Path]) -> str:
+    """Returns what is told of files that need not be made again."""
+    return f"Up to date: {listed(map(str, targets))}"

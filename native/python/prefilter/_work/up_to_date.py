@@ -1,21 +1,34 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Whether files were made of just what they would be made of now; KTX 2 files keep that."""
+"""Whether files were made of just what they would be made of now: most kinds can keep that."""
 
 import hashlib
 import json
 import os
+import re
+import struct
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from urllib.parse import unquote
 
+from .._border.replacing import recover
 from .._native import VERSION
 
-KEY = "PrefilterInputs"
-"""Under which key KTX 2 files keep the fingerprint."""
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
-ENDING = ".ktx2"
+KEY = "PrefilterInputs"
+"""Under which key files keep the fingerprint; TIFF files in their description."""
+
+LEVELS = (".ktx2", ".exr", ".tif", ".tiff", ".tx")
+"""The files of levels that can keep one: in DDS there is no place, and PNG files are several."""
+PICTURES = (".png", ".exr")
+"""The same of pictures of one level."""
+IN_DESCRIPTION = re.compile(rf" ?\b{KEY}=([0-9a-f]{{64}})\b")
+"""What the description of a TIFF file has of it."""
+_EXR_MAGIC = 20000630
+_MOST_HEADER = 1 << 20
 
 
 def fingerprint(sources: Iterable[str | os.PathLike[str]], settings: Mapping[str, Any]) -> str:
@@ -30,23 +43,82 @@ def fingerprint(sources: Iterable[str | os.PathLike[str]], settings: Mapping[str
     Raises:
         OSError: A file cannot be read.
     """
-    found = hashlib.sha256(json.dumps([VERSION, settings], sort_keys=True).encode())
+    found = _begun(settings)
     for source in sources:
         for path in (Path(source), *_referred(Path(source))):
             data = path.read_bytes()
             found.update(len(data).to_bytes(8, "little"))
             found.update(data)
-    return found.hexdigest()
+    return str(found.hexdigest())
+
+
+def fingerprint_of(arrays: Iterable["NDArray[Any]"], settings: Mapping[str, Any]) -> str:
+    """Returns the same of what was read, where that is more than some files."""
+    found = _begun(settings)
+    for array in arrays:
+        found.update(f"{array.dtype.str} {array.shape} ".encode())
+        if array.size:
+            found.update((array if array.flags.c_contiguous else array.copy()).data.cast("B"))
+    return str(found.hexdigest())
 
 
 def is_up_to_date(targets: Sequence[Path], number: str) -> bool:
     """Tells whether files are all there, and have been made of what has this fingerprint."""
-    from ..textures.ktx2_metadata import read_metadata
-
+    for target in targets:
+        recover(target.parent)
     try:
-        return all(read_metadata(target).get(KEY) == number for target in targets)
+        return bool(targets) and all(kept(target) == number for target in targets)
     except (OSError, ValueError):
         return False
+
+
+def kept(path: Path) -> str:
+    """Returns the fingerprint that a file keeps; empty where it keeps none.
+
+    Raises:
+        ValueError: The file is of no kind that can, or damaged.
+        OSError: It cannot be read.
+    """
+    ending = path.suffix.lower()
+    if ending == ".ktx2":
+        from ..textures.ktx2_metadata import read_metadata
+
+        return read_metadata(path).get(KEY, "")
+    if ending == ".png":
+        from .files import png
+
+        with path.open("rb") as file:
+            return png.texts(file).get(KEY, "")
+    if ending == ".exr":
+        with path.open("rb") as file:
+            return _exr_text(file.read(_MOST_HEADER), KEY)
+    from .openimageio import text_attribute
+
+    found = IN_DESCRIPTION.search(text_attribute(path, "ImageDescription"))
+    return found[1] if found else ""
+
+
+def _begun(settings: Mapping[str, Any]) -> Any:
+    return hashlib.sha256(json.dumps([VERSION, settings], sort_keys=True).encode())
+
+
+def _exr_text(header: bytes, wanted: str) -> str:
+    """Returns a text of the header of an OpenEXR file; empty where it has none of that name."""
+    if len(header) < 8 or struct.unpack_from("<I", header)[0] != _EXR_MAGIC:
+        raise ValueError("no OpenEXR file")
+    at = 8
+    try:
+        while header[at]:
+            name, kind = header[at:].split(b"\0", 2)[:2]
+            at += len(name) + len(kind) + 2
+            (size,) = struct.unpack_from("<I", header, at)
+            at += 4
+            if name == wanted.encode():
+                return header[at : at + size].decode("utf-8", "replace")
+            at += size
+    except (IndexError, ValueError, struct.error) as error:
+        raise ValueError("damaged OpenEXR file") from error
+    return ""
 
 
 def _referred(path: Path) -> list[Path]:

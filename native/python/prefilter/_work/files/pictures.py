@@ -2,6 +2,7 @@
 
 """Pictures of one level, as PNG and OpenEXR files."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,12 @@ ENDINGS = (".png", ".exr")
 
 
 def stage(
-    target: Path, pixels: NDArray[Any], *, is_data: bool, is_half: bool
+    target: Path,
+    pixels: NDArray[Any],
+    *,
+    is_data: bool,
+    is_half: bool,
+    metadata: Mapping[str, str] | None = None,
 ) -> staging.StagedFile:
     """Writes a picture beside its target.
 
@@ -27,12 +33,13 @@ def stage(
             as it is: PNG files should have straight alpha, and OpenEXR files associated alpha.
         is_data: Whether the values are no colors; OpenEXR files say so.
         is_half: Whether OpenEXR gets 16-bit floats instead of 32-bit ones.
+        metadata: What the file is to keep, by keys.
 
     Raises:
         OSError: The file cannot be written.
     """
     if target.suffix.lower() == ".png":
-        return staging.stage_data(target, png.encoded(pixels, is_srgb=not is_data))
+        return staging.stage_data(target, png.encoded(pixels, is_srgb=not is_data, texts=metadata))
     flipped = np.ascontiguousarray(pixels[::-1], np.float32)
     return staging.stage_with(
         target,
@@ -41,5 +48,6 @@ def stage(
             flipped,
             "raw" if is_data else "scene_linear",
             pixel_type="half" if is_half else "float",
+            attributes=metadata,
         ),
     )

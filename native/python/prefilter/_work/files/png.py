@@ -2,10 +2,11 @@
 
 """PNG files in memory."""
 
+import os
 import struct
 import zlib
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Iterator, Mapping
+from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,15 +16,19 @@ _COLOR_TYPES = {1: 0, 3: 2, 4: 6}
 _PERCEPTUAL = b"\0"
 _COMPRESSION = 3
 _ROWS_AT_ONCE = 64
+_MOST_TEXT = 1 << 16
 
 
-def encoded(pixels: NDArray[Any], *, is_srgb: bool = False) -> bytes:
+def encoded(
+    pixels: NDArray[Any], *, is_srgb: bool = False, texts: Mapping[str, str] | None = None
+) -> bytes:
     """Returns a PNG file.
 
     Args:
         pixels: (h, w, 1, 3 or 4) array of uint8 or uint16, row 0 at the bottom: gray, colors, or
             colors and straight alpha.
         is_srgb: Whether to say that it is sRGB-encoded, as most readers take for granted.
+        texts: What the file is to keep, by keys: Latin letters both.
     """
     height, width, channels = pixels.shape
     size = pixels.dtype.itemsize
@@ -36,10 +41,39 @@ def encoded(pixels: NDArray[Any], *, is_srgb: bool = False) -> bytes:
             _SIGNATURE,
             _chunk(b"IHDR", header),
             *([_chunk(b"sRGB", _PERCEPTUAL)] if is_srgb else []),
+            *(_chunk(b"tEXt", _text(key, value)) for key, value in (texts or {}).items()),
             _chunk(b"IDAT", b"".join(data)),
             _chunk(b"IEND", b""),
         ]
     )
+
+
+def texts(file: BinaryIO) -> dict[str, str]:
+    """Returns what a PNG file keeps by keys before its pixels, and nothing else of it.
+
+    Raises:
+        ValueError: The file is no PNG file, or damaged.
+    """
+    found: dict[str, str] = {}
+    if file.read(len(_SIGNATURE)) != _SIGNATURE:
+        raise ValueError("no PNG file")
+    while len(head := file.read(8)) == 8:
+        size, kind = struct.unpack(">I4s", head)
+        if kind == b"IDAT":
+            return found
+        if kind != b"tEXt":
+            file.seek(size + 4, os.SEEK_CUR)
+            continue
+        data = file.read(min(size, _MOST_TEXT))
+        if size > _MOST_TEXT or len(file.read(4)) < 4:
+            break
+        key, _, value = data.partition(b"\0")
+        found[key.decode("latin-1")] = value.decode("latin-1")
+    raise ValueError("damaged PNG file")
+
+
+def _text(key: str, value: str) -> bytes:
+    return key.encode("latin-1") + b"\0" + value.encode("latin-1")
 
 
 def _filtered_rows(pixels: NDArray[Any]) -> Iterator[NDArray[np.uint8]]:

@@ -10,7 +10,7 @@ A file always holds every level down to 1 x 1, in tiles of 64 x 64. OpenEXR file
 the library, TIFF files by OpenImageIO, and those for engines by `engines`.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
@@ -49,6 +49,7 @@ def stage(
     check: openimageio.Check,
     *,
     half: bool = True,
+    metadata: Mapping[str, str] | None = None,
     threads: int = 0,
 ) -> StagedFile:
     """Writes a mip-mapped file beside its target.
@@ -61,6 +62,7 @@ def stage(
         wrap: Wrap modes in u and v.
         check: Called before each level, at least.
         half: Whether OpenEXR gets 16-bit floats instead of 32-bit ones.
+        metadata: What the file is to keep, by keys.
         threads: How many threads to use for OpenEXR; 0 for all.
 
     Raises:
@@ -68,7 +70,8 @@ def stage(
     """
     wrap_modes = ",".join(_WRAP_MODES[mode] for mode in wrap)
     if not is_stored(target):
-        return _stage_exr(target, picture, linear_levels, wrap_modes, check, half, threads)
+        attributes = {"wrapmodes": wrap_modes, **(metadata or {})}
+        return _stage_exr(target, picture, linear_levels, attributes, check, half, threads)
     keep_bytes = not picture.is_float
     levels = stored_levels if keep_bytes else linear_levels
     if keep_bytes and not picture.alpha_is_straight:
@@ -83,6 +86,8 @@ def stage(
         wrap_modes=wrap_modes,
         has_alpha=picture.alpha_is_coverage,
         check=check,
+        # TIFF files have no keys of their own that all readers keep.
+        description=" ".join(f"{key}={value}" for key, value in (metadata or {}).items()),
     )
     return stage_with(target, write)
 
@@ -91,7 +96,7 @@ def _stage_exr(
     target: Path,
     picture: Picture,
     linear_levels: Sequence[FloatArray],
-    wrap_modes: str,
+    more: Mapping[str, str],
     check: openimageio.Check,
     half: bool,
     threads: int,
@@ -104,7 +109,7 @@ def _stage_exr(
     attributes = {
         "Software": "Prefilter",
         "textureformat": "Plain Texture",
-        "wrapmodes": wrap_modes,
+        **more,
     }
     if picture.is_data:
         attributes["oiio:ColorSpace"] = _color_space(picture, keep_bytes=False)

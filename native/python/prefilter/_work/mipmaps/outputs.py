@@ -3,13 +3,14 @@
 """What becomes of the levels of an image: files of them, and a line that says so."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
 from ..._border.staging import StagedFile
 from ..._options.mipmaps import CONTENTS, FILTERS, Settings
 from ..files import engines, textures
 from ..picture import FloatArray, Picture, encoded, scene_linear
+from ..up_to_date import fingerprint_of
 from ..wording import Sentence, counted, joined, together
 from . import lookups
 from .contents import Roughness
@@ -39,6 +40,49 @@ class Outputs:
         return [one for one in (self.target, self.roughness_target) if one is not None]
 
 
+_DECIDES_NOTHING = (
+    "filepath",
+    "roughness_filepath",
+    "roughness",
+    "threads",
+    "use_images",
+    "levels",
+)
+"""Settings that say where levels go, or of which the files do not depend."""
+
+
+def made_of(source: Source, outputs: Outputs) -> str:
+    """Returns a number, as text, of all that the files are made of; see `up_to_date`."""
+    chosen = asdict(source.settings)
+    for name in _DECIDES_NOTHING:
+        chosen.pop(name, None)
+    arrays, pictures = [source.picture.texels], [_described(source.picture)]
+    for surface in source.surfaces:
+        arrays += [surface.positions, surface.triangles, surface.uvs, surface.areas]
+    rough = outputs.roughness
+    if rough is not None:
+        arrays.append(rough.picture.texels)
+        pictures += [_described(rough.picture), {"of": rough.channels, "as": rough.texture_format}]
+    kept = {
+        "settings": chosen,
+        "content": source.content,
+        "wrap": source.wrap,
+        "objects": list(source.objects),
+        "pictures": pictures,
+        "targets": [target is not None for target in (outputs.target, outputs.roughness_target)],
+    }
+    return fingerprint_of(arrays, kept)
+
+
+def _described(picture: Picture) -> dict[str, str]:
+    """Returns what is known of a picture beside its texels, but for names."""
+    return {
+        one.name: str(getattr(picture, one.name))
+        for one in fields(picture)
+        if one.name not in {"name", "full_name", "texels", "ocio_config"}
+    }
+
+
 def staged(
     picture: Picture,
     made: list[FloatArray],
@@ -60,7 +104,7 @@ def staged(
         settings: Of the bake.
         wrap: What lookups read outside of the image along u and v.
         check: Called now and then.
-        metadata: What KTX 2 files keep, by keys.
+        metadata: What files keep by keys, but for DDS and PNG files.
     """
     stored: list[FloatArray] = []
     if settings.use_images or (target is not None and textures.is_stored(target)):
@@ -83,7 +127,11 @@ def staged(
             threads=threads,
         )
     elif target is not None:
-        files.append(textures.stage(target, picture, made, stored, wrap, check, threads=threads))
+        files.append(
+            textures.stage(
+                target, picture, made, stored, wrap, check, metadata=metadata, threads=threads
+            )
+        )
     return files, stored[: settings.levels - 1 if settings.levels else None]
 
 

@@ -2,7 +2,7 @@
 
 """A new image of an old one: what was read is computed anywhere, then handed on or written."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -56,6 +56,8 @@ class NewPicture:
         self._settings = settings
         self._target = target
         self._keep = keep
+        self.metadata: Mapping[str, str] | None = None
+        """What the file is to keep, by keys."""
         self._stored: FloatArray | None = None
         self._staged: staging.StagedFile | None = None
 
@@ -125,7 +127,7 @@ class NewPicture:
             self._stored = encoded(picture, result, check)
         else:
             check()
-            self._staged = _stage(self._target, picture, result)
+            self._staged = _stage(self._target, picture, result, self.metadata)
         go_on(progress, 1.0)
 
     def _finish_bytes(self, made: Bytes) -> None:
@@ -134,7 +136,11 @@ class NewPicture:
             self._stored = replace(picture, texels=made).stored
         else:
             self._staged = pictures.stage(
-                self._target, made, is_data=picture.is_data, is_half=False
+                self._target,
+                made,
+                is_data=picture.is_data,
+                is_half=False,
+                metadata=self.metadata,
             )
 
     def write(self) -> Outcome:
@@ -157,15 +163,18 @@ class NewPicture:
             self._staged.discard()
 
 
-def _stage(target: Path, picture: Picture, linear: FloatArray) -> staging.StagedFile:
+def _stage(
+    target: Path, picture: Picture, linear: FloatArray, metadata: Mapping[str, str] | None
+) -> staging.StagedFile:
     """Writes a file with the alpha, the encoding and the depth that its kind should have."""
+    stage = partial(pictures.stage, target, is_data=picture.is_data, metadata=metadata)
     covers, straight = picture.alpha_is_coverage, picture.alpha_is_straight
     if target.suffix.lower() == ".exr":
         pixels = alpha.associated(linear) if straight else linear
-        return pictures.stage(target, pixels, is_data=picture.is_data, is_half=not picture.is_float)
+        return stage(pixels, is_half=not picture.is_float)
     pixels = alpha.unassociated(linear) if covers and not straight else linear
     if not picture.is_data:
         pixels = prefilter.to_srgb(pixels)
     most = _SHORT if picture.is_float else _BYTE
     whole = np.rint(pixels.clip(0.0, 1.0) * most).astype(np.uint16 if most == _SHORT else np.uint8)
-    return pictures.stage(target, whole, is_data=picture.is_data, is_half=False)
+    return stage(whole, is_half=False)

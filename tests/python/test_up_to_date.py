@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""What is up to date is left alone: by contents and settings, which files keep."""
+
+import numpy as np
+import prefilter
+import pytest
+from command_files import fails, noise, run, write_picture, write_quad
+from prefilter._work.files import png
+from prefilter._work.up_to_date import KEY, fingerprint_of, is_up_to_date, kept
+
+oiio = pytest.importorskip("OpenImageIO", reason="scripts/decoders.txt is not installed")
+
+
+@pytest.fixture
+def photo(tmp_path):
+    return write_picture(tmp_path / "photo.png", noise(12, 16, 4))
+
+
+def is_made(capsys, out, *arguments):
+    """Runs a command; tells whether it has written its file."""
+    before = out.stat().st_ino if out.exists() else None
+    capsys.readouterr()
+    assert run(*arguments, "--skip-up-to-date") == 0
+    made = out.stat().st_ino != before
+    assert made != ("Up to date" in capsys.readouterr().out)
+    return made
+
+
+@pytest.mark.parametrize("kind", ["exr", "tif", "tx"])
+def test_levels(photo, tmp_path, capsys, kind):
+    quad, out = write_quad(tmp_path / "quad.obj"), tmp_path / f"out.{kind}"
+    command = ("mipmaps", photo, quad, "-o", out)
+    assert is_made(capsys, out, *command)
+    assert not is_made(capsys, out, *command)
+    assert not is_made(capsys, out, *command, "--threads", "1")
+    assert is_made(capsys, out, *command, "--wrap", "clamp")
+    write_picture(photo, noise(12, 16, 4, seed=2))
+    assert is_made(capsys, out, *command, "--wrap", "clamp")
+    level = oiio.ImageBuf(str(out), 0, 1).get_pixels("float")
+    assert run("mipmaps", photo, quad, "-o", out, "--wrap", "clamp") == 0
+    np.testing.assert_array_equal(oiio.ImageBuf(str(out), 0, 1).get_pixels("float"), level)
+    assert kept(out) == ""
+    assert is_made(capsys, out, *command, "--wrap", "clamp")
+
+
+@pytest.mark.parametrize("kind", ["png", "exr"])
+@pytest.mark.parametrize(
+    ("command", "flags", "others"),
+    [
+        ("resize", ("--percent", "50"), ("--percent", "25")),
+        ("resize", ("--height", "5"), ("--height", "5", "--data")),
+        ("resample", ("--rotate", "90"), ("--rotate", "91")),
+        ("resample", ("--scale", "2"), ("--scale", "3")),
+        ("resample", ("--rectify", *"00101101"), ("--rectify", *"00101102")),
+    ],
+)
+def test_pictures(photo, tmp_path, capsys, kind, command, flags, others):
+    out = tmp_path / f"out.{kind}"
+    assert is_made(capsys, out, command, photo, out, *flags)
+    pixels = oiio.ImageBuf(str(out)).get_pixels("float")
+    assert not is_made(capsys, out, command, photo, out, *flags)
+    assert is_made(capsys, out, command, photo, out, *others)
+    assert is_made(capsys, out, command, photo, out, *flags)
+    assert run(command, photo, tmp_path / f"plain.{kind}", *flags) == 0
+    plain = oiio.ImageBuf(str(tmp_path / f"plain.{kind}")).get_pixels("float")
+    np.testing.assert_array_equal(pixels, plain)
+
+
+def test_the_table_of_a_filter_counts(photo, tmp_path, capsys):
+    table, out = tmp_path / "table.json", tmp_path / "out.png"
+    command = ("resample", photo, out, "--scale", "0.5", "--method", "table", "--table", table)
+    for name in ("tent", "lanczos2"):
+        small = ("--texels", "4", "--grid", "1", "--slices", "1")
+        assert run("sampling-table", table, "--filter", name, *small) == 0
+        assert is_made(capsys, out, *command)
+        assert not is_made(capsys, out, *command)
+
+
+def test_of_many_files_those_that_have_changed_are_made(tmp_path, capsys):
+    pictures = [write_picture(tmp_path / f"{i}.png", noise(8, 8, seed=i)) for i in range(3)]
+    (tmp_path / "out").mkdir()
+    command = ("resize", *pictures, tmp_path / "out" / "{name}.png", "--percent", "50")
+    assert run(*command, "--skip-up-to-date", "--task", "1/2") == 0
+    capsys.readouterr()
+    assert run(*command, "--skip-up-to-date") == 0
+    told = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in told] == ["Up", "Resized", "Up"]
+
+
+def test_targets_that_cannot_tell(photo, tmp_path, capsys):
+    target = tmp_path / "out.dds"
+    last = fails(capsys, 2, "mipmaps", photo, "-o", target, "--skip-up-to-date")
+    assert "--skip-up-to-date" in last
+
+
+def test_damaged_files_are_never_up_to_date(tmp_path):
+    number = "0" * 64
+    prefilter.write_exr(
+        tmp_path / "a.exr", [np.ones((1, 1, 3), np.float32)], attributes={"b": "c", KEY: number}
+    )
+    (tmp_path / "a.png").write_bytes(
+        png.encoded(np.zeros((1, 1, 3), np.uint8), is_srgb=True, texts={"b": "c", KEY: number})
+    )
+    for path in (tmp_path / "a.exr", tmp_path / "a.png"):
+        assert is_up_to_date([path], number)
+        assert not is_up_to_date([path], "1" * 64)
+        data = path.read_bytes()
+        end = data.index(number.encode()) + len(number)
+        for size in range(end):
+            path.write_bytes(data[:size])
+            assert not is_up_to_date([path], number)
+        path.write_bytes(data[:8] + b"\xff" * 30)
+        assert not is_up_to_date([path], number)
+    assert not is_up_to_date([tmp_path / "none.png"], number)
+    assert not is_up_to_date([tmp_path], number)
+    assert not is_up_to_date([], number)
+
+
+def test_a_number_of_arrays_is_of_all_that_is_in_them():
+    ones = np.ones((2, 6), np.float32)
+    others = (
+        [ones.reshape(3, 4)],
+        [ones.view(np.int32)],
+        [ones[:1], ones[1:]],
+        [np.ones((2, 6), np.float64)],
+        [ones[:0], ones],
+        [],
+    )
+    numbers = {fingerprint_of(arrays, {"a": 1}) for arrays in ([ones], *others)}
+    numbers.add(fingerprint_of([ones], {"a": 2}))
+    assert len(numbers) == 8
+    assert fingerprint_of([np.repeat(ones, 2, 1)[:, ::2]], {"a": 1}) in numbers
