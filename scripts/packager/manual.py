@@ -20,7 +20,7 @@ PAGES = (
     INDEX,
     *("install", "bake", "data", "view", "texture_cache", "engines", "resize", "resample"),
     *("sampling", "shaders", "voxels", "scans", "shapes", "svg", "queue", "preferences"),
-    *("command_line", "conventions"),
+    *("command_line", "farm", "conventions"),
 )
 """What users of the add-on need. Links to other pages become plain text."""
 LARGEST_PICTURE = 128 * 1024

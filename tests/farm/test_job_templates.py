@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""The job templates that the zip has: for Open Job Description, and for Flamenco 3.
+
+PREFILTER_OPENJD is the program `openjd`, PREFILTER_BLENDER_COMMAND one that starts a Blender with
+the extension; scripts/test sets both. Without them, what needs them is skipped.
+"""
+
+import json
+import os
+import shutil
+import struct
+import subprocess
+import zlib
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+np = pytest.importorskip("numpy")
+
+HERE = Path(__file__).parent
+FARM = HERE.parents[1] / "addon" / "farm"
+OPENJD = os.environ.get("PREFILTER_OPENJD", "")
+BLENDER = os.environ.get("PREFILTER_BLENDER_COMMAND", "")
+TEMPLATES = sorted((FARM / "openjd").glob("*.yaml"))
+JOB_TYPES = sorted((FARM / "flamenco").glob("*.js"))
+
+needs_openjd = pytest.mark.skipif(not OPENJD, reason="openjd-cli is not installed")
+needs_blender = pytest.mark.skipif(not BLENDER, reason="no Blender with the extension is named")
+
+
+def run(*command: object) -> str:
+    """Runs a program that is to succeed, and returns what it prints."""
+    words = [str(word) for word in command]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stdout[-4000:] + done.stderr[-4000:]
+    return done.stdout
+
+
+def run_template(name: str, **parameters: object) -> str:
+    """Runs all tasks of a template, and returns the log; reports of progress are in it."""
+    template = FARM / "openjd" / f"{name}.yaml"
+    values = {"Blender": BLENDER, **parameters}
+    given = [word for key, value in values.items() for word in ("-p", f"{key}={value}")]
+    return run(OPENJD, "run", template, *given)
+
+
+def compiled(name: str, **settings: object) -> dict[str, Any]:
+    """Returns the tasks of a job type of Flamenco."""
+    node = shutil.which("node")
+    if node is None:
+        pytest.skip("node is not installed")
+    done = subprocess.run(
+        [node, str(HERE / "compile_job.js"), str(FARM / "flamenco" / f"{name}.js")],
+        input=json.dumps(settings),
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    found: dict[str, Any] = json.loads(done.stdout)
+    return found
+
+
+def commands(job: dict[str, Any]) -> list[list[str]]:
+    """Returns what each task runs."""
+    found = []
+    for task in job["tasks"]:
+        assert task["type"] == "blender"
+        (command,) = task["commands"]
+        assert command["name"] == "exec"
+        found.append([command["parameters"]["exe"], *command["parameters"]["args"]])
+    return found
+
+
+def write_png(path: Path, seed: int) -> None:
+    pixels = np.random.default_rng(seed).integers(0, 256, (16, 16, 3), np.uint8)
+    rows = b"".join(b"\0" + row.tobytes() for row in pixels)
+    parts = (
+        (b"IHDR", struct.pack(">IIBBBBB", 16, 16, 8, 2, 0, 0, 0)),
+        (b"IDAT", zlib.compress(rows)),
+        (b"IEND", b""),
+    )
+    data = b"".join(
+        struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+        for kind, body in parts
+    )
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + data)
+
+
+def write_model(folder: Path) -> Path:
+    """Writes two squares, each with a picture."""
+    lines = ["mtllib model.mtl", "vt 0 0", "vt 1 0", "vt 1 1", "vt 0 1"]
+    materials = []
+    for number in range(2):
+        write_png(folder / f"paint{number}.png", number)
+        corners = [(x + 2 * number, y, x * y) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+        lines += [f"v {x} {y} {z}" for x, y, z in corners]
+        places = " ".join(f"{4 * number + corner}/{corner}" for corner in range(1, 5))
+        lines += [f"usemtl m{number}", f"f {places}"]
+        materials += [f"newmtl m{number}", f"map_Kd paint{number}.png"]
+    (folder / "model.obj").write_text("\n".join(lines) + "\n")
+    (folder / "model.mtl").write_text("\n".join(materials) + "\n")
+    return folder / "model.obj"
+
+
+def write_ball(path: Path, count: int) -> Path:
+    """Writes points of a ball, with normals."""
+    normals = np.random.default_rng(1).normal(size=(count, 3)).astype("<f4")
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    names = "".join(f"property float {name}\n" for name in ("x", "y", "z", "nx", "ny", "nz"))
+    header = f"ply\nformat binary_little_endian 1.0\nelement vertex {count}\n{names}end_header\n"
+    path.write_bytes(header.encode() + np.hstack([normals, normals]).tobytes())
+    return path
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+@needs_openjd
+@pytest.mark.parametrize("path", TEMPLATES, ids=lambda path: path.stem)
+def test_templates_are_valid(path):
+    assert "passes validation" in run(OPENJD, "check", path)
+
+
+@needs_openjd
+@needs_blender
+def test_a_bake_of_two_images(tmp_path):
+    model = write_model(tmp_path)
+    prefilter = (BLENDER, "--background", "--command", "prefilter")
+    flags = ("--all", "--skip-up-to-date", "--output")
+    run(*prefilter, "bake", model, *flags, tmp_path / "whole")
+    whole = contents(tmp_path / "whole")
+    assert whole.keys() == {"paint0.ktx2", "paint1.ktx2"}
+    log = run_template("bake", Model=model, Textures=tmp_path / "tasks", Tasks=2)
+    assert contents(tmp_path / "tasks") == whole
+    assert log.count("openjd_progress: 100.0") == 2
+    assert log.count("openjd_status: Baked 'paint") == 2
+
+
+@needs_openjd
+@needs_blender
+def test_a_surface_of_a_million_points(tmp_path):
+    points = write_ball(tmp_path / "ball.ply", 1_000_000)
+    surface = tmp_path / "surface.ply"
+    log = run_template("reconstruct", Points=points, Surface=surface, Depth=6)
+    assert "openjd_progress: 100.0" in log
+    assert "openjd_status: " in log
+    assert surface.read_bytes().startswith(b"ply\n")
+
+
+def test_flamenco_bakes_an_image_a_task():
+    job = compiled("prefilter-bake", blendfile="a b.blend", textures="/out", tasks=3)
+    start = ["{blender}", "--background", "--command", "prefilter", "bake", "a b.blend", "--all"]
+    more = ["--output", "/out", "--format", "ktx2", "--skip-up-to-date", "--task"]
+    assert commands(job) == [[*start, *more, f"{number}/3"] for number in (1, 2, 3)]
+    assert not any(task["dependencies"] for task in job["tasks"])
+
+
+def test_flamenco_turns_the_cache_on_at_the_end():
+    job = compiled("prefilter-texture-cache", blendfile="a.blend", tasks=2)
+    start = ["{blender}", "--background", "--command", "prefilter", "bake-cache", "a.blend"]
+    start.append("--skip-up-to-date")
+    assert commands(job) == [
+        [*start, "--task", "1/2"],
+        [*start, "--task", "2/2"],
+        [*start, "--save"],
+    ]
+    assert [task["dependencies"] for task in job["tasks"]] == [[], [], ["bake-1", "bake-2"]]
+
+
+def test_flamenco_reconstructs_in_one_task():
+    job = compiled("prefilter-reconstruct", points="scan.laz", surface="scan.ply", depth=11)
+    start = ["{blender}", "--background", "--command", "prefilter", "reconstruct"]
+    more = ["scan.laz", "scan.ply", "--depth", "11", "--memory-limit", "0"]
+    assert commands(job) == [[*start, *more]]
+
+
+@pytest.mark.parametrize(
+    ("name", "settings"),
+    [
+        ("prefilter-bake", {"blendfile": "a.blend"}),
+        ("prefilter-bake", {"blendfile": "a.blend", "textures": "o", "tasks": "3"}),
+        ("prefilter-reconstruct", {"points": "a.ply", "surface": "b.ply", "frames": "1"}),
+    ],
+)
+def test_flamenco_refuses_what_a_job_type_does_not_know(name, settings):
+    with pytest.raises(AssertionError, match="setting"):
+        compiled(name, **settings)
+
+
+def test_each_job_has_both_kinds():
+    names = {path.stem for path in TEMPLATES}
+    types = {path.stem.removeprefix("prefilter-").replace("-", "_") for path in JOB_TYPES}
+    assert names == types == {"bake", "texture_cache", "reconstruct"}
