@@ -1,168 +1,155 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Odd drawings, what is too large, threads and arguments."""
+"""How much of a machine a small drawing may take: what it holds is counted, and refused."""
+
+import gc
+import gzip
+import tracemalloc
 
 import numpy as np
 import prefilter
 import pytest
-from drawings import box, by_hand, same, svg, whole
+from drawings import read, svg
+
+
+def refused(body, words):
+    for source in (svg(body), gzip.compress(svg(body).encode())):
+        with pytest.raises(ValueError, match=f"source.*: {words}"):
+            prefilter.rasterize_svg(source, 16, 16)
+
+
+def test_attributes_are_counted(monkeypatch):
+    from prefilter.shapes._svg import document
+
+    monkeypatch.setattr(document, "MOST_ATTRIBUTES", 100)
+    assert read("<g a='1' b='2'/>" * 40).shapes == []
+    refused("<g a='1' b='2'/>" * 60, "more than 100 attributes")
 
 
 @pytest.mark.parametrize(
     "body",
     [
-        '<mask id="m"><g mask="url(#m)"><rect width="9" height="9"/></g></mask><g mask="url(#m)"/>',
-        '<clipPath id="c" clip-path="url(#c)"/><rect width="9" height="9" clip-path="url(#c)"/>',
-        '<pattern id="p" width="1" height="1"><rect width="9" height="9" fill="url(#p)"/></pattern>'
-        '<rect width="9" height="9" fill="url(#p)"/>',
-        '<marker id="m"><path d="M0 0H9" marker-end="url(#m)"/></marker>'
-        '<path d="M0 0H9" marker-end="url(#m)"/>',
-        '<clipPath id="c" transform="scale(0)"><rect width="9" height="9"/></clipPath>'
-        '<rect width="9" height="9" clip-path="url(#c)"/>',
-        '<clipPath id="c"><rect width="1e300" height="1e300"/></clipPath>'
-        '<rect width="9" height="9" clip-path="url(#c)"/>',
-        '<mask id="m" width="1e300"><rect/></mask><rect width="9" height="9" mask="url(#m)"/>',
-        '<pattern id="p" width="1e-300" height="1e300"><rect width="9" height="9"/></pattern>'
-        '<rect width="9" height="9" fill="url(#p)"/>',
-        '<pattern id="p" width="1e-9" height="1e-9" patternUnits="userSpaceOnUse">'
-        '<rect width="9" height="9"/></pattern><rect width="9" height="9" fill="url(#p)"/>',
-        '<image width="1e300" height="1" href="data:image/svg+xml,&lt;svg/&gt;"/>',
-        '<image width="9" height="9" href="data:image/svg+xml,&lt;svg"/>',
-        '<image width="9" height="9" href="data:image/png;base64,iVBORw0KGgoAAAAA"/>',
-        '<image width="9" height="9" href="data:image/jpeg;base64,/9j/4AAQ"/>',
-        '<image width="9" height="9" href="data:"/><image width="9" height="9" href="%"/>',
-        '<marker id="m" markerWidth="1e300" viewBox="0 0 1e-9 1"><rect width="1" height="1"/>'
-        '</marker><path d="M0 0H9V9ZZZM3 3" marker-mid="url(#m)" marker-end="url(#m)"/>',
-        '<g style="mix-blend-mode:hue" opacity="0.5"/><g opacity="nan" style="isolation:x"/>',
-        '<use href="#none" opacity="0.5"/><g mask="none" clip-path="url()"/>',
+        '<rect style="{}"/>',
+        '<rect transform="{}"/>',
+        '<text x="{}">a</text>',
+        '<rect fill="{}"/>',
+        '<polygon points="{}"/>',
     ],
-    ids=lambda body: body[:40],
 )
-def test_odd_drawings_are_drawn(body):
-    for light in ("srgb", "linear"):
-        made, _ = prefilter.rasterize_svg(svg(body), 16, 16, light=light)
-        assert np.isfinite(made).all()
+def test_long_attributes_are_refused(monkeypatch, body):
+    from prefilter.shapes._svg import document
+
+    monkeypatch.setattr(document, "MOST_VALUE", 1000)
+    monkeypatch.setitem(document._MOST_VALUES, "points", 1000)
+    read(body.format("1 " * 400))
+    refused(body.format("1 " * 600), r"the attribute '\w+' has 1200 characters; at most 1000 are")
 
 
-def test_layers_have_limits(monkeypatch):
-    inner = box(0, 0, 50, 50) + box(20, 20, 70, 70)
-    deep = '<g opacity="0.9">' * 60 + inner + "</g>" * 60
-    # Each has one group in it, and becomes a layer.
-    with pytest.raises(ValueError, match="source: layers are nested more than 48 deep"):
-        prefilter.rasterize_svg(svg(deep), 8, 8)
-    from prefilter.shapes._svg import compositing
+def test_long_paths_and_what_other_programs_keep_are_read(monkeypatch):
+    from prefilter.shapes._svg import document
 
-    monkeypatch.setattr(compositing, "MOST_LAYER_PIXELS", 1000)
-    wide = f'<g opacity="0.5">{inner}</g>' * 20
-    with pytest.raises(ValueError, match="source: more than 50000 layers, or of more than 1000"):
-        prefilter.rasterize_svg(svg(wide), 16, 16)
-    monkeypatch.undo()
-    monkeypatch.setattr(compositing, "MOST_LAYERS", 10)
-    with pytest.raises(ValueError, match="source: more than 10 layers"):
-        prefilter.rasterize_svg(svg(wide), 16, 16)
+    monkeypatch.setattr(document, "MOST_VALUE", 1000)
+    path = "M0 0" + "h1v1" * 400
+    body = f'<path d="{path}" xmlns:other="http://example.org" other:original-d="{path}"/>'
+    assert len(read(body).shapes) == 1
 
 
-def test_boxes_of_groups_in_groups_are_counted(monkeypatch):
-    from prefilter.shapes._svg import limits
+def test_text_is_counted(monkeypatch):
+    from prefilter.shapes._svg import document
 
-    clip = f'<clipPath id="c" clipPathUnits="objectBoundingBox">{box(0, 0, 1, 1)}</clipPath>'
-    body = clip + '<g clip-path="url(#c)">' * 20 + box(0, 0, 50, 50) * 20 + "</g>" * 20
-    same(whole(body), by_hand((0, 0, 50, 50, (0, 0, 0))))
-    monkeypatch.setattr(limits, "MOST_MEASURED", 500)
-    with pytest.raises(ValueError, match="source: boxes around groups of more than 500 elements"):
-        whole(body)
+    monkeypatch.setattr(document, "MOST_TEXT", 1000)
+    for tag in ("text", "style"):
+        read(f"<{tag}>{' ' * 500}</{tag}>")
+        refused(f"<{tag}>{' ' * 600}</{tag}>" * 2, "more than 1000 characters of text and style")
+
+
+def test_style_sheets_are_counted_but_for_what_they_quote(monkeypatch):
+    from prefilter.shapes._svg import style_rules
+
+    monkeypatch.setattr(style_rules, "MOST_WRITTEN", 1000)
+    font = f"@font-face {{ src: url(data:font/ttf;base64,{'A' * 4000}) }}"
+    read(f"<style>{font}</style>" * 2)
+    refused(f"<style>{'a{fill:red}' * 60}</style>" * 2, "style sheets of more than 0 MiB")
 
 
 @pytest.mark.parametrize(
-    "group",
+    "selector",
     [
-        '<g mask="url(#m{})"><rect/></g>',
-        '<rect fill="url(#m{})"/>',
-        '<path marker-mid="url(#m{})"/>',
+        "* " * 500,
+        "g > " * 500 + "rect",
+        ":not(" * 90 + "a" + ")" * 90,
+        ":is(" * 40 + "a" + ")" * 40,
     ],
 )
-def test_what_masks_and_others_repeat_is_counted_before_it_is_drawn(monkeypatch, group):
-    from prefilter.shapes._svg.drawing import Walk
-
-    def visited(*_):
-        raise AssertionError
-
-    monkeypatch.setattr(Walk, "_visit", visited)
-    tag = "mask" if "mask=" in group else "pattern" if "fill" in group else "marker"
-    bombs = "".join(f'<{tag} id="m{k}">{group.format(k - 1) * 3}</{tag}>' for k in range(1, 20))
-    with pytest.raises(ValueError, match="masks, patterns and markers repeat more than 250000"):
-        prefilter.rasterize_svg(svg(bombs + group.format(19)), 9, 9)
+def test_selectors_of_many_parts_are_ignored(selector):
+    drawing = read(f"<style>{selector}{{fill:red}}</style><rect width='9' height='9'/>")
+    assert len(drawing.shapes) == 1
+    assert [warning.effect for warning in drawing.warnings] == ["ignored"]
 
 
-def test_patterns_in_patterns_end():
-    patterns = "".join(
-        f'<pattern id="p{k}" width="1" height="1" patternUnits="userSpaceOnUse">'
-        f'<rect width="0.5" height="1" fill="{f"url(#p{k - 1})" if k else "red"}"/></pattern>'
-        for k in range(8)
-    )
-    made = whole(patterns + box(20, 20, 60, 60, 'fill="url(#p1)"'))
-    # Half of the columns, of which red is half.
-    np.testing.assert_allclose(made[25:55, 25:55, 3].mean(), 0.5, atol=0.01)
-    assert np.isfinite(whole(patterns + box(20, 20, 60, 60, 'fill="url(#p7)"'))).all()
+def test_selectors_in_a_list_have_parts_of_their_own():
+    style = "<style>" + ",".join(["svg g rect"] * 40) + "{fill:#f00}</style>"
+    drawing = read(style + "<g><rect width='9' height='9'/></g>")
+    assert drawing.warnings == ()
+    np.testing.assert_array_equal(drawing.shapes[0].color, (1, 0, 0, 1))
 
 
-def test_garbled_drawings_are_drawn_or_refused():
-    random = np.random.default_rng(6)
-    good = svg(
-        '<mask id="m"><rect width="60" height="60" fill="white"/></mask><filter id="f">'
-        '<feGaussianBlur stdDeviation="2"/><feOffset dx="3"/></filter><clipPath id="c">'
-        '<circle r="50"/></clipPath><pattern id="p" width="9" height="9" '
-        'patternUnits="userSpaceOnUse"><rect width="5" height="5"/></pattern>'
-        '<marker id="k" orient="auto"><path d="M0 0H3V3"/></marker>'
-        '<g opacity=".5" mask="url(#m)" filter="url(#f)"><path d="M5 5L50 9 20 70z" '
-        'fill="url(#p)" stroke="red" marker-mid="url(#k)"/></g><g clip-path="url(#c)" '
-        'style="mix-blend-mode:hue"><rect width="40" height="40" transform="rotate(9)"/></g>'
-    )
-    letters = np.frombuffer(b'<>"0123456789.eE-+ ()#%;:,zaMQ', np.uint8)
-    for _ in range(150):
-        data = np.frombuffer(good.encode(), np.uint8).copy()
-        places = random.integers(120, len(data), random.integers(1, 6))
-        data[places] = random.choice(letters, len(places))
-        try:
-            made, _ = prefilter.rasterize_svg(data.tobytes(), 12, 12)
-        except ValueError as error:
-            assert str(error).startswith("source")  # noqa: PT017
-        else:
-            assert np.isfinite(made).all()
+def test_what_selectors_look_at_is_counted(monkeypatch):
+    from prefilter.shapes._svg import styles
+
+    monkeypatch.setattr(styles, "MOST_ANCESTORS", 200_000)
+    # Each part is tried at each ancestor: 100 over 10 is the number of ways.
+    style = f"<style>{'a ' + '* ' * 10}{{fill:red}}</style>"
+    body = "<g>" * 100 + "<rect width='9' height='9'/>" + "</g>" * 100
+    refused(style + body, "selectors look at more than 200000 elements")
 
 
-LAYERED = (
-    f'<mask id="m">{box(0, 0, 60, 60, "fill=" + chr(34) + "#ccc" + chr(34))}</mask>'
-    f'<g mask="url(#m)" opacity="0.4">{box(5, 5, 50.5, 50)}<circle cx="40" cy="40" r="31"/></g>'
-    '<circle cx="60" cy="60" r="30" fill="red" style="mix-blend-mode:soft-light"/>'
-)
+def test_what_is_read_is_not_kept():
+    from prefilter.shapes._svg import styles, values
+
+    read("<rect style='fill:red'/>")
+    tracemalloc.start()
+    for k in range(4):
+        read(f"<rect style='fill:red;--a{k}:{'x' * 100_000}'/>")
+    gc.collect()
+    kept, _ = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert kept < 100_000
+    assert values.as_color("#f00") is values.as_color("#f00")
+    assert styles._parsed_declarations("fill:red") is styles._parsed_declarations("fill:red")
 
 
-def test_the_same_bits_by_any_number_of_threads():
-    one, many = (whole(LAYERED, 200, threads=threads) for threads in (1, 4))
-    np.testing.assert_array_equal(one, many)
+def filtered(steps):
+    return f'<filter id="f">{steps}</filter><rect filter="url(#f)" width="9" height="9"/>'
 
 
-def test_progress_and_canceling():
-    told = []
-    whole(LAYERED, progress=told.append)
-    assert told == sorted(told)
-    assert 0.0 <= told[0] <= told[-1] <= 1.0
-    for limit in (0.1, 0.5):
-        with pytest.raises(prefilter.Cancelled):
-            whole(LAYERED, progress=lambda share, limit=limit: share < limit)
+def named(count):
+    """A filter that merges so many results."""
+    offsets = "".join(f'<feOffset in="SourceGraphic" result="r{k}"/>' for k in range(count))
+    nodes = "".join(f'<feMergeNode in="r{k}"/>' for k in range(count))
+    return filtered(offsets + f"<feMerge>{nodes}</feMerge>")
 
 
-def test_bad_arguments():
-    with pytest.raises(ValueError, match="light: 'both' is not one of linear, srgb"):
-        whole("", light="both")
-    with pytest.raises(ValueError, match="filter: 'sharp' is not one of box"):
-        whole("", filter="sharp")
-    with pytest.raises(ValueError, match="dtype"):
-        whole("", dtype=np.uint16)
-    with pytest.raises(ValueError, match="threads: -1"):
-        whole("", threads=-1)
-    with pytest.raises(ValueError, match="width: 0"):
-        prefilter.rasterize_svg(svg(""), 0, 9)
-    with pytest.raises(ValueError, match="source: no SVG drawing"):
-        prefilter.rasterize_svg("<html/>", 9, 9)
+def test_results_that_filters_keep_are_counted():
+    prefilter.rasterize_svg(svg(named(60)), 16, 16)
+    refused(named(70), "a filter keeps the results of more than 64 steps")
+
+
+def test_results_that_nothing_reads_are_let_go():
+    steps = "".join(f'<feOffset in="SourceGraphic" result="r{k}"/>' for k in range(100))
+    made, _ = prefilter.rasterize_svg(svg(filtered(steps)), 100, 100)
+    plain, _ = prefilter.rasterize_svg(svg(filtered('<feOffset in="SourceGraphic"/>')), 100, 100)
+    np.testing.assert_array_equal(made, plain)
+
+
+def test_merging_takes_as_much_memory_for_any_number_of_inputs():
+    def most(count):
+        body = filtered("<feMerge>" + '<feMergeNode in="SourceGraphic"/>' * count + "</feMerge>")
+        tracemalloc.start()
+        prefilter.rasterize_svg(svg(body), 256, 256, light="linear")
+        _, peak = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
+        return peak
+
+    most(2)
+    assert most(40) < 1.2 * most(4)

@@ -18,10 +18,10 @@ from ..affine import Matrix, inverse, multiplied
 from ..rasterization import rasterize
 from ..shape import Shape
 from .blending import blended
+from .document import TooLargeError
 from .drawing import Drawing
 from .filter_layers import filtered_layer
 from .layering import Layering, Placed, bounds_of, filtered_region, is_plain, leaf_count
-from .limits import TooLargeError
 from .outlining import Outlining
 from .resampled import picture_pixels, tiled_pixels
 from .tree import Box, Clip, Group, Mask, Painted, Pattern, Picture, carried, common

@@ -20,7 +20,14 @@ _SAID = re.compile(r"([\w-]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
 
 MOST_DEPTH = 256
 MOST_ELEMENTS = 250_000
+MOST_ATTRIBUTES = 2_000_000
 MOST_UNPACKED = 1 << 26
+# Characters of an attribute, and of all text and style sheets together: what is made of them takes
+# many times the memory, but of a few attributes; those of other programs are not looked at.
+MOST_VALUE = 1 << 18
+MOST_TEXT = 1 << 25
+_MOST_VALUES = {"points": 1 << 24, **dict.fromkeys(("d", "href", XLINK_HREF), MOST_UNPACKED)}
+_TEXT_AT_ONCE = 1 << 20
 _UNPACKED_AT_ONCE = 1 << 20
 # What entities may add to a file: expat's own limit came with 2.4.
 _MOST_EXPANDED = 1 << 24
@@ -29,6 +36,10 @@ _TOLD_EVERY = 1000
 
 Parts: TypeAlias = Callable[[], Iterator[bytes]]
 """Returns the bytes of a file in parts, as often as it is called."""
+
+
+class TooLargeError(ValueError):
+    """A drawing has more of something than it may have; the message says of what."""
 
 
 class _RefusedError(Exception):
@@ -77,6 +88,8 @@ class Document:
         self.linked_sheets: list[tuple[dict[str, str], int]] = []
         self._open: list[SvgElement] = []
         self._texts = 0
+        self._attributes_left = MOST_ATTRIBUTES
+        self._text_left = MOST_TEXT
         self._root: SvgElement | None = None
         self._references = sum(part.count(b"&") for part in parts())
         self._size = max(sum(map(len, parts())), 1)
@@ -84,6 +97,7 @@ class Document:
         parser = expat.ParserCreate(encoding, "}")
         self._parser = parser
         parser.buffer_text = True
+        parser.buffer_size = _TEXT_AT_ONCE
         parser.StartElementHandler = self._start
         parser.EndElementHandler = self._end
         parser.CharacterDataHandler = self._text
@@ -119,6 +133,7 @@ class Document:
             tag, {("{" + key if "}" in key else key): value for key, value in attributes.items()}
         )
         element.line = line
+        self._count(element)
         if self._open:
             element.parent = self._open[-1]
             self._open[-1].append(element)
@@ -130,11 +145,27 @@ class Document:
             self.sheets.append(element)
         if "id" in element.attrib:
             self.ids.setdefault(element.attrib["id"], element)
-        self.count += 1
-        if self.count > MOST_ELEMENTS:
-            raise _RefusedError(f"{self.name}, line {line}: more than {MOST_ELEMENTS} elements")
         if self.count % _TOLD_EVERY == 0:
             self._tell(self._parser.CurrentByteIndex / self._size)
+
+    def _count(self, element: SvgElement) -> None:
+        """Counts an element and what it holds. Raises _RefusedError where there is too much."""
+        self.count += 1
+        if self.count > MOST_ELEMENTS:
+            raise self._refused(f"more than {MOST_ELEMENTS} elements")
+        self._attributes_left -= len(element.attrib)
+        if self._attributes_left < 0:
+            raise self._refused(f"more than {MOST_ATTRIBUTES} attributes")
+        for name, value in element.attrib.items():
+            most = _MOST_VALUES.get(name, MOST_VALUE)
+            if len(value) > most and (not name.startswith("{") or name in _MOST_VALUES):
+                raise self._refused(
+                    f"the attribute '{name[:40]}' has {len(value)} characters; at most {most} are "
+                    "read"
+                )
+
+    def _refused(self, what: str) -> _RefusedError:
+        return _RefusedError(f"{self.name}, line {self._parser.CurrentLineNumber}: {what}")
 
     def _end(self, name: str) -> None:
         self._texts -= self._open.pop().tag == "text"
@@ -142,6 +173,9 @@ class Document:
     def _text(self, text: str) -> None:
         if not self._open or not (self._texts or self._open[-1].tag == "style"):
             return
+        self._text_left -= len(text)
+        if self._text_left < 0:
+            raise self._refused(f"more than {MOST_TEXT} characters of text and style sheets")
         element = self._open[-1]
         if len(element):
             element[-1].tail = (element[-1].tail or "") + text

@@ -16,6 +16,7 @@ import numpy.typing as npt
 from ...images.color import to_linear, to_srgb
 from ..affine import Matrix, inverse, multiplied
 from .blending import blended
+from .document import TooLargeError
 from .filter_pixels import blurred, composited, recolored, shifted, transferred
 from .lighting import lit
 from .neighborhoods import convolved, extreme, tiled
@@ -26,6 +27,8 @@ FloatArray = npt.NDArray[np.float32]
 Slices = tuple[slice, slice]
 """Rows and columns."""
 
+MOST_KEPT = 64
+"""Results of steps that later ones read: each is as large as the layer."""
 _AT_ONCE = 1 << 16
 
 
@@ -109,7 +112,7 @@ class _Filtering:
         """What the last step makes, in the layer's colors."""
         if not self._filter.steps:
             return np.zeros_like(self._source)
-        for step in self._filter.steps:
+        for index, step in enumerate(self._filter.steps):
             inputs = [self._named.get(name, self._last) for name in step.inputs]
             region = self._region_of(step, inputs)
             # What `feImage` shows is drawn as the layer is.
@@ -118,7 +121,15 @@ class _Filtering:
             self._last = _Result(_cut(made, region), is_linear, region)
             if step.result:
                 self._named[step.result] = self._last
+            self._forget(index)
         return _with_colors(self._last, self._filter.is_linear)
+
+    def _forget(self, index: int) -> None:
+        """Lets results go that no step after that one reads."""
+        read = {name for step in self._filter.steps[index + 1 :] for name in step.inputs}
+        self._named = {name: kept for name, kept in self._named.items() if name in read}
+        if len(self._named) > MOST_KEPT:
+            raise TooLargeError(f"a filter keeps the results of more than {MOST_KEPT} steps")
 
     def _region_of(self, step: Step, inputs: list[_Result]) -> Slices:
         """Where a step ends: as it says, or with its inputs."""
@@ -133,6 +144,8 @@ class _Filtering:
         return rows, columns
 
     def _made(self, step: Step, inputs: list[_Result], region: Slices) -> FloatArray:
+        if step.kind == "feMerge":
+            return self._merged(inputs, step.is_linear)
         images = [_with_colors(each, step.is_linear) for each in inputs]
         numbers = step.numbers
         match step.kind:
@@ -144,8 +157,6 @@ class _Filtering:
                 return self._flood(numbers, step.is_linear)
             case "feDropShadow":
                 return self._shadowed(step, images[0])
-            case "feMerge":
-                return self._merged(images)
             case "feComposite":
                 return composited(images[0], images[1], step.name, numbers)
             case "feBlend":
@@ -230,10 +241,10 @@ class _Filtering:
             part[...] = straight
         return found
 
-    def _merged(self, inputs: list[FloatArray]) -> FloatArray:
+    def _merged(self, inputs: list[_Result], is_linear: bool) -> FloatArray:
         merged = np.zeros_like(self._source)
         for each in inputs:
-            merged = blended(merged, each, "normal")
+            merged = blended(merged, _with_colors(each, is_linear), "normal")
         return merged
 
     def _flood(self, color: tuple[float, ...], is_linear: bool) -> FloatArray:

@@ -13,8 +13,7 @@ from .beside import ElsewhereError, Place, read_address
 from .clips import box_clip
 from .context import Context, Sources
 from .data_addresses import UnusableError
-from .document import SvgElement
-from .limits import TooLargeError
+from .document import SvgElement, TooLargeError
 from .nesting import SHOWN
 from .page import Page
 from .paint_servers import Colors

@@ -4,7 +4,7 @@
 
 from collections.abc import Iterator
 
-from .document import Document, SvgElement
+from .document import Document, SvgElement, TooLargeError
 from .styles import StyleSheets
 from .tags import NOT_DRAWN
 from .values import as_paint
@@ -18,10 +18,6 @@ _REFERRING = {"mask", "fill", "stroke", "marker-start", "marker-mid", "marker-en
 MOST_CHARACTERS = 100_000
 # What a dash becomes has about so many.
 _SEGMENTS_PER_DASH = 4.0
-
-
-class TooLargeError(ValueError):
-    """A drawing has more of something than it may have; the message says of what."""
 
 
 class Budget:

@@ -6,10 +6,9 @@ import os
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 
-from .document import read_document
+from .document import TooLargeError, read_document
 from .drawing import Drawing
 from .font_places import FontPlaces
-from .limits import TooLargeError
 from .paint_servers import Colors
 from .warnings import Warnings
 

@@ -12,7 +12,8 @@ import numpy as np
 
 from ... import _native
 from ..shape import Shape
-from .limits import MOST_SEGMENTS, TooLargeError
+from .document import TooLargeError
+from .limits import MOST_SEGMENTS
 
 # How many numbers a segment has.
 _SIZES = {"M": 2, "L": 2, "Q": 4, "C": 6, "W": 5, "Z": 0}

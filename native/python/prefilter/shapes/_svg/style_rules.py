@@ -2,6 +2,7 @@
 
 """The rules of style sheets: those in a drawing, and in files beside it."""
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +13,7 @@ import tinycss2
 
 from .beside import ElsewhereError, Place, read_address
 from .data_addresses import UnusableError
-from .document import Document, SvgElement
+from .document import Document, SvgElement, TooLargeError
 from .media import holds_for_screens
 from .text_style import FontRule
 from .values import url_of
@@ -20,9 +21,15 @@ from .warnings import Warnings
 
 MOST_BYTES = 1 << 22
 """Of all style sheets in files, together; sheets that are read again count again."""
+MOST_WRITTEN = 1 << 22
+"""Characters of all style sheets in a drawing, but for quoted texts and addresses, which may hold
+whole fonts."""
+_QUOTED = re.compile(r"url\([^)]*\)|\"[^\"]*\"|'[^']*'", re.IGNORECASE)
 MOST_IMPORTED = 16
 """Style sheets that import each other."""
 _LEAST_COUNTED = 1 << 10
+# Parts of a selector, and functions in functions: each is a loop in the next.
+_MOST_PARTS, _MOST_NESTED = 32, 8
 _BEFORE_IMPORTS = ("charset", "layer")
 _WITHOUT_RULES = ("charset", "keyframes", "-webkit-keyframes", "namespace")
 
@@ -64,6 +71,7 @@ class StyleRules:
         self.is_empty = True
         self._warnings = warnings
         self._left = MOST_BYTES
+        self._written_left = MOST_WRITTEN
         folder = document.folder
         place = None if folder is None else Place(folder, folder)
         for said, line in document.linked_sheets:
@@ -79,7 +87,11 @@ class StyleRules:
         elif _is_css(element.attrib) and self._holds(
             "<style>", element.get("media", ""), element.line
         ):
-            self._add(tinycss2.parse_stylesheet(element.text or "", True, True), sheet)
+            text = element.text or ""
+            self._written_left -= len(_QUOTED.sub("", text))
+            if self._written_left < 0:
+                raise TooLargeError(f"style sheets of more than {MOST_WRITTEN >> 20} MiB")
+            self._add(tinycss2.parse_stylesheet(text, True, True), sheet)
 
     def _link(self, name: str, said: Mapping[str, str], sheet: _Sheet) -> None:
         """Adds the rules of a file that the drawing refers to."""
@@ -191,15 +203,17 @@ def declarations_in(content: Any) -> Iterator[tuple[str, str, bool]]:
             yield node.lower_name, tinycss2.serialize(node.value).strip(), node.important
 
 
-def _takes_long(prelude: list[Any]) -> bool:
-    """Whether a selector looks at all siblings or descendants of each element."""
+def _takes_long(prelude: list[Any], depth: int = 0) -> bool:
+    """Whether a selector looks at all siblings or descendants of elements, or has many parts."""
+    parts = 0
     for before, token in zip([None, *prelude], prelude, strict=False):
-        if token == "~":
+        parts = 0 if token == "," else parts + (token.type == "whitespace" or token in (">", "+"))
+        if token == "~" or parts > _MOST_PARTS or depth > _MOST_NESTED:
             return True
         if before == ":" and token.type == "ident" and token.lower_value.endswith("-of-type"):
             return True
         if token.type == "function" and token.lower_name not in ("not", "is", "where"):
             return True
-        if token.type == "function" and _takes_long(token.arguments):
+        if token.type == "function" and _takes_long(token.arguments, depth + 1):
             return True
     return False

@@ -5,13 +5,12 @@
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
-from functools import lru_cache
 from typing import Any
 
 import cssselect2
 
 from .blending import BLEND_MODES
-from .document import Document, SvgElement
+from .document import Document, SvgElement, TooLargeError
 from .style_rules import StyleRules, declarations_in
 from .text_style import (
     NO_ATTRIBUTES,
@@ -34,9 +33,12 @@ from .values import (
     as_lengths,
     as_number,
     as_paint,
+    remembered,
 )
 from .warnings import Warnings
 
+MOST_ANCESTORS = 20_000_000
+"""That selectors may look at: those of several parts look at them again and again."""
 _DEFAULT_FONT_SIZE = 16.0
 _BLACK, _NOTHING = Paint(BLACK), Paint(None)
 _ZERO, _ONE = Length(0.0), Length(1.0)
@@ -188,6 +190,23 @@ def _style_below(declared: Mapping[str, str], parent: Style, font_size: float) -
     return replace(parent, **changed) if changed else parent
 
 
+class _Matched(cssselect2.ElementWrapper):  # type: ignore[misc]
+    """An element as selectors see it, where the root counts what they look at."""
+
+    def __init__(self, element: SvgElement, parent: "_Matched | None", *rest: Any, **more: Any):
+        super().__init__(element, parent, *rest, **more)
+        self._root: _Matched = self if parent is None else parent._root
+        self._ancestors_left = MOST_ANCESTORS
+
+    @property
+    def ancestors(self) -> Any:
+        found = super().ancestors
+        self._root._ancestors_left -= len(found)
+        if self._root._ancestors_left < 0:
+            raise TooLargeError(f"selectors look at more than {MOST_ANCESTORS} elements")
+        return found
+
+
 class StyleSheets:
     """The style sheets of a document, and what its elements declare.
 
@@ -206,7 +225,7 @@ class StyleSheets:
         found = StyleRules(document, warnings)
         self.font_rules: list[FontRule] = found.font_rules
         matcher = None if found.is_empty else found.matcher
-        wrapper = cssselect2.ElementWrapper.from_xml_root(document.root)
+        wrapper = _Matched.from_xml_root(document.root)
         elements = document.root.iter() if matcher is None else wrapper.iter_subtree()
         for index, each in enumerate(elements):
             if index % 50 == 0:
@@ -317,7 +336,7 @@ class StyleSheets:
 _INITIAL = {field.name: field.default for field in fields(Style)}
 
 
-@lru_cache(maxsize=4096)
+@remembered
 def _parsed(name: str, text: str) -> Any:
     """The value of a property; None where the text is none."""
     try:
@@ -334,6 +353,6 @@ def _unknown_unit(name: str, text: str) -> str:
     return ""
 
 
-@lru_cache(maxsize=4096)
+@remembered
 def _parsed_declarations(text: str) -> tuple[tuple[str, str, bool], ...]:
     return tuple(declarations_in(text))

@@ -4,10 +4,10 @@
 
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
-from typing import Any, TypeAlias
+from functools import lru_cache, wraps
+from typing import Any, TypeAlias, TypeVar
 
 import tinycss2
 import tinycss2.color4
@@ -21,6 +21,9 @@ Color: TypeAlias = tuple[float, float, float, float]
 
 BLACK: Color = (0.0, 0.0, 0.0, 1.0)
 
+Found = TypeVar("Found")
+_MOST_REMEMBERED = 1 << 10
+"""Characters: what long texts come to would be kept for good."""
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _LENGTH = re.compile(rf"\s*({_NUMBER})([a-zA-Z]*|%)\s*", re.ASCII)
 # CSS pixels; em and ex are multiples of the font's size.
@@ -112,6 +115,17 @@ def as_number(text: str) -> float | None:
     return value if math.isfinite(value) else None
 
 
+def remembered(read: Callable[..., Found]) -> Callable[..., Found]:
+    """Has a function of texts remember what the last short ones came to."""
+    cached = lru_cache(maxsize=4096)(read)
+
+    @wraps(read)
+    def found(*texts: str) -> Found:
+        return (read if len(texts[-1]) > _MOST_REMEMBERED else cached)(*texts)
+
+    return found
+
+
 def leading_numbers(text: str) -> tuple[list[float], bool]:
     """The numbers that a text begins with, and whether it holds nothing else."""
     return _native.read_numbers(text.encode(errors="replace"))
@@ -132,7 +146,7 @@ class Paint:
     server: str = ""
 
 
-@lru_cache(maxsize=4096)
+@remembered
 def as_color(text: str) -> Color | str | None:
     """A color, or "current"; None for what is none."""
     try:
@@ -147,7 +161,7 @@ def as_background(text: str) -> Color | str | None:
     return next((color for color in colors if color is not None), None)
 
 
-@lru_cache(maxsize=4096)
+@remembered
 def as_paint(text: str) -> Paint | None:
     tokens = _tokens(text)
     if not tokens:
@@ -207,7 +221,7 @@ def _tokens(text: str) -> list[Any]:
     return [token for token in tokens if token.type != "whitespace"]
 
 
-@lru_cache(maxsize=4096)
+@remembered
 def as_transform(text: str) -> Matrix | None:
     """The product of a list of transforms; None where one of them is none."""
     if text.strip().lower() in ("", "none"):
