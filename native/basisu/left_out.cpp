@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What Basis Universal calls for other work than encoding blocks, in sources that are not built.
-// Linkers of Windows and macOS look each name up, and only then leave out what calls it.
+// What Basis Universal calls for other work than encoding blocks, in sources that are not built; a
+// part of in_one.cpp.
 #include <cstdlib>
 
 #include "encoder/basisu_enc.h"

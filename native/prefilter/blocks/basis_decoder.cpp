@@ -16,29 +16,29 @@
 namespace prefilter {
 namespace {
 
-constexpr int kSide = 4;
-constexpr std::ptrdiff_t kChannels = 4;
+constexpr int kBlockSide = 4;
+constexpr std::ptrdiff_t kTexelChannels = 4;
 
-void make_tables() {
+void make_decoding_tables() {
   static std::once_flag once;
   std::call_once(once, [] { basist::basisu_transcoder_init(); });
 }
 
 class UastcDecoder final : public ByteDecoder {
  public:
-  UastcDecoder() { make_tables(); }
+  UastcDecoder() { make_decoding_tables(); }
 
   void decode(const std::uint8_t* blocks, int count, std::uint8_t* texels) override {
     for (int i = 0; i < count; ++i) {
       basist::uastc_block block;
       std::memcpy(&block, blocks + std::ptrdiff_t{sizeof block} * i, sizeof block);
-      std::array<basist::color32, std::size_t{kSide} * kSide> colors;
+      std::array<basist::color32, std::size_t{kBlockSide} * kBlockSide> colors;
       if (!basist::unpack_uastc(block, colors.data(), false)) {
         throw_invalid("blocks: one of 'uastc' is damaged");
       }
-      for (std::ptrdiff_t y = 0; y < kSide; ++y) {
-        std::memcpy(texels + kChannels * kSide * (y * count + i), colors.data() + kSide * y,
-                    kChannels * kSide);
+      for (std::ptrdiff_t y = 0; y < kBlockSide; ++y) {
+        std::memcpy(texels + kTexelChannels * kBlockSide * (y * count + i), colors.data() + kBlockSide * y,
+                    kTexelChannels * kBlockSide);
       }
     }
   }
@@ -63,11 +63,11 @@ std::vector<std::uint8_t> decoded(basist::basisu_lowlevel_etc1s_transcoder* tran
   both.insert(both.end(), level.alpha.begin(), level.alpha.end());
   const auto width = static_cast<std::uint32_t>(level.width);
   const auto height = static_cast<std::uint32_t>(level.height);
-  std::vector<std::uint8_t> texels(std::size_t{kChannels} * width * height);
+  std::vector<std::uint8_t> texels(std::size_t{kTexelChannels} * width * height);
   basist::basisu_transcoder_state state;
   if (!transcoder->transcode_image(
           basist::transcoder_texture_format::cTFRGBA32, texels.data(), width * height, both.data(),
-          size_of(both), (width + kSide - 1) / kSide, (height + kSide - 1) / kSide, width, height,
+          size_of(both), (width + kBlockSide - 1) / kBlockSide, (height + kBlockSide - 1) / kBlockSide, width, height,
           0, 0, size_of(level.color), size_of(level.color), size_of(level.alpha), 0,
           !level.alpha.empty(), false, 0, &state)) {
     throw_invalid("levels: one in ETC1S is damaged");
@@ -82,7 +82,7 @@ std::unique_ptr<ByteDecoder> make_uastc_decoder() { return std::make_unique<Uast
 std::vector<std::vector<std::uint8_t>> decode_etc1s(const Etc1sCodebooks& codebooks,
                                                     std::span<const Etc1sLevel> levels,
                                                     const Progress& progress) {
-  make_tables();
+  make_decoding_tables();
   basist::basisu_lowlevel_etc1s_transcoder transcoder;
   const auto is_count = [](int count) { return count >= 1 && count <= 0xffff; };
   if (!is_count(codebooks.endpoint_count) || !is_count(codebooks.selector_count) ||

@@ -11,11 +11,6 @@
 
 #include "prefilter/blocks/encoders.h"
 
-namespace basist {
-// Makes, among others, the table of blocks of one color; no header has it.
-void uastc_init();
-}  // namespace basist
-
 namespace prefilter {
 namespace {
 
@@ -35,6 +30,7 @@ class Bc7fEncoder final : public ByteEncoder {
       : flags_(effort == BlockEffort::kFast ? kFast : kThorough) {
     static std::once_flag once;
     std::call_once(once, [] {
+      // Makes, among others, the table of blocks of one color.
       basist::uastc_init();
       basist::bc7f::init();
     });

@@ -34,7 +34,7 @@ constexpr float kSelectorLoss = 1.25F;
 constexpr double kFewestEndpoints = 32.0, kMostEndpoints = 8192.0, kEndpointPower = 1.6;
 constexpr double kFewestSelectors = 96.0, kMostSelectors = 16128.0, kSelectorPower = 2.6;
 
-void make_tables() {
+void make_etc1s_tables() {
   static std::once_flag once;
   std::call_once(once, [] {
     basist::basisu_transcoder_init();
@@ -173,7 +173,7 @@ Etc1sTexture texture_of(const basisu::basisu_backend_output& output) {
 Etc1sTexture compress_etc1s(std::span<const Etc1sImage> levels, const Etc1sOptions& options,
                             const Progress& progress) {
   check(levels, options);
-  make_tables();
+  make_etc1s_tables();
   progress.report(0.0);
   Slices slices(levels, options.has_alpha);
   basisu::job_pool pool(static_cast<std::uint32_t>(resolve_threads(options.threads)));
