@@ -3,6 +3,7 @@
 """Scans moved onto each other, in three steps: read from Blender, compute, write to Blender."""
 
 from collections.abc import Sequence
+from typing import Any, cast
 
 import bpy
 import numpy as np
@@ -48,7 +49,7 @@ class Alignment:
         """
         self._found = prefilter.align_scans(
             self._scans,
-            against=self._settings.against,
+            against=cast("Any", self._settings.against),
             reach=self._settings.reach or None,
             progress=progress,
         )

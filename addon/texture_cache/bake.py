@@ -11,7 +11,7 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import bpy
 import numpy as np
@@ -365,7 +365,7 @@ def _levels(
     fit = partial(
         prefilter.coarser_levels,
         surface=worn.surfaces,
-        wrap=wrap,
+        wrap=cast("Any", wrap),
         premultiplied=is_associated or not covers,
         progress=progress,
         threads=threads,

@@ -3,7 +3,7 @@
 """`prefilter.fill_unused`: a copy of an image without background."""
 
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 import numpy as np
@@ -69,7 +69,7 @@ def _fill(source: "Source", progress: Progress) -> "FloatArray":
         filled = prefilter.fill_unused(
             linear,
             source.surfaces,
-            wrap=source.wrap,
+            wrap=cast("Any", source.wrap),
             progress=progress,
             threads=source.threads,
         )

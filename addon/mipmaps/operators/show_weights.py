@@ -3,7 +3,7 @@
 """`prefilter.show_weights` and `prefilter.show_source`: where a surface spends its area."""
 
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 import prefilter
@@ -82,7 +82,7 @@ def _weigh(source: "Source", progress: Progress) -> "weights.Weights":
             source.surfaces,
             width,
             height,
-            wrap=source.wrap,
+            wrap=cast("Any", source.wrap),
             progress=progress,
             threads=source.threads,
         )

@@ -4,6 +4,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any, cast
 
 import numpy as np
 import prefilter
@@ -104,8 +105,8 @@ def measure(source: Source, filters: Sequence[str], progress: Progress) -> Error
                     linear,
                     source.surfaces,
                     mip_values,
-                    wrap=source.wrap,
-                    reader=source.reader,
+                    wrap=cast("Any", source.wrap),
+                    reader=cast("Any", source.reader),
                     progress=share(part, _FILTERING, 1.0),
                     threads=source.threads,
                 )

@@ -3,7 +3,7 @@
 """The levels that editors draw on a plane: computed, and kept."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
 
 import gpu
 import prefilter
@@ -106,7 +106,7 @@ def compute(
         )
     levels = prefilter.sampling_levels(
         linear,
-        filter,
+        cast("Any", filter),
         wrap="repeat",
         premultiplied=True,
         progress=share(progress, _RESIZED, _FILTERED),

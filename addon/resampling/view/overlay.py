@@ -3,7 +3,7 @@
 """Draws a plane with an image on it in the Image editors: trilinear left, by a table right."""
 
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 import gpu
@@ -123,7 +123,7 @@ def draw_plane(
 def _compiled(filter: str, texels: int) -> gpu.types.GPUShader:
     from ...bridge.drawing import COLOR_FUNCTIONS
 
-    table = prefilter.SamplingTable.standard(filter, texels)
+    table = prefilter.SamplingTable.standard(cast("Any", filter), texels)
     info = gpu.types.GPUShaderCreateInfo()
     for kind, name in (
         ("VEC4", "plane_u"),

@@ -7,8 +7,10 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from .names import WrapMode
+
 ProgressCallback = Callable[[float], bool | None]
-Wrap = str | tuple[str, str]
+Wrap = WrapMode | tuple[WrapMode, WrapMode]
 Bounds = tuple[float | None, float | None]
 Check = Callable[[Any], object]
 Options = TypeVar("Options")

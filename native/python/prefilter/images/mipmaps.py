@@ -26,6 +26,7 @@ from .._border.arguments import (
     set_options,
 )
 from .._border.arrays import as_image, as_texels, as_threads, in_form_of
+from .._border.names import Encoding, MipmapFilterName, Reader
 from ..meshes.surface import Surface, as_surfaces
 from ..sampling.levels import FilteredLevels
 from .color import as_light, as_words
@@ -78,13 +79,13 @@ def mipmaps(
     image: npt.ArrayLike,
     surface: Surface | Sequence[Surface] | None = None,
     *,
-    filter: str = "pam-bilinear",
+    filter: MipmapFilterName = "pam-bilinear",
     wrap: Wrap = "clamp",
     bounds: Bounds | None = (0.0, 1.0),
     levels: int | None = None,
     premultiplied: bool = False,
-    reader: str = "linear",
-    encoding: str = "linear",
+    reader: Reader = "linear",
+    encoding: Encoding = "linear",
     seam_budget: float = 0.0,
     footprint: float = 0.0,
     progress: ProgressCallback | None = None,
@@ -168,13 +169,13 @@ def coarser_levels(
     image: npt.ArrayLike,
     surface: Surface | Sequence[Surface] | None = None,
     *,
-    filter: str = "pam-bilinear",
+    filter: MipmapFilterName = "pam-bilinear",
     wrap: Wrap = "clamp",
     bounds: Bounds | None = (0.0, 1.0),
     levels: int | None = None,
     premultiplied: bool = False,
-    reader: str = "linear",
-    encoding: str = "linear",
+    reader: Reader = "linear",
+    encoding: Encoding = "linear",
     seam_budget: float = 0.0,
     footprint: float = 0.0,
     progress: ProgressCallback | None = None,
@@ -211,7 +212,7 @@ def mipmap_error(
     mip_values: npt.ArrayLike,
     *,
     wrap: Wrap = "clamp",
-    reader: str = "linear",
+    reader: Reader = "linear",
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> npt.NDArray[np.float64]:

@@ -22,6 +22,7 @@ from .._border.arguments import (
     set_options,
 )
 from .._border.arrays import FloatArray, as_array, as_image, as_threads, check_shape, in_form_of
+from .._border.names import MipmapFilterName
 from ..meshes.surface import Surface, as_surfaces
 
 _CHECKS: dict[str, Check] = {
@@ -40,7 +41,7 @@ def normal_mipmaps(
     surface: Surface | Sequence[Surface] | None = None,
     *,
     roughness: None = None,
-    filter: str = "pam-bilinear",
+    filter: MipmapFilterName = "pam-bilinear",
     wrap: Wrap = "clamp",
     footprint: float = 0.0,
     encoded: bool = True,
@@ -54,7 +55,7 @@ def normal_mipmaps(
     surface: Surface | Sequence[Surface] | None = None,
     *,
     roughness: npt.ArrayLike,
-    filter: str = "pam-bilinear",
+    filter: MipmapFilterName = "pam-bilinear",
     wrap: Wrap = "clamp",
     footprint: float = 0.0,
     encoded: bool = True,
@@ -67,7 +68,7 @@ def normal_mipmaps(
     surface: Surface | Sequence[Surface] | None = None,
     *,
     roughness: npt.ArrayLike | None = None,
-    filter: str = "pam-bilinear",
+    filter: MipmapFilterName = "pam-bilinear",
     wrap: Wrap = "clamp",
     footprint: float = 0.0,
     encoded: bool = True,

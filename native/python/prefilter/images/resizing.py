@@ -3,7 +3,7 @@
 """Images of other sizes (chapter 1)."""
 
 from functools import partial
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -21,6 +21,7 @@ from .._border.arguments import (
     set_options,
 )
 from .._border.arrays import as_image, as_texels, as_threads, in_form_of
+from .._border.names import Encoding, ResizeFilter, Ringing
 from .color import as_light, as_words
 from .pixel_filters import names_for
 
@@ -37,17 +38,92 @@ _CHECKS: dict[str, Check] = {
 }
 
 
+@overload
 def resize(
     image: npt.ArrayLike,
     width: int,
     height: int,
     *,
-    filter: str = "lanczos3",
+    filter: ResizeFilter = "lanczos3",
     constrained: bool = False,
-    ringing: str = "auto",
+    ringing: Ringing = "auto",
     wrap: Wrap = "clamp",
     premultiplied: bool = False,
-    encoding: str | None = None,
+    encoding: None = None,
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> npt.NDArray[np.float32]: ...
+@overload
+def resize(
+    image: npt.NDArray[np.uint8],
+    width: int,
+    height: int,
+    *,
+    filter: ResizeFilter = "lanczos3",
+    constrained: bool = False,
+    ringing: Ringing = "auto",
+    wrap: Wrap = "clamp",
+    premultiplied: bool = False,
+    encoding: Encoding,
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> npt.NDArray[np.uint8]: ...
+@overload
+def resize(
+    image: npt.NDArray[np.uint16],
+    width: int,
+    height: int,
+    *,
+    filter: ResizeFilter = "lanczos3",
+    constrained: bool = False,
+    ringing: Ringing = "auto",
+    wrap: Wrap = "clamp",
+    premultiplied: bool = False,
+    encoding: Encoding,
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> npt.NDArray[np.uint16]: ...
+@overload
+def resize(
+    image: npt.ArrayLike,
+    width: int,
+    height: int,
+    *,
+    filter: ResizeFilter = "lanczos3",
+    constrained: bool = False,
+    ringing: Ringing = "auto",
+    wrap: Wrap = "clamp",
+    premultiplied: bool = False,
+    encoding: Encoding,
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> npt.NDArray[Any]: ...
+@overload
+def resize(
+    image: npt.ArrayLike,
+    width: int,
+    height: int,
+    *,
+    filter: ResizeFilter = "lanczos3",
+    constrained: bool = False,
+    ringing: Ringing = "auto",
+    wrap: Wrap = "clamp",
+    premultiplied: bool = False,
+    encoding: Encoding | None = None,
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> npt.NDArray[Any]: ...
+def resize(
+    image: npt.ArrayLike,
+    width: int,
+    height: int,
+    *,
+    filter: ResizeFilter = "lanczos3",
+    constrained: bool = False,
+    ringing: Ringing = "auto",
+    wrap: Wrap = "clamp",
+    premultiplied: bool = False,
+    encoding: Encoding | None = None,
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> npt.NDArray[Any]:

@@ -4,7 +4,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Any, TypeAlias, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -106,7 +106,9 @@ class SurfaceRounds:
             rows = np.concatenate([moved[k][0] for k in apart])
             side = side_of(rows, progress_part(progress, 0.0, 0.1))
             rest = progress_part(progress, 0.1, 1.0)
-            together = estimate_normals(rows, direction=side, progress=rest, threads=self.threads)
+            together = estimate_normals(
+                rows, direction=cast("Any", side), progress=rest, threads=self.threads
+            )
             ends = np.cumsum([len(moved[k][0]) for k in apart])[:-1]
             toward |= dict(zip(apart, np.split(together, ends), strict=True))
         sides = []

@@ -17,6 +17,7 @@ from .._border.arguments import (
     progress_part,
 )
 from .._border.arrays import as_floats, as_threads
+from .._border.names import Against
 from .alignment import Prepared, ScanAlignment, SurfaceRounds
 from .normals import estimate_normals
 from .scan import ScanPoints
@@ -104,7 +105,7 @@ def find_outliers(
 def align_scans(
     scans: Sequence[ScanPoints],
     *,
-    against: str = "scans",
+    against: Against = "scans",
     reach: float | None = None,
     iterations: int = 40,
     progress: ProgressCallback | None = None,

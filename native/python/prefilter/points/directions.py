@@ -3,7 +3,7 @@
 """Which way the normals of points point: as users ask for, and where they leave it open."""
 
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Any, TypeAlias, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -101,7 +101,9 @@ def estimated(
     if direction == VIEWPOINT:
         seen_from = viewpoints if len(viewpoints) else np.zeros((1, 3))
         return estimate_normals(rows, viewpoint=seen_from, progress=progress, threads=threads)
-    return estimate_normals(rows, direction=direction, progress=progress, threads=threads)
+    return estimate_normals(
+        rows, direction=cast("Any", direction), progress=progress, threads=threads
+    )
 
 
 def parts(progress: ProgressCallback | None) -> tuple[ProgressCallback | None, ...]:

@@ -8,6 +8,7 @@ import numpy.typing as npt
 from .. import _native
 from .._border.arguments import ProgressCallback, as_int, as_name, as_progress, progress_part
 from .._border.arrays import as_array, as_floats, as_indices, as_threads
+from .._border.names import Upward
 
 
 def estimate_normals(
@@ -15,7 +16,7 @@ def estimate_normals(
     *,
     neighbours: int = 16,
     viewpoint: npt.ArrayLike | None = None,
-    direction: str = "auto",
+    direction: Upward = "auto",
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> npt.NDArray[np.float64]:

@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TypeAlias, cast
+from typing import Any, Literal, TypeAlias, TypedDict, Unpack, cast, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -23,6 +23,7 @@ from .._border.arguments import (
     set_options,
 )
 from .._border.arrays import as_threads
+from .._border.names import Direction, Returns, Wavelet
 from .._border.replacing import recover
 from .._border.staging import as_target
 from .alignment import ScanAlignment
@@ -32,21 +33,16 @@ from .directions import as_wanted
 from .scan import AttributeArray
 from .sources import Cloud, Source, array_cloud, joined_cloud, sources_in
 
-Mesh: TypeAlias = tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]
-MeshWithAttributes: TypeAlias = tuple[
-    npt.NDArray[np.float64],
-    npt.NDArray[np.int32],
-    npt.NDArray[np.float32] | dict[str, AttributeArray],
-]
+_Positions: TypeAlias = npt.NDArray[np.float64]
+_Triangles: TypeAlias = npt.NDArray[np.int32]
+_Values: TypeAlias = npt.NDArray[np.float32]
+_ByName: TypeAlias = dict[str, AttributeArray]
 Support: TypeAlias = dict[str, npt.NDArray[np.float32]]
+Mesh: TypeAlias = tuple[_Positions, _Triangles]
+MeshWithAttributes: TypeAlias = tuple[_Positions, _Triangles, _Values | _ByName]
 MeshWithSupport: TypeAlias = (
-    tuple[npt.NDArray[np.float64], npt.NDArray[np.int32], Support]
-    | tuple[
-        npt.NDArray[np.float64],
-        npt.NDArray[np.int32],
-        npt.NDArray[np.float32] | dict[str, AttributeArray],
-        Support,
-    ]
+    tuple[_Positions, _Triangles, Support]
+    | tuple[_Positions, _Triangles, _Values | _ByName, Support]
 )
 
 _MIB = 1 << 20
@@ -107,26 +103,114 @@ class ReconstructionReport:
     alignment: ScanAlignment | None = None
 
 
+class _Choices(TypedDict, total=False):
+    """What `reconstruct` takes by name, beside what its result's type depends on."""
+
+    depth: int | None
+    cell_size: float | None
+    wavelet: Wavelet
+    smooth: bool
+    isovalue: str | float
+    fit: bool
+    watertight: bool
+    trim: float | None
+    adaptivity: float
+    direction: Direction
+    viewpoint: npt.ArrayLike | None
+    weights: npt.ArrayLike | None
+    classes: Classes | None
+    returns: Returns
+    box: npt.ArrayLike | None
+    align: bool | str
+    memory_limit: int | None
+    report: ReconstructionReport | None
+    progress: ProgressCallback | None
+    threads: int
+
+
+@overload
+def reconstruct(
+    points: npt.ArrayLike | Source | Sequence[Source],
+    normals: npt.ArrayLike | None = None,
+    *,
+    attributes: Literal[False] | None = None,
+    support: Literal[False] = False,
+    **choices: Unpack[_Choices],
+) -> Mesh: ...
+@overload
+def reconstruct(
+    points: npt.ArrayLike | Source | Sequence[Source],
+    normals: npt.ArrayLike | None = None,
+    *,
+    attributes: Literal[False] | None = None,
+    support: Literal[True],
+    **choices: Unpack[_Choices],
+) -> tuple[_Positions, _Triangles, Support]: ...
+@overload
+def reconstruct(
+    points: npt.ArrayLike | Source | Sequence[Source],
+    normals: npt.ArrayLike | None = None,
+    *,
+    attributes: Literal[True],
+    support: Literal[False] = False,
+    **choices: Unpack[_Choices],
+) -> tuple[_Positions, _Triangles, _ByName]: ...
+@overload
+def reconstruct(
+    points: npt.ArrayLike | Source | Sequence[Source],
+    normals: npt.ArrayLike | None = None,
+    *,
+    attributes: Literal[True],
+    support: Literal[True],
+    **choices: Unpack[_Choices],
+) -> tuple[_Positions, _Triangles, _ByName, Support]: ...
+@overload
+def reconstruct(
+    points: npt.ArrayLike | Source | Sequence[Source],
+    normals: npt.ArrayLike | None = None,
+    *,
+    attributes: npt.NDArray[Any] | Sequence[Any],
+    support: Literal[False] = False,
+    **choices: Unpack[_Choices],
+) -> tuple[_Positions, _Triangles, _Values]: ...
+@overload
+def reconstruct(
+    points: npt.ArrayLike | Source | Sequence[Source],
+    normals: npt.ArrayLike | None = None,
+    *,
+    attributes: npt.NDArray[Any] | Sequence[Any],
+    support: Literal[True],
+    **choices: Unpack[_Choices],
+) -> tuple[_Positions, _Triangles, _Values, Support]: ...
+@overload
+def reconstruct(
+    points: npt.ArrayLike | Source | Sequence[Source],
+    normals: npt.ArrayLike | None = None,
+    *,
+    attributes: npt.ArrayLike | bool | None = None,
+    support: bool = False,
+    **choices: Unpack[_Choices],
+) -> Mesh | MeshWithAttributes | MeshWithSupport: ...
 def reconstruct(
     points: npt.ArrayLike | Source | Sequence[Source],
     normals: npt.ArrayLike | None = None,
     *,
     depth: int | None = None,
     cell_size: float | None = None,
-    wavelet: str = "haar",
+    wavelet: Wavelet = "haar",
     smooth: bool = True,
     isovalue: str | float = "auto",
     fit: bool = True,
     watertight: bool = False,
     trim: float | None = None,
     adaptivity: float = 0.0,
-    direction: str = "auto",
+    direction: Direction = "auto",
     viewpoint: npt.ArrayLike | None = None,
     weights: npt.ArrayLike | None = None,
     attributes: npt.ArrayLike | bool | None = None,
     support: bool = False,
     classes: Classes | None = None,
-    returns: str = "all",
+    returns: Returns = "all",
     box: npt.ArrayLike | None = None,
     align: bool | str = False,
     memory_limit: int | None = None,
@@ -251,17 +335,17 @@ def reconstruct_file(
     *,
     depth: int | None = None,
     cell_size: float | None = None,
-    wavelet: str = "haar",
+    wavelet: Wavelet = "haar",
     smooth: bool = True,
     isovalue: str | float = "auto",
     fit: bool = True,
     watertight: bool = False,
     trim: float | None = None,
     adaptivity: float = 0.0,
-    direction: str = "auto",
+    direction: Direction = "auto",
     viewpoint: npt.ArrayLike | None = None,
     classes: Classes | None = None,
-    returns: str = "all",
+    returns: Returns = "all",
     box: npt.ArrayLike | None = None,
     align: bool | str = False,
     memory_limit: int | None = None,

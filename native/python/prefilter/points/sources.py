@@ -5,7 +5,7 @@
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TypeAlias, TypeGuard
+from typing import Any, TypeAlias, TypeGuard, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -146,7 +146,7 @@ def joined_cloud(
         still = progress_part(progress, 0.9, 0.9)
         some = [scan.some_points(still) for scan in scans]
         last = progress_part(progress, 0.9, 1.0)
-        alignment = align_scans(some, against=align, progress=last, threads=threads)
+        alignment = align_scans(some, against=cast("Any", align), progress=last, threads=threads)
     native = tuple(scan.native() for scan in scans)
     if alignment is not None:
         pairs = zip(native, alignment.matrices, strict=True)

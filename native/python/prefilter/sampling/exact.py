@@ -9,6 +9,7 @@ import numpy.typing as npt
 from .. import _native
 from .._border.arguments import Check, ProgressCallback, Wrap, as_name, as_progress, set_options
 from .._border.arrays import FloatArray, as_image, check_texels, in_form_of
+from .._border.names import Kernel
 from .._border.samples import SAMPLE_CHECKS, as_coordinates, as_jacobians, as_scales
 
 _CHECKS: dict[str, Check] = {**SAMPLE_CHECKS, "filter": partial(as_name, "filter")}
@@ -19,7 +20,7 @@ def sample_exact(
     coordinates: npt.ArrayLike,
     scales: npt.ArrayLike,
     *,
-    filter: str = "lanczos2",
+    filter: Kernel = "lanczos2",
     wrap: Wrap = "clamp",
     progress: ProgressCallback | None = None,
     threads: int = 0,

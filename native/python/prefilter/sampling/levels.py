@@ -21,6 +21,7 @@ from .._border.arguments import (
 )
 from .._border.arrays import FloatArray, as_image, as_threads, in_form_of
 from .._border.channels import in_channel_groups
+from .._border.names import Kernel
 from ..images.pixel_filters import names_for
 
 SAMPLING_FILTERS = names_for("sampling")
@@ -51,7 +52,7 @@ class FilteredLevels(list[npt.NDArray[Value]], Generic[Value]):
 
 def sampling_levels(
     image: npt.ArrayLike,
-    filter: str = "lanczos2",
+    filter: Kernel = "lanczos2",
     *,
     wrap: Wrap = "clamp",
     levels: int | None = None,

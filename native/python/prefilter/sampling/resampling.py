@@ -3,6 +3,7 @@
 """Images moved by affine and projective maps (section 6.3)."""
 
 from functools import partial
+from typing import Any, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +20,7 @@ from .._border.arguments import (
 )
 from .._border.arrays import FloatArray, as_array, as_image, as_threads, in_form_of
 from .._border.channels import in_channel_groups
+from .._border.names import Kernel
 from .._border.samples import as_probe_count
 from .samples import native_table
 from .sampling_table import SamplingTable
@@ -42,7 +44,7 @@ def resample(
     height: int,
     *,
     table: SamplingTable | str | None = None,
-    filter: str = "lanczos2",
+    filter: Kernel = "lanczos2",
     exact: bool = False,
     max_probes: int = 1,
     wrap: Wrap = "clamp",
@@ -97,7 +99,7 @@ def resample(
     if isinstance(table, SamplingTable):
         options.filter = table.filter
     elif table is None and not exact:
-        table = SamplingTable.standard(options.filter, _STANDARD_TEXELS)
+        table = SamplingTable.standard(cast("Any", options.filter), _STANDARD_TEXELS)
     sampler = None if table is None else native_table(table, [])
     homography = _as_homography(transform)
     size = as_size("width", width), as_size("height", height)

@@ -24,6 +24,7 @@ from .._border.arguments import (
 )
 from .._border.arrays import as_threads
 from .._border.input import as_path, open_file
+from .._border.names import Kernel
 from .._border.staging import as_target, write_output
 from ._shaders import gpu, osl
 from .levels import SAMPLING_FILTERS
@@ -96,7 +97,7 @@ class SamplingTable:
     @classmethod
     def build(
         cls,
-        filter: str = "lanczos2",
+        filter: Kernel = "lanczos2",
         *,
         texels: int = 8,
         subdomains: tuple[int, int, int] = (4, 4, 2),
@@ -154,7 +155,7 @@ class SamplingTable:
 
     @classmethod
     def standard(
-        cls, filter: str = "lanczos2", texels: int = 8, *, target: str | None = None
+        cls, filter: Kernel = "lanczos2", texels: int = 8, *, target: str | None = None
     ) -> "SamplingTable":
         """A table that comes with the package: `build` with its defaults has made it.
 

@@ -19,6 +19,7 @@ from .._border.arguments import (
     set_options,
 )
 from .._border.arrays import FloatArray, as_threads
+from .._border.names import RasterFilter
 from ..images.pixel_filters import names_for
 from .arguments import as_color
 from .shape import Shape
@@ -31,7 +32,7 @@ def rasterize(
     width: int,
     height: int,
     *,
-    filter: str = "box",
+    filter: RasterFilter = "box",
     method: str = "scanline",
     depth: int | None = None,
     background: Sequence[float] | None = None,

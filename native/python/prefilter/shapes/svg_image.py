@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from .._border.arguments import ProgressCallback, as_name, as_one_of, as_progress, as_size
 from .._border.arrays import FloatArray, as_threads
+from .._border.names import RasterFilter
 from ._svg.warnings import SvgWarning
 from .rasterization import RASTER_FILTERS, as_whether_bytes, to_bytes
 from .svg import teller
@@ -22,7 +23,7 @@ def rasterize_svg(
     width: int,
     height: int,
     *,
-    filter: str = "box",
+    filter: RasterFilter = "box",
     light: str = "srgb",
     fonts: Iterable[str | os.PathLike[str]] | None = None,
     dtype: npt.DTypeLike = np.float32,

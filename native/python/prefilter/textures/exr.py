@@ -13,6 +13,7 @@ import numpy.typing as npt
 from .. import _native
 from .._border.arguments import ProgressCallback, as_one_of, as_progress, is_srgb
 from .._border.arrays import as_threads
+from .._border.names import Alpha, Encoding, ExrFormat
 from .._border.staging import Output, as_output, write_output
 from .texel_formats import ALPHAS
 from .texels import halving_levels
@@ -31,9 +32,9 @@ def write_exr(
     path: Output,
     levels: Sequence[npt.ArrayLike],
     *,
-    format: str = "half",
-    encoding: str = "linear",
-    alpha: str = "straight",
+    format: ExrFormat = "half",
+    encoding: Encoding = "linear",
+    alpha: Alpha = "straight",
     attributes: Mapping[str, str] | None = None,
     progress: ProgressCallback | None = None,
     threads: int = 0,

@@ -11,6 +11,16 @@ import numpy.typing as npt
 from .. import _native
 from .._border.arguments import ProgressCallback, as_one_of, as_progress, is_srgb
 from .._border.arrays import as_threads
+from .._border.names import (
+    Alpha,
+    Auto,
+    DdsFormat,
+    Effort,
+    Encoding,
+    Header,
+    Ktx2Format,
+    Supercompression,
+)
 from .._border.staging import Output, as_output, write_output
 from . import dds, etc1s
 from .ktx2 import KTX2, as_metadata
@@ -24,11 +34,11 @@ def write_dds(
     path: Output,
     levels: Sequence[npt.ArrayLike],
     *,
-    format: str = "auto",
-    encoding: str = "linear",
-    alpha: str = "straight",
-    effort: str = "normal",
-    header: str = "auto",
+    format: DdsFormat | Auto = "auto",
+    encoding: Encoding = "linear",
+    alpha: Alpha = "straight",
+    effort: Effort = "normal",
+    header: Header = "auto",
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> None:
@@ -87,11 +97,11 @@ def write_ktx2(
     path: Output,
     levels: Sequence[npt.ArrayLike],
     *,
-    format: str = "auto",
-    encoding: str = "linear",
-    alpha: str = "straight",
-    effort: str = "normal",
-    supercompression: str = "none",
+    format: Ktx2Format | Auto = "auto",
+    encoding: Encoding = "linear",
+    alpha: Alpha = "straight",
+    effort: Effort = "normal",
+    supercompression: Supercompression = "none",
     quality: int = _QUALITY,
     metadata: Mapping[str, str] | None = None,
     progress: ProgressCallback | None = None,

@@ -13,6 +13,7 @@ the library, TIFF files by OpenImageIO, and those for engines by `engines`.
 from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
+from typing import Any, cast
 
 import numpy as np
 
@@ -120,8 +121,8 @@ def _stage_exr(
         prefilter.write_exr,
         levels=[full, *linear_levels],
         format="half" if half else "float",
-        encoding=encoding,
-        alpha=kind,
+        encoding=cast("Any", encoding),
+        alpha=cast("Any", kind),
         attributes=attributes,
         progress=go_on,
         threads=threads,

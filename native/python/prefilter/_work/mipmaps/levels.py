@@ -3,7 +3,7 @@
 """The levels of an image on its surfaces, by what it holds, and what heeding seams did to them."""
 
 from functools import partial
-from typing import Any
+from typing import Any, cast
 
 import prefilter
 
@@ -101,7 +101,7 @@ def seam_note(source: Source, levels: Levels, progress: Progress) -> str:
         seam_budget=0.0,
     )
     without, weighed = (
-        prefilter.seam_contrast(made, source.surfaces, wrap=source.wrap, progress=part)
+        prefilter.seam_contrast(made, source.surfaces, wrap=cast("Any", source.wrap), progress=part)
         for made, part in (
             (others[1:], share(progress, 0.8, 0.9)),
             (levels, share(progress, 0.9, 1.0)),

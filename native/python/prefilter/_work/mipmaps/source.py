@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
+from typing import Any, cast
 
 import numpy as np
 
@@ -128,12 +129,12 @@ class Source:
             made: list[FloatArray] = prefilter.mipmaps(
                 linear,
                 self.surfaces or None,
-                filter=filter,
-                wrap=self.wrap,
+                filter=cast("Any", filter),
+                wrap=cast("Any", self.wrap),
                 bounds=self.bounds(linear),
                 levels=levels,
                 premultiplied=not self.picture.alpha_is_straight,
-                reader=self.reader,
+                reader=cast("Any", self.reader),
                 seam_budget=seam_budget,
                 footprint=footprint,
                 progress=share(progress, 0.0, 0.2) if fits else progress,
@@ -154,7 +155,7 @@ class Source:
             return prefilter.fit_to_views(
                 levels,
                 self.surfaces,
-                wrap=self.wrap,
+                wrap=cast("Any", self.wrap),
                 bounds=bounds,
                 premultiplied=not self.picture.alpha_is_straight,
                 progress=progress,

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import Any, cast
 
 import numpy as np
 
@@ -102,7 +103,7 @@ def stretched(
             linear,
             *size,
             filter="lanczos3",
-            wrap=wrap,
+            wrap=cast("Any", wrap),
             premultiplied=not picture.alpha_is_straight,
             progress=progress,
             threads=threads,

@@ -3,6 +3,7 @@
 """Resampling an image: scaled, rotated, in perspective, or out of it."""
 
 from pathlib import Path
+from typing import Any, cast
 
 import prefilter
 
@@ -77,7 +78,7 @@ class Resampling(NewPicture):
             self._placement.width,
             self._placement.height,
             table=table,
-            filter=filter,
+            filter=cast("Any", filter),
             exact=settings.method == "exact",
             max_probes=settings.max_probes if filter == "gaussian" else 1,
             wrap=settings.wrap,
@@ -129,4 +130,6 @@ def _table(settings: ResampleSettings) -> "prefilter.SamplingTable | str | None"
         return "trilinear"
     if settings.method == "table":
         return load("Table", settings.table)
-    return prefilter.SamplingTable.standard(settings.filter, texels=int(settings.method))
+    return prefilter.SamplingTable.standard(
+        cast("Any", settings.filter), texels=int(settings.method)
+    )

@@ -3,7 +3,7 @@
 """Resizing an image."""
 
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import prefilter
 
@@ -71,7 +71,7 @@ class Resizing(NewPicture):
             ringing=settings.ringing,
             wrap=settings.wrap,
             premultiplied=not self.picture.alpha_is_straight,
-            encoding=encoding,
+            encoding=cast("Any", encoding),
             progress=progress,
             threads=settings.threads,
         )

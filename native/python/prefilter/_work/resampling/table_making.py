@@ -4,6 +4,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any, cast
 
 import prefilter
 
@@ -98,9 +99,11 @@ class TableMaking:
         target = None if settings.target in ("filter", settings.filter) else settings.target
         has_standard = target is None or (settings.filter, target) in STANDARD_TARGETS
         if settings.is_standard and has_standard and str(settings.texels) in METHODS:
-            return prefilter.SamplingTable.standard(settings.filter, settings.texels, target=target)
+            return prefilter.SamplingTable.standard(
+                cast("Any", settings.filter), settings.texels, target=target
+            )
         return prefilter.SamplingTable.build(
-            settings.filter,
+            cast("Any", settings.filter),
             texels=settings.texels,
             subdomains=(settings.grid, settings.grid, settings.slices),
             degree=settings.degree,

@@ -3,7 +3,7 @@
 """Shapes to an image, and to a file of it."""
 
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -48,7 +48,7 @@ def rasterized(
             drawn.shapes,
             drawn.width,
             drawn.height,
-            filter=settings.filter,
+            filter=cast("Any", settings.filter),
             overlap=settings.overlap,
             progress=share(progress, _READ, _DRAWN),
             threads=settings.threads,

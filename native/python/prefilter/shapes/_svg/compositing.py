@@ -8,6 +8,7 @@ Images are (height, width, 4) with row 0 at the bottom, colors multiplied by alp
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import chain
+from typing import Any, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -145,7 +146,7 @@ class Compositor:
             shapes,
             right - left,
             high - low,
-            filter=self._filter,
+            filter=cast("Any", self._filter),
             progress=self._go_on,
             threads=self._threads,
         )

@@ -3,6 +3,7 @@
 """Pictures and tiles of patterns, as pixels of an image see them."""
 
 import math
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
@@ -16,7 +17,8 @@ from .tree import Picture
 
 FloatArray = npt.NDArray[np.float32]
 
-_PICTURE_FILTER, _TILE_FILTER = "lanczos2", "mitchell"
+_PICTURE_FILTER: Final = "lanczos2"
+_TILE_FILTER: Final = "mitchell"
 # From here on a picture that is shrunk more in one direction is shrunk in that one first.
 _UNEVEN = 1.25
 
