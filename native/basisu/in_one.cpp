@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // The encoders of Basis Universal and what calls them as one unit. The library is in a nameless
-// namespace, so that the compiler drops what nothing calls of it before it works on it: that is most
-// of the library. Headers of the system's and our own are read before, outside of that namespace.
+// namespace, so that the compiler drops what nothing calls of it before it works on it: that is
+// most of the library. Headers of the system's and our own are read before, outside of that
+// namespace.
 #include <ctype.h>
 #include <inttypes.h>
 #include <limits.h>
@@ -56,7 +57,9 @@
 #include "prefilter/blocks/decoders.h"
 #include "prefilter/blocks/encoders.h"
 
+// clang-format off: behind all headers that are not the library's.
 #include <in_place_of_std.h>
+// clang-format on
 
 namespace linked {
 namespace {

@@ -34,7 +34,9 @@
 
 #include "prefilter/blocks/encoders.h"
 
+// clang-format off: behind all headers that are not the library's.
 #include <in_place_of_std.h>
+// clang-format on
 
 namespace linked {
 namespace {

@@ -37,8 +37,8 @@ class UastcDecoder final : public ByteDecoder {
         throw_invalid("blocks: one of 'uastc' is damaged");
       }
       for (std::ptrdiff_t y = 0; y < kBlockSide; ++y) {
-        std::memcpy(texels + kTexelChannels * kBlockSide * (y * count + i), colors.data() + kBlockSide * y,
-                    kTexelChannels * kBlockSide);
+        std::memcpy(texels + kTexelChannels * kBlockSide * (y * count + i),
+                    colors.data() + kBlockSide * y, kTexelChannels * kBlockSide);
       }
     }
   }
@@ -67,9 +67,9 @@ std::vector<std::uint8_t> decoded(basist::basisu_lowlevel_etc1s_transcoder* tran
   basist::basisu_transcoder_state state;
   if (!transcoder->transcode_image(
           basist::transcoder_texture_format::cTFRGBA32, texels.data(), width * height, both.data(),
-          size_of(both), (width + kBlockSide - 1) / kBlockSide, (height + kBlockSide - 1) / kBlockSide, width, height,
-          0, 0, size_of(level.color), size_of(level.color), size_of(level.alpha), 0,
-          !level.alpha.empty(), false, 0, &state)) {
+          size_of(both), (width + kBlockSide - 1) / kBlockSide,
+          (height + kBlockSide - 1) / kBlockSide, width, height, 0, 0, size_of(level.color),
+          size_of(level.color), size_of(level.alpha), 0, !level.alpha.empty(), false, 0, &state)) {
     throw_invalid("levels: one in ETC1S is damaged");
   }
   return texels;
