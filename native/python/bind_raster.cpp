@@ -148,7 +148,7 @@ void bind_stroke_options(py::module_& m) {
 }
 
 // An outline, the name of its fill rule, its paint, and whether it winds once.
-using DrawnShape = std::tuple<const Outline*, std::string, Paint, bool>;
+using DrawnShape = std::tuple<const Outline*, std::string, const Paint*, bool>;
 
 py::array bound_rasterize(const std::vector<DrawnShape>& drawn, RasterOptions options,
                           bool is_bytes, const py::object& progress) {
@@ -157,7 +157,7 @@ py::array bound_rasterize(const std::vector<DrawnShape>& drawn, RasterOptions op
   shapes.reserve(drawn.size());
   for (const auto& [outline, fill_rule, paint, winds_once] : drawn) {
     shapes.push_back(
-        {*outline, value_named("fill_rule", fill_rule, kFillRules), paint, winds_once});
+        {*outline, value_named("fill_rule", fill_rule, kFillRules), *paint, winds_once});
   }
   if (is_bytes) {
     ByteImage image;

@@ -15,6 +15,9 @@ Bounds = tuple[float | None, float | None]
 Check = Callable[[Any], object]
 Options = TypeVar("Options")
 Item = TypeVar("Item")
+# A tuple, as a union would be made in each call.
+WHOLE = (int, np.integer)
+_OTHER = object()
 
 
 def as_name(argument: str, name: object) -> str:
@@ -30,15 +33,22 @@ def as_one_of(argument: str, name: str, allowed: Collection[str]) -> str:
 
 
 def set_options(
-    options: Options, checks: Mapping[str, Check], arguments: Mapping[str, object]
+    options: Options,
+    checks: Mapping[str, Check],
+    arguments: Mapping[str, object],
+    defaults: Mapping[str, object] | None = None,
 ) -> Options:
     """Options of the native module, set from the arguments of a function by their names.
 
     A check raises ValueError, or returns what the native module takes. Its defaults are those of
-    the functions.
+    the functions: where `defaults` are given, arguments that are these stay unset, which counts in
+    calls that draw little.
     """
+    known = {} if defaults is None else defaults
     for name, check in checks.items():
-        setattr(options, name, check(arguments[name]))
+        value = arguments[name]
+        if known.get(name, _OTHER) is not value:
+            setattr(options, name, check(value))
     return options
 
 
@@ -92,21 +102,21 @@ def progress_part(
 def as_level_count(levels: int | None) -> int:
     if levels is None:
         return 0
-    if isinstance(levels, bool) or not isinstance(levels, int | np.integer) or levels < 1:
+    if isinstance(levels, bool) or not isinstance(levels, WHOLE) or levels < 1:
         raise ValueError(f"levels: {levels!r}; a whole number of at least 1 is needed, or None")
     # More than any image has, yet an int for the native module, whose message knows the image.
     return min(int(levels), 2**30)
 
 
 def as_size(argument: str, size: int) -> int:
-    if isinstance(size, bool) or not isinstance(size, int | np.integer) or not 1 <= size <= 2**20:
+    if isinstance(size, bool) or not isinstance(size, WHOLE) or not 1 <= size <= 2**20:
         raise ValueError(f"{argument}: {size!r}; a whole number from 1 to {2**20} is needed")
     return int(size)
 
 
 def as_int(argument: str, value: int, allowed: str) -> int:
     """A whole number that the native module can take as an int, whose range it checks."""
-    is_int = isinstance(value, int | np.integer) and not isinstance(value, bool)
+    is_int = isinstance(value, WHOLE) and not isinstance(value, bool)
     if not is_int or not -(2**31) <= value < 2**31:
         raise ValueError(f"{argument}: {value!r}; {allowed}")
     return int(value)

@@ -8,6 +8,8 @@ from typing import Any, TypeAlias, TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from .arguments import WHOLE
+
 # What the native module takes as an int; larger counts mean the same to it.
 _LARGEST_INT = 2**30
 
@@ -184,7 +186,7 @@ def check_shape(name: str, array: np.ndarray, shape: Sequence[int | str]) -> Non
 
 def as_threads(threads: int) -> int:
     """A number of threads; 0 stands for all processors."""
-    if isinstance(threads, bool) or not isinstance(threads, int | np.integer) or threads < 0:
+    if isinstance(threads, bool) or not isinstance(threads, WHOLE) or threads < 0:
         raise ValueError(
             f"threads: {threads!r}; a whole number is needed, 0 meaning all processors"
         )

@@ -81,7 +81,7 @@ def rasterize(
         MemoryError: The image does not fit into memory.
         Cancelled: `progress` returned False.
     """
-    options = set_options(_native.RasterOptions(), _CHECKS, locals())
+    options = set_options(_native.RasterOptions(), _CHECKS, locals(), rasterize.__kwdefaults__)
     try:
         drawn = list(shapes)
     except TypeError as error:

@@ -219,7 +219,8 @@ class Shape(Contours):
         Raises:
             ValueError: An argument is not as said.
         """
-        pen = set_options(_native.StrokeOptions(), _STROKE_CHECKS, locals())
+        defaults = Shape.stroked.__kwdefaults__
+        pen = set_options(_native.StrokeOptions(), _STROKE_CHECKS, locals(), defaults)
         reach = as_number("tolerance", tolerance)
         if not 0.0 < reach < np.inf:
             raise ValueError(f"tolerance: {tolerance!r}; a finite number above 0 is needed")
