@@ -115,15 +115,16 @@ inline int parts_of(const ParametricCurve& curve, const CellArc& arc) {
   }
   const auto bend = [&](double t_begin, double t_end) {
     const double t = 0.5 * (t_begin + t_end);
-    if (curve.kind != CurveKind::kConic && curve.kind != CurveKind::kBezier) {
-      // Of polynomials up to the third degree the second derivative in the middle tells it.
-      const double half = 0.5 * (t_end - t_begin);
-      const Point2 off = (half * half) * (curve.powers[2] + (3.0 * t) * curve.powers[3]);
+    if (curve.kind == CurveKind::kConic || curve.kind == CurveKind::kBezier) {
+      const bool is_whole = parts == 1;
+      const Point2 a = is_whole ? arc.begin : curve.at(t_begin);
+      const Point2 c = is_whole ? arc.end : curve.at(t_end);
+      const Point2 off = curve.at(t) - 0.5 * (a + c);
       return std::abs(off.x) + std::abs(off.y);
     }
-    const Point2 a = curve.at(t_begin);
-    const Point2 c = curve.at(t_end);
-    const Point2 off = curve.at(t) - 0.5 * (a + c);
+    // Of polynomials up to the third degree the second derivative in the middle tells it.
+    const double half = 0.5 * (t_end - t_begin);
+    const Point2 off = (half * half) * (curve.powers[2] + (3.0 * t) * curve.powers[3]);
     return std::abs(off.x) + std::abs(off.y);
   };
   while (parts < kMostParts) {
@@ -136,6 +137,28 @@ inline int parts_of(const ParametricCurve& curve, const CellArc& arc) {
     parts *= 2;
   }
   return parts;
+}
+
+// Calls use(point, slope of y, weight) for the nodes of a rule over [from, from + step], in order.
+template <int kPoints, typename Use>
+inline void for_nodes(const ParametricCurve& curve, double from, double step, const Use& use) {
+  const auto& rule = gauss_rule<kPoints>();
+  if (curve.kind == CurveKind::kBezier) {
+    for (int k = 0; k < kPoints; ++k) {
+      const double t = from + rule.nodes[k] * step;
+      const Point2 point = curve.at(t);
+      use(point, curve.derivative(t, point).y, rule.weights[k]);
+    }
+    return;
+  }
+  for (int k = 0; k < kPoints; k += 2) {
+    // Of an odd number the last one goes twice.
+    const int next = k + 1 < kPoints ? k + 1 : k;
+    const DoublePair nodes{rule.nodes[k], rule.nodes[next]};
+    const ParametricCurve::Pair pair = curve.pair_at(from + nodes * step);
+    use({pair.x[0], pair.y[0]}, pair.y_slope[0], rule.weights[k]);
+    if (next > k) use({pair.x[1], pair.y[1]}, pair.y_slope[1], rule.weights[next]);
+  }
 }
 
 }  // namespace
@@ -186,22 +209,19 @@ void ArcBatch<N>::flush_lanes(int first, Cells* cells) {
 }
 
 template <int N>
-void ArcBatch<N>::add_curve(const ParametricCurve& curve, const CellArc& arc, Point2 center,
-                            int sign, std::int32_t place, Cells* cells) {
+void ArcBatch<N>::add_inside(const ParametricCurve& curve, const CellArc& arc, Point2 center,
+                             int sign, ArcMoments<N>* cell) {
   constexpr int kPoints = N < 5 ? N + 4 : 9;
-  const auto& rule = gauss_rule<kPoints>();
   std::array<float, kCount * kCount> sums{};
   const int parts = parts_of(curve, arc);
   const double step = (arc.t_end - arc.t_begin) / parts;
   for (int part = 0; part < parts; ++part) {
     const double from = arc.t_begin + part * step;
-    for (int k = 0; k < kPoints; ++k) {
-      const double t = from + rule.nodes[k] * step;
-      const Point2 point = curve.at(t);
+    const auto add_node = [&](const Point2& point, double y_slope, double weight) {
       const Point2 at = point - center;
       const auto x = static_cast<float>(at.x);
       const auto y = static_cast<float>(at.y);
-      auto factor = static_cast<float>(rule.weights[k] * step * curve.derivative(t, point).y);
+      auto factor = static_cast<float>(weight * step * y_slope);
       std::array<float, kCount> powers;
       float power = 1.0F;
       for (int b = 0; b < kCount; ++b) {
@@ -212,19 +232,16 @@ void ArcBatch<N>::add_curve(const ParametricCurve& curve, const CellArc& arc, Po
         factor *= x;
         for (int b = 0; b < kCount; ++b) sums[a * kCount + b] += factor * powers[b];
       }
-    }
+    };
+    for_nodes<kPoints>(curve, from, step, add_node);
   }
-  // The lane has no extent along x and stands for what is across alone; what that adds inside is
-  // x^(a + 1) / (a + 1) at 0, which is nothing.
-  ArcMoments<N>& cell = (*cells)[place];
   for (int a = 0; a < kCount; ++a) {
     for (int b = 0; b < kCount; ++b) {
       const float scaled = sums[a * kCount + b] * (kScale / static_cast<float>(a + 1));
       const auto whole = static_cast<std::int32_t>(scaled + std::copysign(0.5F, scaled));
-      cell.sums[a * kCount + b] += static_cast<std::uint32_t>(whole * sign);
+      cell->sums[a * kCount + b] += static_cast<std::uint32_t>(whole * sign);
     }
   }
-  add_line({0.0, arc.begin.y - center.y}, {0.0, arc.end.y - center.y}, sign, place, cells);
 }
 
 template class ArcBatch<0>;

@@ -60,7 +60,15 @@ class ArcBatch {
     if (++size_ == kSize) flush(cells);
   }
   void add_curve(const ParametricCurve& curve, const CellArc& arc, Point2 center, int sign,
-                 std::int32_t place, Cells* cells);
+                 std::int32_t place, Cells* cells) {
+    add_inside(curve, arc, center, sign, &(*cells)[place]);
+    // The lane has no extent along x and stands for what is across alone; what that adds inside is
+    // x^(a + 1) / (a + 1) at 0, which is nothing.
+    add_line({0.0, arc.begin.y - center.y}, {0.0, arc.end.y - center.y}, sign, place, cells);
+  }
+  /// What an arc of a curve adds inside of a cell, at once.
+  static void add_inside(const ParametricCurve& curve, const CellArc& arc, Point2 center, int sign,
+                         ArcMoments<N>* cell);
   /// What was added may only then be in the cells.
   void flush(Cells* cells);
 

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <span>
 
+#include "prefilter/base/double_pair.h"
 #include "prefilter/base/outline.h"
 
 namespace prefilter {
@@ -34,6 +35,14 @@ struct ParametricCurve {
     if (kind != CurveKind::kConic) return sum;
     return (1.0 / (denominator[0] + t * (denominator[1] + t * denominator[2]))) * sum;
   }
+  /// At two parameters at once, of curves that are no Bezier ones: what at() and derivative() say,
+  /// to the bit.
+  struct Pair {
+    DoublePair x;
+    DoublePair y;
+    DoublePair y_slope;
+  };
+  Pair pair_at(DoublePair t) const;
   /// By t.
   Point2 derivative(double t) const { return derivative(t, at(t)); }
   /// The same where the point there is known.
@@ -50,6 +59,21 @@ struct ParametricCurve {
   Point2 bezier_at(double t) const;
   Point2 bezier_derivative(double t) const;
 };
+
+inline ParametricCurve::Pair ParametricCurve::pair_at(DoublePair t) const {
+  const auto& p = powers;
+  Pair pair;
+  pair.x = p[0].x + t * (p[1].x + t * (p[2].x + t * p[3].x));
+  pair.y = p[0].y + t * (p[1].y + t * (p[2].y + t * p[3].y));
+  pair.y_slope = p[1].y + t * (2.0 * p[2].y + (3.0 * t) * p[3].y);
+  if (kind != CurveKind::kConic) return pair;
+  const DoublePair scale = 1.0 / (denominator[0] + t * (denominator[1] + t * denominator[2]));
+  const DoublePair below_slope = denominator[1] + 2.0 * t * denominator[2];
+  pair.x = scale * pair.x;
+  pair.y = scale * pair.y;
+  pair.y_slope = scale * (pair.y_slope - below_slope * pair.y);
+  return pair;
+}
 
 /// From t_begin to t_end along a curve neither x nor y turns.
 struct MonotoneCurve {

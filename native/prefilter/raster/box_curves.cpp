@@ -213,16 +213,18 @@ void BoxCurves::add_cells(const MonotoneCurve& piece, int sign) {
   const GridWindow window{0, rows_.width(), rows_.first_row(), rows_.end_row()};
   const auto in_cell = [&](int column, int row, const CellArc& arc) {
     const Point2 center{column + 0.5, row + 0.5};
-    cell_.assign(1, {});
+    ArcMoments<0> cell;
     if (piece.curve.kind == CurveKind::kLine) {
+      cell_.assign(1, {});
       batch_.add_line(arc.begin - center, arc.end - center, sign, 0, &cell_);
+      batch_.flush(&cell_);
+      cell = cell_[0];
     } else {
-      batch_.add_curve(piece.curve, arc, center, sign, 0, &cell_);
+      ArcBatch<0>::add_inside(piece.curve, arc, center, sign, &cell);
     }
-    batch_.flush(&cell_);
     const double steps = (rounded_to_unit(arc.end.y) - rounded_to_unit(arc.begin.y)) / kBoxUnit;
     const std::int32_t height = sign * static_cast<std::int32_t>(steps);
-    const auto part = static_cast<std::uint32_t>(cell_[0].inside(0, 0) + height / 2);
+    const auto part = static_cast<std::uint32_t>(cell.inside(0, 0) + height / 2);
     rows_.row(row).add_two(column, static_cast<std::uint32_t>(height) - part, part);
   };
   const auto left_of_window = [&](int row, double y_begin, double y_end) {

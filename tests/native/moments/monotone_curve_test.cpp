@@ -187,5 +187,19 @@ TEST(ParametricCurve, IsBernsteinsSum) {
   }
 }
 
+TEST(ParametricCurve, SaysOfTwoParametersWhatItSaysOfEach) {
+  for_random_pieces(60, [](int, const RandomCurve&, const MonotoneCurve& piece) {
+    const ParametricCurve& curve = piece.curve;
+    if (curve.kind == CurveKind::kBezier) return;
+    const DoublePair t{piece.t_begin + 0.3 * (piece.t_end - piece.t_begin), piece.t_end};
+    const ParametricCurve::Pair pair = curve.pair_at(t);
+    for (int k = 0; k < 2; ++k) {
+      EXPECT_EQ(pair.x[k], curve.at(t[k]).x);
+      EXPECT_EQ(pair.y[k], curve.at(t[k]).y);
+      EXPECT_EQ(pair.y_slope[k], curve.derivative(t[k]).y);
+    }
+  });
+}
+
 }  // namespace
 }  // namespace prefilter
