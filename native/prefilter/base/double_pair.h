@@ -17,6 +17,14 @@ using IntFour = Vector<std::uint32_t, 4>;
 
 inline DoublePair pair_of(double value) { return DoublePair{value, value}; }
 
+inline DoublePair load_pair(const double* from) {
+  DoublePair values;
+  std::memcpy(&values, from, sizeof(values));
+  return values;
+}
+
+inline void store_pair(double* to, DoublePair values) { std::memcpy(to, &values, sizeof(values)); }
+
 inline IntFour load_four(const std::uint32_t* from) {
   IntFour values;
   std::memcpy(&values, from, sizeof(values));

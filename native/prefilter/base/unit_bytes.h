@@ -34,9 +34,9 @@ void unit_bytes(std::span<const T> values, std::uint8_t* out) {
   std::size_t i = 0;
 #if defined(PREFILTER_SSE4_1)
   const auto four = [&](std::size_t at) {
-    const __m128 above = _mm_max_ps(load_floats(values.data() + at), _mm_setzero_ps());
-    const __m128 within = _mm_min_ps(above, _mm_set1_ps(1.0F));
-    return _mm_cvtps_epi32(_mm_mul_ps(within, _mm_set1_ps(255.0F)));
+    // What is below 0 or no number stays so, and packing makes 0 of that.
+    const __m128 below = _mm_min_ps(_mm_set1_ps(1.0F), load_floats(values.data() + at));
+    return _mm_cvtps_epi32(_mm_mul_ps(below, _mm_set1_ps(255.0F)));
   };
   for (; i + 16 <= values.size(); i += 16) {
     const __m128i low = _mm_packs_epi32(four(i), four(i + 4));

@@ -52,11 +52,13 @@ void CellPixels::for_pixels_over(int column, int row, const Use& use) const {
   const int end_x = std::min(width_, filter_.last_pixel_over(column) + 1);
   const int begin_y = std::max(first_row_, filter_.first_pixel_over(row));
   const int end_y = std::min(end_row_, filter_.last_pixel_over(row) + 1);
+  if (begin_x >= end_x) return;
   const int channels = values_->channels();
   for (int y = begin_y; y < end_y; ++y) {
-    double* values = values_->row(y - first_row_);
+    double* values = values_->pixels(y - first_row_, begin_x, end_x);
     for (int x = begin_x; x < end_x; ++x) {
-      use(values + x * channels, column - filter_.first_cell(x), row - filter_.first_cell(y));
+      use(values + (x - begin_x) * channels, column - filter_.first_cell(x),
+          row - filter_.first_cell(y));
     }
   }
 }

@@ -54,9 +54,7 @@ void CellPixels::add_row(int begin, int end, int row, const Use& use) const {
   begin = std::max(begin, shift);
   end = std::min(end, shift + width_);
   if (y < first_row_ || y >= end_row_ || begin >= end) return;
-  use(begin, end,
-      values_->row(y - first_row_) +
-          static_cast<std::ptrdiff_t>(begin - shift) * values_->channels());
+  use(begin, end, values_->pixels(y - first_row_, begin - shift, end - shift));
 }
 
 }  // namespace prefilter

@@ -3,19 +3,22 @@
 #include "prefilter/raster/moment_cells.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace prefilter {
 
 template <int N>
 void MomentCells<N>::begin_band(const CellFilter& filter, int width, int first_row, int end_row) {
+  clear();
   window_ = {filter.first_cell(0), filter.first_cell(width - 1) + filter.taps,
              filter.first_cell(first_row), filter.first_cell(end_row - 1) + filter.taps};
   blocks_ = (window_.end_column - window_.first_column) / kBlock + 1;
   const std::size_t rows = window_.end_row - window_.first_row;
-  slots_.assign(rows * blocks_ * kBlock, 0);
-  is_touched_.assign(rows * blocks_, 0);
-  left_.assign(rows, 0);
-  cells_.clear();
+  // What is there is all 0, so that another shape of rows needs no more than room.
+  const std::size_t blocks = rows * blocks_;
+  if (touched_.size() < blocks) touched_.resize(blocks);
+  if (slots_.size() < blocks * kBlock) slots_.resize(blocks * kBlock);
+  if (left_.size() < rows) left_.resize(rows);
   use_no_row();
 }
 
@@ -33,8 +36,22 @@ std::int32_t MomentCells<N>::made(int row, std::int32_t* slot) {
 template <int N>
 std::int32_t MomentCells<N>::cell(int column, int row) {
   const std::size_t place = slot_place(column, row);
-  is_touched_[place / kBlock] = 1;
+  const int block = (column - window_.first_column) / kBlock;
+  first_used_block_ = std::min(first_used_block_, block);
+  end_used_block_ = std::max(end_used_block_, block + 1);
+  touched_[place / kBlock] |= static_cast<std::uint16_t>(1U << place % kBlock);
   return made(row, &slots_[place]);
+}
+
+template <int N>
+template <typename Use>
+void MomentCells<N>::for_slots(int row, const Use& use) const {
+  const std::size_t first = slot_place(window_.first_column, row) / kBlock;
+  for (std::size_t block = first + first_used_block_; block < first + end_used_block_; ++block) {
+    for (unsigned bits = touched_[block]; bits != 0; bits &= bits - 1) {
+      use(block * kBlock + static_cast<std::size_t>(std::countr_zero(bits)));
+    }
+  }
 }
 
 template <int N>
@@ -67,13 +84,10 @@ template <int N>
 void MomentCells<N>::columns_of(int row, std::vector<int>* columns) const {
   columns->clear();
   const std::size_t first = slot_place(window_.first_column, row);
-  for (int block = 0; block < blocks_; ++block) {
-    if (is_touched_[first / kBlock + block] == 0) continue;
-    for (int x = block * kBlock; x < (block + 1) * kBlock; ++x) {
-      const std::int32_t slot = slots_[first + x];
-      if (slot != 0 && !cells_[slot - 1].is_zero()) columns->push_back(window_.first_column + x);
-    }
-  }
+  for_slots(row, [&](std::size_t place) {
+    if (cells_[slots_[place] - 1].is_zero()) return;
+    columns->push_back(window_.first_column + static_cast<int>(place - first));
+  });
 }
 
 template <int N>
@@ -88,12 +102,10 @@ template <int N>
 void MomentCells<N>::clear() {
   for (int row = first_used_row_; row < end_used_row_; ++row) {
     left_[row - window_.first_row] = 0;
-    const std::size_t first = static_cast<std::size_t>(row - window_.first_row) * blocks_;
-    for (std::size_t block = first; block < first + blocks_; ++block) {
-      if (is_touched_[block] == 0) continue;
-      is_touched_[block] = 0;
-      std::fill_n(slots_.begin() + static_cast<std::ptrdiff_t>(block * kBlock), kBlock, 0);
-    }
+    for_slots(row, [&](std::size_t place) {
+      slots_[place] = 0;
+      touched_[place / kBlock] = 0;
+    });
   }
   cells_.clear();
   use_no_row();

@@ -48,6 +48,9 @@ class MomentCells {
  private:
   static constexpr int kBlock = 16;
 
+  // Calls use(place in slots_) for the cells of a row, from left to right.
+  template <typename Use>
+  void for_slots(int row, const Use& use) const;
   std::size_t slot_place(int column, int row) const {
     return static_cast<std::size_t>(row - window_.first_row) * blocks_ * kBlock +
            (column - window_.first_column);
@@ -58,15 +61,19 @@ class MomentCells {
   void use_no_row() {
     first_used_row_ = window_.end_row;
     end_used_row_ = window_.first_row;
+    first_used_block_ = blocks_;
+    end_used_block_ = 0;
   }
 
   GridWindow window_;
   int first_used_row_ = 0;
   int end_used_row_ = 0;
   int blocks_ = 0;
-  std::vector<std::int32_t> slots_;  // one more than the place in cells_, or 0
-  std::vector<std::uint8_t> is_touched_;
-  std::vector<std::int32_t> left_;  // of each row, as slots_
+  int first_used_block_ = 0;  // of a row
+  int end_used_block_ = 0;
+  std::vector<std::int32_t> slots_;     // one more than the place in cells_, or 0
+  std::vector<std::uint16_t> touched_;  // of each block, the columns that have a cell, as bits
+  std::vector<std::int32_t> left_;      // of each row, as slots_
   std::vector<Moments> cells_;
   ArcBatch<N> batch_;
 };

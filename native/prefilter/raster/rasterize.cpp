@@ -11,6 +11,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <utility>
 
 #include "prefilter/base/error.h"
@@ -90,6 +91,17 @@ PixelRows rows_of(Image* image) {
   return {image->data.data(), nullptr, image->width, image->height, image->channels};
 }
 
+// For shapes of one color.
+template <int N>
+struct Covered {
+  Covered(const CellFilter& filter, int width) : moments(filter, width) {}
+
+  MomentCells<N> cells;
+  MomentRows<N> moments;
+  CoverageRows rows;
+  int first_row = -1;  // of the band that it is ready for
+};
+
 // For shapes of which the color changes.
 template <int M>
 struct Painted {
@@ -97,9 +109,10 @@ struct Painted {
 
   MomentCells<M> cells;
   PaintedRows<M> rows;
+  int first_row = -1;
 };
 
-// Makes a band of rows.
+// Makes bands of rows, one after another, with memory that is kept.
 template <int N>
 class BandMaker {
  public:
@@ -159,29 +172,34 @@ class BandMaker {
       add_box(layer);
       return;
     }
-    if (moments_ == nullptr) {
-      moments_ = std::make_unique<MomentRows<N>>(filter_, pixels_.width);
-      cells_.begin_band(filter_, pixels_.width, first_row_, end_row_);
-      rows_.reset(pixels_.width, end_row_ - first_row_);
+    if (covered_ == nullptr) covered_ = std::make_unique<Covered<N>>(filter_, pixels_.width);
+    auto& [cells, moments, rows, first_row] = *covered_;
+    if (first_row != first_row_) {
+      first_row = first_row_;
+      cells.begin_band(filter_, pixels_.width, first_row_, end_row_);
+      rows.reset(pixels_.width, end_row_ - first_row_);
     }
-    add_edges(layer, &cells_);
-    moments_->add_coverage(cells_, first_row_, end_row_, &rows_);
-    cells_.clear();
+    add_edges(layer, &cells);
+    moments.add_coverage(cells, first_row_, end_row_, &rows);
+    cells.clear();
     const ChannelValues& color = layer.paint.constant;
     for (int row = 0; row < end_row_ - first_row_; ++row) {
-      if (!rows_.is_changed(row)) continue;
-      double* out = values_.row(row);
-      rows_.take(
-          row, [&](int x, double coverage) { values_.add(out, x, x + 1, coverage, color); },
-          [&](int begin, int end, double coverage) {
-            values_.add(out, begin, end, coverage, color);
-          });
+      if (!rows.is_changed(row)) continue;
+      const auto add = [&](int begin, int end, double coverage) {
+        values_.add(row, begin, end, coverage, color);
+      };
+      rows.take(
+          row, [&](int x, double coverage) { add(x, x + 1, coverage); }, add);
     }
   }
 
   void add_box(const RasterLayer& layer) {
     if (box_ == nullptr) box_ = std::make_unique<BoxCoverage>();
-    box_->begin(pixels_.width, first_row_, end_row_);
+    // No more rows than it is in, as all of them are gone through.
+    const double low = std::max<double>(first_row_, std::floor(layer.edges.low()));
+    const double high = std::min<double>(end_row_, std::ceil(layer.edges.high()));
+    if (!(low < high)) return;
+    box_->begin(pixels_.width, static_cast<int>(low), static_cast<int>(high));
     box_->add(layer.edges);
     const ChannelValues& color = layer.paint.constant;
     const auto coverage_of = [](std::uint32_t steps) {
@@ -189,13 +207,17 @@ class BandMaker {
     };
     box_->take(
         [&](int row, int x, int count, const std::uint32_t* steps) {
-          double* out = values_.row(row - first_row_);
-          for (int i = 0; i < count; ++i) {
-            values_.add(out, x + i, x + i + 1, coverage_of(steps[i]), color);
-          }
+          // Blocks mostly reach beyond the shape.
+          int begin = 0;
+          while (begin < count && steps[begin] == 0) ++begin;
+          while (count > begin && steps[count - 1] == 0) --count;
+          if (begin == count) return;
+          values_.add_each(
+              row - first_row_, x + begin, count - begin,
+              [&](int i) { return coverage_of(steps[begin + i]); }, color);
         },
         [&](int row, int begin, int end, std::uint32_t steps) {
-          values_.add(values_.row(row - first_row_), begin, end, coverage_of(steps), color);
+          values_.add(row - first_row_, begin, end, coverage_of(steps), color);
         });
   }
 
@@ -216,11 +238,12 @@ class BandMaker {
 
   template <int M>
   void add_painted(const RasterLayer& layer, std::unique_ptr<Painted<M>>* painted) {
-    if (*painted == nullptr) {
-      *painted = std::make_unique<Painted<M>>(filter_, pixels_.width);
-      (*painted)->cells.begin_band(filter_, pixels_.width, first_row_, end_row_);
+    if (*painted == nullptr) *painted = std::make_unique<Painted<M>>(filter_, pixels_.width);
+    auto& [cells, rows, first_row] = **painted;
+    if (first_row != first_row_) {
+      first_row = first_row_;
+      cells.begin_band(filter_, pixels_.width, first_row_, end_row_);
     }
-    auto& [cells, rows] = **painted;
     add_edges(layer, &cells);
     rows.add_values(cells, LocalColor(layer, filter_), first_row_, end_row_, &values_);
     cells.clear();
@@ -231,25 +254,56 @@ class BandMaker {
   PixelRows pixels_;
   int first_row_ = 0;
   int end_row_ = 0;
-  MomentCells<N> cells_;
-  std::unique_ptr<MomentRows<N>> moments_;
+  std::unique_ptr<Covered<N>> covered_;
   std::unique_ptr<Painted<N + 1>> linear_;
   std::unique_ptr<Painted<N + 2>> curved_;
-  CoverageRows rows_;
   std::unique_ptr<BoxCoverage> box_;
   BandValues values_;
+};
+
+// Makers for as many bands as are made at once.
+template <int N>
+class BandMakers {
+ public:
+  using Maker = std::unique_ptr<BandMaker<N>>;
+
+  // Calls use(maker) with one that nobody else has.
+  template <typename Make, typename Use>
+  void with_one(const Make& make, const Use& use) {
+    Maker maker = taken();
+    if (maker == nullptr) maker = make();
+    use(maker.get());
+    const std::lock_guard<std::mutex> lock(mutex_);
+    idle_.push_back(std::move(maker));
+  }
+
+ private:
+  Maker taken() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (idle_.empty()) return nullptr;
+    Maker maker = std::move(idle_.back());
+    idle_.pop_back();
+    return maker;
+  }
+
+  std::mutex mutex_;
+  std::vector<Maker> idle_;
 };
 
 template <int N>
 void make_bands(const RasterLayers& job, const CellFilter& filter, const RasterOptions& options,
                 const PixelRows& pixels) {
-  constexpr int kBandValues = 1 << 17;
+  constexpr int kBandValues = 1 << 16;
   constexpr int kLeastRows = 16;
   const int rows = std::clamp(kBandValues / (options.width * job.channels), kLeastRows, 256);
+  BandMakers<N> makers;
   parallel_ranges(options.height, rows, options.threads, options.progress.part(kLayersShare, 1.0),
                   [&](std::int64_t begin, std::int64_t end) {
-                    BandMaker<N> maker(job, filter, pixels);
-                    maker.make(static_cast<int>(begin), static_cast<int>(end));
+                    makers.with_one(
+                        [&] { return std::make_unique<BandMaker<N>>(job, filter, pixels); },
+                        [&](BandMaker<N>* maker) {
+                          maker->make(static_cast<int>(begin), static_cast<int>(end));
+                        });
                   });
 }
 
