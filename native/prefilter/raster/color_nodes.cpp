@@ -5,7 +5,6 @@
 namespace prefilter {
 namespace {
 
-constexpr std::array<double, 3> kNodes = {-0.38729833462074170, 0.0, 0.38729833462074170};
 constexpr std::array<double, 3> kWeights = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
 
 // What a value of 1 at a node adds to the powers: Legendre's polynomials, each over the integral of
@@ -13,8 +12,7 @@ constexpr std::array<double, 3> kWeights = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
 constexpr std::array<ColorPowers, kColorNodes> kTerms = [] {
   std::array<ColorPowers, kColorNodes> terms{};
   for (std::size_t i = 0; i < kColorNodes; ++i) {
-    const double u = kNodes[i % 3];
-    const double v = kNodes[i / 3];
+    const auto [u, v] = color_node(i);
     const double weight = kWeights[i % 3] * kWeights[i / 3];
     const double uu = 180.0 * (u * u - 1.0 / 12.0);
     const double vv = 180.0 * (v * v - 1.0 / 12.0);
@@ -29,8 +27,6 @@ constexpr std::array<ColorPowers, kColorNodes> kTerms = [] {
 }();
 
 }  // namespace
-
-Point2 color_node(std::size_t index) { return {kNodes[index % 3], kNodes[index / 3]}; }
 
 void add_color_node(std::size_t index, const ChannelValues& value, int channels,
                     std::array<ColorPowers, kMaxChannels>* powers) {

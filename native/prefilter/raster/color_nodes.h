@@ -19,8 +19,12 @@ inline constexpr std::array<std::array<int, 2>, 6> kColorExponents = {
 
 /// Where a color is told that is no polynomial: three points along each axis, by Gauss's rule.
 inline constexpr std::size_t kColorNodes = 9;
-/// From the cell's center, in cells.
-Point2 color_node(std::size_t index);
+/// Along an axis, from the cell's center, in cells. Those along x follow each other.
+inline constexpr std::array<double, 3> kColorNodePlaces = {-0.38729833462074170, 0.0,
+                                                           0.38729833462074170};
+constexpr Point2 color_node(std::size_t index) {
+  return {kColorNodePlaces[index % 3], kColorNodePlaces[index / 3]};
+}
 /// Adds what a value there is of the polynomial that is nearest in the mean square.
 void add_color_node(std::size_t index, const ChannelValues& value, int channels,
                     std::array<ColorPowers, kMaxChannels>* powers);

@@ -2,7 +2,44 @@
 
 #include "prefilter/raster/local_color.h"
 
+#include "prefilter/raster/channel_count.h"
+
 namespace prefilter {
+namespace {
+
+// Adds first + i * step to pixel i of `count`.
+void add_linear(const ChannelValues& first, const ChannelValues& step, int channels, int count,
+                double* out) {
+  with_channel_count(channels, [&](auto constant) {
+    constexpr int kChannels = constant();
+    const auto firsts = channel_pairs<kChannels>(first);
+    const auto steps = channel_pairs<kChannels>(step);
+    for (int i = 0; i < count; ++i) {
+      const auto place = static_cast<double>(i);
+      add_pairs<kChannels>([&](std::size_t pair) { return firsts[pair] + place * steps[pair]; },
+                           out + static_cast<std::ptrdiff_t>(i) * kChannels);
+    }
+  });
+}
+
+// Adds the integral of value + u * along_u + v * along_v.
+void add_linear_integral(const ChannelValues& value, const ChannelValues& along_u,
+                         const ChannelValues& along_v, int channels, const ColorPowers& moments,
+                         double* out) {
+  with_channel_count(channels, [&](auto constant) {
+    constexpr int kChannels = constant();
+    const auto values = channel_pairs<kChannels>(value);
+    const auto us = channel_pairs<kChannels>(along_u);
+    const auto vs = channel_pairs<kChannels>(along_v);
+    add_pairs<kChannels>(
+        [&](std::size_t pair) {
+          return values[pair] * moments[0] + us[pair] * moments[1] + vs[pair] * moments[2];
+        },
+        out);
+  });
+}
+
+}  // namespace
 
 ChannelValues LocalColor::at(const Point2& point) const {
   ChannelValues value = layer_.paint.at(point);
@@ -48,6 +85,32 @@ void LocalColor::node_powers(int column, int row,
   }
 }
 
+void LocalColor::add_integral(int column, int row, const ColorPowers& moments, double* out) const {
+  const int channels = this->channels();
+  if (is_linear()) {
+    const Paint& paint = layer_.paint;
+    const Point2 center = center_of(column, row);
+    const double scale = 1.0 / filter_.cells_per_pixel;
+    ChannelValues value;
+    ChannelValues along_u;
+    ChannelValues along_v;
+    for (int c = 0; c < kMaxChannels; ++c) {
+      value[c] = paint.constant[c] + center.x * paint.along_x[c] + center.y * paint.along_y[c];
+      along_u[c] = scale * paint.along_x[c];
+      along_v[c] = scale * paint.along_y[c];
+    }
+    add_linear_integral(value, along_u, along_v, channels, moments, out);
+    return;
+  }
+  std::array<ColorPowers, kMaxChannels> powers;
+  this->powers(column, row, &powers);
+  for (int c = 0; c < channels; ++c) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < moments.size(); ++k) sum += powers[c][k] * moments[k];
+    out[c] += sum;
+  }
+}
+
 void LocalColor::add_means(int begin, int end, int row, double share, double* out) const {
   const Paint& paint = layer_.paint;
   const int channels = paint.channels;
@@ -56,12 +119,14 @@ void LocalColor::add_means(int begin, int end, int row, double share, double* ou
     const Point2 center = center_of(column, row);
     if (is_linear()) {
       const double scale = 1.0 / filter_.cells_per_pixel;
+      ChannelValues first{};
+      ChannelValues step{};
       for (int c = 0; c < channels; ++c) {
-        const double first =
+        first[c] =
             share * (paint.constant[c] + center.x * paint.along_x[c] + center.y * paint.along_y[c]);
-        const double step = share * scale * paint.along_x[c];
-        for (int i = 0; i < end - begin; ++i) out[i * channels + c] += first + i * step;
+        step[c] = share * scale * paint.along_x[c];
       }
+      add_linear(first, step, channels, end - begin, out);
       return;
     }
     double* to = out + static_cast<std::ptrdiff_t>(column - begin) * channels;

@@ -24,6 +24,9 @@ class LocalColor {
   /// For each channel. Linear colors are what they are; others the polynomial that is nearest in
   /// the mean square, by Gauss's rule of three points along each axis.
   void powers(int column, int row, std::array<ColorPowers, kMaxChannels>* out) const;
+  /// Adds the integral of the color over a part of a cell, of which those of 1, u, v, u^2, u v and
+  /// v^2 are given; linear colors need the first three.
+  void add_integral(int column, int row, const ColorPowers& moments, double* out) const;
   /// Adds the means over cells [begin, end) times a share to `out`, the values of the first one on.
   void add_means(int begin, int end, int row, double share, double* out) const;
 

@@ -18,23 +18,21 @@ PaintedRows<N>::PaintedRows(const CellFilter& filter, int width)
 template <int N>
 void PaintedRows<N>::add_cell(int column, int row, const Moments& moments,
                               const LocalColor& color) {
+  if (is_box_) {
+    pixels_.add_row(column, column + 1, row, [&](int, int, double* out) {
+      ColorPowers in_cell{};
+      for (std::size_t k = 0; k < in_cell.size(); ++k) {
+        const auto [m, n] = kColorExponents[k];
+        if (m + n <= N) in_cell[k] = moments[m][n];
+      }
+      color.add_integral(column, row, in_cell, out);
+    });
+    return;
+  }
   std::array<ColorPowers, kMaxChannels> powers;
   color.powers(column, row, &powers);
   const int count = filter_.degree + 1;
   const int channels = color.channels();
-  if (is_box_) {
-    const std::size_t terms = color.degree() == 1 ? 3 : kColorExponents.size();
-    pixels_.add_row(column, column + 1, row, [&](int, int, double* out) {
-      for (int c = 0; c < channels; ++c) {
-        double sum = 0.0;
-        for (std::size_t k = 0; k < terms; ++k) {
-          sum += powers[c][k] * moments[kColorExponents[k][0]][kColorExponents[k][1]];
-        }
-        out[c] += sum;
-      }
-    });
-    return;
-  }
   for (int c = 0; c < channels; ++c) {
     // The moments of the color: of the color's powers and the filter's together.
     std::array<double, (N + 1) * (N + 1)> colored{};

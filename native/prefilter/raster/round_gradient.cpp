@@ -7,6 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "prefilter/base/double_pair.h"
+#include "prefilter/raster/channel_count.h"
+
 namespace prefilter {
 namespace {
 
@@ -104,24 +107,48 @@ bool RoundGradient::powers(const Point2& center, std::array<ColorPowers, kMaxCha
   return true;
 }
 
+void RoundGradient::find_node_offsets(const Point2& center,
+                                      std::array<double, kColorNodes>* offsets) const {
+  // Of the nodes in a row and those in a column; one more, so that they come in twos.
+  std::array<Point2, 3> by_x;
+  std::array<Point2, 3> by_y;
+  for (std::size_t i = 0; i < by_x.size(); ++i) {
+    by_x[i] = origin_ + (center.x + side_ * kColorNodePlaces[i]) * along_x_;
+    by_y[i] = (center.y + side_ * kColorNodePlaces[i]) * along_y_;
+  }
+  std::array<double, kColorNodes + 1> squares{};
+  for (std::size_t i = 0; i < kColorNodes; ++i) {
+    const Point2 q = by_x[i % 3] + by_y[i / 3];
+    squares[i] = dot(q, q);
+  }
+  for (std::size_t i = 0; i < kColorNodes; i += 2) {
+    const DoublePair radius = sqrt(DoublePair{squares[i], squares[i + 1]});
+    const DoublePair offset = (radius - start_radius_) * per_radius_;
+    (*offsets)[i] = offset[0];
+    if (i + 1 < kColorNodes) (*offsets)[i + 1] = offset[1];
+  }
+}
+
 // From one stretch to the next, without a jump, the color is that of the first one, and of what
 // offsets are above the stop the difference of the slopes.
 bool RoundGradient::node_powers(const Point2& center,
                                 std::array<ColorPowers, kMaxChannels>* out) const {
   std::array<double, kColorNodes> offsets;
-  for (std::size_t i = 0; i < kColorNodes; ++i) {
-    const Point2 q = place_of(center + side_ * color_node(i));
-    offsets[i] = (std::sqrt(dot(q, q)) - start_radius_) * per_radius_;
+  find_node_offsets(center, &offsets);
+  double low = offsets[0];
+  double high = offsets[0];
+  for (const double offset : offsets) {
+    low = std::min(low, offset);
+    high = std::max(high, offset);
   }
-  const auto [low, high] = std::minmax_element(offsets.begin(), offsets.end());
-  if (!std::isfinite(*high)) return false;
+  if (!std::isfinite(high)) return false;
   const auto first = std::find_if(stretches_.begin(), stretches_.end() - 1,
-                                  [&](const Stretch& each) { return *low < each.high; });
+                                  [&](const Stretch& each) { return low < each.high; });
   const auto next = first + 1;
   const double stop = first->high;
-  const bool is_bent = *high > stop;
+  const bool is_bent = high > stop;
   if (is_bent) {
-    if (*high > next->high) return false;
+    if (high > next->high) return false;
     for (int c = 0; c < channels_; ++c) {
       const double before = first->constant[c] + stop * first->slope[c];
       const double after = next->constant[c] + stop * next->slope[c];
@@ -135,60 +162,71 @@ bool RoundGradient::node_powers(const Point2& center,
     above = powers_of_nodes(offsets);
   }
   for (int c = 0; c < channels_; ++c) {
-    const double bend = is_bent ? next->slope[c] - first->slope[c] : 0.0;
-    for (std::size_t k = 0; k < powers.size(); ++k) {
-      (*out)[c][k] = first->slope[c] * powers[k] + bend * above[k];
-    }
-    (*out)[c][0] += first->constant[c];
+    const double slope = first->slope[c];
+    const double bend = is_bent ? next->slope[c] - slope : 0.0;
+    ColorPowers sums;
+    for (std::size_t k = 0; k < powers.size(); ++k) sums[k] = slope * powers[k] + bend * above[k];
+    sums[0] += first->constant[c];
+    (*out)[c] = sums;
   }
   return true;
 }
 
+// The mean over a cell of what is quadratic: at its center, and a 24th of the second derivatives.
+// Two cells at once, of which the second may be one too many.
 template <int C>
 int RoundGradient::add_channels(const Point2& center, int count, double share, double* out) const {
-  // The mean over a cell of what is quadratic: at its center, and a 24th of the second derivatives.
   const Point2 step = side_ * along_x_;
   const Point2 across = side_ * along_y_;
   const double squares = dot(step, step) + dot(across, across);
   const Point2 first = place_of(center);
-  const Stretch* stretch = nullptr;
-  ChannelValues constant{};
-  ChannelValues slope{};
+  ChannelPairs<C> constant{};
+  ChannelPairs<C> slope{};
   const double near = kFarCells * size_;
-  for (int i = 0; i < count; ++i) {
-    const Point2 q = first + static_cast<double>(i) * step;
-    const double radius = std::sqrt(dot(q, q));
-    const double offset = (radius - start_radius_) * per_radius_;
-    if (stretch == nullptr || offset - margin_ < stretch->low || offset + margin_ > stretch->high) {
-      stretch = find(radius);
+  // Copies, as what is written might otherwise be these.
+  const double start_radius = start_radius_;
+  const double per_radius = per_radius_;
+  const double per_bend = per_radius_ / 24.0;
+  double low = HUGE_VAL;  // of offsets that are in the stretch
+  double high = -HUGE_VAL;
+  const auto add = [&](int i, double mean) {
+    add_pairs<C>([&](std::size_t pair) { return constant[pair] + mean * slope[pair]; },
+                 out + static_cast<std::ptrdiff_t>(i) * C);
+  };
+  for (int i = 0; i < count;) {
+    const DoublePair place = DoublePair{0.0, 1.0} + static_cast<double>(i);
+    const DoublePair x = first.x + place * step.x;
+    const DoublePair y = first.y + place * step.y;
+    const DoublePair radius = sqrt(x * x + y * y);
+    const DoublePair offset = (radius - start_radius) * per_radius;
+    // Not below 0 where the color is that of the stretch.
+    DoublePair inside = lower(lower(offset - low, high - offset), radius - near);
+    if (!(inside[0] >= 0.0)) {
+      const Stretch* stretch = find(radius[0]);
       if (stretch == nullptr) return i;
-      for (int c = 0; c < C; ++c) {
-        constant[c] = share * stretch->constant[c];
-        slope[c] = share * stretch->slope[c];
-      }
+      low = stretch->low + margin_;
+      high = stretch->high - margin_;
+      inside = lower(lower(offset - low, high - offset), radius - near);
+      constant = channel_pairs<C>(stretch->constant);
+      slope = channel_pairs<C>(stretch->slope);
+      for (DoublePair& pair : constant) pair *= share;
+      for (DoublePair& pair : slope) pair *= share;
     }
-    if (!(radius >= near)) return i;
-    const double inverse = 1.0 / radius;
-    const double to_x = dot(q, step) * inverse;
-    const double to_y = dot(q, across) * inverse;
-    const double bend = (squares - to_x * to_x - to_y * to_y) * inverse;
-    const double mean = offset + bend * (per_radius_ / 24.0);
-    for (int c = 0; c < C; ++c) out[i * C + c] += constant[c] + mean * slope[c];
+    const DoublePair inverse = 1.0 / radius;
+    const DoublePair to_x = (x * step.x + y * step.y) * inverse;
+    const DoublePair to_y = (x * across.x + y * across.y) * inverse;
+    const DoublePair bend = (squares - to_x * to_x - to_y * to_y) * inverse;
+    const DoublePair mean = offset + bend * per_bend;
+    add(i++, mean[0]);
+    if (i < count && inside[1] >= 0.0) add(i++, mean[1]);
   }
   return count;
 }
 
 int RoundGradient::add_means(const Point2& center, int count, double share, double* out) const {
-  switch (channels_) {
-    case 1:
-      return add_channels<1>(center, count, share, out);
-    case 2:
-      return add_channels<2>(center, count, share, out);
-    case 3:
-      return add_channels<3>(center, count, share, out);
-    default:
-      return add_channels<4>(center, count, share, out);
-  }
+  return with_channel_count(channels_, [&](auto channels) {
+    return add_channels<channels()>(center, count, share, out);
+  });
 }
 
 }  // namespace prefilter

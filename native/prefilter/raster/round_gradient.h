@@ -44,6 +44,7 @@ class RoundGradient {
   void add_stretch(double low, double high, const ChannelValues& before,
                    const ChannelValues& after);
   const Stretch* find(double radius) const;
+  void find_node_offsets(const Point2& center, std::array<double, kColorNodes>* offsets) const;
   Point2 place_of(const Point2& point) const {
     return origin_ + point.x * along_x_ + point.y * along_y_;
   }
