@@ -58,7 +58,7 @@ MonotoneContours::MonotoneContours(std::span<const Outline* const> outlines)
 }
 
 template <typename T>
-const T* MonotoneContours::keep(const std::vector<T>& values) {
+T* MonotoneContours::keep(std::span<const T> values) {
   auto* kept = static_cast<T*>(arena_->allocate(values.size() * sizeof(T), alignof(T)));
   std::uninitialized_copy(values.begin(), values.end(), kept);
   return kept;
@@ -98,13 +98,13 @@ void MonotoneContours::cut(Contour* contour) {
     cut_segment(curve_of(outline, segments[s]), static_cast<std::uint32_t>(s));
   }
   if (!(joints_.back() == begin)) {
-    const std::vector<Point2> line = {joints_.back(), begin};
-    cut_.push_back({MonotonePiece::kClosing, 0.0, 1.0, {keep(line), 2}});
+    const std::array<Point2, 2> line = {joints_.back(), begin};
+    cut_.push_back({MonotonePiece::kClosing, 0.0, 1.0, {keep<Point2>(line), 2}});
     joints_.push_back(begin);
   }
   contour->pieces = static_cast<std::uint32_t>(cut_.size());
-  contour->joints = keep(joints_);
-  contour->cut_pieces = keep(cut_);
+  contour->joints = keep<Point2>(joints_);
+  contour->cut_pieces = keep<MonotonePiece>(cut_);
 }
 
 // Parts that are points are left out; their neighbors in the segment take over their parameters.
@@ -115,26 +115,34 @@ void MonotoneContours::cut_segment(const Curve& curve, std::uint32_t segment) {
     joints_.push_back(curve.end());
     return;
   }
-  std::vector<double> turns;
-  find_turns(curve, &Point2::x, &turns);
-  find_turns(curve, &Point2::y, &turns);
-  std::sort(turns.begin(), turns.end());
-  turns.push_back(1.0);
+  turns_.clear();
+  find_turns(curve, &Point2::x, &turns_);
+  find_turns(curve, &Point2::y, &turns_);
+  if (turns_.empty()) {
+    // Its controls may turn where it does not.
+    if (curve.begin() == curve.end()) return;
+    cut_.push_back({segment, 0.0, 1.0, curve.controls});
+    joints_.push_back(curve.end());
+    return;
+  }
+  std::sort(turns_.begin(), turns_.end());
+  turns_.push_back(1.0);
   const std::size_t first = cut_.size();
   double from = 0.0;
-  for (const double to : turns) {
+  for (const double to : turns_) {
     if (to < 1.0 && (to - from < kNearEnd || 1.0 - to < kNearEnd)) continue;
     const PartOfCurve part(curve, from, to);
-    const auto part_controls = part.curve().controls;
-    std::vector<Point2> controls(part_controls.begin(), part_controls.end());
-    controls.front() = joints_.back();
-    if (to == 1.0) controls.back() = curve.end();
-    if (controls.front() == controls.back()) {
+    const std::span<const Point2> found = part.curve().controls;
+    const Point2 end = to == 1.0 ? curve.end() : found.back();
+    if (joints_.back() == end) {
       if (to == 1.0 && cut_.size() > first) cut_.back().to = 1.0;
       continue;
     }
-    cut_.push_back({segment, from, to, {keep(controls), controls.size()}});
-    joints_.push_back(controls.back());
+    Point2* controls = keep(found);
+    controls[0] = joints_.back();
+    controls[found.size() - 1] = end;
+    cut_.push_back({segment, from, to, {controls, found.size()}});
+    joints_.push_back(end);
     from = to;
   }
 }

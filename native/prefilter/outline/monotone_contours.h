@@ -73,7 +73,7 @@ class MonotoneContours {
   void cut_segment(const Curve& curve, std::uint32_t segment);
   bool add_runs(Contour* contour);
   template <typename T>
-  const T* keep(const std::vector<T>& values);
+  T* keep(std::span<const T> values);
 
   std::unique_ptr<std::pmr::monotonic_buffer_resource> arena_;
   std::vector<Contour> contours_;
@@ -81,6 +81,7 @@ class MonotoneContours {
   Box2 box_;
   std::vector<MonotonePiece> cut_;
   std::vector<Point2> joints_;
+  std::vector<double> turns_;
 };
 
 }  // namespace prefilter

@@ -21,19 +21,22 @@ namespace {
 // One outline's segment, told apart by its control points.
 struct Edge {
   const Point2* points = nullptr;
-  std::int32_t degree = 1;
-  double weight = 0.0;
+  const Outline::Segment* segment = nullptr;
 
+  std::int32_t degree() const { return segment->degree; }
+  double weight() const { return segment->weight; }
   const Point2& begin() const { return points[0]; }
-  const Point2& end() const { return points[degree]; }
+  const Point2& end() const { return points[degree()]; }
   bool is_reverse_of(const Edge& other) const {
-    if (degree != other.degree || weight != other.weight) return false;
-    for (std::int32_t i = 0; i <= degree; ++i) {
-      if (!(points[i] == other.points[degree - i])) return false;
+    if (degree() != other.degree() || weight() != other.weight()) return false;
+    for (std::int32_t i = 0; i <= degree(); ++i) {
+      if (!(points[i] == other.points[degree() - i])) return false;
     }
     return true;
   }
 };
+
+constexpr Outline::Segment kLine;
 
 std::uint64_t mixed(std::uint64_t hash) {
   hash ^= hash >> 32;
@@ -49,17 +52,19 @@ std::uint64_t hash_of(const Point2& point) {
 
 class Edges {
  public:
+  // At once, as in steps twice the memory would be written.
+  void reserve(std::size_t count) { edges_.reserve(count); }
   void add(const Outline& outline) {
     for (std::size_t c = 0; c < outline.contour_count(); ++c) {
       const auto segments = outline.contour(c);
       if (segments.empty()) continue;
       for (const Outline::Segment& segment : segments) {
-        edges_.push_back({outline.controls(segment).data(), segment.degree, segment.weight});
+        edges_.push_back({outline.controls(segment).data(), &segment});
       }
       const Point2& begin = outline.begin_of(c);
       if (edges_.back().end() == begin) continue;
       closing_.push_back({edges_.back().end(), begin});
-      edges_.push_back({closing_.back().data(), 1, 0.0});
+      edges_.push_back({closing_.back().data(), &kLine});
     }
   }
 
@@ -70,18 +75,25 @@ class Edges {
     const std::size_t size = std::bit_ceil(2 * edges_.size() + 1);
     std::vector<std::uint32_t> table(size, kFree);
     std::vector<std::uint8_t> is_cancelled(edges_.size(), 0);
+    // Where two outlines share an edge they mostly share the next, which the other one has before
+    // it: then no table has to be looked into, from one end of memory to the other.
+    std::uint32_t expected = kFree;
+    const auto cancels = [&](std::uint32_t i, std::uint32_t other) {
+      if (is_cancelled[other] != 0 || !edges_[i].is_reverse_of(edges_[other])) return false;
+      is_cancelled[other] = is_cancelled[i] = 1;
+      expected = other > 0 ? other - 1 : kFree;
+      return true;
+    };
     for (std::uint32_t i = 0; i < edges_.size(); ++i) {
+      if (expected != kFree && cancels(i, expected)) continue;
+      expected = kFree;
       const Edge& edge = edges_[i];
       // The same for both directions.
       std::size_t place = mixed(hash_of(edge.begin()) + hash_of(edge.end())) & (size - 1);
       int probes = 0;
       for (; table[place] != kFree && probes < kMostProbes; place = (place + 1) & (size - 1)) {
         ++probes;
-        const std::uint32_t other = table[place];
-        if (is_cancelled[other] == 0 && edge.is_reverse_of(edges_[other])) {
-          is_cancelled[other] = is_cancelled[i] = 1;
-          break;
-        }
+        if (cancels(i, table[place])) break;
       }
       if (is_cancelled[i] == 0 && table[place] == kFree) table[place] = i;
     }
@@ -121,10 +133,10 @@ class Edges {
   static constexpr int kMostProbes = 64;
 
   static void append(const Edge& edge, Outline* outline) {
-    if (edge.weight > 0.0) {
-      outline->conic_to(edge.points[1], edge.weight, edge.points[2]);
+    if (edge.weight() > 0.0) {
+      outline->conic_to(edge.points[1], edge.weight(), edge.points[2]);
     } else {
-      outline->curve_to({edge.points + 1, static_cast<std::size_t>(edge.degree)});
+      outline->curve_to({edge.points + 1, static_cast<std::size_t>(edge.degree())});
     }
   }
 
@@ -149,6 +161,11 @@ class Edges {
 
 bool are_side_by_side(std::span<const Outline* const> outlines) {
   Edges edges;
+  std::size_t most = 0;
+  for (const Outline* outline : outlines) {
+    most += outline->segments().size() + outline->contour_count();
+  }
+  edges.reserve(most);
   for (const Outline* outline : outlines) edges.add(*outline);
   const std::size_t all = edges.size();
   edges.cancel();
