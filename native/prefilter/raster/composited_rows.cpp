@@ -63,7 +63,7 @@ void CompositedRows::put_block(const Coat& coat, int row, int x, int count,
   const unsigned hidden = coat.opacity >= 1.0 ? covered.full : 0;
   bits.marked = static_cast<std::uint16_t>((bits.marked & ~hidden) | (bits.in_part & in_part));
   bits.in_part = static_cast<std::uint16_t>((bits.in_part & ~hidden) | in_part);
-  double* out = values->row(row - first_row_) + static_cast<std::ptrdiff_t>(x) * kChannels;
+  double* out = values->pixels(row - first_row_, x, x + count);
   for (unsigned left = covered.any; left != 0; left &= left - 1) {
     const int i = std::countr_zero(left);
     const bool is_full = (covered.full >> i & 1) != 0;
@@ -97,7 +97,7 @@ void CompositedRows::put_run(const Coat& coat, int row, int begin, int end, std:
       bits->in_part = static_cast<std::uint16_t>(bits->in_part & ~pixels);
     });
   }
-  double* out = values->row(row - first_row_) + static_cast<std::ptrdiff_t>(begin) * kChannels;
+  double* out = values->pixels(row - first_row_, begin, end);
   const double passing = 1.0 - share * coat.opacity;
   for (int x = begin; x < end; ++x, out += kChannels) {
     put_color<kChannels>(coat.color, share, passing, out);
@@ -172,8 +172,8 @@ void CompositedRows::reset_marked(const ChannelValues& background, BandValues* v
       unsigned marked = bits(row)[block].marked;
       if (marked == 0) continue;
       has_marks_[row - first_row_] = 1;
-      double* out =
-          values->row(row - first_row_) + static_cast<std::ptrdiff_t>(block) * kBlock * channels_;
+      const int x = block * kBlock;
+      double* out = values->pixels(row - first_row_, x, std::min(x + kBlock, width_));
       for (; marked != 0; marked &= marked - 1) {
         std::copy_n(background.data(), channels_, out + std::countr_zero(marked) * channels_);
       }
