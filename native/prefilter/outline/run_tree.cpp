@@ -3,7 +3,9 @@
 #include "prefilter/outline/run_tree.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 namespace prefilter {
 namespace {
@@ -90,6 +92,14 @@ void append_span_pairs(const Span& a, const Span& b, double precision, Pairs* pa
 
 void append_run_pairs(const MonotoneRun& a, const MonotoneRun& b, double precision, Pairs* pairs) {
   append_span_pairs({&a, 0, a.pieces}, {&b, 0, b.pieces}, precision, pairs);
+}
+
+// Of a leaf's runs, each of which is looked at with several.
+std::array<Box2, kLeafRuns> boxes_of(std::span<const MonotoneRun> runs) {
+  std::array<Box2, kLeafRuns> boxes;
+  std::transform(runs.begin(), runs.end(), boxes.begin(),
+                 [](const MonotoneRun& run) { return box_of(run.begin(), run.end()); });
+  return boxes;
 }
 
 template <RayAxis axis>
@@ -246,9 +256,12 @@ void RunTree::pairs_within(std::uint32_t index, FoundPairs* found) const {
     pairs_between(index + 1, node.second_child, found);
     return;
   }
-  for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-    for (std::uint32_t j = i + 1; j < node.first + node.count && found->look(); ++j) {
-      append_run_pairs(contours_.runs()[i], contours_.runs()[j], precision_, found->pairs);
+  const auto runs = contours_.runs().subspan(node.first, node.count);
+  const auto boxes = boxes_of(runs);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    for (std::size_t j = i + 1; j < runs.size() && found->look(); ++j) {
+      if (!meet(boxes[i], boxes[j], precision_)) continue;
+      append_run_pairs(runs[i], runs[j], precision_, found->pairs);
     }
   }
 }
@@ -258,9 +271,14 @@ void RunTree::pairs_between(std::uint32_t a, std::uint32_t b, FoundPairs* found)
   const Node& second = nodes_[b];
   if (!meet(first.box, second.box, precision_) || !found->look()) return;
   if (first.second_child == 0 && second.second_child == 0) {
-    for (std::uint32_t i = first.first; i < first.first + first.count; ++i) {
-      for (std::uint32_t j = second.first; j < second.first + second.count && found->look(); ++j) {
-        append_run_pairs(contours_.runs()[i], contours_.runs()[j], precision_, found->pairs);
+    const auto runs = contours_.runs().subspan(first.first, first.count);
+    const auto others = contours_.runs().subspan(second.first, second.count);
+    const auto boxes = boxes_of(runs);
+    const auto other_boxes = boxes_of(others);
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      for (std::size_t j = 0; j < others.size() && found->look(); ++j) {
+        if (!meet(boxes[i], other_boxes[j], precision_)) continue;
+        append_run_pairs(runs[i], others[j], precision_, found->pairs);
       }
     }
   } else if (second.second_child == 0 || (first.second_child != 0 && first.count >= second.count)) {
