@@ -39,14 +39,14 @@ class Commands:
             after Ctrl-C, 143 after SIGTERM.
         """
         from prefilter._command.program import ended, execute
-        from prefilter._command.voices import keep_output_apart
+        from prefilter._command.voices import output_apart
 
-        def run() -> None:
+        try:
             options = self.parser().parse_args(arguments)
-            keep_output_apart()
-            execute(options)
-
-        return ended(run)
+        except SystemExit as end:
+            return int(end.code or 0)
+        with output_apart():
+            return ended(lambda: execute(options))
 
     def parser(self) -> "argparse.ArgumentParser":
         """Returns what reads the arguments."""

@@ -31,6 +31,7 @@ SAME_IN_ANY_BLENDER = {
     "core/test_jobs.py",
     "core/test_queue.py",
     "mipmaps/test_bad_inputs.py",
+    "mipmaps/test_bake_tasks.py",
     "mipmaps/test_contents.py",
     "mipmaps/test_mipmap_commands.py",
     "mipmaps/test_reader.py",

@@ -3,6 +3,8 @@
 """Commands over many files, and the tasks of a farm: the same files as one by one."""
 
 import json
+import subprocess
+import sys
 
 import pytest
 from command_files import fails, noise, run, write_picture, write_quad
@@ -124,3 +126,18 @@ def test_two_files_never_become_one(tmp_path, capsys):
     same = [write_picture(tmp_path / name / "x.png", noise(4, 4)) for name in ("a", "b")]
     target = folder(tmp_path, "out")
     assert "both become" in fails(capsys, 2, "resize", *same, target, *HALF)
+
+
+def test_four_processes_at_once_make_what_one_makes(pictures, tmp_path):
+    """In the same folder, where each looks for what others have left behind."""
+    whole, parts = folder(tmp_path, "whole"), folder(tmp_path, "parts")
+    assert run("resize", *pictures, whole, *HALF) == 0
+    words = ["-m", "prefilter", "resize", *map(str, pictures), str(parts), *HALF, "--task"]
+    runs = [
+        subprocess.Popen([sys.executable, *words, f"{number}/4"], stderr=subprocess.PIPE, text=True)
+        for number in (1, 2, 3, 4)
+    ]
+    for one in runs:
+        told = one.communicate(timeout=60)[1]
+        assert one.returncode == 0, told
+    assert contents(parts.parent) == contents(whole.parent)

@@ -80,10 +80,11 @@ def test_output_is_kept_apart_from_what_others_print():
         "import os\n"
         "from prefilter._command import telling, voices\n"
         "print('before')\n"
-        "voices.keep_output_apart()\n"
-        "print('an importer')\n"
-        "os.write(1, b'a library\\n')\n"
-        "telling.say('ours')\n"
+        "with voices.output_apart():\n"
+        "    print('an importer')\n"
+        "    os.write(1, b'a library\\n')\n"
+        "    telling.say('ours')\n"
+        "print('Blender quits')\n"
     )
     environment = os.environ | {"PYTHONUNBUFFERED": "1"}
     done = subprocess.run(
@@ -91,4 +92,4 @@ def test_output_is_kept_apart_from_what_others_print():
     )
     assert done.returncode == 0, done.stderr
     assert done.stdout == "before\nours\n"
-    assert set(done.stderr.splitlines()) == {"an importer", "a library"}
+    assert set(done.stderr.splitlines()) == {"an importer", "a library", "Blender quits"}

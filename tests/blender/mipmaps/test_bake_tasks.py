@@ -7,7 +7,7 @@ import json
 import gltf_files
 import pytest
 import scenes
-from command_line import assert_fails, run, run_blender
+from command_line import assert_fails, run
 
 PAIR = ("normal.png", "orm.png")
 
@@ -90,13 +90,6 @@ def test_an_image_that_is_missing_fails_in_its_own_task(model, tmp_path):
     assert any("'glow.png' is not baked" in result.stderr for result in results)
     left = {path.name: path.read_bytes() for path in (tmp_path / "tasks").iterdir()}
     assert left == {name: data for name, data in whole.items() if name != "glow.ktx2"}
-
-
-def test_standard_output_is_the_list_alone(model):
-    """Whatever Blender and its importer print."""
-    result = run_blender("bake", model, "--all", "--list", "--json")
-    assert result.returncode == 0, result.stderr
-    assert len(images(json.loads(result.stdout)["tasks"])) == 3
 
 
 def test_what_is_up_to_date_is_left_alone(model, tmp_path):

@@ -9,6 +9,8 @@ import ctypes
 import json
 import os
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any, TextIO
 
 from .._work.outcome import Outcome
@@ -144,19 +146,25 @@ def output() -> TextIO:
     return sys.stdout if _own_output is None else _own_output
 
 
-def keep_output_apart() -> None:
-    """From now on standard output has only what commands say; what else prints goes to stderr.
+@contextmanager
+def output_apart() -> Iterator[None]:
+    """A context in which standard output has only what commands say; all else goes to stderr.
 
-    Blender's importers print there, and so does Blender itself: what it has not flushed yet as
-    well. So this lasts until the process ends.
+    Blender's importers print there, and so does Blender itself, what it has not flushed yet as
+    well. What others print goes there after the context, too: a process has one command.
     """
     global _own_output
     sys.stdout.flush()
-    _own_output = os.fdopen(os.dup(1), "w", encoding="utf-8", errors="replace")
-    os.dup2(2, 1)
-    if os.name == "posix":
-        # What C has not written yet would come last, after the line that says why a command ends.
-        ctypes.CDLL(None).fflush(None)
+    with os.fdopen(os.dup(1), "w", encoding="utf-8", errors="replace") as own:
+        os.dup2(2, 1)
+        if os.name == "posix":
+            # What C has not written would come last, after the line that says why a command ends.
+            ctypes.CDLL(None).fflush(None)
+        _own_output = own
+        try:
+            yield
+        finally:
+            _own_output = None
 
 
 def _one_line(text: str) -> str:
