@@ -51,10 +51,12 @@ def add(commands: Any) -> None:
         help="an object of a .blend file; repeat for several (default: all that are visible)",
     )
     reconstruct.add_settings(parser, presets.host(RECONSTRUCT))
+    reconstruct.add_steps(parser)
     parser.set_defaults(execute=_reconstruct, usage_error=parser.error)
 
 
 def _reconstruct(options: argparse.Namespace) -> None:
+    reconstruct.expand_folders(options)
     endings = [command.check_ending(options, "SOURCE", path, _SOURCES) for path in options.sources]
     ending = command.check_ending(options, "TARGET", options.target, scenes.TARGETS)
     has_blend = _BLEND in endings
@@ -64,10 +66,18 @@ def _reconstruct(options: argparse.Namespace) -> None:
         options.usage_error("--object: only .blend files have objects")
     if options.viewpoint and has_blend:
         options.usage_error("--viewpoint: objects of .blend files have their own")
+    reconstruct.check_steps(options)
+    if options.step is not None and ending != STREAMED_TARGET:
+        options.usage_error(f"--step: needs a {STREAMED_TARGET} file as TARGET")
+    if options.step is not None and has_blend:
+        options.usage_error("--step: not allowed for .blend files")
     target = staging.check_output(options.target)
     settings = reconstruct.settings_of(options, presets.host(RECONSTRUCT))
     if has_blend:
         _from_objects(options, target, settings)
+        return
+    if options.step is not None:
+        reconstruct.do_step(options, target, settings, length)
         return
     sources = [Path(path) for path in options.sources]
     if ending == STREAMED_TARGET:

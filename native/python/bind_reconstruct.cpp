@@ -20,6 +20,7 @@
 #include "prefilter/mesh/array_sink.h"
 #include "prefilter/mesh/ply_mesh_writer.h"
 #include "prefilter/reconstruct/reconstruct.h"
+#include "prefilter/reconstruct/steps.h"
 #include "prefilter/scan/array_source.h"
 #include "prefilter/scan/joined_points.h"
 #include "prefilter/scan/turned_points.h"
@@ -149,22 +150,69 @@ std::tuple<Array<double>, Array<std::int32_t>, Array<float>, py::dict> bound_tri
           to_array<float>(std::move(mesh.attributes), {vertices, columns}), found};
 }
 
+// How a surface of a cloud is written.
+std::unique_ptr<PlyMeshWriter> mesh_writer(const PointSource& source, const std::string& target,
+                                           const ReconstructOptions& options) {
+  std::vector<PointAttribute> attributes = source.attributes();
+  if (options.support) {
+    for (PointAttribute& each : support_attributes()) attributes.push_back(std::move(each));
+  }
+  return std::make_unique<PlyMeshWriter>(target, std::move(attributes), source.is_double());
+}
+
 py::dict bound_reconstruct_file(PointSource* source, const std::string& target,
                                 ReconstructOptions options, const py::object& callback) {
   const Progress progress = to_progress(callback);
   ReconstructReport report;
   {
     const py::gil_scoped_release unlocked;
-    std::vector<PointAttribute> attributes = source->attributes();
-    if (options.support) {
-      for (PointAttribute& each : support_attributes()) attributes.push_back(std::move(each));
-    }
-    PlyMeshWriter writer(target, std::move(attributes), source->is_double());
+    const std::unique_ptr<PlyMeshWriter> writer = mesh_writer(*source, target, options);
     options.progress = progress.part(0.0, 0.95);
-    report = reconstruct(source, options, &writer);
-    writer.finish(progress.part(0.95, 1.0));
+    report = reconstruct(source, options, writer.get());
+    writer->finish(progress.part(0.95, 1.0));
   }
   return to_dict(report);
+}
+
+// A step that makes a file: of a source, of all counts, or of all cells.
+void bound_step(const std::string& step, PointSource* source, std::size_t number,
+                const StepFiles& files, ReconstructOptions options, const py::object& callback) {
+  options.progress = to_progress(callback);
+  const py::gil_scoped_release unlocked;
+  if (step == "measure") measure_step(source, number, files, options);
+  if (step == "count") count_step(source, number, files, options);
+  if (step == "merge") merge_step(files, options);
+  if (step == "part") part_step(number, source->attributes().size(), files, options);
+}
+
+py::dict bound_join(PointSource* source, const StepFiles& files, const std::string& target,
+                    ReconstructOptions options, const py::object& callback) {
+  const Progress progress = to_progress(callback);
+  ReconstructReport report;
+  {
+    const py::gil_scoped_release unlocked;
+    const std::unique_ptr<PlyMeshWriter> writer = mesh_writer(*source, target, options);
+    options.progress = progress.part(0.0, 0.95);
+    report = join_step(source->attributes().size(), files, options, writer.get());
+    writer->finish(progress.part(0.95, 1.0));
+  }
+  return to_dict(report);
+}
+
+void bind_steps(py::module_& m) {
+  py::class_<StepFiles>(m, "StepFiles")
+      .def(py::init([](std::string work, std::vector<std::string> measures,
+                       std::vector<std::string> counts, std::string cells,
+                       std::vector<std::string> parts) {
+             return StepFiles{std::move(work), std::move(measures), std::move(counts),
+                              std::move(cells), std::move(parts)};
+           }),
+           py::arg("work"), py::arg("measures"), py::arg("counts"), py::arg("cells"),
+           py::arg("parts"));
+  m.def("reconstruct_step", &bound_step, py::arg("step"), py::arg("source"), py::arg("number"),
+        py::arg("files"), py::arg("options"), py::arg("progress"));
+  m.def("join_steps", &bound_join, py::arg("source"), py::arg("files"), py::arg("target"),
+        py::arg("options"), py::arg("progress"));
 }
 
 }  // namespace
@@ -181,7 +229,8 @@ void bind_reconstruct(py::module_& m) {
       .def(py::init([](const py::tuple& sources) {
              return std::make_unique<JoinedPoints>(sources.cast<std::vector<PointSource*>>());
            }),
-           py::arg("sources"), py::keep_alive<1, 2>());
+           py::arg("sources"), py::keep_alive<1, 2>())
+      .def("choose", &JoinedPoints::choose, py::arg("source"));
   py::class_<TurnedPoints, PointSource>(m, "TurnedPoints")
       .def(py::init([](PointSource* source, bool is_up, const Array<double>& viewpoints) {
              const std::span<const Vector3> rows = rows_of(viewpoints);
@@ -196,6 +245,7 @@ void bind_reconstruct(py::module_& m) {
         py::arg("distance"), py::arg("hole"), py::arg("island"), py::arg("progress"));
   m.def("reconstruct_file", &bound_reconstruct_file, py::arg("source"), py::arg("target"),
         py::arg("options"), py::arg("progress"));
+  bind_steps(m);
 }
 
 }  // namespace prefilter::python

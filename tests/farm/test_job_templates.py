@@ -38,12 +38,12 @@ def run(*command: object) -> str:
     return done.stdout
 
 
-def run_template(name: str, **parameters: object) -> str:
-    """Runs all tasks of a template, and returns the log; reports of progress are in it."""
+def run_template(name: str, step: str, **parameters: object) -> str:
+    """Runs all tasks up to a step of a template, and returns the log, with reports of progress."""
     template = FARM / "openjd" / f"{name}.yaml"
     values = {"Blender": BLENDER, **parameters}
     given = [word for key, value in values.items() for word in ("-p", f"{key}={value}")]
-    return run(OPENJD, "run", template, *given)
+    return run(OPENJD, "run", template, "--step", step, "--run-dependencies", *given)
 
 
 def compiled(name: str, **settings: object) -> dict[str, Any]:
@@ -104,9 +104,9 @@ def write_model(folder: Path) -> Path:
     return folder / "model.obj"
 
 
-def write_ball(path: Path, count: int) -> Path:
+def write_ball(path: Path, count: int, seed: int) -> Path:
     """Writes points of a ball, with normals."""
-    normals = np.random.default_rng(1).normal(size=(count, 3)).astype("<f4")
+    normals = np.random.default_rng(seed).normal(size=(count, 3)).astype("<f4")
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     names = "".join(f"property float {name}\n" for name in ("x", "y", "z", "nx", "ny", "nz"))
     header = f"ply\nformat binary_little_endian 1.0\nelement vertex {count}\n{names}end_header\n"
@@ -133,7 +133,7 @@ def test_a_bake_of_two_images(tmp_path):
     run(*prefilter, "bake", model, *flags, tmp_path / "whole")
     whole = contents(tmp_path / "whole")
     assert whole.keys() == {"paint0.ktx2", "paint1.ktx2"}
-    log = run_template("bake", Model=model, Textures=tmp_path / "tasks", Tasks=2)
+    log = run_template("bake", "Bake", Model=model, Textures=tmp_path / "tasks", Tasks=2)
     assert contents(tmp_path / "tasks") == whole
     assert log.count("openjd_progress: 100.0") == 2
     assert log.count("openjd_status: Baked 'paint") == 2
@@ -142,11 +142,14 @@ def test_a_bake_of_two_images(tmp_path):
 @needs_openjd
 @needs_blender
 def test_a_surface_of_a_million_points(tmp_path):
-    points = write_ball(tmp_path / "ball.ply", 1_000_000)
+    (tmp_path / "points").mkdir()
+    for number in range(2):
+        write_ball(tmp_path / "points" / f"{number}.ply", 500_000, number)
     surface = tmp_path / "surface.ply"
-    log = run_template("reconstruct", Points=points, Surface=surface, Depth=6)
-    assert "openjd_progress: 100.0" in log
-    assert "openjd_status: " in log
+    places = {"Points": tmp_path / "points", "Surface": surface, "Work": tmp_path / "work"}
+    log = run_template("reconstruct", "Join", Depth=6, Parts=2, Tasks=1, **places)
+    assert log.count("openjd_status: Step ") == 2 + 2 + 1 + 2
+    assert "openjd_status: Reconstructed 'surface.ply'" in log
     assert surface.read_bytes().startswith(b"ply\n")
 
 
@@ -170,11 +173,25 @@ def test_flamenco_turns_the_cache_on_at_the_end():
     assert [task["dependencies"] for task in job["tasks"]] == [[], [], ["bake-1", "bake-2"]]
 
 
-def test_flamenco_reconstructs_in_one_task():
-    job = compiled("prefilter-reconstruct", points="scan.laz", surface="scan.ply", depth=11)
+def test_flamenco_reconstructs_in_steps():
+    places = {"points": "scans", "surface": "scan.ply", "work": "/work"}
+    job = compiled("prefilter-reconstruct", **places, depth=11, parts=32, tasks=2)
     start = ["{blender}", "--background", "--command", "prefilter", "reconstruct"]
-    more = ["scan.laz", "scan.ply", "--depth", "11", "--memory-limit", "0"]
-    assert commands(job) == [[*start, *more]]
+    start += ["scans", "scan.ply", "--depth", "11", "--memory-limit", "0", "--work", "/work"]
+    start += ["--parts", "32", "--step"]
+    runs = (("measure", 2), ("count", 2), ("merge", 1), ("part", 2), ("join", 1))
+    assert commands(job) == [
+        [*start, step, "--task", f"{number}/{count}"]
+        for step, count in runs
+        for number in range(1, count + 1)
+    ]
+    assert [task["dependencies"] for task in job["tasks"]] == [
+        *([], []),
+        *(["measure-1", "measure-2"], ["measure-1", "measure-2"]),
+        ["count-1", "count-2"],
+        *(["merge"], ["merge"]),
+        ["part-1", "part-2"],
+    ]
 
 
 @pytest.mark.parametrize(
@@ -182,7 +199,7 @@ def test_flamenco_reconstructs_in_one_task():
     [
         ("prefilter-bake", {"blendfile": "a.blend"}),
         ("prefilter-bake", {"blendfile": "a.blend", "textures": "o", "tasks": "3"}),
-        ("prefilter-reconstruct", {"points": "a.ply", "surface": "b.ply", "frames": "1"}),
+        ("prefilter-texture-cache", {"blendfile": "a.blend", "frames": "1"}),
     ],
 )
 def test_flamenco_refuses_what_a_job_type_does_not_know(name, settings):

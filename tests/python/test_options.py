@@ -45,8 +45,8 @@ OPTIONS = [
     (octree.Octree.contour, _native.ContourOptions, octree._CONTOUR_CHECKS),
     (octree.Octree.traced_contour, _native.ContourOptions, contours.CLEANUP_CHECKS),
     (octree.Octree.quad_contour, _native.ContourOptions, octree._QUAD_CHECKS),
-    (reconstruction.reconstruct, _native.ReconstructOptions, reconstruction._CHECKS),
-    (reconstruction.reconstruct_file, _native.ReconstructOptions, reconstruction._CHECKS),
+    (reconstruction.reconstruct, _native.ReconstructOptions, reconstruction.CHECKS),
+    (reconstruction.reconstruct_file, _native.ReconstructOptions, reconstruction.CHECKS),
 ]
 # Set by the functions themselves.
 INTERNAL = {"are_sides_known", "folder", "grid", "slices", "support"}

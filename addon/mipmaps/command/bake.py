@@ -63,7 +63,7 @@ def add(commands: Any) -> None:
         *tables(GltfSettings),
         _NOTES,
     )
-    source.add_arguments(parser)
+    source.add_arguments(parser, "; with --all, bake this one alone, as the whole does")
     presets.add_flag(parser)
     add_flags(parser, Settings)
     parser.add_argument(

@@ -21,7 +21,8 @@ from ..choices import Settings
 WANTED = "mesh object"
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
+def add_arguments(parser: argparse.ArgumentParser, more: str = "") -> None:
+    """Adds the arguments; `more` goes on with the help of --image."""
     parser.add_argument("file", metavar="FILE", help=f"a file: {either(scenes.SOURCES)}")
     parser.add_argument(
         "--object",
@@ -34,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--image",
         metavar="NAME",
-        help="the image: its name in the file, or the path of a picture file",
+        help=f"the image: its name in the file, or the path of a picture file{more}",
     )
 
 

@@ -39,6 +39,7 @@ float normal_scale(const PointBatch& batch, std::size_t i) {
 
 struct Scratch {
   SampleCells run;
+  std::size_t cloud = 0;
   PointOrder order;
 };
 
@@ -124,6 +125,10 @@ void CloudPart::include(const Vector3& point, double point_weight) {
 
 void CloudPart::include(const CloudPart& other) {
   if (other.points == 0) return;
+  if (points == 0) {
+    *this = other;
+    return;
+  }
   const auto own = static_cast<double>(points);
   const auto more = static_cast<double>(other.points);
   box.include(other.box);
@@ -141,13 +146,17 @@ CloudExtent measure_cloud(PointSource* source, const Progress& progress, int thr
                           ThinnedPoints* some) {
   struct Found {
     CloudExtent extent;
+    std::size_t cloud = 0;
     std::vector<ThinnedPoints::Entry> entries;
   };
   CloudExtent extent;
+  CloudPart own;  // of the cloud that is read
+  std::size_t cloud = 0;
   for_batches<Found>(
       source, progress, threads,
       [some](const PointBatch& batch, Found* found) {
         found->extent = CloudExtent();
+        found->cloud = batch.cloud;
         found->entries.clear();
         found->extent.points = batch.positions.size();
         for (std::size_t i = 0; i < batch.positions.size(); ++i) {
@@ -163,12 +172,15 @@ CloudExtent measure_cloud(PointSource* source, const Progress& progress, int thr
         }
       },
       [&](const Found& found) {
-        extent.part.include(found.extent.part);
+        if (found.cloud != cloud) extent.part.include(std::exchange(own, CloudPart()));
+        cloud = found.cloud;
+        own.include(found.extent.part);
         extent.steps.add(found.extent.steps);
         extent.points += found.extent.points;
         extent.dropped += found.extent.dropped;
         if (some != nullptr) some->add(found.entries);
       });
+  extent.part.include(own);
   if (some != nullptr) some->finish();
   return extent;
 }
@@ -176,12 +188,18 @@ CloudExtent measure_cloud(PointSource* source, const Progress& progress, int thr
 void gather_samples(PointSource* source, const SampleGrid& grid, const Progress& progress,
                     int threads, SampleStore* store) {
   const std::size_t attribute_count = source->attributes().size();
+  std::size_t cloud = 0;
   for_batches<Scratch>(
       source, progress, threads,
       [&](const PointBatch& batch, Scratch* scratch) {
         make_run(batch, grid, attribute_count, scratch);
+        scratch->cloud = batch.cloud;
       },
-      [&](const Scratch& scratch) { store->add(scratch.run); });
+      [&](const Scratch& scratch) {
+        if (scratch.cloud != cloud) store->end_cloud();
+        cloud = scratch.cloud;
+        store->add(scratch.run);
+      });
   store->finish(threads);
 }
 

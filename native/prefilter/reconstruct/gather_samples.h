@@ -44,7 +44,8 @@ CloudExtent measure_cloud(PointSource* source, const Progress& progress, int thr
                           ThinnedPoints* some = nullptr);
 
 /// Reads the source again, and puts all points that count into cells. The same to rounding for
-/// points in any order, and to the last bit for any number of threads.
+/// points in any order, and to the last bit for any number of threads. Clouds that are joined are
+/// summed up each by itself, so that machines may do that, and then one after the other.
 void gather_samples(PointSource* source, const SampleGrid& grid, const Progress& progress,
                     int threads, SampleStore* store);
 

@@ -3,6 +3,7 @@
 #include "prefilter/reconstruct/sample_store.h"
 
 #include <algorithm>
+#include <bit>
 #include <span>
 #include <utility>
 
@@ -74,7 +75,42 @@ SampleStore::SampleStore(int depth, int slab_bits, std::size_t attribute_count,
       attribute_count_(attribute_count),
       memory_limit_(memory_limit),
       folder_(std::move(folder)),
-      slabs_(std::size_t{1} << (depth - slab_bits)) {}
+      slabs_(std::size_t{1} << (depth - slab_bits)),
+      is_begun_(slabs_.size()) {}
+
+std::unique_ptr<SampleStore> SampleStore::open(std::unique_ptr<ArchiveReader> file) {
+  const std::vector<std::uint32_t> shape = file->get_all<std::uint32_t>();
+  if (shape.size() != 3 || shape[0] > kRowShift || shape[1] > shape[0]) file->refuse();
+  const auto depth = static_cast<int>(shape[0]);
+  auto store = std::make_unique<SampleStore>(depth, static_cast<int>(shape[1]), shape[2], 0, "");
+  for (Runs& runs : store->slabs_) {
+    Run run;
+    run.is_in_file = true;
+    run.offset = file->place();
+    run.count = file->skip_all<SampleCell>();
+    run.more = file->place();
+    if (file->skip_all<float>() != run.count * store->attribute_count_) file->refuse();
+    if (run.count > 0) runs.push_back(std::move(run));
+  }
+  file->end();
+  store->opened_ = std::move(file);
+  return store;
+}
+
+int SampleStore::depth() const {
+  return slab_shift_ + static_cast<int>(std::bit_width(slabs_.size())) - 1;
+}
+
+std::unique_ptr<SampleStore> SampleStore::empty_copy(std::uint64_t memory_limit,
+                                                     std::string folder) const {
+  return std::make_unique<SampleStore>(depth(), slab_shift_, attribute_count_, memory_limit,
+                                       std::move(folder));
+}
+
+bool SampleStore::is_like(const SampleStore& other) const {
+  return depth() == other.depth() && slab_shift_ == other.slab_shift_ &&
+         attribute_count_ == other.attribute_count_;
+}
 
 void SampleStore::add(const SampleCells& run) {
   for (std::size_t begin = 0; begin < run.size();) {
@@ -89,7 +125,8 @@ void SampleStore::add(const SampleCells& run) {
     append(run, begin, end, attribute_count_, &runs.back().cells);
     runs.back().count = end - begin;
     held_ += end - begin;
-    while (runs.size() > 1 && runs[runs.size() - 2].count < 2 * runs.back().count) {
+    const std::size_t begun = is_begun_[static_cast<std::size_t>(slab)];
+    while (runs.size() > 1 + begun && runs[runs.size() - 2].count < 2 * runs.back().count) {
       merge_last(&runs);
     }
     begin = end;
@@ -125,12 +162,37 @@ void SampleStore::spill() {
   held_ = 0;
 }
 
+void SampleStore::end_cloud(std::size_t slab) {
+  Runs& runs = slabs_[slab];
+  while (runs.size() > 1U + is_begun_[slab]) merge_last(&runs);
+  if (runs.size() > 1) merge_last(&runs);
+  is_begun_[slab] = runs.empty() ? 0 : 1;
+}
+
+void SampleStore::end_cloud() {
+  for (std::size_t slab = 0; slab < slabs_.size(); ++slab) {
+    end_cloud(slab);
+    if (held_ * bytes_per_cell() > memory_limit_) spill();
+  }
+}
+
+void SampleStore::save(ArchiveWriter* file) const {
+  file->put_all(std::vector<std::uint32_t>{static_cast<std::uint32_t>(depth()),
+                                           static_cast<std::uint32_t>(slab_shift_),
+                                           static_cast<std::uint32_t>(attribute_count_)});
+  for (int i = 0; i < slab_count(); ++i) {
+    const SampleCells cells = slab(i);
+    file->put_structs(cells.cells);
+    file->put_all(cells.attributes);
+  }
+}
+
 void SampleStore::finish(int threads) {
   // Where a file is written, slabs take turns, so that one of them is in memory at a time.
   const int width = file_ ? 1 : threads;
   parallel_for(slab_count(), width, Progress(), [&](std::int64_t i) {
+    end_cloud(static_cast<std::size_t>(i));
     Runs& runs = slabs_[static_cast<std::size_t>(i)];
-    while (runs.size() > 1) merge_last(&runs);
     for (Run& run : runs) {
       run.cells.cells.shrink_to_fit();
       run.cells.attributes.shrink_to_fit();
@@ -154,6 +216,11 @@ std::size_t SampleStore::size(int index) const {
 SampleCells SampleStore::read(const Run& run) const {
   if (!run.is_in_file) return run.cells;
   SampleCells cells;
+  if (opened_) {
+    cells.cells = opened_->all_at<SampleCell>(run.offset);
+    cells.attributes = opened_->all_at<float>(run.more);
+    return cells;
+  }
   cells.cells.resize(run.count);
   cells.attributes.resize(run.count * attribute_count_);
   file_->read_at(run.offset, std::as_writable_bytes(std::span(cells.cells)));

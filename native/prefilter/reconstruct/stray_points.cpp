@@ -27,7 +27,8 @@ std::size_t most_strays(std::size_t counted) {
   return std::max(counted / 100'000, std::min<std::size_t>(counted / 1000, 3));
 }
 
-bool may_have_strays(const CloudExtent& extent) {
+bool may_have_strays(const CloudExtent& extent, std::size_t most) {
+  if (most <= extent.strays) return false;
   const auto counted = static_cast<double>(extent.part.points);
   for (std::size_t a = 0; a < 3; ++a) {
     const double reach = std::max(extent.part.box.high[a] - extent.part.mean[a],
@@ -117,11 +118,14 @@ std::optional<std::size_t> first_stray(const Counts& counts, std::size_t most) {
 
 }  // namespace
 
+bool may_have_strays(const CloudExtent& extent) {
+  return may_have_strays(extent, most_strays(extent.part.points));
+}
+
 void leave_out_strays(PointSource* source, const Progress& progress, int threads,
                       CloudExtent* extent) {
   const std::size_t most = most_strays(extent->part.points);
-  for (int round = 0; round < kMostRounds && most > extent->strays && may_have_strays(*extent);
-       ++round) {
+  for (int round = 0; round < kMostRounds && may_have_strays(*extent, most); ++round) {
     const Bins bins(*extent);
     const Counts counts = count_points(source, bins, progress, threads);
     const std::optional<std::size_t> first = first_stray(counts, most - extent->strays);

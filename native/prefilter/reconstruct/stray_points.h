@@ -19,6 +19,9 @@ namespace prefilter {
 void leave_out_strays(PointSource* source, const Progress& progress, int threads,
                       CloudExtent* extent);
 
+/// Whether there may be strays; that takes a look at all points again.
+bool may_have_strays(const CloudExtent& extent);
+
 /// A source whose points outside of a box have no weight.
 class PointsWithin final : public ChangedPoints {
  public:

@@ -50,7 +50,8 @@ std::optional<std::size_t> place_of(const std::vector<PointAttribute>& attribute
 
 }  // namespace
 
-JoinedPoints::JoinedPoints(std::vector<PointSource*> sources) : sources_(std::move(sources)) {
+JoinedPoints::JoinedPoints(std::vector<PointSource*> sources)
+    : sources_(std::move(sources)), end_(sources_.size()) {
   if (sources_.empty()) throw_invalid("sources: none; at least one is needed");
   for (const PointSource* source : sources_) {
     if (source->has_normals() != sources_.front()->has_normals()) {
@@ -71,8 +72,8 @@ JoinedPoints::JoinedPoints(std::vector<PointSource*> sources) : sources_(std::mo
 
 std::optional<std::size_t> JoinedPoints::count() const {
   std::size_t sum = 0;
-  for (const PointSource* source : sources_) {
-    const std::optional<std::size_t> count = source->count();
+  for (std::size_t k = first_; k < end_; ++k) {
+    const std::optional<std::size_t> count = sources_[k]->count();
     if (!count) return std::nullopt;
     sum += *count;
   }
@@ -86,17 +87,23 @@ bool JoinedPoints::is_double() const {
 
 void JoinedPoints::rewind() {
   for (PointSource* source : sources_) source->rewind();
-  current_ = 0;
+  current_ = first_;
+}
+
+void JoinedPoints::choose(std::size_t source) {
+  first_ = current_ = source;
+  end_ = source + 1;
 }
 
 bool JoinedPoints::read(std::size_t most, PointBatch* batch) {
-  for (; current_ < sources_.size(); ++current_) {
+  for (; current_ < end_; ++current_) {
     PointSource* const source = sources_[current_];
     if (!source->read(most, batch)) continue;
     const std::size_t count = batch->positions.size();
     const std::optional<Vector3> viewpoint = source->viewpoint();
     if (viewpoint) batch->viewpoints.assign(count, *viewpoint);
     batch->attributes = carried(batch->attributes, count);
+    batch->cloud = current_;
     return true;
   }
   return false;

@@ -825,6 +825,7 @@ class ArrayPoints(PointSource):
 
 class JoinedPoints(PointSource):
     def __init__(self, sources: tuple[PointSource, ...]) -> None: ...
+    def choose(self, source: int) -> None: ...
 
 class TurnedPoints(PointSource):
     def __init__(
@@ -855,6 +856,32 @@ def trim(
 ]: ...
 def reconstruct_file(
     source: PointSource,
+    target: bytes,
+    options: ReconstructOptions,
+    progress: ProgressCallback | None,
+) -> dict[str, float]: ...
+
+class StepFiles:
+    def __init__(
+        self,
+        work: str,
+        measures: list[bytes],
+        counts: list[bytes],
+        cells: bytes,
+        parts: list[bytes],
+    ) -> None: ...
+
+def reconstruct_step(
+    step: str,
+    source: PointSource,
+    number: int,
+    files: StepFiles,
+    options: ReconstructOptions,
+    progress: ProgressCallback | None,
+) -> None: ...
+def join_steps(
+    source: PointSource,
+    files: StepFiles,
     target: bytes,
     options: ReconstructOptions,
     progress: ProgressCallback | None,

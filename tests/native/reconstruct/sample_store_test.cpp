@@ -7,7 +7,11 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <memory>
 #include <random>
+#include <string>
+
+#include "io/files.h"
 
 namespace prefilter {
 namespace {
@@ -131,6 +135,56 @@ TEST(SampleStore, HasSlabsWithoutCells) {
   EXPECT_EQ(store.size(), 0U);
   EXPECT_EQ(store.slab(2).size(), 0U);
   EXPECT_EQ(store.take(3).size(), 0U);
+}
+
+// Those of three clouds, the second of which is in few slabs.
+std::vector<std::vector<SampleCells>> random_clouds() {
+  const std::vector<SampleCells> runs = random_runs(30, false);
+  std::vector<std::vector<SampleCells>> clouds(3);
+  for (std::size_t r = 0; r < runs.size(); ++r)
+    clouds[r < 11 ? 0 : r < 13 ? 1 : 2].push_back(runs[r]);
+  return clouds;
+}
+
+TEST(SampleStore, CloudsThatWereCountedApartHaveTheSameSums) {
+  const std::vector<std::vector<SampleCells>> clouds = random_clouds();
+  const TestFolder folder;
+  const ArchiveMark mark = {"counts", "test"};
+  const auto opened = [&](std::size_t k) {
+    return SampleStore::open(std::make_unique<ArchiveReader>(folder.path(std::to_string(k)), mark));
+  };
+  for (const std::uint64_t limit : {kNoLimit, std::uint64_t{0}, std::uint64_t{20000}}) {
+    SampleStore expected(kDepth, kSlabBits, kAttributes, limit, "");
+    for (std::size_t k = 0; k < clouds.size(); ++k) {
+      if (k > 0) expected.end_cloud();
+      for (const SampleCells& run : clouds[k]) expected.add(run);
+      SampleStore own(kDepth, kSlabBits, kAttributes, kNoLimit - limit, "");
+      fill(clouds[k], 2, &own);
+      ArchiveWriter file(folder.path(std::to_string(k)), mark);
+      own.save(&file);
+      file.commit();
+    }
+    expected.finish(2);
+    const std::unique_ptr<SampleStore> merged = opened(0)->empty_copy(kNoLimit - limit, "");
+    for (std::size_t k = 0; k < clouds.size(); ++k) {
+      const std::unique_ptr<SampleStore> own = opened(k);
+      ASSERT_TRUE(own->is_like(*merged));
+      for (int s = 0; s < own->slab_count(); ++s) merged->add(own->slab(s));
+      merged->end_cloud();
+    }
+    merged->finish(1);
+    ASSERT_EQ(merged->size(), expected.size());
+    for (int s = 0; s < expected.slab_count(); ++s) {
+      const SampleCells one = expected.slab(s);
+      const SampleCells other = merged->slab(s);
+      ASSERT_EQ(one.size(), other.size());
+      EXPECT_EQ(one.attributes, other.attributes);
+      for (std::size_t i = 0; i < one.size(); ++i) {
+        ASSERT_EQ(one.cells[i].key, other.cells[i].key);
+        ASSERT_EQ(numbers_of(one.cells[i]), numbers_of(other.cells[i]));
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -19,17 +19,21 @@ class FloatSteps {
   void add(const Vector3& point);
   void add(const FloatSteps& other);
 
-  /// The largest step along an axis whose coordinates were rounded; 0 where none were.
-  double step() const;
-
- private:
+  /// What was found along each axis.
   struct Axis {
     std::size_t count = 0;
     std::size_t odd = 0;   // multiples of the step, and not of twice that
     bool is_wide = false;  // one is between numbers of single precision
     double largest = 0.0;
   };
+  FloatSteps() = default;
+  explicit FloatSteps(const std::array<Axis, 3>& axes) : axes_(axes) {}
+  const std::array<Axis, 3>& axes() const { return axes_; }
 
+  /// The largest step along an axis whose coordinates were rounded; 0 where none were.
+  double step() const;
+
+ private:
   std::array<Axis, 3> axes_;
 };
 

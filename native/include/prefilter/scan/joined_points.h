@@ -28,6 +28,8 @@ class JoinedPoints final : public PointSource {
   bool is_double() const override;
   void rewind() override;
   bool read(std::size_t most, PointBatch* batch) override;
+  /// From now on, has the points of one source alone, as they are in the whole.
+  void choose(std::size_t source);
 
  private:
   // Where an attribute of the cloud comes from in a source.
@@ -41,6 +43,8 @@ class JoinedPoints final : public PointSource {
   std::vector<PointSource*> sources_;
   std::vector<PointAttribute> attributes_;
   std::vector<std::vector<Column>> columns_;  // of each source, one for each attribute
+  std::size_t first_ = 0;
+  std::size_t end_;
   std::size_t current_ = 0;
 };
 

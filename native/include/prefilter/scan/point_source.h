@@ -25,6 +25,8 @@ struct PointBatch {
   std::vector<Vector3> viewpoints;
   // For each point one value for each attribute of the source.
   std::vector<float> attributes;
+  // Of several clouds that are joined, which one it is from.
+  std::size_t cloud = 0;
 
   void clear() {
     positions.clear();

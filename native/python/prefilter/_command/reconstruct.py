@@ -4,7 +4,7 @@
 
 import argparse
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -12,12 +12,16 @@ from typing import Any
 from .._border.staging import check_target
 from .._options.flags import add_flags, given, tables
 from .._options.scans import ScanSettings
-from .._work.scans import STREAMED_TARGET, Streaming
+from .._work.outcome import up_to_date
+from .._work.scans import STREAMED_TARGET, Step, Streaming
+from .._work.scans import options as scan_options
 from .._work.wording import either
 from ..points.scan_files import POINT_EXTENSIONS
-from . import telling
+from ..points.steps import STEPS, Steps
+from . import tasks, telling
 from .host import PLAIN, Host
 
+_MOST_PARTS = 4096
 _NOTES = """\
 Several SOURCEs count as one cloud. Points without normals are read into memory, and their normals
 are estimated. All other points are read, and the surface is written, piece by piece, so that
@@ -27,7 +31,8 @@ examples:
   prefilter reconstruct scan.ply surface.ply
   prefilter reconstruct city.laz city.ply --depth 11 --memory-limit 600
   prefilter reconstruct left.ply right.ply hall.ply --viewpoint 0 0 1.5 --viewpoint 8 0 1.5
-  prefilter reconstruct tile.laz ground.ply --classes 2 --returns last --trim 8"""
+  prefilter reconstruct tile.laz ground.ply --classes 2 --returns last --trim 8
+  prefilter reconstruct *.laz city.ply --depth 12 --work steps/ --step count --task 3/40"""
 
 
 def add(commands: Any, purpose: str) -> None:
@@ -35,6 +40,7 @@ def add(commands: Any, purpose: str) -> None:
     parser = telling.add_command(commands, "reconstruct", purpose, *tables(ScanSettings), _NOTES)
     add_files(parser, POINT_EXTENSIONS, (STREAMED_TARGET,))
     add_settings(parser, PLAIN)
+    add_steps(parser)
     parser.set_defaults(execute=partial(_reconstruct, PLAIN), usage_error=parser.error)
 
 
@@ -46,7 +52,7 @@ def add_files(
         "sources",
         metavar="SOURCE",
         nargs="+",
-        help=f"a file of points: {either(sources)}; repeat for several",
+        help=f"a file of points: {either(sources)}; repeat for several, or name a folder of such",
     )
     parser.add_argument("target", metavar="TARGET", help=f"the file to write: {either(targets)}")
     parser.add_argument(
@@ -58,6 +64,22 @@ def add_files(
         help="where the scanner stood: normals point there; repeat for each SOURCE where that "
         "differs (default: what the files say)",
     )
+
+
+def expand_folders(options: argparse.Namespace) -> None:
+    """Puts the files of points in the place of the folders that they are in, by their names."""
+    found: list[str] = []
+    for source in options.sources:
+        if not os.path.isdir(source):
+            found.append(source)
+            continue
+        files = sorted(
+            path for path in Path(source).iterdir() if path.name.lower().endswith(POINT_EXTENSIONS)
+        )
+        if not files:
+            options.usage_error(f"SOURCE: found no file of points in the folder '{source}'")
+        found += map(str, files)
+    options.sources = found
 
 
 def add_settings(parser: argparse.ArgumentParser, host: Host) -> None:
@@ -73,6 +95,69 @@ def add_settings(parser: argparse.ArgumentParser, host: Host) -> None:
     )
 
 
+def add_steps(parser: argparse.ArgumentParser) -> None:
+    """Adds the flags of work in steps."""
+    parser.add_argument(
+        "--step",
+        choices=STEPS,
+        metavar="STEP",
+        help=f"do one step of the work, as machines of a farm do: {', '.join(STEPS)}, in this "
+        "order. The result is the same",
+    )
+    parser.add_argument(
+        "--work", metavar="FOLDER", help="with --step, the folder of what steps leave each other"
+    )
+    parser.add_argument(
+        "--parts",
+        metavar="N",
+        type=int,
+        default=16,
+        help=f"with --step, how many parts the surface is made in (1 to {_MOST_PARTS}; "
+        "default: 16)",
+    )
+    tasks.add_flags(parser, "run of the step", needs="with --step, ")
+
+
+def check_steps(options: argparse.Namespace) -> None:
+    """Ends the program where the flags of steps do not go together."""
+    tasks.check(options)
+    for name in ("work", "task", "list"):
+        if options.step is None and getattr(options, name):
+            options.usage_error(f"--{name}: needs --step")
+    if options.step is not None and options.work is None:
+        options.usage_error("--step: needs --work FOLDER")
+    if not 1 <= options.parts <= _MOST_PARTS:
+        options.usage_error(f"--parts: found {options.parts}; allowed: 1 to {_MOST_PARTS}")
+
+
+def do_step(
+    options: argparse.Namespace,
+    target: Path,
+    settings: ScanSettings,
+    length: Callable[[float], str],
+) -> None:
+    """Does the runs of a step that are this task's, or lists them."""
+    sources = [Path(path) for path in options.sources]
+    known = scan_options(settings) | {"viewpoint": options.viewpoint}
+    steps = Steps(sources, Path(options.work), options.parts, known)
+    step, runs = options.step, list(range(steps.count(options.step)))
+    if options.list:
+        files = [str(target if step == "join" else steps.file(step, run)) for run in runs]
+        if options.json:
+            tasks.say_json([{"step": step, "files": [file]} for file in files])
+        else:
+            for file in files:
+                telling.say(file)
+        return
+    chosen = tasks.chosen(options, runs)
+    for done, run in enumerate(chosen):
+        with telling.share(done, len(chosen)):
+            if step != "join" and steps.is_done(step, run):
+                telling.say(up_to_date([steps.file(step, run)]))
+            else:
+                telling.tell(telling.done(Step(steps, step, run, target, length)))
+
+
 def settings_of(options: argparse.Namespace, host: Host) -> ScanSettings:
     """Returns the settings that were given, with what follows from them."""
     found, more = given(options, ScanSettings), {}
@@ -86,12 +171,17 @@ def settings_of(options: argparse.Namespace, host: Host) -> ScanSettings:
 
 
 def _reconstruct(host: Host, options: argparse.Namespace) -> None:
+    expand_folders(options)
     for path in options.sources:
         telling.check_ending(options, "SOURCE", path, POINT_EXTENSIONS)
     telling.check_ending(options, "TARGET", options.target, (STREAMED_TARGET,))
+    check_steps(options)
     target = Path(os.path.realpath(options.target))
     check_target(target)
     sources = [Path(path) for path in options.sources]
     settings = settings_of(options, host)
+    if options.step is not None:
+        do_step(options, target, settings, "{:.4g}".format)
+        return
     work = Streaming(sources, target, settings, "{:.4g}".format, options.viewpoint)
     telling.tell(telling.done(work))

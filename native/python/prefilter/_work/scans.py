@@ -11,6 +11,7 @@ import prefilter
 
 from .._options.scans import ScanSettings
 from ..points.scan_files import is_ply
+from ..points.steps import Steps
 from .outcome import Outcome
 from .progress import Progress
 from .wording import Sentence, amount, listed
@@ -82,6 +83,41 @@ class Streaming:
 
     def discard(self) -> None:
         """Does nothing: the library leaves nothing beside the target."""
+
+
+class Step:
+    """One run of a step of the surface of files of points; see `Steps`."""
+
+    def __init__(
+        self, steps: Steps, name: str, number: int, target: Path, length: Callable[[float], str]
+    ) -> None:
+        """Takes what to do: which run of which step; and the file of the last one."""
+        self._steps = steps
+        self._name = name
+        self._number = number
+        self._target = target
+        self._length = length
+        self._report: prefilter.ReconstructionReport | None = None
+
+    def compute(self, progress: Progress) -> None:
+        """Writes the file of the step; raises what `Streaming.compute` does."""
+        with labeled():
+            if self._name == "join":
+                self._report = self._steps.join(self._target, progress)
+            else:
+                self._steps.run(self._name, self._number, progress)
+
+    def write(self) -> Outcome:
+        """Returns what was done."""
+        if self._report is not None:
+            return outcome(self._steps.sources, self._target, self._report, self._length)
+        path = self._steps.file(self._name, self._number)
+        count = self._steps.count(self._name)
+        done = f"Step {self._name}, {self._number + 1} of {count}, into '{path}'"
+        return Outcome(done, files=[str(path)])
+
+    def discard(self) -> None:
+        """Does nothing: the library leaves nothing beside what it writes."""
 
 
 @contextmanager

@@ -295,7 +295,7 @@ def reconstruct(
         OSError: A file cannot be read, or a temporary one not written.
         Cancelled: `progress` returned False.
     """
-    options = set_options(_native.ReconstructOptions(), _CHECKS, locals())
+    options = set_options(_native.ReconstructOptions(), CHECKS, locals())
     options.support = bool(support)
     _check_report(report)
     wanted = as_wanted(direction, viewpoint)
@@ -317,7 +317,7 @@ def reconstruct(
     positions, triangles, carried, found = _native.reconstruct(
         cloud.points, options, as_progress(cloud.rest(progress))
     )
-    _fill_in(report, found, cloud)
+    fill_in(report, found, cloud)
     told: Support = {}
     if options.support:
         told = {"distance": carried[:, -2].copy(), "density": carried[:, -1].copy()}
@@ -392,7 +392,7 @@ def reconstruct_file(
         MemoryError: Points have no normals, and would not fit into memory.
         Cancelled: `progress` returned False.
     """
-    options = set_options(_native.ReconstructOptions(), _CHECKS, locals())
+    options = set_options(_native.ReconstructOptions(), CHECKS, locals())
     place = as_target(target)
     if place.suffix.lower() != ".ply":
         raise ValueError(f"target: '{os.fspath(target)}'; a name that ends in .ply is needed")
@@ -409,7 +409,7 @@ def reconstruct_file(
     rest = as_progress(cloud.rest(progress))
     recover(place.parent)
     found = _native.reconstruct_file(cloud.points, os.fsencode(place), options, rest)
-    _fill_in(report, found, cloud)
+    fill_in(report, found, cloud)
     return report
 
 
@@ -446,7 +446,7 @@ def _as_bytes(memory_limit: int | None) -> int:
     return min(int(memory_limit), _MOST_MIB) * _MIB
 
 
-_CHECKS: dict[str, Check] = {
+CHECKS: dict[str, Check] = {
     "depth": _as_depth,
     "cell_size": partial(_as_number_or_none, "cell_size"),
     "wavelet": partial(as_name, "wavelet"),
@@ -489,9 +489,7 @@ def _check_report(report: ReconstructionReport | None) -> None:
         raise ValueError(f"report: {report!r}; a ReconstructionReport is needed, or None")
 
 
-def _fill_in(
-    report: ReconstructionReport | None, found: Mapping[str, object], cloud: Cloud
-) -> None:
+def fill_in(report: ReconstructionReport | None, found: Mapping[str, object], cloud: Cloud) -> None:
     if report is None:
         return
     report.directions = cloud.directions

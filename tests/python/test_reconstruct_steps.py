@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""`reconstruct` in steps: by several processes, bit for bit what one makes."""
+
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from command_files import fails, run
+
+DEPTH = ("--depth", "6")
+STEPS = ("measure", "count", "merge", "part", "join")
+
+
+def write_ball(path, count, seed, height=0.0):
+    """Writes points of a third of a bent ball, with normals and colors."""
+    random = np.random.default_rng(seed)
+    normals = random.normal(size=(count, 3))
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    normals[:, 2] = np.abs(normals[:, 2]) * (1 if seed % 2 else -1)
+    points = normals + random.normal(scale=0.003, size=normals.shape)
+    points[:, 2] += height
+    rows = np.hstack([points, normals, random.integers(0, 256, (count, 3))]).astype("<f4")
+    names = ("x", "y", "z", "nx", "ny", "nz", "quality", "time", "angle")
+    properties = "".join(f"property float {name}\n" for name in names)
+    head = f"ply\nformat binary_little_endian 1.0\nelement vertex {count}\n{properties}end_header\n"
+    path.write_bytes(head.encode() + rows.tobytes())
+    return path
+
+
+@pytest.fixture(scope="module")
+def scans(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("scans")
+    return [write_ball(folder / f"{k}.ply", 9000 + 3000 * k, k, 0.1 * (k // 2)) for k in range(4)]
+
+
+@pytest.fixture(scope="module")
+def expected(scans):
+    """Returns what one process makes, by its flags."""
+    made: dict[tuple[str, ...], bytes] = {}
+
+    def of(*flags):
+        if flags not in made:
+            target = scans[0].with_name("whole.ply")
+            assert run("reconstruct", *scans, target, *DEPTH, *flags) == 0
+            made[flags] = target.read_bytes()
+        return made[flags]
+
+    return of
+
+
+def steps(scans, folder, *flags, parts=5):
+    """Does all steps in this process; returns the surface."""
+    target = folder / "surface.ply"
+    words = ("reconstruct", *scans, target, *DEPTH, *flags, "--work", folder / "work")
+    for step in STEPS:
+        assert run(*words, "--parts", str(parts), "--step", step) == 0
+    return target.read_bytes()
+
+
+@pytest.mark.parametrize("parts", [1, 3, 40])
+def test_the_steps_make_what_one_process_makes(scans, expected, tmp_path, parts):
+    assert steps(scans, tmp_path, parts=parts) == expected()
+
+
+@pytest.mark.parametrize(
+    "flags",
+    [
+        ("--watertight",),
+        ("--trim", "2"),
+        ("--adaptivity", "0.1"),
+        ("--no-fit",),
+        ("--no-smooth", "--isovalue", "mean"),
+        ("--direction", "outward"),
+        ("--box", "-0.8", "-2", "-2", "0.8", "2", "2"),
+    ],
+)
+def test_other_settings(scans, expected, tmp_path, flags):
+    assert steps(scans, tmp_path, *flags, parts=2) == expected(*flags)
+
+
+def test_a_folder_of_sources(scans, expected, tmp_path, capsys):
+    (tmp_path / "scans").mkdir()
+    for path in scans:
+        (tmp_path / "scans" / path.name).write_bytes(path.read_bytes())
+    (tmp_path / "scans" / "notes.md").write_text("none")
+    assert steps([tmp_path / "scans"], tmp_path) == expected()
+    (tmp_path / "empty").mkdir()
+    words = ("reconstruct", tmp_path / "empty", tmp_path / "s.ply")
+    assert "empty" in fails(capsys, 2, *words)
+
+
+def test_a_single_source_and_limits_of_memory(scans, tmp_path):
+    one = tmp_path / "one.ply"
+    assert run("reconstruct", scans[1], one, *DEPTH) == 0
+    limit = ("--memory-limit", "40", "--threads", "1")
+    assert steps(scans[1:2], tmp_path, *limit) == one.read_bytes()
+
+
+def test_four_processes_at_once(scans, expected, tmp_path):
+    target = tmp_path / "surface.ply"
+    words = ["-m", "prefilter", "reconstruct", *map(str, scans), str(target), *DEPTH]
+    words += ["--work", str(tmp_path / "work"), "--parts", "8"]
+    for step in STEPS:
+        count = 1 if step in ("merge", "join") else 4
+        runs = [
+            subprocess.Popen(
+                [sys.executable, *words, "--step", step, "--task", f"{number}/{count}"],
+                stderr=subprocess.PIPE,
+                text=True,
+            )
+            for number in range(1, count + 1)
+        ]
+        for one in runs:
+            told = one.communicate(timeout=120)[1]
+            assert one.returncode == 0, told
+    assert target.read_bytes() == expected()
+
+
+def test_what_is_there_is_not_made_again(scans, expected, tmp_path, capsys):
+    first = steps(scans, tmp_path)
+    times = {path: path.stat().st_mtime_ns for path in (tmp_path / "work").iterdir()}
+    lost = tmp_path / "work" / "part.2-of-5.prefilter"
+    lost.unlink()
+    capsys.readouterr()
+    assert steps(scans, tmp_path) == first == expected()
+    told = capsys.readouterr().out
+    assert told.count("Up to date") == 4 + 4 + 1 + 4
+    after = {path: path.stat().st_mtime_ns for path in (tmp_path / "work").iterdir()}
+    assert {path for path in after if after[path] != times[path]} == {lost}
+    # Other settings are another work.
+    assert steps(scans, tmp_path, "--no-fit") == expected("--no-fit")
+    assert "Up to date" not in capsys.readouterr().out
+
+
+def test_a_list_of_the_runs(scans, tmp_path, capsys):
+    words = ("reconstruct", *scans, tmp_path / "s.ply", *DEPTH, "--work", tmp_path / "w")
+    for step, count in (("measure", 4), ("count", 4), ("merge", 1), ("part", 16), ("join", 1)):
+        assert run(*words, "--step", step, "--list", "--json") == 0
+        tasks = json.loads(capsys.readouterr().out)["tasks"]
+        assert len({task["files"][0] for task in tasks}) == count
+
+
+def test_files_that_are_missing_or_damaged(scans, tmp_path, capsys):
+    words = ("reconstruct", *scans, tmp_path / "s.ply", *DEPTH, "--work", tmp_path / "w")
+    words = (*words, "--parts", "2")
+    assert "measure.1-of-4" in fails(capsys, 1, *words, "--step", "count")
+    assert run(*words, "--step", "measure") == 0
+    assert "count.1-of-4" in fails(capsys, 1, *words, "--step", "merge")
+    for step in ("count", "merge", "part"):
+        assert run(*words, "--step", step) == 0
+    for name, step in (
+        ("measure.2-of-4", "join"),
+        ("count.3-of-4", "merge"),
+        ("merge.1-of-1", "part"),
+        ("part.2-of-2", "join"),
+    ):
+        path = tmp_path / "w" / f"{name}.prefilter"
+        data = path.read_bytes()
+        middle = len(data) * 2 // 3
+        others = (
+            b"",
+            data[:20],
+            data[:-1],
+            data + b"\0",
+            data[:middle] + bytes([data[middle] ^ 1]) + data[middle + 1 :],
+            (tmp_path / "w" / "part.1-of-2.prefilter").read_bytes(),
+        )
+        for other in others:
+            path.write_bytes(other)
+            for made in (tmp_path / "w").glob(f"{step}.*"):
+                made.unlink()
+            last = fails(capsys, 1, *words, "--step", step)
+            assert name in last, (name, len(other))
+        path.write_bytes(data)
+        for again in ("measure", "count", "merge", "part"):
+            assert run(*words, "--step", again) == 0
+
+
+def test_what_steps_do_not_have(scans, tmp_path, capsys):
+    words = ("reconstruct", *scans, tmp_path / "s.ply", "--work", tmp_path / "w")
+    assert "Depth" in fails(capsys, 1, *words, "--step", "measure").title()
+    assert "haar" in fails(capsys, 1, *words, *DEPTH, "--wavelet", "d4", "--step", "measure")
+    assert "align" in fails(capsys, 1, *words, *DEPTH, "--align", "--step", "measure")
+    bare = tmp_path / "bare.xyz"
+    bare.write_text("0 0 0\n1 0 0\n0 1 0\n")
+    alone = ("reconstruct", bare, tmp_path / "s.ply", *DEPTH, "--work", tmp_path / "w")
+    assert "no normals" in fails(capsys, 1, *alone, "--step", "measure")
+    for flags, word in (
+        (("--step", "measure", "--parts", "0"), "--parts"),
+        (("--step", "all"), "--step"),
+    ):
+        assert word in fails(capsys, 2, *words, *DEPTH, *flags)
+    last = fails(capsys, 2, "reconstruct", *scans, tmp_path / "s.ply", "--step", "measure")
+    assert "--work" in last
+    assert "--step" in fails(capsys, 2, *words)
+
+
+def test_points_far_from_all_others(scans, tmp_path, capsys):
+    far = write_ball(tmp_path / "far.ply", 2, 1, height=1e4)
+    sources = (*scans, far)
+    words = ("reconstruct", *sources, tmp_path / "s.ply", *DEPTH, "--work", tmp_path / "w")
+    assert run(*words, "--step", "measure") == 0
+    assert "box" in fails(capsys, 1, *words, "--step", "count").lower()
