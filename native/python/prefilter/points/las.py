@@ -110,7 +110,7 @@ class LasReader:
 
 
 def _check_header(path: str) -> None:
-    """Refuses counts that the file has no room for: laspy would go on for hours, or need them all.
+    """Refuses sizes that the file has no room for: laspy would go on for hours, or need them all.
 
     See the public header block in the specification of LAS 1.4.
     """
@@ -121,8 +121,8 @@ def _check_header(path: str) -> None:
         end = _end_of_records(file, header, size)
     if header[:4] != b"LASF" or len(header) < 227:
         raise ValueError(f"'{path}' is not a LAS file: it begins with {header[:4]!r}")
-    records = struct.unpack_from("<I", header, 100)[0] * 54
-    if max(records, end) > size:
+    begin, count = struct.unpack_from("<2I", header, 96)
+    if max(begin, count * 54, end) > size:
         raise ValueError(f"'{path}': too short for the records that its header announces")
 
 

@@ -15,8 +15,8 @@ from typing import Any, BinaryIO, NamedTuple
 from .._border.input import open_file
 
 _VARIABLE_SIZE = 0xFFFFFFFF
-_MOST_POINTS = 1 << 24
-"""Of a chunk, which is unpacked whole; writers put 50,000 there."""
+_MOST_POINTS = 1 << 22
+"""Of a chunk, for which a backend takes memory whole; writers put 50,000 there."""
 _POINTWISE_CHUNKED, _LAYERED_CHUNKED = 2, 3
 _LAYERS = {10: 9, 11: 1, 12: 2, 13: 1}
 """Of an item of a point, by its type; one of type 14 has a layer for each byte."""
