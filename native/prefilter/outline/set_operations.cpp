@@ -3,8 +3,10 @@
 #include "prefilter/outline/set_operations.h"
 
 #include <array>
+#include <cmath>
 #include <vector>
 
+#include "prefilter/base/error.h"
 #include "prefilter/outline/arrangement.h"
 #include "prefilter/outline/fill_rule.h"
 #include "prefilter/outline/polygon_clipper.h"
@@ -24,10 +26,23 @@ bool holds(OutlineOperation operation, bool in_first, bool in_second) {
   return in_first && !in_second;
 }
 
+// Products of differences of what is farther away are not finite.
+constexpr double kFarthest = 1e100;
+
+void check_points(const Outline& outline) {
+  for (const Point2& point : outline.points()) {
+    if (!(std::abs(point.x) <= kFarthest && std::abs(point.y) <= kFarthest)) {
+      throw_invalid("shapes: a point is not finite, or farther than 1e100 away");
+    }
+  }
+}
+
 }  // namespace
 
 Outline combine(const Outline& first, FillRule first_rule, const Outline& second,
                 FillRule second_rule, OutlineOperation operation, double tolerance) {
+  check_points(first);
+  check_points(second);
   const std::array<const Outline*, 2> outlines = {&first, &second};
   const auto is_inside = [&](const LayerWindings& windings) {
     return holds(operation, is_filled(windings[0], first_rule),

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+#include <algorithm>
 #include <stdexcept>
 #include <string_view>
 #include <vector>
@@ -92,7 +93,10 @@ void draw_path(std::span<const std::uint8_t> bytes) {
       StrokeOptions options;
       options.join = static_cast<StrokeJoin>(bits % 3);
       options.cap = static_cast<StrokeCap>(bits / 3 % 3);
-      if (bits >= 0xb0) options.dashes = {1.0, 0.5};
+      // Some for each line, however long it is.
+      const Box2 box = control_box(outline);
+      const double size = std::max(box.high.x - box.low.x, box.high.y - box.low.y);
+      if (bits >= 0xb0 && size > 0.0) options.dashes = {size / 20.0, size / 50.0};
       draw(stroke(outline, options), bits & 1);
     } else {
       const Outline other = outline.transformed({{0.0, 1.0}, {-1.0, 0.0}, {10.0, 0.0}});

@@ -19,7 +19,7 @@ inline constexpr Named<OutlineOperation> kOutlineOperations[] = {
     {"difference", OutlineOperation::kDifference}};
 
 /// The boundary of a set operation of what two outlines fill by their rules, as `resolve` would
-/// have it.
+/// have it. Throws Error where a point is not finite, or farther than 1e100 away.
 Outline combine(const Outline& first, FillRule first_rule, const Outline& second,
                 FillRule second_rule, OutlineOperation operation,
                 double tolerance = kOutlineTolerance);
