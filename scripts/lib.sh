@@ -275,6 +275,22 @@ ensure_reader() {
   mv "$reader_dir.new" "$reader_dir"
 }
 
+# ensure_site_tools: installs what scripts/site.txt lists, from PyPI; sets site_tools.
+ensure_site_tools() {
+  local folder
+  folder=$cache_dir/site-$(sha256sum <"$source_dir/scripts/site.txt" | cut -c 1-12)
+  lock "$cache_dir/.site.lock"
+  if [[ ! -e $folder/.made ]]; then
+    /usr/bin/python3 -c 'import ensurepip' 2>/dev/null || ensure_packages python3-venv
+    note "fetching the tools of scripts/site.txt from PyPI"
+    logged site-tools.log /usr/bin/python3 -m venv --clear "$folder"
+    logged site-tools.log "$folder/bin/pip" install --disable-pip-version-check --requirement "$source_dir/scripts/site.txt"
+    touch "$folder/.made"
+  fi
+  unlock "$cache_dir/.site.lock"
+  site_tools=$folder/bin
+}
+
 # ensure_decoders TAG: installs what scripts/decoders.txt lists for a Python, such as cp313. Sets decoders; empty where
 # they cannot be had, and tests skip.
 ensure_decoders() {

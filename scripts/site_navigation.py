@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""What mkdocs.yml asks for: the navigation of the site, from docs/README.md."""
+
+import sys
+from pathlib import Path
+from typing import Any
+
+sys.path.insert(0, str(Path(__file__).parent))
+from packager.navigation import Entry, sections
+
+# Pages below another are listed there.
+_BELOW = "benchmarks"
+
+
+def on_config(config: Any) -> Any:
+    """Sets the navigation."""
+    docs = Path(config["docs_dir"])
+    found: list[dict[str, Any]] = [{"Start": "README.md"}]
+    for title, groups in sections((docs / "README.md").read_text(encoding="utf-8")):
+        parts: list[Any] = []
+        for group, entries in groups.items():
+            listed = [_item(entry, docs) for entry in entries]
+            parts += [{group: listed}] if group else listed
+        found.append({title: parts})
+    config["nav"] = found
+    return config
+
+
+def _item(entry: Entry, docs: Path) -> dict[str, Any]:
+    if entry.page != _BELOW:
+        return {entry.title: f"{entry.page}.md"}
+    below = sorted((docs / entry.page).glob("*.md"))
+    return {entry.title: [f"{entry.page}.md", *(f"{entry.page}/{each.name}" for each in below)]}
