@@ -82,13 +82,29 @@ def test_no_words_are_lost_and_no_marks_are_left(written):
         assert found.tags.count("tr") == rows, page
 
 
+def test_all_pictures_are_there(written):
+    folder, pages = written
+    shown = [folder / picture for page in pages.values() for picture in page.pictures]
+    assert len(set(shown)) == len(manual.pictures())
+    assert all(path.read_bytes()[8:12] == b"WEBP" for path in shown)
+
+
+def test_each_page_has_the_navigation(written):
+    _, pages = written
+    for page in pages.values():
+        assert {f"{each}.html" for each in manual.PAGES} <= set(page.links)
+    assert 'href="bake.html" aria-current' in manual.navigation(
+        (manual.DOCS / "README.md").read_text("utf-8"), "bake"
+    )
+
+
 def test_it_is_small(written):
     folder, _ = written
     assert sum(path.stat().st_size for path in folder.rglob("*") if path.is_file()) < 3 << 20
 
 
 def made(text):
-    return manual.body(text, manual.DOCS, [])
+    return manual.body(text)
 
 
 @pytest.mark.parametrize(
@@ -100,7 +116,10 @@ def made(text):
         ("[a](bake.md#b)", '<p><a href="bake.html#b">a</a></p>'),
         ("[a *b*](benchmarks.md)", "<p>a <em>b</em></p>"),
         ("[`a`](https://b.c/?d&e)", '<p><a href="https://b.c/?d&amp;e"><code>a</code></a></p>'),
-        ("![a b](pictures/none.png)", "<p><em>(a b)</em></p>"),
+        (
+            "![a b](pictures/c.png)",
+            '<p><img src="pictures/c.webp" alt="a b"></p>',
+        ),
         ("    a\n\n    b <c>", "<pre><code>a\n\nb &lt;c&gt;\n</code></pre>"),
         (
             "```python\na\n\n# b\n```\nc",
