@@ -158,10 +158,14 @@ void Arrangement::merge_sites(Pulse* pulse, SiteList* list) {
     }
   };
   std::unordered_map<std::pair<std::int64_t, std::int64_t>, std::uint32_t, PlaceHash> places;
+  // Differences of points that are far away from each other may not be finite.
+  const auto cell_at = [](double place) {
+    constexpr double kMost = 1e18;
+    return std::abs(place) < kMost ? static_cast<std::int64_t>(std::floor(place)) : 0;
+  };
   const auto place_of = [&](const Point2& point) {
     const Point2 off = point - contours_.box().low;
-    return std::pair{static_cast<std::int64_t>(std::floor(off.x / precision_)),
-                     static_cast<std::int64_t>(std::floor(off.y / precision_))};
+    return std::pair{cell_at(off.x / precision_), cell_at(off.y / precision_)};
   };
   for (std::uint32_t i = 0; i < sites.size(); ++i) {
     pulse->step();

@@ -170,8 +170,13 @@ RunTree::RunTree(const MonotoneContours& contours, double precision)
   if (runs.empty()) return;
   const Box2& whole = contours.box();
   const Point2 size = whole.high - whole.low;
-  const double scale_x = size.x > 0.0 ? 65535.0 / size.x : 0.0;
-  const double scale_y = size.y > 0.0 ? 65535.0 / size.y : 0.0;
+  const double kLast = 65535.0;
+  const double scale_x = size.x > 0.0 ? kLast / size.x : 0.0;
+  const double scale_y = size.y > 0.0 ? kLast / size.y : 0.0;
+  // Differences of points that are far away from each other may not be finite.
+  const auto step_at = [kLast](double place) {
+    return place > 0.0 ? static_cast<std::uint32_t>(std::min(place, kLast)) : 0U;
+  };
   std::vector<std::uint64_t> keys;
   keys.reserve(contours.contours().size());
   for (std::size_t c = 0; c < contours.contours().size(); ++c) {
@@ -181,8 +186,8 @@ RunTree::RunTree(const MonotoneContours& contours, double precision)
       box.include(runs[contour.first_run + r].begin());
     }
     const Point2 center = 0.5 * (box.low + box.high) - whole.low;
-    const std::uint32_t key = spread(static_cast<std::uint32_t>(center.x * scale_x)) |
-                              spread(static_cast<std::uint32_t>(center.y * scale_y)) << 1;
+    const std::uint32_t key =
+        spread(step_at(center.x * scale_x)) | spread(step_at(center.y * scale_y)) << 1;
     keys.push_back(static_cast<std::uint64_t>(key) << 32 | c);
   }
   std::sort(keys.begin(), keys.end());
