@@ -6,14 +6,10 @@ import inspect
 import re
 from collections.abc import Callable
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import prefilter
 import pytest
-from scan_writers import ply
-from scenes import random_image
-from solids import box, sphere
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "python.md").read_text(encoding="utf-8")
 # What stands before the dot of a method in the tables.
@@ -112,51 +108,17 @@ def samples() -> list[str]:
     return re.findall(r"(?ms)^```python\n(.*?)^```$", PAGE)
 
 
-def given(folder: Path) -> dict[str, object]:
-    """What the samples have beside what they make: small meshes, images and files."""
-    ball, other = sphere(rounds=2), box((-0.2, -0.3, -2.0), (0.2, 0.3, 2.0))
-    corner = 0.5 + 0.45 * ball.positions[ball.triangles][..., :2]
-    data = np.rint(random_image(1, 16, 16, 3) * 255).astype(np.uint8)
-    random = np.random.default_rng(2)
-    points = random.normal(size=(3000, 3))
-    points /= np.linalg.norm(points, axis=1, keepdims=True)
-    kinds = [("float", name) for name in ("x", "y", "z", "nx", "ny", "nz")]
-    rows = [tuple(row) for row in np.hstack([points, points])]
-    for name in ("scan.ply", "city.ply", "left.ply", "right.ply"):
-        (folder / name).write_bytes(ply("binary_little_endian", [("vertex", kinds, rows)]))
-    (folder / "drawing.svg").write_text(
-        '<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"><circle r="4"/></svg>'
-    )
-    opened = (data[..., 0].astype(np.uint16) << 8) + 1
-    return {
-        "positions": ball.positions,
-        "triangles": ball.triangles,
-        "uvs": corner,
-        "pixels": data,
-        "PIL": SimpleNamespace(Image=SimpleNamespace(open=lambda _: opened)),
-        "face_sizes": [4] * 6,
-        "face_vertices": np.array(
-            [0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5]
-        ),
-        "face_uvs": np.tile([[0.0, 0.0], [1, 0], [1, 1], [0, 1]], (6, 1)),
-        "frames": [ball.positions, 1.5 * ball.positions],
-        "tiles": {1001: data, 1002: data},
-        "points": random.uniform(-2, 2, (20, 3)),
-        "one": (ball.positions, ball.triangles),
-        "other": (other.positions, other.triangles),
-    }
-
-
 def test_samples_run_one_after_another(tmp_path, monkeypatch):
+    """As they are pasted, into an empty session and folder."""
     monkeypatch.chdir(tmp_path)
-    scope = given(tmp_path)
-    levels = {}
+    scope = {}
     for sample in samples():
         exec(compile(sample, f"docs/python.md: {sample[:40]!r}", "exec"), scope)
-        levels[sample] = scope.get("levels")
-    assert len(levels) >= 8
+    assert len(samples()) >= 8
     assert len(scope["error"]) == 100
-    assert scope["image"].shape == (1024, 1024, 4)
-    assert len(scope["octree"].classify(scope["points"])) == len(scope["points"])
+    assert scope["words"][1].dtype == np.uint16
+    assert sorted(scope["baked"]) == [1001]
+    assert scope["octree"].volume == pytest.approx(1.0, rel=1e-6)
+    assert scope["drawn"].shape == (1024, 1024, 4)
     assert scope["report"].dropped == 0
     assert (tmp_path / "surface.ply").stat().st_size > 1000
