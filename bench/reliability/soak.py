@@ -18,6 +18,7 @@ import gc
 import os
 import random
 import sys
+import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -171,7 +172,10 @@ def main() -> None:
     chosen = ["-k", options.pattern] if options.pattern else ["--deselect", "test_every_operator"]
     quiet = ["-q", "--no-header", "-p", "no:cacheprovider", "--disable-warnings", "--tb=short"]
     keep = ["-o", "tmp_path_retention_policy=none"]
-    pytest.main([*quiet, *keep, *chosen, str(TESTS / "test_smoke.py")], plugins=[soak])
+    # Folders of pytest's own go when others begin beside this.
+    with tempfile.TemporaryDirectory() as folder:
+        where = ["--basetemp", str(Path(folder) / "runs"), str(TESTS / "test_smoke.py")]
+        pytest.main([*quiet, *keep, *chosen, *where], plugins=[soak])
     undo(soak)
     cancel(soak)
     told, rows = report.Report(), soak.rows()
