@@ -153,3 +153,11 @@ def test_merging_takes_as_much_memory_for_any_number_of_inputs():
 
     most(2)
     assert most(40) < 1.2 * most(4)
+
+
+def test_clips_far_away_are_refused():
+    body = (
+        '<clipPath id="c"><path d="M0 0H1e120V5z"/></clipPath>'
+        '<path d="M0 0L5 5L3 9z" clip-path="url(#c)"/>'
+    )
+    refused(body, "clip paths cannot cut what is more than 1e100 pixels away")

@@ -10,6 +10,7 @@ import numpy as np
 from ... import _native
 from ..affine import Matrix, determinant, multiplied
 from ..shape import Shape
+from .document import TooLargeError
 from .filtering import is_upright
 from .paint_servers import Gradient
 from .tree import Box, Clip, Group, Painted, Picture, common, holds
@@ -115,7 +116,11 @@ class Outlining:
 
 def _combined(first: Shape, second: Shape, operation: str) -> Shape:
     """A set operation of what two shapes fill, with the paint of the first."""
-    outline = first._outline.combined(first.fill_rule, second._outline, second.fill_rule, operation)
+    rules = first.fill_rule, second.fill_rule
+    try:
+        outline = first._outline.combined(rules[0], second._outline, rules[1], operation)
+    except ValueError:
+        raise TooLargeError("clip paths cannot cut what is more than 1e100 pixels away") from None
     made = first._with(outline, first._paint)
     made._fill_rule, made._winds_once = "nonzero", True
     return made
