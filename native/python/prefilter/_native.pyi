@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._border.arguments import ProgressCallback
+from ._border.names import MipmapFilterName
 from .points.reader import PointReader
 
 VERSION: Final[str]
@@ -477,7 +478,7 @@ def keep_coverage(
     options: CoverageOptions,
     progress: ProgressCallback | None,
 ) -> list[npt.NDArray[np.float32]]: ...
-def mipmap_filters() -> list[tuple[str, bool, bool]]: ...
+def mipmap_filters() -> list[tuple[MipmapFilterName, bool, bool]]: ...
 
 class MipmapOptions:
     def __init__(self) -> None: ...

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The filters of mipmaps by name; what options are made of, so it loads nothing else."""
+"""The filters of mipmaps by name; what options are made of, so it loads little."""
 
 from typing import NamedTuple
 
 from .. import _native
+from .._border.names import MipmapFilterName
 
 
 class MipmapFilter(NamedTuple):
@@ -16,7 +17,7 @@ class MipmapFilter(NamedTuple):
         is_fit: Whether it is a least-squares fit: the only ones that `seam_budget` changes.
     """
 
-    name: str
+    name: MipmapFilterName
     needs_surface: bool
     is_fit: bool
 

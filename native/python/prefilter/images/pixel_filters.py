@@ -2,7 +2,7 @@
 
 """The filters of the library, and what each may be used for."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from .. import _native
 
@@ -26,6 +26,6 @@ class PixelFilter(NamedTuple):
 PIXEL_FILTERS = tuple(PixelFilter(*found) for found in _native.pixel_filters())
 
 
-def names_for(use: str) -> tuple[str, ...]:
-    """The names of the filters that may be used so."""
+def names_for(use: str) -> tuple[Any, ...]:
+    """The names of the filters that may be used so: those of a type in `_border.names`."""
     return tuple(found.name for found in PIXEL_FILTERS if use in found.uses)

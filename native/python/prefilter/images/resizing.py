@@ -25,7 +25,7 @@ from .._border.names import Encoding, ResizeFilter, Ringing
 from .color import as_light, as_words
 from .pixel_filters import names_for
 
-RESIZE_FILTERS = names_for("resize")
+RESIZE_FILTERS: tuple[ResizeFilter, ...] = names_for("resize")
 """All filters of `resize`."""
 
 _CHECKS: dict[str, Check] = {

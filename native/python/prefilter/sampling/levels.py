@@ -24,7 +24,7 @@ from .._border.channels import in_channel_groups
 from .._border.names import Kernel
 from ..images.pixel_filters import names_for
 
-SAMPLING_FILTERS = names_for("sampling")
+SAMPLING_FILTERS: tuple[Kernel, ...] = names_for("sampling")
 """The kernels that sampling tables and `sampling_levels` are made for."""
 
 _CHECKS: dict[str, Check] = {

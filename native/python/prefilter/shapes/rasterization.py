@@ -24,7 +24,7 @@ from ..images.pixel_filters import names_for
 from .arguments import as_color
 from .shape import Shape
 
-RASTER_FILTERS = names_for("raster")
+RASTER_FILTERS: tuple[RasterFilter, ...] = names_for("raster")
 
 
 def rasterize(
