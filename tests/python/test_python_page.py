@@ -1,17 +1,23 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""docs/python.md: its signatures are the package's, it names all public ones, and samples run."""
+"""docs/python.md: its signatures are the package's, and it names all public ones.
 
+Its samples and those of docs/python_examples.md run, and have an example of each public name.
+"""
+
+import ast
 import inspect
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import numpy as np
 import prefilter
 import pytest
 
-PAGE = (Path(__file__).resolve().parents[2] / "docs" / "python.md").read_text(encoding="utf-8")
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+PAGE = (DOCS / "python.md").read_text(encoding="utf-8")
+EXAMPLES = (DOCS / "python_examples.md").read_text(encoding="utf-8")
 # What stands before the dot of a method in the tables.
 INSTANCES = {
     "surface": prefilter.Surface,
@@ -97,24 +103,51 @@ def test_wrong_signatures_are_found(told):
 
 
 def test_every_public_name_is_there():
-    code = [*samples(), *re.findall(r"`([^`\n]+)`", PAGE)]
+    code = [*samples(PAGE), *re.findall(r"`([^`\n]+)`", PAGE)]
     words = {word for text in code for word in re.findall(r"\w+", text)}
     members = {f"{name}.{member}" for name in prefilter.__all__ for member in public_members(name)}
     assert {name for name in prefilter.__all__ if name not in words} == set()
     assert {name for name in members if name.partition(".")[2] not in words} == set()
 
 
-def samples() -> list[str]:
-    return re.findall(r"(?ms)^```python\n(.*?)^```$", PAGE)
+def samples(page: str) -> list[str]:
+    return re.findall(r"(?ms)^```python\n(.*?)^```$", page)
+
+
+def used_names(code: Iterable[str]) -> set[str]:
+    """The names of the package that code has, as `prefilter.name`."""
+    return {
+        node.attr
+        for sample in code
+        for node in ast.walk(ast.parse(sample))
+        if isinstance(node, ast.Attribute)
+        and isinstance(node.value, ast.Name)
+        and node.value.id == "prefilter"
+    }
+
+
+def test_every_public_name_has_an_example():
+    used = used_names([*samples(PAGE), *samples(EXAMPLES)])
+    assert sorted({*prefilter.__all__} - used) == [], "no sample of the pages uses them"
+
+
+def test_only_code_that_uses_a_name_is_an_example():
+    code = ["# prefilter.resize\nprefilter.Octree.load('trim', mipmaps)", "x: prefilter.Surface"]
+    assert used_names(code) == {"Octree", "Surface"}
+
+
+def run_samples(page: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, object]:
+    """What is left of the samples, pasted one after another into an empty session and folder."""
+    monkeypatch.chdir(folder)
+    scope: dict[str, object] = {}
+    for sample in samples(page):
+        exec(compile(sample, f"sample: {sample[:40]!r}", "exec"), scope)
+    return scope
 
 
 def test_samples_run_one_after_another(tmp_path, monkeypatch):
-    """As they are pasted, into an empty session and folder."""
-    monkeypatch.chdir(tmp_path)
-    scope = {}
-    for sample in samples():
-        exec(compile(sample, f"docs/python.md: {sample[:40]!r}", "exec"), scope)
-    assert len(samples()) >= 8
+    scope = run_samples(PAGE, tmp_path, monkeypatch)
+    assert len(samples(PAGE)) >= 8
     assert len(scope["error"]) == 100
     assert scope["words"][1].dtype == np.uint16
     assert sorted(scope["baked"]) == [1001]
@@ -122,3 +155,10 @@ def test_samples_run_one_after_another(tmp_path, monkeypatch):
     assert scope["drawn"].shape == (1024, 1024, 4)
     assert scope["report"].dropped == 0
     assert (tmp_path / "surface.ply").stat().st_size > 1000
+
+
+def test_examples_run_one_after_another(tmp_path, monkeypatch):
+    """They assert what they show."""
+    run_samples(EXAMPLES, tmp_path, monkeypatch)
+    assert len(samples(EXAMPLES)) >= 20
+    assert {"texture.dds", "texture.exr", "ball.ply"} <= {each.name for each in tmp_path.iterdir()}
