@@ -67,7 +67,7 @@ def baked_over_frames(stage: Stage) -> Iterator[None]:
     scene.frame_set(9)
     with bpy.context.temp_override(**stage.override):
         bpy.ops.prefilter.bake_mipmaps("INVOKE_DEFAULT", **ENDLESS)
-    yield
+    yield from until(lambda: scene.frame_current != 9)
     found["frame_while_reading"] = scene.frame_current
     yield from cancelled(stage.window, stage.area)
     yield from until(idle)
