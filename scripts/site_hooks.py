@@ -1,13 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What mkdocs.yml asks for: the navigation of the site, from docs/README.md."""
+"""What mkdocs.yml asks for: the navigation of the site, from docs/README.md, and job templates."""
 
 import sys
 from pathlib import Path
 from typing import Any
 
 sys.path.insert(0, str(Path(__file__).parent))
+from mkdocs.structure.files import File
 from packager.navigation import Entry, sections
+
+# Job templates ship with the extension, and stand in the site where pages link to them.
+_TEMPLATES = Path(__file__).resolve().parents[1] / "addon" / "farm"
+_IN_SOURCE, _IN_SITE = "](../addon/farm/", "](job_templates/"
 
 # Pages below another are listed there.
 _BELOW = "benchmarks"
@@ -25,6 +30,19 @@ def on_config(config: Any) -> Any:
         found.append({title: parts})
     config["nav"] = found
     return config
+
+
+def on_files(files: Any, config: Any) -> Any:
+    """Adds the job templates."""
+    for path in sorted(_TEMPLATES.rglob("*.*")):
+        uri = f"job_templates/{path.relative_to(_TEMPLATES).as_posix()}"
+        files.append(File.generated(config, uri, abs_src_path=str(path)))
+    return files
+
+
+def on_page_markdown(markdown: str, **_: Any) -> str:
+    """Has links lead to the job templates of the site."""
+    return markdown.replace(_IN_SOURCE, _IN_SITE)
 
 
 def _item(entry: Entry, docs: Path) -> dict[str, Any]:
