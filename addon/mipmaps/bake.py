@@ -125,22 +125,13 @@ class Bake:
         self, made: list[FloatArray], rough: list[FloatArray], check: Callable[[], None]
     ) -> None:
         """Stages the files, and keeps the levels as level images hold them."""
-        source, outputs = self.source, self._outputs
-        stage = partial(
-            staged,
-            settings=source.settings,
-            wrap=source.wrap,
-            check=check,
-            metadata=self._metadata,
+        own_levels = [self._levels, self._roughness_levels]
+        found = staged(
+            self.source, self._outputs, made, rough, check=check, metadata=self._metadata
         )
-        texture_format = source.settings.texture_format
-        files, self._levels = stage(source.picture, made, outputs.target, texture_format)
-        self._staged += files
-        if outputs.roughness is not None:
-            picture, texture_format = outputs.roughness.picture, outputs.roughness.texture_format
-            target = outputs.roughness_target
-            files, self._roughness_levels = stage(picture, rough, target, texture_format)
+        for kept, (files, stored) in zip(own_levels, found, strict=False):
             self._staged += files
+            kept[:] = stored
 
     def write(self) -> Outcome:
         """Puts the file into place and writes the level images.

@@ -62,8 +62,7 @@ class StackArcs {
   /// Those of the row, from the highest.
   std::span<const Layer> layers() const { return layers_; }
   /// Appends the arcs of a layer in the row, by columns. What lies left of the window is in column
-  /// -1, and what lies in columns that are not open is in any of those. Of a layer that is in none
-  /// that are open there are no arcs.
+  /// -1, and what lies in columns that are not open is in any of those.
   void append(const Layer& layer, const OpenColumns& open, std::vector<StackArc>* arcs);
   const StackCurve& curve(const StackArc& arc) const { return curves_[arc.curve]; }
   /// Whether they are the same, as far as five places tell.

@@ -59,18 +59,9 @@ class Levels:
         )
         self._notes += [note] if note else []
         check = partial(go_on, progress, _FILTERED)
-        stage = partial(
-            staged,
-            settings=source.settings,
-            wrap=source.wrap,
-            check=check,
-            metadata=self._metadata,
-        )
-        files, _ = stage(source.picture, made, outputs.target, source.settings.texture_format)
-        self._staged += files
-        if rough is not None:
-            target = outputs.roughness_target
-            files, _ = stage(rough.picture, made_rough, target, rough.texture_format)
+        for files, _ in staged(
+            source, outputs, made, made_rough, check=check, metadata=self._metadata
+        ):
             self._staged += files
         go_on(progress, 1.0)
 

@@ -2,8 +2,9 @@
 
 """What becomes of the levels of an image: files of them, and a line that says so."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
+from functools import partial
 from pathlib import Path
 
 from ..._border.staging import StagedFile
@@ -84,6 +85,36 @@ def _described(picture: Picture) -> dict[str, str]:
 
 
 def staged(
+    source: Source,
+    outputs: Outputs,
+    made: list[FloatArray],
+    rough: list[FloatArray],
+    *,
+    check: Callable[[], None],
+    metadata: Mapping[str, str] | None = None,
+) -> Iterator[tuple[list[StagedFile], list[FloatArray]]]:
+    """Stages the files of an image, then those of its roughness, if there is one.
+
+    Yields for each its files, and its levels as level images hold them.
+
+    Args:
+        source: The image.
+        outputs: What is made of it.
+        made: Its levels above 0, scene-linear.
+        rough: Those of the roughness.
+        check: Called now and then.
+        metadata: What files keep by keys, but for DDS and PNG files.
+    """
+    stage = partial(
+        _staged, settings=source.settings, wrap=source.wrap, check=check, metadata=metadata
+    )
+    yield stage(source.picture, made, outputs.target, source.settings.texture_format)
+    if outputs.roughness is not None:
+        picture, texture_format = outputs.roughness.picture, outputs.roughness.texture_format
+        yield stage(picture, rough, outputs.roughness_target, texture_format)
+
+
+def _staged(
     picture: Picture,
     made: list[FloatArray],
     target: Path | None,
@@ -92,20 +123,9 @@ def staged(
     settings: Settings,
     wrap: tuple[str, str],
     check: Callable[[], None],
-    metadata: Mapping[str, str] | None = None,
+    metadata: Mapping[str, str] | None,
 ) -> tuple[list[StagedFile], list[FloatArray]]:
-    """Stages a file of an image and its levels; returns these as level images hold them, too.
-
-    Args:
-        picture: The image.
-        made: Its levels above 0, scene-linear.
-        target: The file; None for none.
-        texture_format: That of the file.
-        settings: Of the bake.
-        wrap: What lookups read outside of the image along u and v.
-        check: Called now and then.
-        metadata: What files keep by keys, but for DDS and PNG files.
-    """
+    """Stages a file of an image and its levels; returns these as level images hold them, too."""
     stored: list[FloatArray] = []
     if settings.use_images or (target is not None and textures.is_stored(target)):
         stored = [encoded(picture, level, check) for level in made]
