@@ -16,7 +16,7 @@ constexpr int kModifiers[kTables][4] = {
     {2, 8, -2, -8},     {5, 17, -5, -17},   {9, 29, -9, -29},     {13, 42, -13, -42},
     {18, 60, -18, -60}, {24, 80, -24, -80}, {33, 106, -33, -106}, {47, 183, -47, -183}};
 constexpr int kHalf = EtcTexels::kCount / 2;
-constexpr int kMostRounds = 4;
+constexpr int kMostHalfRounds = 4;
 constexpr int kIndividualBits = 4, kDifferentialBits = 5;
 constexpr int kLeastStep = -4, kGreatestStep = 3;
 
@@ -115,7 +115,7 @@ class Half {
   void settle(HalfFit* fit, int bits, const Bounds& bounds, int limit) const {
     take(fit, bits, limit);
     if (fit->error > limit) return;
-    for (int round = 1; round < kMostRounds; ++round) {
+    for (int round = 1; round < kMostHalfRounds; ++round) {
       HalfFit next = *fit;
       next.base = base_for(*fit, 0, bits, bounds);
       if (next.base == fit->base) return;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kDistances[] = {3, 6, 11, 16, 23, 32, 41, 64};
 constexpr int kMost = 15;
-constexpr int kMostRounds = 3;
+constexpr int kMostPaintRounds = 3;
 constexpr std::size_t kTexels = EtcTexels::kCount;
 
 /// What a texel takes: which of the two colors, and how many distances lighter.
@@ -90,7 +90,7 @@ std::array<EtcColor, 2> colors_for(const EtcTexels& texels, const Painting& pain
 void settle(const EtcTexels& texels, int limit, Painting* painting) {
   take(texels, limit, painting);
   if (painting->error > limit) return;
-  for (int round = 1; round < kMostRounds; ++round) {
+  for (int round = 1; round < kMostPaintRounds; ++round) {
     Painting next = *painting;
     next.colors = colors_for(texels, *painting);
     if (next.colors == painting->colors) return;

@@ -20,7 +20,7 @@ namespace prefilter {
 namespace {
 
 constexpr double kMostCells = 1e15;  // along an axis: numbers that doubles still tell apart
-constexpr std::int64_t kPointsPerTask = 1 << 14;
+constexpr std::int64_t kCellsPerTask = 1 << 14;
 
 // The steps of splitmix64 (Steele et al. 2014): numbers that look random, each once.
 std::uint64_t scrambled(std::uint64_t number) {
@@ -127,7 +127,7 @@ std::vector<std::int64_t> grid_points(std::span<const Vector3> points, const Nei
       }
     }
   };
-  parallel_ranges(static_cast<std::int64_t>(cells.size()), kPointsPerTask, threads,
+  parallel_ranges(static_cast<std::int64_t>(cells.size()), kCellsPerTask, threads,
                   progress.part(0.0, 0.1), place);
   sort_in_parallel(&cells, progress.part(0.1, 0.9), threads);
   std::vector<std::int64_t> kept;

@@ -9,7 +9,7 @@
 namespace prefilter {
 namespace {
 
-constexpr double kLeastCosine = 0.05;
+constexpr double kLeastFacing = 0.05;
 constexpr double kLeastArea = 1e-12;              // twice a triangle's, of a cell's face
 constexpr double kAlong = 0.9396926207859084;     // 20 degrees
 constexpr double kBorderReach = 2.0;              // cells
@@ -105,7 +105,7 @@ bool is_upside_down(const MeshView<std::int32_t>& mesh, std::size_t triangle, st
     const SourcePoint* sample = samples.of(corner);
     if (sample == nullptr || sample->label != label) return false;
     const double height = dot(normal, sample->normal);
-    if ((turned.contains(sample->label) ? -height : height) >= kLeastCosine * length(normal)) {
+    if ((turned.contains(sample->label) ? -height : height) >= kLeastFacing * length(normal)) {
       return false;
     }
     is_any = true;

@@ -17,7 +17,7 @@ namespace {
 constexpr double kGoesOn = 0.9;           // cosine: 26 degrees
 constexpr double kNearlyParallel = 0.94;  // 20 degrees
 constexpr double kJoins = 0.3;
-constexpr std::int32_t kLeastCells = 20;
+constexpr std::int32_t kLeastRegionCells = 20;
 constexpr int kReach = 4;
 constexpr double kNotDeep = 1.5;
 constexpr double kMostMoved = 0.45;
@@ -162,7 +162,8 @@ void OccupancySurface::join_regions() {
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     SurfaceCell& cell = cells_[i];
     cell.region = regions_.root(static_cast<std::int32_t>(i));
-    cell.is_smooth = cell.is_smooth && counts[static_cast<std::size_t>(cell.region)] >= kLeastCells;
+    cell.is_smooth =
+        cell.is_smooth && counts[static_cast<std::size_t>(cell.region)] >= kLeastRegionCells;
   }
   for (SurfaceCell& cell : cells_) {
     cell.is_deep = cell.is_smooth;

@@ -11,12 +11,12 @@
 namespace prefilter {
 namespace {
 
-constexpr double kReachCells = 2.5;  // of parts that count
-constexpr double kCertain = 1e-4;    // of an occupancy, from 0 or 1
+constexpr double kPartReach = 2.5;  // of parts that count
+constexpr double kCertain = 1e-4;   // of an occupancy, from 0 or 1
 constexpr int kLeastVotes = 3;
 constexpr int kMajority = 10;  // times as many as against
 // Along an axis of a brick. Not a divisor of its cells: samples are off the planes of coordinates.
-constexpr int kSamples = 3;
+constexpr int kCellSamples = 3;
 constexpr int kShares = 4;  // samples of a leaf along an axis
 constexpr int kClose = 5;   // samples, from half of them, where the center decides
 constexpr std::int64_t kLeavesPerTask = 64;
@@ -53,11 +53,12 @@ PartSides::PartSides(const ContourTree& tree, const RootFrame& frame, const Sour
     : surface_(surface), frame_(frame) {
   Pulse pulse(progress);
   surface.for_meeting_bricks([&](const Vector3& low, double side) {
-    for (int i = 0; i < kSamples * kSamples * kSamples; ++i) {
+    for (int i = 0; i < kCellSamples * kCellSamples * kCellSamples; ++i) {
       pulse.step();
-      const Vector3 point = {low[0] + (i % kSamples + 0.4) / kSamples * side,
-                             low[1] + (i / kSamples % kSamples + 0.4) / kSamples * side,
-                             low[2] + (i / (kSamples * kSamples) + 0.4) / kSamples * side};
+      const Vector3 point = {
+          low[0] + (i % kCellSamples + 0.4) / kCellSamples * side,
+          low[1] + (i / kCellSamples % kCellSamples + 0.4) / kCellSamples * side,
+          low[2] + (i / (kCellSamples * kCellSamples) + 0.4) / kCellSamples * side};
       const float value = value_at(tree, frame, point);
       const bool is_full = value >= 1.0F - static_cast<float>(kCertain);
       if (!is_full && value > static_cast<float>(kCertain)) continue;
@@ -76,7 +77,7 @@ std::optional<PartSides::Parts> PartSides::parts_near(const Vector3& point) cons
     const std::int32_t part = meeting[i];
     if (parts.count == kMostParts || parts.count + (meeting.size() - i) < 2) return std::nullopt;
     const std::optional<SourcePoint> plane =
-        surface_.nearest_plane(point, kReachCells * surface_.cell(), part);
+        surface_.nearest_plane(point, kPartReach * surface_.cell(), part);
     if (!plane) continue;
     parts.planes[parts.count] = *plane;
     parts.numbers[parts.count++] = part;

@@ -11,7 +11,7 @@ namespace prefilter {
 namespace {
 
 constexpr int kPasses = 2;  // more would eat what is one quad wide from its end
-constexpr double kReachCells = 2.0;
+constexpr double kBorderReach = 2.0;
 
 // The label that three vertices around one have, or four, if it is not the vertex's own; -1: none.
 std::int32_t label_around(std::size_t vertex, const DualLoops& loops,
@@ -42,7 +42,7 @@ void straighten_borders(const DualLoops& loops, const FeatureSurface& surface,
       const std::int32_t label = label_around(v, loops, *samples);
       if (label < 0) continue;
       const std::optional<SourcePoint> there =
-          surface.nearest(vertices->positions()[v], kReachCells * surface.cell(), label);
+          surface.nearest(vertices->positions()[v], kBorderReach * surface.cell(), label);
       if (there) changed.emplace_back(v, *there);
     }
     if (changed.empty()) return;

@@ -56,7 +56,7 @@ struct Row {
 
 // Of the kernels that are no polynomials, lanczos2 is off by 6e-6 at the most, lanczos3 by 2e-6,
 // and gaussian, which ends with a step of 3.5e-6, by 1e-6.
-constexpr Row kRows[] = {
+constexpr Row kKernelRows[] = {
     {"box", "Box", 0.5, kEverything, false, 1.0, 0, [](double) { return 1.0; }},
     {"tent", "Tent", 1.0, kEverything, false, 1.0, 1, [](double x) { return 1.0 - x; }},
     {"bspline2", "B-Spline 2", 1.5, kEverything, false, 1.0, 2, bspline2},
@@ -72,7 +72,7 @@ constexpr Row kRows[] = {
 const std::vector<Kernel>& all_kernels() {
   static const std::vector<Kernel> kernels = [] {
     std::vector<Kernel> made;
-    for (const Row& row : kRows) {
+    for (const Row& row : kKernelRows) {
       if (row.function == nullptr) continue;
       made.emplace_back(row.name, row.radius, row.piece_width, row.degree, row.function);
     }
@@ -187,7 +187,7 @@ bool PixelFilter::is_for(FilterUse use) const {
 std::span<const PixelFilter> pixel_filters() {
   static const std::vector<PixelFilter> filters = [] {
     std::vector<PixelFilter> made;
-    for (const Row& row : kRows) {
+    for (const Row& row : kKernelRows) {
       made.push_back(
           {row.name, row.label, row.radius, find_kernel(row.name), row.is_radial, row.uses});
     }

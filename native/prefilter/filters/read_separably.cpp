@@ -32,16 +32,16 @@ Four all(float value) { return Four{value, value, value, value}; }
 // Values that are added at once along columns. Rows have as many more than they need.
 constexpr int kColumnsAtOnce = 32;
 
-struct WeightedRow {
+struct WeightedTexels {
   float weight;
   const float* values;
 };
 
-void add_columns(const std::vector<WeightedRow>& rows, std::ptrdiff_t count, float* sums) {
+void add_columns(const std::vector<WeightedTexels>& rows, std::ptrdiff_t count, float* sums) {
   constexpr int kVectors = kColumnsAtOnce / kFour;
   for (std::ptrdiff_t i = 0; i < count; i += kColumnsAtOnce) {
     Four sum[kVectors] = {};
-    for (const WeightedRow& row : rows) {
+    for (const WeightedTexels& row : rows) {
       const Four weight = all(row.weight);
       const float* const values = row.values + i;
       for (int k = 0; k < kVectors; ++k) sum[k] += weight * load(values + kFour * k);
@@ -175,7 +175,7 @@ class ByteFilter {
     const std::vector<std::vector<Tap>> taps = taps_of(begin, end, &read);
     constexpr std::ptrdiff_t kStride = kStripTexels * C + kColumnsAtOnce;
     const auto strip = std::make_unique_for_overwrite<float[]>(read.size() * kStride);
-    std::vector<WeightedRow> rows;
+    std::vector<WeightedTexels> rows;
     for (int x = 0; x < source_.width(); x += kStripTexels) {
       const int strip_end = std::min(x + kStripTexels, source_.width());
       for (std::size_t i = 0; i < read.size(); ++i) {
@@ -260,8 +260,8 @@ struct RowsRead {
   double of_one;
 };
 
-constexpr double kMostValues = 1 << 23;  // that are read at a time
-constexpr double kMostRows = 64;         // that are made at a time
+constexpr double kMostValuesAtOnce = 1 << 23;  // that are read at a time
+constexpr double kMostRows = 64;               // that are made at a time
 
 double row_values(int source_width, int width, int channels) {
   return static_cast<double>(std::max(source_width, width)) * channels;
@@ -283,7 +283,7 @@ Image filtered(const FilteredImage& source, const AxisTaps& along_x, const AxisT
 
 bool reads_few_rows(const TexelSource& image, int width, int height, const Kernel& kernel) {
   const double rows = RowsRead(image.height, height, kernel).of_one;
-  return rows * row_values(image.width, width, image.channels) <= kMostValues;
+  return rows * row_values(image.width, width, image.channels) <= kMostValuesAtOnce;
 }
 
 Image filter_bytes_separably(const FilteredImage& bytes, int width, int height,
@@ -292,7 +292,7 @@ Image filter_bytes_separably(const FilteredImage& bytes, int width, int height,
   const AxisTaps along_x = taps_or_itself(kernel, bytes.width(), width);
   const AxisTaps along_y = taps_or_itself(kernel, bytes.height(), height);
   const RowsRead read(bytes.height(), height, kernel);
-  const double most = kMostValues / row_values(bytes.width(), width, bytes.channels());
+  const double most = kMostValuesAtOnce / row_values(bytes.width(), width, bytes.channels());
   // Enough parts for all threads; the first rows of each are read for the one before it too.
   const double share = static_cast<double>(height) / (2 * resolve_threads(threads));
   const auto rows = static_cast<int>(

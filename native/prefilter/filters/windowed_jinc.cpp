@@ -18,7 +18,7 @@ using std::numbers::pi;
 // Below this the next terms of the series are less than rounding.
 constexpr double kSmall = 1e-3;
 
-double sinc(double x) {
+double smooth_sinc(double x) {
   const double angle = pi * x;
   if (std::abs(angle) < kSmall) return 1.0 - angle * angle * (1.0 - angle * angle / 20.0) / 6.0;
   return elementary::sin(angle) / angle;
@@ -82,7 +82,7 @@ WindowedJinc::WindowedJinc(double radius) : radius_(radius) {
 
 double WindowedJinc::operator()(double distance) const {
   if (!(distance < radius_)) return 0.0;
-  return scale_ * jinc(distance) * sinc(distance / radius_);
+  return scale_ * jinc(distance) * smooth_sinc(distance / radius_);
 }
 
 double windowed_jinc(double distance, double radius) { return WindowedJinc(radius)(distance); }

@@ -68,7 +68,7 @@ void TextReader::parse(std::string_view line, std::string_view separators,
     if (word.empty()) return;
     double number = 0.0;
     if (!to_number(word, &number)) {
-      throw_invalid(where() + ": found " + quoted(word) + "; a number is needed");
+      throw_invalid(where() + ": found " + in_quotes(word) + "; a number is needed");
     }
     values->push_back(number);
   }
@@ -108,7 +108,7 @@ bool to_count(std::string_view word, std::uint64_t* count) {
   return error == std::errc() && rest == end && *count >> 63 == 0;
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   constexpr std::size_t kLongest = 40;
   std::string result = "'";
   for (const char c : text.substr(0, kLongest)) result += c >= ' ' && c <= '~' ? c : '?';

@@ -71,6 +71,6 @@ bool to_number(std::string_view word, double* number);
 bool to_count(std::string_view word, std::uint64_t* count);
 
 /// A piece of a file for a message: in quotes, shortened, without what a terminal would obey.
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 
 }  // namespace prefilter

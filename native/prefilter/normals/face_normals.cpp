@@ -21,7 +21,7 @@ using Triangle = std::array<std::int64_t, 3>;
 
 double distance(const Vector3& a, const Vector3& b) { return length(a - b); }
 
-Vector3 unit(const Vector3& v) {
+Vector3 unit_or_none(const Vector3& v) {
   const double size = length(v);
   if (!(size > 0.0) || !std::isfinite(size)) return {};
   return {v[0] / size, v[1] / size, v[2] / size};
@@ -167,7 +167,7 @@ std::vector<Vector3> mesh_normals(const InputMesh& mesh, const Progress& progres
   }
   for (Vector3& normal : normals) {
     pulse.step();
-    normal = unit(normal);
+    normal = unit_or_none(normal);
   }
   return normals;
 }
@@ -199,7 +199,7 @@ GridNormals grid_normals(std::span<const Vector3> points, const RangeGrid& grid,
   GridNormals result;
   result.normals = mesh_normals({points, triangles}, progress);
   const auto toward = [&](std::size_t i) {
-    return viewpoint ? unit(*viewpoint - points[i]) : Vector3{0.0, 0.0, 1.0};
+    return viewpoint ? unit_or_none(*viewpoint - points[i]) : Vector3{0.0, 0.0, 1.0};
   };
   double shown = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {

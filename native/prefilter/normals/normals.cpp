@@ -16,7 +16,7 @@
 namespace prefilter {
 namespace {
 
-constexpr std::int64_t kPointsPerTask = 256;
+constexpr std::int64_t kPlanesPerTask = 256;
 constexpr std::int64_t kRowsPerTask = 1 << 15;
 // More neighbors hardly change which side a normal is on, and take time.
 constexpr std::size_t kMostLinks = 8;
@@ -101,7 +101,7 @@ LocalPlanes fit_planes(const NeighborSearch& search, std::size_t neighbors, std:
       planes.normals[place] = normal;
     }
   };
-  parallel_ranges(static_cast<std::int64_t>(positions.size()), kPointsPerTask, threads, progress,
+  parallel_ranges(static_cast<std::int64_t>(positions.size()), kPlanesPerTask, threads, progress,
                   fit);
   return planes;
 }

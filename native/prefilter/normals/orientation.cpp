@@ -17,7 +17,7 @@
 namespace prefilter {
 namespace {
 
-constexpr std::int64_t kPointsPerTask = 1 << 12;
+constexpr std::int64_t kNormalsPerTask = 1 << 12;
 // Agreements are whole numbers up to this, so that their sums do not depend on the order.
 constexpr int kFullAgreement = 1023;
 constexpr int kNoDoubt = 992;  // 0.97
@@ -88,7 +88,7 @@ std::vector<std::int16_t> agreements(const LinkedPoints& points, std::span<const
       }
     }
   };
-  parallel_ranges(static_cast<std::int64_t>(points.positions.size()), kPointsPerTask, threads,
+  parallel_ranges(static_cast<std::int64_t>(points.positions.size()), kNormalsPerTask, threads,
                   progress, compare);
   return result;
 }
@@ -379,7 +379,7 @@ void orient_normals(const LinkedPoints& points, NormalSide side, const Progress&
       if ((own.is_reversed != 0) != is_wrong[own.set]) normal = Vector3{} - normal;
     }
   };
-  parallel_ranges(static_cast<std::int64_t>(normals->size()), kPointsPerTask, threads,
+  parallel_ranges(static_cast<std::int64_t>(normals->size()), kNormalsPerTask, threads,
                   progress.part(1.0, 1.0), reverse);
 }
 

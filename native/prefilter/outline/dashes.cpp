@@ -10,8 +10,6 @@
 namespace prefilter {
 namespace {
 
-double length(const Point2& p) { return elementary::hypot(p.x, p.y); }
-
 // Gauss and Legendre's rule of eight points.
 double gauss_length(const Curve& curve, double from, double to) {
   constexpr std::array<double, 4> kPlaces = {0.1834346424956498, 0.5255324099163290,

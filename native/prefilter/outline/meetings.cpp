@@ -13,7 +13,6 @@ namespace {
 
 constexpr int kMostSteps = 20000;
 
-double length(const Point2& p) { return elementary::hypot(p.x, p.y); }
 double distance(const Point2& a, const Point2& b) { return length(a - b); }
 
 struct Range {

@@ -13,7 +13,6 @@ namespace {
 
 constexpr int kDeepest = 18;
 
-double length(const Point2& p) { return elementary::hypot(p.x, p.y); }
 Point2 unit(const Point2& p) { return (1.0 / length(p)) * p; }
 Point2 left_of(const Point2& direction) { return {-direction.y, direction.x}; }
 

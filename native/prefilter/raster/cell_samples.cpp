@@ -17,8 +17,8 @@ constexpr std::uint64_t kAll = ~std::uint64_t{0};
 
 // What is behind so much is a quarter of 1/255, all of it together: with what samples are off by it
 // stays below 1/255.
-constexpr double kLeastPassing = 1.0 / 1024.0;
-constexpr double kLeastLeft = CellSamples::kCount * kLeastPassing;
+constexpr double kLeastCrowdPassing = 1.0 / 1024.0;
+constexpr double kLeastLeft = CellSamples::kCount * kLeastCrowdPassing;
 
 constexpr int kLanes = 4;
 using Floats = Vector<float, kLanes>;
@@ -196,7 +196,7 @@ double CellSamples::take_passing(const ChannelValues& color, float opaque) {
     } else {
       sum += static_cast<double>(take_part(block, color, opaque));
     }
-    constexpr auto kLeastInBlock = static_cast<float>(kBlockCount * kLeastPassing);
+    constexpr auto kLeastInBlock = static_cast<float>(kBlockCount * kLeastCrowdPassing);
     if (block_left_[block] * behind.passing < kLeastInBlock) {
       open_blocks_ &= ~(std::uint64_t{1} << block);
     }

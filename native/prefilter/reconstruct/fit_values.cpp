@@ -17,7 +17,7 @@ namespace prefilter {
 namespace {
 
 // The derivative is not that of a linear function: what the first round leaves, the second finds.
-constexpr int kRounds = 2;
+constexpr int kValueRounds = 2;
 // What counts for a leaf before the last round: neighbors of half its size, in sides of these.
 constexpr int kReach = 3;
 
@@ -126,7 +126,7 @@ class ValueFit {
 
 void fit_values(const SampleFit& fit, float isovalue, const FitRange& range, CellTree* tree) {
   ValueFit values(fit, range, tree);
-  for (int later = kRounds - 1; later >= 0; --later) {
+  for (int later = kValueRounds - 1; later >= 0; --later) {
     values.find_changes(isovalue, later);
     values.apply_changes();
   }

@@ -17,17 +17,17 @@ constexpr float kScreening = 2.0F;
 // For each depth: what is started with is nearly right.
 constexpr int kSteps = 8;
 
-constexpr std::int32_t kOutside = -1;
+constexpr std::int32_t kNoBlock = -1;
 
 // What is beyond a face of a block.
 struct Side {
-  std::int32_t block = kOutside;  // of the same depth; or outside; or less, where there is a leaf
+  std::int32_t block = kNoBlock;  // of the same depth; or outside; or less, where there is a leaf
   float value = 0.0F;             // of a leaf
 
   // A leaf without samples.
-  static Side leaf(int depth, float value) { return {kOutside - 1 - depth, value}; }
-  bool is_leaf() const { return block < kOutside; }
-  int depth() const { return kOutside - 1 - block; }
+  static Side leaf(int depth, float value) { return {kNoBlock - 1 - depth, value}; }
+  bool is_leaf() const { return block < kNoBlock; }
+  int depth() const { return kNoBlock - 1 - block; }
 };
 
 using Sides = std::array<Side, 6>;  // of the faces: low and high along each axis
@@ -117,7 +117,7 @@ class LevelSystem {
     const bool is_within = ((octant & bit) != 0) != ((face & 1) != 0);
     const std::int32_t next = is_within ? static_cast<std::int32_t>(block)
                                         : sides_[block][static_cast<std::size_t>(face)].block;
-    return next < 0 ? kOutside : 8 * next + (octant ^ bit);
+    return next < 0 ? kNoBlock : 8 * next + (octant ^ bit);
   }
 
   void add_faces(std::size_t block, int octant) {

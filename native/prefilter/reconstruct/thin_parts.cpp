@@ -17,13 +17,13 @@ namespace prefilter {
 namespace {
 
 // How far from the heights values are changed, in sides of a leaf: what fit_values reads.
-constexpr int kReach = 8;
+constexpr int kThinReach = 8;
 // Of 1 less the squared length of the mean normal: at creases it is 1/2, of a plate nearly 1. Noise
 // stays below, so that where there is some the samples are trusted as for the fit.
 constexpr float kOfCrease = 0.5F;
 constexpr float kOfThinPart = 0.9F;
 // How much it counts that a value stays, beside a sample in the middle of its leaf.
-constexpr float kStill = 0.05F;
+constexpr float kThinStill = 0.05F;
 
 // The squared length of a mean; squares of weights may be beyond what floats hold.
 float squared_mean(const std::array<float, 3>& sum, float weight) {
@@ -80,7 +80,8 @@ class Restorer {
       for (std::size_t i = 0; i < around_[k].size(); ++i) {
         const Around& around = around_[k][i];
         if (!(around.weight > 0.0F)) continue;
-        tree_->levels[k].blocks[i / 8][i % 8] += around.change / (around.change_weight + kStill);
+        tree_->levels[k].blocks[i / 8][i % 8] +=
+            around.change / (around.change_weight + kThinStill);
       }
     }
   }
@@ -96,8 +97,8 @@ class Restorer {
       fit_.samples(k).for_all([&](const SampleCell& cell) {
         const CellPosition at = cell_position(cell.key);
         const int low = at[2] * size;
-        if (low + (kReach + 1) * size < range_.heights.low ||
-            low - kReach * size > range_.heights.high) {
+        if (low + (kThinReach + 1) * size < range_.heights.low ||
+            low - kThinReach * size > range_.heights.high) {
           return;
         }
         const std::optional<TreeCell> own = cell_at(*tree_, k, at);

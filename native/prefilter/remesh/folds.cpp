@@ -15,7 +15,7 @@ namespace {
 using Flags = std::vector<std::uint8_t>;
 
 // A side of a triangle from one end to a higher one.
-struct Side {
+struct FoldSide {
   std::uint32_t low;
   std::uint32_t high;
   std::uint32_t triangle;
@@ -72,9 +72,9 @@ Flags rough_vertices(const MeshView<std::int32_t>& mesh, std::size_t first, cons
 }
 
 // Those between two flagged vertices, in the order of their lower ends.
-std::vector<Side> sides_between(const MeshView<std::int32_t>& mesh, std::size_t first,
-                                const Flags& is_flagged, Pulse* pulse) {
-  std::vector<Side> sides;
+std::vector<FoldSide> sides_between(const MeshView<std::int32_t>& mesh, std::size_t first,
+                                    const Flags& is_flagged, Pulse* pulse) {
+  std::vector<FoldSide> sides;
   for (std::size_t t = first; t < mesh.triangles.size(); ++t) {
     pulse->step();
     for (std::size_t k = 0; k < 3; ++k) {
@@ -85,7 +85,7 @@ std::vector<Side> sides_between(const MeshView<std::int32_t>& mesh, std::size_t 
     }
   }
   std::stable_sort(sides.begin(), sides.end(),
-                   [](const Side& s, const Side& other) { return s.low < other.low; });
+                   [](const FoldSide& s, const FoldSide& other) { return s.low < other.low; });
   return sides;
 }
 
@@ -102,7 +102,7 @@ std::vector<std::array<std::uint32_t, 2>> folded_pairs(const MeshView<std::int32
     if (!is_counted(t)) continue;
     for (const std::int32_t v : mesh.triangles[t]) is_touched[static_cast<std::size_t>(v)] = 1;
   }
-  const std::vector<Side> sides =
+  const std::vector<FoldSide> sides =
       sides_between(mesh, first, rough_vertices(mesh, first, is_touched, &pulse), &pulse);
   std::vector<std::array<std::uint32_t, 2>> pairs;
   for (std::size_t i = 0; i < sides.size(); ++i) {

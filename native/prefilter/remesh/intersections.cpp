@@ -19,7 +19,7 @@
 namespace prefilter {
 namespace {
 
-constexpr std::int64_t kRowsPerTask = 1 << 13;
+constexpr std::int64_t kTrianglesPerTask = 1 << 13;
 constexpr std::int64_t kLeavesPerTask = 1 << 8;
 
 using Mesh = MeshView<std::int32_t>;
@@ -57,17 +57,18 @@ Extent extent_of(const Mesh& mesh, const Progress& progress, int threads) {
   const bool is_small = 3 * mesh.triangles.size() < mesh.positions.size();
   const auto rows =
       static_cast<std::int64_t>(is_small ? mesh.triangles.size() : mesh.positions.size());
-  std::vector<Extent> extents(static_cast<std::size_t>(range_count(rows, kRowsPerTask)));
-  parallel_ranges(rows, kRowsPerTask, threads, progress, [&](std::int64_t begin, std::int64_t end) {
-    Extent& extent = extents[static_cast<std::size_t>(begin / kRowsPerTask)];
-    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-      if (is_small) {
-        for (const Vector3& corner : mesh.corners(i)) extent.include(corner);
-      } else {
-        extent.include(mesh.positions[i]);
-      }
-    }
-  });
+  std::vector<Extent> extents(static_cast<std::size_t>(range_count(rows, kTrianglesPerTask)));
+  parallel_ranges(
+      rows, kTrianglesPerTask, threads, progress, [&](std::int64_t begin, std::int64_t end) {
+        Extent& extent = extents[static_cast<std::size_t>(begin / kTrianglesPerTask)];
+        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+          if (is_small) {
+            for (const Vector3& corner : mesh.corners(i)) extent.include(corner);
+          } else {
+            extent.include(mesh.positions[i]);
+          }
+        }
+      });
   Extent all;
   for (const Extent& extent : extents) all.include(extent);
   return all;

@@ -25,7 +25,7 @@ constexpr std::size_t kRun = 32;    // triangles
 constexpr double kLargeSide = 4.0;  // of cubes for runs, in sides
 
 using Cube = std::array<std::int64_t, 3>;
-using Corners = std::array<Vector3, 3>;
+using CornerPoints = std::array<Vector3, 3>;
 
 // Cubes of this side, by a hash of so many bits.
 class Cubes {
@@ -37,7 +37,7 @@ class Cubes {
   // Calls visit(hash) for the cubes that a triangle's box overlaps, with a margin of so many sides,
   // until that returns true. Returns whether it did, or there are too many.
   template <typename Visit>
-  bool any_of(const Corners& corners, const Visit& visit, double margin = 0.0) const {
+  bool any_of(const CornerPoints& corners, const Visit& visit, double margin = 0.0) const {
     Cube low;
     Cube high;
     const double count = find_range(corners, margin, &low, &high);
@@ -55,7 +55,7 @@ class Cubes {
 
  private:
   // The cubes that a triangle's box overlaps, and their number.
-  double find_range(const Corners& corners, double margin, Cube* low, Cube* high) const {
+  double find_range(const CornerPoints& corners, double margin, Cube* low, Cube* high) const {
     constexpr double kMost = 1e15;
     double count = 1.0;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -91,14 +91,14 @@ class CubeSet {
       : cubes_(side, bits_for(count, kMoreBits)),
         bits_((std::size_t{1} << bits_for(count, kMoreBits)) / 64, 0) {}
 
-  void insert(const Corners& corners) {
+  void insert(const CornerPoints& corners) {
     is_full_ = is_full_ || cubes_.any_of(corners, [&](std::size_t hash) {
       bits_[hash / 64] |= std::uint64_t{1} << (hash % 64);
       return false;
     });
   }
 
-  bool meets(const Corners& corners) const {
+  bool meets(const CornerPoints& corners) const {
     return is_full_ || cubes_.any_of(corners, [&](std::size_t hash) {
       return ((bits_[hash / 64] >> (hash % 64)) & 1U) != 0;
     });
@@ -119,7 +119,7 @@ class NormalCubes {
       : cubes_(side, bits_for(count, kMoreBits)),
         firsts_(std::size_t{1} << bits_for(count, kMoreBits)) {}
 
-  void add(const Corners& corners) {
+  void add(const CornerPoints& corners) {
     constexpr float kLeast = 0.51F;  // cosine
     const Normal n = normal_of(corners);
     has_large_ |= cubes_.any_of(corners, [&](std::size_t hash) {
@@ -132,7 +132,7 @@ class NormalCubes {
   }
 
   // Once all are added.
-  bool is_rough_at(const Corners& corners) const {
+  bool is_rough_at(const CornerPoints& corners) const {
     // As far as what was between two sheets may have moved since.
     constexpr double kMargin = 0.25;
     const auto is_rough = [&](std::size_t hash) { return firsts_[hash][0] == kRough; };
@@ -145,7 +145,7 @@ class NormalCubes {
   using Normal = std::array<float, 3>;
 
   // Of length 1; 0 for what is none.
-  static Normal normal_of(const Corners& corners) {
+  static Normal normal_of(const CornerPoints& corners) {
     const Vector3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
     const double size = length(normal);
     if (!(size > 0.0)) return {};
@@ -160,7 +160,8 @@ class NormalCubes {
 
 // Three points that have the same box as the triangles from one to another, without those that are
 // gone.
-Corners corners_of_box(const MeshView<std::int32_t>& mesh, std::size_t begin, std::size_t end) {
+CornerPoints corners_of_box(const MeshView<std::int32_t>& mesh, std::size_t begin,
+                            std::size_t end) {
   Box box = kEmptyBox;
   for (std::size_t t = begin; t < end; ++t) {
     if (mesh.triangles[t][0] < 0) continue;
@@ -187,8 +188,8 @@ std::vector<std::uint8_t> where_rough(const MeshView<std::int32_t>& mesh, std::s
       if (mesh.triangles[t][0] >= 0) work(t, mesh.corners(t));
     }
   };
-  visit([&](std::size_t, const Corners& corners) { cubes.add(corners); });
-  visit([&](std::size_t t, const Corners& corners) {
+  visit([&](std::size_t, const CornerPoints& corners) { cubes.add(corners); });
+  visit([&](std::size_t t, const CornerPoints& corners) {
     if (is_suspect[t] != 0 && !cubes.is_rough_at(corners)) is_suspect[t] = 0;
   });
   return is_suspect;

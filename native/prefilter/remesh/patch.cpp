@@ -27,7 +27,7 @@ constexpr double kLengthWeight = 1e-6;
 // A vertex whose turn has come waits for others only where its cost has grown by more.
 constexpr double kGrowth = 1.5;
 constexpr double kLeastGrowth = 0.01;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoCost = std::numeric_limits<double>::infinity();
 
 std::vector<Quadric> sum_quadrics(const Patch& patch) {
   std::vector<Quadric> quadrics(patch.positions.size());
@@ -47,7 +47,7 @@ std::vector<Quadric> sum_quadrics(const Patch& patch) {
 double cost_of(const Patch& patch, const std::vector<Quadric>& quadrics, std::int32_t u,
                std::int32_t v) {
   const double cost = quadrics[as_index(u)].mean_at(patch.point(v));
-  if (!(cost < kLargestCost)) return kInfinity;
+  if (!(cost < kLargestCost)) return kNoCost;
   return cost + kLengthWeight * squared_length(patch.point(v) - patch.point(u));
 }
 
@@ -88,12 +88,12 @@ class RemovalQueue {
 void enqueue(const Patch& patch, const PatchLinks& links, const std::vector<Quadric>& quadrics,
              std::int32_t u, RemovalQueue* queue) {
   if ((patch.flags[as_index(u)] & (Patch::kShared | Patch::kKept)) != 0) return;
-  double least = kInfinity;
+  double least = kNoCost;
   links.for_corners(u, [&](std::int32_t t, std::int32_t corner) {
     const std::int32_t v = patch.triangle(t).corners[as_index((corner + 1) % 3)];
     least = std::min(least, cost_of(patch, quadrics, u, v));
   });
-  if (least < kInfinity) queue->push(least, u);
+  if (least < kNoCost) queue->push(least, u);
 }
 
 struct Candidate {
@@ -114,7 +114,7 @@ std::span<const Candidate> candidates_of(const Patch& patch, const std::vector<Q
   for (std::size_t i = 0; i < ring.size; ++i) {
     if (ring.crease_count > 0 && (ring.crease_count > 2 || !ring.is_crease[i])) continue;
     const double cost = cost_of(patch, quadrics, u, ring.vertices[i]);
-    if (cost < kInfinity) (*all)[count++] = {cost, i};
+    if (cost < kNoCost) (*all)[count++] = {cost, i};
   }
   const std::size_t tries = std::min<std::size_t>(count, kMostTries);
   const auto begin = all->begin();

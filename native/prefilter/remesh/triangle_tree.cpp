@@ -13,7 +13,7 @@
 namespace prefilter {
 namespace {
 
-constexpr std::int64_t kRowsPerTask = 1 << 13;
+constexpr std::int64_t kTrianglesPerTask = 1 << 13;
 
 using Mesh = MeshView<std::int32_t>;
 
@@ -55,16 +55,16 @@ std::uint64_t key_of(const FloatBox& box, float mean) {
 std::vector<std::uint64_t> sorted_keys(const Mesh& mesh, const Frame& frame,
                                        const Progress& progress, int threads) {
   const auto rows = static_cast<std::int64_t>(mesh.triangles.size());
-  const auto tasks = static_cast<std::size_t>(range_count(rows, kRowsPerTask));
+  const auto tasks = static_cast<std::size_t>(range_count(rows, kTrianglesPerTask));
   std::vector<double> sums(tasks);
   const auto measure = [&](std::int64_t begin, std::int64_t end) {
     double sum = 0.0;
     for (std::int64_t t = begin; t < end; ++t) {
       sum += size_of(frame.box_of(mesh.corners(static_cast<std::size_t>(t))));
     }
-    sums[static_cast<std::size_t>(begin / kRowsPerTask)] = sum;
+    sums[static_cast<std::size_t>(begin / kTrianglesPerTask)] = sum;
   };
-  parallel_ranges(rows, kRowsPerTask, threads, progress.part(0.0, 0.12), measure);
+  parallel_ranges(rows, kTrianglesPerTask, threads, progress.part(0.0, 0.12), measure);
   double mean = 0.0;
   for (const double sum : sums) mean += sum;
   mean /= static_cast<double>(rows);
@@ -77,7 +77,7 @@ std::vector<std::uint64_t> sorted_keys(const Mesh& mesh, const Frame& frame,
           key_of(box, static_cast<float>(mean)) << 32U | static_cast<std::uint64_t>(t);
     }
   };
-  parallel_ranges(rows, kRowsPerTask, threads, progress.part(0.12, 0.25), place);
+  parallel_ranges(rows, kTrianglesPerTask, threads, progress.part(0.12, 0.25), place);
   sort_in_parallel(&keys, progress.part(0.25, 1.0), threads);
   return keys;
 }
@@ -113,8 +113,8 @@ std::vector<TriangleLeaf> make_leaves(const Mesh& mesh, std::span<const std::uin
       make_leaf(mesh, is_suspect, frame, keys.subspan(first, count), &leaves[leaf]);
     }
   };
-  parallel_ranges(static_cast<std::int64_t>(leaves.size()), kRowsPerTask / 8, threads, progress,
-                  fill);
+  parallel_ranges(static_cast<std::int64_t>(leaves.size()), kTrianglesPerTask / 8, threads,
+                  progress, fill);
   return leaves;
 }
 
@@ -130,7 +130,7 @@ std::vector<TriangleLevel> make_levels(std::span<const TriangleLeaf> leaves,
       has_others[i] = static_cast<unsigned>(std::popcount(leaf.suspects)) < leaf.count ? 1 : 0;
     }
   };
-  parallel_ranges(count, kRowsPerTask, threads, progress, make_some);
+  parallel_ranges(count, kTrianglesPerTask, threads, progress, make_some);
   std::vector<TriangleLevel> levels;
   while (true) {
     const std::size_t above =

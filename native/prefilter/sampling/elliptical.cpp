@@ -21,7 +21,7 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kRadius = 2.0 * std::numbers::sqrt2;
 
 // Where a coordinate is read, near the image; the same texels lie around it, as far from it.
-double near_axis(double place, double reach, int size, Wrap mode) {
+double near_image(double place, double reach, int size, Wrap mode) {
   if (mode == Wrap::kRepeat) return (place - std::floor(place)) * size;
   const double x = std::clamp(place, -kLargestCoordinate, kLargestCoordinate) * size;
   const double texel = std::floor(x);
@@ -46,8 +46,8 @@ struct Gaussian {
     c = along * dy * dy + across * dx * dx;
     height = kRadius * elementary::hypot(shape.major * dy, shape.minor * dx);
     const double width = kRadius * elementary::hypot(shape.major * dx, shape.minor * dy);
-    x = near_axis(place[0], width, image.width, wrap.u);
-    y = near_axis(place[1], height, image.height, wrap.v);
+    x = near_image(place[0], width, image.width, wrap.u);
+    y = near_image(place[1], height, image.height, wrap.v);
   }
 
   int first_row() const { return static_cast<int>(std::ceil(y - height - 0.5)); }

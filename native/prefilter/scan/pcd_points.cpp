@@ -44,8 +44,9 @@ ScalarType type_of(const PcdField& field, const std::string& name) {
       {{'F', 4}, kFloat}, {{'F', 8}, kDouble}};
   const auto found = kTypes.find({field.type, field.size});
   if (found == kTypes.end()) {
-    throw_invalid(name + ": field " + quoted(field.name) + " of TYPE " +
-                  quoted(std::string(1, field.type)) + " and SIZE " + std::to_string(field.size) +
+    throw_invalid(name + ": field " + in_quotes(field.name) + " of TYPE " +
+                  in_quotes(std::string(1, field.type)) + " and SIZE " +
+                  std::to_string(field.size) +
                   "; I or U of 1, 2, 4 or 8 bytes, or F of 4 or 8, are needed");
   }
   return found->second;
@@ -68,7 +69,7 @@ class HeaderReader {
       words_.clear();
       for (std::string_view word; !(word = take_word(&line)).empty();) words_.push_back(word);
       if (words_.empty())
-        throw_invalid(text_->where() + ": " + quoted(keyword) + " without a value");
+        throw_invalid(text_->where() + ": " + in_quotes(keyword) + " without a value");
       take(keyword);
       if (keyword == "DATA") {
         check();
@@ -107,11 +108,11 @@ class HeaderReader {
       header_.data = words_[0];
       if (header_.data != "ascii" && header_.data != "binary" &&
           header_.data != "binary_compressed") {
-        throw_invalid(text_->where() + ": DATA " + quoted(header_.data) +
+        throw_invalid(text_->where() + ": DATA " + in_quotes(header_.data) +
                       "; ascii, binary or binary_compressed is needed");
       }
     } else if (keyword != "VERSION") {
-      throw_invalid(text_->where() + ": " + quoted(keyword) + " is not part of a PCD header");
+      throw_invalid(text_->where() + ": " + in_quotes(keyword) + " is not part of a PCD header");
     }
   }
 
@@ -127,7 +128,7 @@ class HeaderReader {
   std::uint64_t count(std::size_t word) const {
     std::uint64_t result = 0;
     if (!to_count(words_[word], &result)) {
-      throw_invalid(text_->where() + ": found " + quoted(words_[word]) +
+      throw_invalid(text_->where() + ": found " + in_quotes(words_[word]) +
                     "; a whole number from 0 to 2^63 - 1 is needed");
     }
     return result;
@@ -205,9 +206,9 @@ Layout layout_of(const PcdHeader& header, const std::string& name) {
       const std::size_t channels = field.name.size();
       for (std::size_t k = 0; k < channels; ++k) {
         // From the lowest byte: blue, green, red, alpha.
-        static constexpr const char* kNames[] = {"red", "green", "blue", "alpha"};
+        static constexpr const char* kColors[] = {"red", "green", "blue", "alpha"};
         const std::size_t byte = k < 3 ? 2 - k : 3;
-        fields.push_back({kNames[k], ScalarType::kUint8, layout.values + byte, offset + byte});
+        fields.push_back({kColors[k], ScalarType::kUint8, layout.values + byte, offset + byte});
       }
       layout.values += 4;
     }

@@ -37,7 +37,7 @@ ScalarType type_named(std::string_view name, const TextReader& text) {
   for (const TypeName& each : kTypeNames) {
     if (each.name == name) return each.type;
   }
-  throw_invalid(text.where() + ": " + quoted(name) + " is not a type of PLY");
+  throw_invalid(text.where() + ": " + in_quotes(name) + " is not a type of PLY");
 }
 
 bool is_blank(std::string_view line) { return take_word(&line).empty(); }
@@ -82,7 +82,7 @@ void PlyFile::read_header() {
                                std::min<std::size_t>(magic.size(), 4));
   if (first.size() < 4 || !first.starts_with("ply") ||
       std::string_view(" \t\r\n").find(first[3]) == std::string_view::npos) {
-    throw_invalid(name() + " is not a PLY file: it begins with " + quoted(first));
+    throw_invalid(name() + " is not a PLY file: it begins with " + in_quotes(first));
   }
   std::string_view line;
   bool has_format = false;
@@ -95,7 +95,7 @@ void PlyFile::read_header() {
       const std::string_view format = take_word(&line);
       is_text_ = format == "ascii";
       if (!is_text_ && format != "binary_little_endian" && format != "binary_big_endian") {
-        throw_invalid(text_.where() + ": format " + quoted(format) +
+        throw_invalid(text_.where() + ": format " + in_quotes(format) +
                       "; ascii, binary_little_endian or binary_big_endian is needed");
       }
       is_swapped_ = (format == "binary_big_endian") != (std::endian::native == std::endian::big);
@@ -105,11 +105,12 @@ void PlyFile::read_header() {
       element.name = take_word(&line);
       const std::string_view count = take_word(&line);
       if (element.name.empty() || !to_count(count, &element.count)) {
-        throw_invalid(text_.where() + ": element " + quoted(element.name) + " with count " +
-                      quoted(count) + "; a name and a whole number from 0 to 2^63 - 1 are needed");
+        throw_invalid(text_.where() + ": element " + in_quotes(element.name) + " with count " +
+                      in_quotes(count) +
+                      "; a name and a whole number from 0 to 2^63 - 1 are needed");
       }
       if (find(element.name) < elements_.size()) {
-        throw_invalid(text_.where() + ": a second element " + quoted(element.name));
+        throw_invalid(text_.where() + ": a second element " + in_quotes(element.name));
       }
       elements_.push_back(std::move(element));
     } else if (keyword == "property") {
@@ -142,8 +143,8 @@ void PlyFile::read_property(std::string_view line) {
   PlyElement& element = elements_.back();
   if (property.name.empty()) throw_invalid(text_.where() + ": a property without a name");
   if (element.find(property.name) < element.properties.size()) {
-    throw_invalid(text_.where() + ": a second property " + quoted(property.name) + " of " +
-                  quoted(element.name));
+    throw_invalid(text_.where() + ": a second property " + in_quotes(property.name) + " of " +
+                  in_quotes(element.name));
   }
   element.properties.push_back(std::move(property));
 }
@@ -159,7 +160,7 @@ void PlyFile::check_size() {
     const std::uint64_t end = there + (is_text_ ? 1 : 0);
     if (element.count > (end - needed) / row) {
       throw_invalid(name() + ": too short for the " + std::to_string(element.count) + " rows of " +
-                    quoted(element.name) + " in its header: " + std::to_string(there) +
+                    in_quotes(element.name) + " in its header: " + std::to_string(there) +
                     " bytes follow the header");
     }
     needed += element.count * row;
@@ -302,7 +303,7 @@ void PlyFile::check_end() {
     const std::string_view more(reinterpret_cast<const char*>(rest.data()), rest.size());
     if (more.find_first_not_of(" \t\r\n\v\f") != std::string_view::npos) {
       throw_invalid(name() + ": holds more than the " + std::to_string(elements_[element_].count) +
-                    " rows of " + quoted(elements_[element_].name) + " in its header");
+                    " rows of " + in_quotes(elements_[element_].name) + " in its header");
     }
     text_.bytes().skip(rest.size());
   }

@@ -121,7 +121,7 @@ PointFields::PointFields(const std::vector<ScanField>& fields, const std::string
   std::set<std::string> names;
   for (const ScanField& field : fields) {
     if (!names.insert(field.name).second) {
-      throw_invalid(name + ": points have two values named " + quoted(field.name));
+      throw_invalid(name + ": points have two values named " + in_quotes(field.name));
     }
   }
   std::vector<ScanField> known = fields;

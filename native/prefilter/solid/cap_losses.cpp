@@ -17,8 +17,6 @@ constexpr double kTurned = -0.25;         // the winding number at a cap that is
 constexpr std::size_t kMostSamples = 16;  // of a cap
 constexpr std::size_t kAllSamples = 200000;
 
-double size_of(const Vector3& v) { return std::sqrt(dot(v, v)); }
-
 // Points on a cap, in the frame: in the middle of triangles, evenly by area.
 std::vector<Vector3> samples_on(const PositionView& positions, std::span<const std::uint32_t> loop,
                                 const LoopCap& cap, const UnitFrame& frame, std::size_t most) {
@@ -26,7 +24,7 @@ std::vector<Vector3> samples_on(const PositionView& positions, std::span<const s
   for (std::size_t t = 0; t < cap.triangles.size(); ++t) {
     const auto [a, b, c] = cap_corners(positions, loop, cap, t);
     sums.push_back(sums.back() +
-                   size_of(cross(frame.to(b) - frame.to(a), frame.to(c) - frame.to(a))));
+                   plain_length(cross(frame.to(b) - frame.to(a), frame.to(c) - frame.to(a))));
   }
   std::vector<Vector3> points;
   const std::size_t count = std::min(most, cap.triangles.size());

@@ -39,11 +39,9 @@ constexpr double kLeastGain = 1e-5;  // of the energy, in a step
 // How far from the border's box a patch may bulge, as a share of the box's diagonal.
 constexpr double kFarthest = 1.0;
 
-double size_of(const Vector3& v) { return std::sqrt(dot(v, v)); }
-Vector3 scaled(const Vector3& v, double s) { return {s * v[0], s * v[1], s * v[2]}; }
 Vector3 unit(const Vector3& v) {
-  const double size = size_of(v);
-  return size > 0.0 ? scaled(v, 1.0 / size) : Vector3{};
+  const double size = plain_length(v);
+  return size > 0.0 ? (1.0 / size) * v : Vector3{};
 }
 
 // Sizes that triangles should have around points.
@@ -53,8 +51,8 @@ std::optional<HolePatch> refined(const HolePatch& whole, std::size_t border, dou
   std::vector<double> sizes(border);
   for (std::size_t i = 0; i < border; ++i) {
     const Vector3& p = patch.points()[i];
-    sizes[i] = (size_of(patch.points()[(i + 1) % border] - p) +
-                size_of(p - patch.points()[(i + border - 1) % border])) /
+    sizes[i] = (plain_length(patch.points()[(i + 1) % border] - p) +
+                plain_length(p - patch.points()[(i + border - 1) % border])) /
                2.0;
   }
   for (;;) {
@@ -64,18 +62,18 @@ std::optional<HolePatch> refined(const HolePatch& whole, std::size_t border, dou
     for (std::uint32_t t = 0; t < count; ++t) {
       const auto corners = patch.triangles()[t].corners;
       Vector3 middle{};
-      for (const std::uint32_t c : corners) middle = middle + scaled(patch.points()[c], 1.0 / 3.0);
+      for (const std::uint32_t c : corners) middle = middle + (1.0 / 3.0) * patch.points()[c];
       double size = growth > 0.0 ? kLargestSize : 0.0;
       for (const std::uint32_t c : corners) {
         if (growth > 0.0) {
-          size = std::min(size, sizes[c] + growth * size_of(patch.points()[c] - middle));
+          size = std::min(size, sizes[c] + growth * plain_length(patch.points()[c] - middle));
         } else {
           size += sizes[c] / 3.0;
         }
       }
       bool is_large = true;
       for (const std::uint32_t c : corners) {
-        const double distance = std::sqrt(2.0) * size_of(patch.points()[c] - middle);
+        const double distance = std::sqrt(2.0) * plain_length(patch.points()[c] - middle);
         is_large = is_large && distance > size && distance > sizes[c];
       }
       if (!is_large) continue;
@@ -105,9 +103,9 @@ class Metric {
     for (std::size_t i = 0; i < border_; ++i) {
       const std::size_t next = (i + 1) % border_;
       const bool is_crease = dot(clamped[i], clamped[i]) == 0.0;
-      const double half = size_of(patch.points()[next] - patch.points()[i]) / 2.0;
+      const double half = plain_length(patch.points()[next] - patch.points()[i]) / 2.0;
       for (const std::size_t end : {i, next}) {
-        flux_[end] = flux_[end] + scaled(clamped[i], half);
+        flux_[end] = flux_[end] + half * clamped[i];
         if (is_crease) has_row_[end] = 0;
       }
     }
@@ -125,14 +123,14 @@ class Metric {
     for (const HolePatch::Triangle& triangle : patch_.triangles()) {
       const auto& corners = triangle.corners;
       const Vector3 doubled = cross(x[corners[1]] - x[corners[0]], x[corners[2]] - x[corners[0]]);
-      const double size = size_of(doubled);
+      const double size = plain_length(doubled);
       if (!(size > 0.0)) continue;
-      const Vector3 normal = scaled(doubled, 1.0 / size);
+      const Vector3 normal = (1.0 / size) * doubled;
       for (int i = 0; i < 3; ++i) {
         const std::uint32_t own = corners[static_cast<std::size_t>(i)];
         const Vector3 across = x[corners[static_cast<std::size_t>(previous_corner(i))]] -
                                x[corners[static_cast<std::size_t>(next_corner(i))]];
-        result.normals[own] = result.normals[own] + scaled(cross(normal, across), 0.5);
+        result.normals[own] = result.normals[own] + 0.5 * cross(normal, across);
         result.areas[own] += size / 6.0;
       }
     }
@@ -151,7 +149,7 @@ class Metric {
   std::vector<Vector3> half_gradient(std::span<const Vector3> x, const Curvature& curvature) const {
     std::vector<Vector3> y(x.size());
     for (std::size_t i = 0; i < x.size(); ++i) {
-      if (curvature.areas[i] > 0.0) y[i] = scaled(curvature.normals[i], 1.0 / curvature.areas[i]);
+      if (curvature.areas[i] > 0.0) y[i] = (1.0 / curvature.areas[i]) * curvature.normals[i];
     }
     std::vector<Vector3> gradient(x.size());
     std::vector<Vector3> normals(x.size());
@@ -160,27 +158,27 @@ class Metric {
       const Vector3 ab = x[b] - x[a];
       const Vector3 ac = x[c] - x[a];
       const Vector3 doubled = cross(ab, ac);
-      const double size = size_of(doubled);
+      const double size = plain_length(doubled);
       if (!(size > 0.0)) continue;
-      const Vector3 normal = scaled(doubled, 1.0 / size);
+      const Vector3 normal = (1.0 / size) * doubled;
       // As all points move by y.
       const Vector3 change = cross(y[b] - y[a], ac) + cross(ab, y[c] - y[a]);
-      const Vector3 turn = scaled(change - scaled(normal, dot(normal, change)), 1.0 / size);
+      const Vector3 turn = (1.0 / size) * (change - dot(normal, change) * normal);
       const double squares = (dot(y[a], y[a]) + dot(y[b], y[b]) + dot(y[c], y[c])) / 6.0;
       for (int i = 0; i < 3; ++i) {
         const std::uint32_t own = triangle.corners[static_cast<std::size_t>(i)];
         const std::uint32_t next = triangle.corners[static_cast<std::size_t>(next_corner(i))];
         const std::uint32_t last = triangle.corners[static_cast<std::size_t>(previous_corner(i))];
         const Vector3 across = x[last] - x[next];
-        const Vector3 growth = scaled(cross(normal, across), 0.5);
-        const Vector3 bent = scaled(cross(turn, across) + cross(normal, y[last] - y[next]), 0.5);
-        gradient[own] = gradient[own] + bent - scaled(growth, squares);
+        const Vector3 growth = 0.5 * cross(normal, across);
+        const Vector3 bent = 0.5 * (cross(turn, across) + cross(normal, y[last] - y[next]));
+        gradient[own] = gradient[own] + bent - squares * growth;
         normals[own] = normals[own] + doubled;
       }
     }
     for (std::size_t i = 0; i < x.size(); ++i) {
       const Vector3 normal = unit(normals[i]);
-      gradient[i] = scaled(normal, dot(normal, gradient[i]));
+      gradient[i] = dot(normal, gradient[i]) * normal;
     }
     return gradient;
   }
@@ -210,7 +208,7 @@ class Metric {
         const std::uint32_t last = triangle.corners[static_cast<std::size_t>(previous_corner(i))];
         const Vector3 u = x[next] - x[own];
         const Vector3 v = x[last] - x[own];
-        const double size = size_of(cross(u, v));
+        const double size = plain_length(cross(u, v));
         if (!(size > 0.0)) continue;
         const double half_cotangent = 0.5 * dot(u, v) / size;
         add(next, last, half_cotangent);
@@ -242,7 +240,7 @@ bool to_soap_film(HolePatch* patch, std::size_t border, const Progress& progress
     const auto own = static_cast<std::uint32_t>(i - border);
     for (const auto& [other, weight] : rows[i].weights) {
       if (other < border) {
-        right[own] = right[own] - scaled(x[other], weight);
+        right[own] = right[own] - weight * x[other];
       } else if (other - border <= own) {
         entries.push_back({own, static_cast<std::uint32_t>(other - border), weight});
       }
@@ -270,13 +268,13 @@ Plate plate_of(const Metric& metric, std::span<const Vector3> x, const Progress&
   std::vector<Vector3> right(x.size() - border);
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (!metric.has_row(i) || !(areas[i] > 0.0)) continue;
-    Vector3 known = i < border ? scaled(metric.flux()[i], -1.0) : Vector3{};
+    Vector3 known = i < border ? -1.0 * metric.flux()[i] : Vector3{};
     for (const auto& [other, weight] : rows[i].weights) {
-      if (other < border) known = known + scaled(x[other], weight);
+      if (other < border) known = known + weight * x[other];
     }
     for (const auto& [a, weight] : rows[i].weights) {
       if (a < border) continue;
-      right[a - border] = right[a - border] - scaled(known, weight / areas[i]);
+      right[a - border] = right[a - border] - (weight / areas[i]) * known;
       for (const auto& [b, other_weight] : rows[i].weights) {
         if (b < border || b > a) continue;
         entries.push_back({static_cast<std::uint32_t>(a - border),
@@ -311,7 +309,7 @@ std::vector<Vector3> continued(std::span<const Vector3> normals, const HolePatch
   const auto points = patch.points();
   std::vector<double> lengths(count);
   for (std::size_t i = 0; i < count; ++i) {
-    lengths[i] = size_of(points[(i + 1) % count] - points[i]);
+    lengths[i] = plain_length(points[(i + 1) % count] - points[i]);
   }
   // The film's normals over a few rings of triangles: it follows each tooth of a jagged border.
   std::vector<Vector3> film(points.size());
@@ -330,7 +328,7 @@ std::vector<Vector3> continued(std::span<const Vector3> normals, const HolePatch
   }
   std::vector<Vector3> surface =
       averaged<Vector3>(normals, lengths, kAveraged,
-                        [&](std::size_t i, double length) { return scaled(normals[i], length); });
+                        [&](std::size_t i, double length) { return length * normals[i]; });
   for (Vector3& normal : surface) normal = unit(normal);
   const auto cosines =
       averaged<double>(surface, lengths, kAveragedAngles, [&](std::size_t i, double length) {
@@ -346,7 +344,7 @@ std::vector<Vector3> continued(std::span<const Vector3> normals, const HolePatch
 bool stays_near(std::span<const Vector3> x, std::size_t border) {
   Box box = kEmptyBox;
   for (std::size_t i = 0; i < border; ++i) box.include(x[i]);
-  const double farthest = kFarthest * size_of(box.high - box.low);
+  const double farthest = kFarthest * plain_length(box.high - box.low);
   // Comparisons that what is no number fails.
   return std::all_of(x.begin(), x.end(), [&](const Vector3& p) {
     return box.squared_distance(p) <= farthest * farthest;
@@ -385,7 +383,7 @@ bool bend(std::span<const Vector3> clamped, HolePatch* patch, const Progress& pr
     for (double share = 1.0; share > 0.1 && !is_less; share /= 2.0) {
       std::vector<Vector3> moved(x.begin(), x.end());
       for (std::size_t i = border; i < moved.size(); ++i) {
-        moved[i] = moved[i] - scaled(move[i], share);
+        moved[i] = moved[i] - share * move[i];
       }
       const double energy = metric.curvature(moved).energy;
       is_less = energy < before.energy && stays_near(moved, border);

@@ -24,20 +24,19 @@ constexpr std::size_t kFlipsPerReport = 1U << 14U;
 Vector3 doubled_area(const Vector3& a, const Vector3& b, const Vector3& c) {
   return cross(b - a, c - a);
 }
-double size_of(const Vector3& v) { return std::sqrt(dot(v, v)); }
 
 // The cotangent of the angle at a of triangle abc.
 double cotangent(const Vector3& a, const Vector3& b, const Vector3& c) {
   const Vector3 u = b - a;
   const Vector3 v = c - a;
-  return dot(u, v) / std::max(size_of(cross(u, v)), 1e-300);
+  return dot(u, v) / std::max(plain_length(cross(u, v)), 1e-300);
 }
 
 }  // namespace
 
 double fold_cost(const Vector3& doubled, const Vector3& other) {
-  const double size = size_of(doubled);
-  const double other_size = size_of(other);
+  const double size = plain_length(doubled);
+  const double other_size = plain_length(other);
   return dot(doubled, other) < kFolded * size * other_size
              ? kFoldWeight / 2.0 * std::min(size, other_size)
              : 0.0;
@@ -149,7 +148,7 @@ double HolePatch::fold_cost(std::uint32_t triangle, int edge, const Vector3& dou
   if (other != kBorder) return prefilter::fold_cost(doubled, normal(other));
   // The surface is as large as the triangle.
   const Vector3& outer = normals_[own.corners[static_cast<std::size_t>(edge)]];
-  const double size = size_of(doubled);
+  const double size = plain_length(doubled);
   return prefilter::fold_cost(doubled, {size * outer[0], size * outer[1], size * outer[2]});
 }
 
@@ -174,18 +173,19 @@ bool HolePatch::is_better_flipped(std::uint32_t triangle, int edge, bool bends) 
   const int behind = previous_corner(edge);
   const int far_ahead = next_corner(back);
   const int far_behind = previous_corner(back);
-  const double before = (size_of(first) + size_of(second)) / 2.0 +
+  const double before = (plain_length(first) + plain_length(second)) / 2.0 +
                         prefilter::fold_cost(first, second) + fold_cost(triangle, ahead, first) +
                         fold_cost(triangle, behind, first) + fold_cost(other, far_ahead, second) +
                         fold_cost(other, far_behind, second);
-  const double after = (size_of(third) + size_of(fourth)) / 2.0 +
+  const double after = (plain_length(third) + plain_length(fourth)) / 2.0 +
                        prefilter::fold_cost(third, fourth) + fold_cost(triangle, behind, third) +
                        fold_cost(other, far_ahead, third) + fold_cost(triangle, ahead, fourth) +
                        fold_cost(other, far_behind, fourth);
   const double angles = cotangent(c, a, b) + cotangent(d, a, b);
   bool is_better = false;
   if (bends) {
-    is_better = angles < -1e-6 && dot(first, second) > 0.5 * size_of(first) * size_of(second) &&
+    is_better = angles < -1e-6 &&
+                dot(first, second) > 0.5 * plain_length(first) * plain_length(second) &&
                 dot(third, fourth) > 0.0 && after < 1.1 * before;
     // Folds are always flipped open.
     is_better = is_better || (dot(first, second) < 0.0 && after < 0.999 * before);

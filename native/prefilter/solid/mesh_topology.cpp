@@ -20,7 +20,7 @@
 namespace prefilter {
 namespace {
 
-constexpr std::int64_t kVerticesPerTask = 1 << 13;
+constexpr std::int64_t kFansPerTask = 1 << 13;
 constexpr std::int64_t kTrianglesPerTask = 1 << 14;
 
 using Corners = std::array<std::uint32_t, 3>;
@@ -171,7 +171,7 @@ Counts count_all(const NamedTriangles& mesh, const TrianglesAt& at, const Progre
   std::mutex mutex;
   Counts all;
   parallel_ranges(
-      static_cast<std::int64_t>(at.starts.size()) - 1, kVerticesPerTask, threads, progress,
+      static_cast<std::int64_t>(at.starts.size()) - 1, kFansPerTask, threads, progress,
       [&](std::int64_t begin, std::int64_t end) {
         Fans fans(mesh, parts);
         for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v) {

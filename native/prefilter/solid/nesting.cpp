@@ -12,7 +12,7 @@
 namespace prefilter {
 namespace {
 
-constexpr std::int64_t kRowsPerTask = 1 << 14;
+constexpr std::int64_t kRowsOfTask = 1 << 14;
 constexpr std::size_t kPoints = 24;  // that are asked of a mixed part
 
 // The solid angle of a triangle seen from a point, over 4 pi: positive from behind it.
@@ -33,9 +33,9 @@ double winding_around(const InputMesh& mesh, std::span<const std::uint32_t> part
                       std::span<const double> factors, const Vector3& point,
                       const Progress& progress, int threads) {
   const auto rows = static_cast<std::int64_t>(mesh.triangles.size());
-  std::vector<double> sums(static_cast<std::size_t>(range_count(rows, kRowsPerTask)), 0.0);
-  parallel_ranges(rows, kRowsPerTask, threads, progress, [&](std::int64_t begin, std::int64_t end) {
-    double& own = sums[static_cast<std::size_t>(begin / kRowsPerTask)];
+  std::vector<double> sums(static_cast<std::size_t>(range_count(rows, kRowsOfTask)), 0.0);
+  parallel_ranges(rows, kRowsOfTask, threads, progress, [&](std::int64_t begin, std::int64_t end) {
+    double& own = sums[static_cast<std::size_t>(begin / kRowsOfTask)];
     for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
       const double factor = factors[part_of[t]];
       if (factor != 0.0) own += factor * winding_of(mesh.corners(t), point);

@@ -18,8 +18,6 @@ constexpr double kThinnestTurned = 0.12;    // where all is inside out
 constexpr double kLargestSheetHole = 0.25;  // of the sheet's area
 constexpr std::size_t kRowsPerReport = 1U << 18U;
 
-double size_of(const Vector3& v) { return std::sqrt(dot(v, v)); }
-
 // A part of the mesh with the caps of its loops.
 struct Part {
   Vector3 origin{};
@@ -39,7 +37,7 @@ void add(const UnitFrame& frame, const std::array<Vector3, 3>& corners, Part* pa
   const Vector3 a = frame.to(corners[0]) - part->origin;
   const Vector3 b = frame.to(corners[1]) - part->origin;
   const Vector3 c = frame.to(corners[2]) - part->origin;
-  *area += size_of(cross(b - a, c - a)) / 2.0;
+  *area += plain_length(cross(b - a, c - a)) / 2.0;
   part->volume += dot(a, cross(b, c));
 }
 

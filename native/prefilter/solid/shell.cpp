@@ -16,12 +16,8 @@ constexpr double kLongestMitre = 2.0;
 // Of the thickness, that a prism must have at each of its corners.
 constexpr double kLeastShare = 0.5;
 
-Vector3 scaled(const Vector3& a, double factor) {
-  return {a[0] * factor, a[1] * factor, a[2] * factor};
-}
-
 Vector3 area_vector(const std::array<Vector3, 3>& p) {
-  return scaled(cross(p[1] - p[0], p[2] - p[0]), 0.5);
+  return 0.5 * cross(p[1] - p[0], p[2] - p[0]);
 }
 
 // A vertex of the sheet, and its two copies.
@@ -93,7 +89,7 @@ class Shell {
     const double size = length(vertex->normal);
     if (size > 0.0) {
       const double mitre = std::min(vertex->area / vertex->along, kLongestMitre);
-      vertex->offset = scaled(vertex->normal, half_ * mitre / size);
+      vertex->offset = (half_ * mitre / size) * vertex->normal;
     }
     const Vector3& middle = mesh_.positions[vertex->vertex];
     vertex->first = add_position(middle + vertex->offset);
@@ -134,7 +130,7 @@ class Shell {
     const Vector3 area = area_vector(corners);
     const double size = length(area);
     if (!(size > 0.0)) return;
-    const Vector3 normal = scaled(area, 1.0 / size);
+    const Vector3 normal = (1.0 / size) * area;
     std::array<std::int32_t, 3> top{};
     std::array<std::int32_t, 3> bottom{};
     std::array<Vector3, 3> high{};
@@ -152,8 +148,8 @@ class Shell {
     is_fit = is_fit && dot(area_vector(high), normal) > 0.0 && dot(area_vector(low), normal) > 0.0;
     if (!is_fit) {
       for (std::size_t i = 0; i < 3; ++i) {
-        top[i] = add_position(corners[i] + scaled(normal, half_));
-        bottom[i] = add_position(corners[i] - scaled(normal, half_));
+        top[i] = add_position(corners[i] + half_ * normal);
+        bottom[i] = add_position(corners[i] - half_ * normal);
       }
     }
     const std::int64_t origin = origins_[t];

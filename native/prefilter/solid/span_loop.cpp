@@ -24,12 +24,8 @@ constexpr double kLengthRank = 0.003;
 // Larger than any triangle: the surface around.
 constexpr double kLarge = 1e6;
 
-double size_of(const Vector3& v) { return std::sqrt(dot(v, v)); }
-
-Vector3 scaled(const Vector3& v, double s) { return {s * v[0], s * v[1], s * v[2]}; }
-
-Vector3 unit(const Vector3& v) {
-  const double size = size_of(v);
+Vector3 direction_of(const Vector3& v) {
+  const double size = plain_length(v);
   if (!(size > 0.0)) return {};
   return {v[0] / size, v[1] / size, v[2] / size};
 }
@@ -88,7 +84,7 @@ std::vector<std::array<std::uint32_t, 3>> smallest_span(std::span<const Vector3>
   // The best over the points from one to another, with the chord between them.
   std::vector<Best> bests(count * count);
   const auto best = [&](std::size_t i, std::size_t k) -> Best& { return bests[i * count + k]; };
-  for (std::size_t i = 0; i + 1 < count; ++i) best(i, i + 1).doubled = scaled(normals[i], kLarge);
+  for (std::size_t i = 0; i + 1 < count; ++i) best(i, i + 1).doubled = kLarge * normals[i];
   for (std::size_t length = 2; length < count; ++length) {
     progress.report(static_cast<double>(length) / static_cast<double>(count));
     for (std::size_t i = 0; i + length < count; ++i) {
@@ -100,10 +96,10 @@ std::vector<std::array<std::uint32_t, 3>> smallest_span(std::span<const Vector3>
         const Best& high = best(j, k);
         if (low.cost + high.cost >= found.cost) continue;
         const Vector3 doubled = cross(points[j] - points[i], points[k] - points[i]);
-        double cost = low.cost + high.cost + size_of(doubled) / 2.0;
+        double cost = low.cost + high.cost + plain_length(doubled) / 2.0;
         if (cost >= found.cost) continue;
         cost += fold_cost(doubled, low.doubled) + fold_cost(doubled, high.doubled);
-        if (length + 1 == count) cost += fold_cost(doubled, scaled(normals[count - 1], kLarge));
+        if (length + 1 == count) cost += fold_cost(doubled, kLarge * normals[count - 1]);
         if (cost < found.cost) found = {cost, doubled, static_cast<std::uint32_t>(j)};
       }
       best(i, k) = found;
@@ -181,7 +177,7 @@ std::vector<Vector3> mean_normals(std::span<const Vector3> normals,
     const std::size_t end = i + 1 < kept.size() ? kept[i + 1] : normals.size();
     Vector3 sum{};
     for (std::size_t edge = kept[i]; edge < end; ++edge) sum = sum + normals[edge];
-    means.push_back(unit(sum));
+    means.push_back(direction_of(sum));
   }
   return means;
 }

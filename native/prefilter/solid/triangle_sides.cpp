@@ -13,7 +13,7 @@
 namespace prefilter {
 namespace {
 
-constexpr std::int64_t kRowsPerTask = 1 << 10;
+constexpr std::int64_t kSidesPerTask = 1 << 10;
 constexpr double kSampleCells = 2.0;
 
 bool is_region(ReachGrid::Label label) { return label >= ReachGrid::kFirstRegion; }
@@ -52,7 +52,7 @@ std::vector<TriangleSides> sides_of_triangles(const MeshView<std::int32_t>& mesh
                                               const ReachGrid& grid, const Progress& progress,
                                               int threads) {
   std::vector<TriangleSides> sides(mesh.triangles.size());
-  parallel_ranges(static_cast<std::int64_t>(sides.size()), kRowsPerTask, threads, progress,
+  parallel_ranges(static_cast<std::int64_t>(sides.size()), kSidesPerTask, threads, progress,
                   [&](std::int64_t begin, std::int64_t end) {
                     for (auto t = static_cast<std::size_t>(begin);
                          t < static_cast<std::size_t>(end); ++t) {

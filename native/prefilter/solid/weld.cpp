@@ -17,7 +17,7 @@
 namespace prefilter {
 namespace {
 
-constexpr std::int64_t kRowsPerTask = 1 << 14;
+constexpr std::int64_t kSlotsPerTask = 1 << 14;
 // Welding must leave triangles their corners: of the shortest edge at a vertex.
 constexpr double kShareOfEdge = 1.0 / 3.0;
 
@@ -237,7 +237,7 @@ std::vector<std::int32_t> first_at_each_place(const PositionView& positions,
       },
       progress.part(0.0, 0.8), threads);
   std::vector<std::int32_t> names(positions.size());
-  parallel_ranges(static_cast<std::int64_t>(slots), kRowsPerTask, threads, progress.part(0.8, 1.0),
+  parallel_ranges(static_cast<std::int64_t>(slots), kSlotsPerTask, threads, progress.part(0.8, 1.0),
                   [&](std::int64_t begin, std::int64_t end) {
                     for (auto slot = static_cast<std::size_t>(begin);
                          slot < static_cast<std::size_t>(end); ++slot) {
@@ -368,7 +368,7 @@ std::size_t drop_duplicates(WorkMesh* mesh, const Progress& progress, int thread
       },
       progress.part(0.0, 0.6), threads);
   std::vector<std::uint8_t> is_kept(triangles.size(), 0);
-  parallel_ranges(static_cast<std::int64_t>(buckets.size()), kRowsPerTask, threads,
+  parallel_ranges(static_cast<std::int64_t>(buckets.size()), kSlotsPerTask, threads,
                   progress.part(0.6, 0.9), [&](std::int64_t begin, std::int64_t end) {
                     std::vector<Face> faces;
                     for (auto b = static_cast<std::size_t>(begin);

@@ -26,7 +26,7 @@ constexpr std::size_t kLeafTriangles = 4;
 // So few that a task ends soon even where a search looks at very many triangles.
 constexpr std::int64_t kPointsPerTask = 64;
 constexpr std::int64_t kRowsPerTask = 1 << 15;
-constexpr double kLargest = 1e150;
+constexpr double kLargestNear = 1e150;
 
 // The corners of a triangle in an order that does not depend on the one that they are named in.
 std::array<Vector3, 3> sorted_corners(const InputMesh& mesh, std::size_t triangle) {
@@ -135,7 +135,7 @@ class NearestPoints::Tree {
 
 NearestPoints::Tree::Tree(const InputMesh& mesh, std::span<const std::int32_t> labels,
                           const Progress& progress, int threads) {
-  check_mesh(mesh, kLargest);
+  check_mesh(mesh, kLargestNear);
   if (!labels.empty() && labels.size() != mesh.triangles.size()) {
     throw_invalid("labels: found " + std::to_string(labels.size()) + " for " +
                   std::to_string(mesh.triangles.size()) + " triangles; one each is needed");
@@ -232,7 +232,7 @@ void NearestPoints::Tree::search(const Vector3& point, std::optional<std::int32_
 
 std::vector<SurfacePoint> NearestPoints::Tree::find(std::span<const Vector3> points,
                                                     const Progress& progress, int threads) const {
-  check_points(points, "points: row", kLargest);
+  check_points(points, "points: row", kLargestNear);
   // Along the curve a point's neighbors come before it: the triangle nearest to them is a good
   // first guess, and what was read for them is at hand.
   const std::vector<CurvePlace> order = along_curve(
@@ -258,7 +258,7 @@ std::vector<SurfacePoint> NearestPoints::Tree::find_on(std::span<const Vector3> 
                                                        std::span<const std::int32_t> origins,
                                                        const Progress& progress,
                                                        int threads) const {
-  check_points(points, "points: row", kLargest);
+  check_points(points, "points: row", kLargestNear);
   if (origins.size() != points.size()) {
     throw_invalid("origins: found " + std::to_string(origins.size()) + " for " +
                   std::to_string(points.size()) + " points; one each is needed");

@@ -15,11 +15,11 @@ namespace prefilter {
 namespace {
 
 constexpr std::size_t kLeafPoints = 16;
-constexpr double kLargest = 1e150;
+constexpr double kLargestNeighbor = 1e150;
 
 bool is_usable(const Vector3& point) {
-  return std::abs(point[0]) <= kLargest && std::abs(point[1]) <= kLargest &&
-         std::abs(point[2]) <= kLargest;
+  return std::abs(point[0]) <= kLargestNeighbor && std::abs(point[1]) <= kLargestNeighbor &&
+         std::abs(point[2]) <= kLargestNeighbor;
 }
 
 // Identical points, which have the same key, next to each other.

@@ -17,24 +17,22 @@
 namespace prefilter {
 namespace {
 
-constexpr std::size_t kLeafTriangles = 4;
-constexpr std::int64_t kPointsPerTask = 256;
-constexpr double kLargest = 1e100;
+constexpr std::size_t kTrianglesPerLeaf = 4;
+constexpr std::int64_t kWindingsPerTask = 256;
+constexpr double kLargestTurning = 1e100;
 // Below rounding: the point is in the triangle's plane.
 constexpr double kInPlane = 1e-12;
 // Nodes that wait on the way down: one for each split, of which the tree has fewer.
 constexpr std::size_t kDeepest = 128;
-
-double size_of(const Vector3& v) { return std::sqrt(dot(v, v)); }
 
 // As a share of all directions.
 double solid_angle(const std::array<Vector3, 3>& triangle, const Vector3& point) {
   const Vector3 a = triangle[0] - point;
   const Vector3 b = triangle[1] - point;
   const Vector3 c = triangle[2] - point;
-  const double la = size_of(a);
-  const double lb = size_of(b);
-  const double lc = size_of(c);
+  const double la = plain_length(a);
+  const double lb = plain_length(b);
+  const double lc = plain_length(c);
   const double volume = dot(a, cross(b, c));
   if (std::abs(volume) <= kInPlane * la * lb * lc) return 0.0;
   const double rest = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
@@ -62,8 +60,8 @@ std::optional<int> passage(const std::array<Vector3, 3>& triangle, const Vector3
                            const Vector3& to) {
   const auto& [a, b, c] = triangle;
   const Vector3 normal = cross(b - a, c - a);
-  const double area = size_of(normal);
-  const double distance = size_of(from - a) + size_of(to - a);
+  const double area = plain_length(normal);
+  const double distance = plain_length(from - a) + plain_length(to - a);
   const int before = sign_of(dot(normal, from - a), area * distance);
   const int behind = sign_of(dot(normal, to - a), area * distance);
   if (before * behind > 0) return 0;
@@ -72,7 +70,8 @@ std::optional<int> passage(const std::array<Vector3, 3>& triangle, const Vector3
   for (std::size_t i = 0; i < 3; ++i) {
     const Vector3 start = triangle[i] - from;
     const Vector3 side = triangle[(i + 1) % 3] - triangle[i];
-    sides[i] = sign_of(dot(way, cross(start, side)), size_of(way) * size_of(start) * size_of(side));
+    sides[i] = sign_of(dot(way, cross(start, side)),
+                       plain_length(way) * plain_length(start) * plain_length(side));
   }
   const auto [least, most] = std::minmax({sides[0], sides[1], sides[2]});
   if (least * most < 0) return 0;
@@ -83,7 +82,7 @@ std::optional<int> passage(const std::array<Vector3, 3>& triangle, const Vector3
 }  // namespace
 
 WindingNumbers::WindingNumbers(const InputMesh& mesh, const Progress& progress, int threads) {
-  check_mesh(mesh, kLargest);
+  check_mesh(mesh, kLargestTurning);
   const auto middle_of = [&](std::size_t triangle) {
     const auto corners = mesh.corners(triangle);
     Vector3 middle = corners[0] + corners[1] + corners[2];
@@ -104,7 +103,7 @@ WindingNumbers::WindingNumbers(const InputMesh& mesh, const Progress& progress, 
     for (const Vector3& corner : triangles_[item]) box.include(corner);
     return box;
   };
-  tree_ = BoxTree(keys, kLeafTriangles, box_of, progress.part(0.6, 0.9));
+  tree_ = BoxTree(keys, kTrianglesPerLeaf, box_of, progress.part(0.6, 0.9));
   fars_.resize(tree_.nodes().size());
   std::vector<double> areas(fars_.size());
   for (std::size_t n = fars_.size(); n-- > 0;) {
@@ -129,7 +128,7 @@ auto WindingNumbers::far_of(std::size_t n, std::vector<double>* areas) const -> 
       Vector3 normal = cross(b - a, c - a);
       for (double& x : normal) x /= 2.0;
       const Vector3 corners = a + b + c;
-      add({corners[0] / 3.0, corners[1] / 3.0, corners[2] / 3.0}, size_of(normal));
+      add({corners[0] / 3.0, corners[1] / 3.0, corners[2] / 3.0}, plain_length(normal));
       far.normal = far.normal + normal;
     }
   } else {
@@ -195,9 +194,9 @@ std::optional<double> WindingNumbers::excess(const Vector3& from, const Vector3&
 
 std::vector<double> WindingNumbers::find(std::span<const Vector3> points, const Progress& progress,
                                          int threads) const {
-  check_points(points, "points: row", kLargest);
+  check_points(points, "points: row", kLargestTurning);
   std::vector<double> result(points.size());
-  parallel_ranges(static_cast<std::int64_t>(points.size()), kPointsPerTask, threads, progress,
+  parallel_ranges(static_cast<std::int64_t>(points.size()), kWindingsPerTask, threads, progress,
                   [&](std::int64_t begin, std::int64_t end) {
                     for (std::int64_t i = begin; i < end; ++i) {
                       result[static_cast<std::size_t>(i)] = at(points[static_cast<std::size_t>(i)]);

@@ -11,6 +11,9 @@ namespace prefilter {
 
 struct SubdomainSystem;
 
+/// A texel that the others make up to this share of its own square is not told from them.
+inline constexpr double kDependent = 1e-9;
+
 /// The products of a set's texels, bordered by a row and a column of ones with a zero where they
 /// meet, and columns of right sides behind.
 struct BorderedRows {

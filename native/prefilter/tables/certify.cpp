@@ -18,13 +18,13 @@
 #include <vector>
 
 #include "prefilter/base/parallel.h"
+#include "prefilter/tables/bordered_rows.h"
 
 namespace prefilter {
 namespace {
 
-constexpr double kEqual = 1e-9;      // of an error
-constexpr double kNoError = 1e-12;   // of the filter's square
-constexpr double kDependent = 1e-9;  // of a texel's square: left of it, so that a set may have it
+constexpr double kEqual = 1e-9;     // of an error
+constexpr double kNoError = 1e-12;  // of the filter's square
 // Candidates that make up each other have no inverse. This share of a texel's square, the mean of
 // all, is added to each: that raises an error by no more than this times the sum of the squares of
 // its weights.

@@ -22,8 +22,6 @@ constexpr int kRandomStarts = 99;
 // have only texels that are good by themselves, and others some from far down the list.
 constexpr std::array<std::size_t, 3> kPoolsOfTexel = {3, 8, 24};
 constexpr double kLeastGain = 1e-12;  // of the filter's square
-// A texel that the others make up to this share of its own square is not told from them.
-constexpr double kDependent = 1e-9;
 
 // A set, and what every candidate would change about it.
 //

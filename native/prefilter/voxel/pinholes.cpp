@@ -11,19 +11,19 @@ namespace prefilter {
 namespace {
 
 constexpr float kNearly = 0.4F;
-constexpr float kHalf = 0.5F;
+constexpr float kHalfFull = 0.5F;
 constexpr float kFilled = 0.505F;
 constexpr int kMostNeighbors = 4;
 
 bool is_pinhole(const CellTree& cells, int depth, const LeafPlace& at) {
   const float value = occupancy_at(cells, depth, at);
-  if (!(value >= kNearly && value <= kHalf)) return false;
+  if (!(value >= kNearly && value <= kHalfFull)) return false;
   int count = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (const int step : {-1, 1}) {
       LeafPlace beside = at;
       beside[axis] += step;
-      if (occupancy_at(cells, depth, beside) > kHalf) ++count;
+      if (occupancy_at(cells, depth, beside) > kHalfFull) ++count;
     }
   }
   return count >= kMostNeighbors;

@@ -19,15 +19,15 @@
 namespace prefilter {
 namespace {
 
-constexpr int kSamples = 2;  // along an axis of a cell
-constexpr int kAllSamples = kSamples * kSamples * kSamples;
-constexpr double kSide = 1.0 / kSamples;
+constexpr int kPerAxis = 2;  // along an axis of a cell
+constexpr int kAllSamples = kPerAxis * kPerAxis * kPerAxis;
+constexpr double kSampleSide = 1.0 / kPerAxis;
 constexpr double kHalfDiagonal = 0.8660254037844386;
 constexpr double kRounding = 1e-6;  // in cells
 // Of a gap at a sample: what is around the sample is within the piece, whichever way it faces.
-constexpr double kSettled = -kSide * kHalfDiagonal - kRounding;
+constexpr double kSettled = -kSampleSide * kHalfDiagonal - kRounding;
 // To a sample from the center of its cell, and from that of a cell of twice the side around it.
-constexpr double kToSample = (1.0 - kSide) * kHalfDiagonal + kRounding;
+constexpr double kToSample = (1.0 - kSampleSide) * kHalfDiagonal + kRounding;
 constexpr double kFromAbove = kToSample + kHalfDiagonal;
 constexpr double kLeastArea = 1e-3;  // of a piece whose plane is looked at, in cells
 constexpr float kLeastAdded = 0.02F;
@@ -114,10 +114,10 @@ class PieceRule {
     double sum = 0.0;
     for (const Gap& one : least) {
       const double width =
-          kSide * (std::abs(one.away[0]) + std::abs(one.away[1]) + std::abs(one.away[2]));
+          kSampleSide * (std::abs(one.away[0]) + std::abs(one.away[1]) + std::abs(one.away[2]));
       sum += std::clamp(0.5 - one.size / width, 0.0, 1.0);
     }
-    const auto share = static_cast<float>(sum * kSide * kSide * kSide);
+    const auto share = static_cast<float>(sum * kSampleSide * kSampleSide * kSampleSide);
     return share > before + kLeastAdded ? share : 0.0F;
   }
 
@@ -169,8 +169,8 @@ class PieceRule {
   bool find_least(const PieceCell& cell, std::array<Gap, kAllSamples>* least) const {
     std::array<Vector3, kAllSamples> points;
     for (int i = 0; i < kAllSamples; ++i) {
-      const std::array<int, 3> k = {i % kSamples, i / kSamples % kSamples, i / kSamples / kSamples};
-      for (std::size_t a = 0; a < 3; ++a) points[i][a] = cell.at[a] + (k[a] + 0.5) * kSide;
+      const std::array<int, 3> k = {i % kPerAxis, i / kPerAxis % kPerAxis, i / kPerAxis / kPerAxis};
+      for (std::size_t a = 0; a < 3; ++a) points[i][a] = cell.at[a] + (k[a] + 0.5) * kSampleSide;
     }
     least->fill({kHalfDiagonal * 2.0, {1.0, 0.0, 0.0}});
     const Vector3 center = {cell.at[0] + 0.5, cell.at[1] + 0.5, cell.at[2] + 0.5};

@@ -19,7 +19,7 @@
 namespace prefilter {
 namespace {
 
-constexpr double kPiece = 1.0;         // the longest side of a piece, in cells
+constexpr double kLongestPiece = 1.0;  // the longest side of a piece, in cells
 constexpr double kLargestPiece = 4.0;  // of one that is as thin everywhere
 constexpr double kLeastBrick = 2.0;    // in cells
 // The cosines between normals of what is opposite, on a rod 148 degrees, and of what counts on a
@@ -36,8 +36,8 @@ constexpr double kRod = 0.23;
 constexpr double kSpeck = 0.17;
 constexpr std::int64_t kTrianglesPerTask = 1 << 6;
 
-bool is_small(const std::array<Vector3, 3>& p) {
-  return std::max({length(p[1] - p[0]), length(p[2] - p[1]), length(p[0] - p[2])}) <= kPiece;
+bool is_short(const std::array<Vector3, 3>& p) {
+  return std::max({length(p[1] - p[0]), length(p[2] - p[1]), length(p[0] - p[2])}) <= kLongestPiece;
 }
 
 std::vector<Vector3> normals_of(const MeshView<std::int32_t>& mesh) {
@@ -53,7 +53,7 @@ std::vector<Vector3> normals_of(const MeshView<std::int32_t>& mesh) {
 
 // Of the middles of a place: the products of two components of the normals above them, summed by
 // area, and their own mean.
-struct Place {
+struct PlaceSums {
   std::array<double, 6> sums{};  // xx, yy, zz, xy, yz, zx
   Vector3 middles{};
   double area = 0.0;
@@ -65,7 +65,7 @@ struct Place {
     middles = middles + size * middle;
     area += size;
   }
-  void add(const Place& other, double weight) {
+  void add(const PlaceSums& other, double weight) {
     for (std::size_t i = 0; i < 6; ++i) sums[i] += weight * other.sums[i];
     middles = middles + weight * other.middles;
     area += weight * other.area;
@@ -157,7 +157,7 @@ class CandidateFinder {
     const auto halves = halves_of(piece, kLargestPiece);
     if (!halves) {
       const Vector3 middle = triangle_middle(piece);
-      if (!is_small(piece) && bricks_.is_crowded(middle) &&
+      if (!is_short(piece) && bricks_.is_crowded(middle) &&
           (may_count(middle) || has_counting(piece))) {
         return true;
       }
@@ -207,12 +207,12 @@ class CandidateFinder {
   void add_piece(const std::array<Vector3, 3>& piece) {
     const Vector3 middle = triangle_middle(piece);
     const bool counts = may_count(middle);
-    if (!counts && (is_small(piece) || !has_counting(piece))) return;
+    if (!counts && (is_short(piece) || !has_counting(piece))) return;
     if (bricks_.is_crowded(middle)) {
       push(piece, kSheet);
       return;
     }
-    if (is_small(piece)) {
+    if (is_short(piece)) {
       // A list of what is across does not pay for a single ball.
       across_.has_more = true;
       push_outer(piece);
@@ -227,7 +227,7 @@ class CandidateFinder {
         push_outer(piece)) {
       return;
     }
-    for_pieces(piece, kPiece, may_meet_, [&](const auto& small) {
+    for_pieces(piece, kLongestPiece, may_meet_, [&](const auto& small) {
       if (may_count(triangle_middle(small))) push_outer(small);
     });
   }
@@ -235,7 +235,7 @@ class CandidateFinder {
   // Whether the middle may not count, but others do.
   bool has_counting(const std::array<Vector3, 3>& piece) const {
     bool counts = false;
-    for_pieces(piece, kPiece, may_meet_,
+    for_pieces(piece, kLongestPiece, may_meet_,
                [&](const auto& small) { counts = counts || may_count(triangle_middle(small)); });
     return counts;
   }
@@ -288,14 +288,14 @@ std::vector<Candidate> find_candidates(const MeshView<std::int32_t>& mesh,
 }
 
 // What is within about a cell.
-Place place_around(const CubeTable<Place>& places, const Vector3& middle) {
+PlaceSums place_around(const CubeTable<PlaceSums>& places, const Vector3& middle) {
   constexpr double kReach = 1.5;
-  Place around;
+  PlaceSums around;
   const Vector3 low = {std::floor(middle[0]), std::floor(middle[1]), std::floor(middle[2])};
   const std::uint64_t first = cube_key(low - Vector3{0.5, 0.5, 0.5}, 1.0);
   for (std::uint64_t i = 0; i < 27; ++i) {
     const std::array<std::uint64_t, 3> k = {i % 3, i / 3 % 3, i / 9};
-    const Place* found = places.find(first + (k[0] << 42U) + (k[1] << 21U) + k[2]);
+    const PlaceSums* found = places.find(first + (k[0] << 42U) + (k[1] << 21U) + k[2]);
     if (found == nullptr) continue;
     double weight = 1.0;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -338,7 +338,7 @@ ThickPieces thick_pieces(const MeshView<std::int32_t>& mesh, double thickness, c
   const OuterSides outer(occupancy, *result.winding);
   const std::vector<Candidate> candidates = find_candidates(
       mesh, normals, chosen, bricks, balls, outer, largest, progress.part(0.5, 0.95), threads);
-  CubeTable<Place> places;
+  CubeTable<PlaceSums> places;
   for (const Candidate& one : candidates) {
     if (one.is_plate) continue;
     const auto add = [&](const std::array<Vector3, 3>& piece) {
@@ -346,7 +346,7 @@ ThickPieces thick_pieces(const MeshView<std::int32_t>& mesh, double thickness, c
       places[cube_key(middle, 1.0)].add(one.normal, middle, one.share * triangle_area(piece));
     };
     for_pieces(
-        one.corners, kPiece, [](const auto&) { return true; }, add);
+        one.corners, kLongestPiece, [](const auto&) { return true; }, add);
   }
   for (const Candidate& one : candidates) {
     if (one.is_plate) {
@@ -355,7 +355,7 @@ ThickPieces thick_pieces(const MeshView<std::int32_t>& mesh, double thickness, c
       continue;
     }
     const Vector3 middle = one.middle();
-    const Place around = place_around(places, middle);
+    const PlaceSums around = place_around(places, middle);
     const Vector3 values = around.eigenvalues();
     const double wanted = plate * (1.0 + extra_of(values));
     const double share = thickened_share(one.ball.facing, rod_of(values));

@@ -14,7 +14,7 @@ namespace {
 // The gradient of a half-space is about 1/2; this is no surface.
 constexpr double kLeastGradient = 0.2;
 // What is nearer to full or empty than this is.
-constexpr double kRounding = 1e-5;
+constexpr double kNearlyWhole = 1e-5;
 // Rises below this are none: what they change is as small.
 constexpr double kFlat = 1e-6;
 constexpr int kMostSteps = 40;
@@ -205,8 +205,8 @@ std::optional<LeafSurface> LeafSurface::find(const CellTree& tree, int depth, co
         const auto value =
             static_cast<double>(occupancy_at(tree, depth, {at[0] + x, at[1] + y, at[2] + z}));
         const double weight = std::ldexp(1.0, 1 - steps) / 8.0 * value;
-        touches_full = touches_full || value >= 1.0 - kRounding;
-        touches_empty = touches_empty || value <= kRounding;
+        touches_full = touches_full || value >= 1.0 - kNearlyWhole;
+        touches_empty = touches_empty || value <= kNearlyWhole;
         gradient = gradient + Vector3{x * weight, y * weight, z * weight};
       }
     }

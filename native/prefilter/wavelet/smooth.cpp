@@ -12,14 +12,14 @@ namespace prefilter {
 namespace {
 
 // A cell of some depth, or the larger leaf that holds it.
-struct Cell {
+struct SmoothCell {
   float value = 0.0F;
   std::uint32_t block = 0;  // its own, where it is split
   bool is_split = false;
 };
 
 // The octants of a block and the cells around them, x fastest.
-using Around = std::array<Cell, 64>;
+using Around = std::array<SmoothCell, 64>;
 
 constexpr std::size_t at(std::size_t x, std::size_t y, std::size_t z) {
   return (z * 4 + y) * 4 + x;
@@ -46,10 +46,10 @@ class Smoother {
     }
   }
 
-  Cell octant(std::size_t level, const Cell& cell, std::size_t o) const {
+  SmoothCell octant(std::size_t level, const SmoothCell& cell, std::size_t o) const {
     if (!cell.is_split) return cell;
     const TreeLevel& blocks = tree_.levels[level];
-    Cell result;
+    SmoothCell result;
     result.value = blocks.blocks[cell.block][o];
     result.is_split = blocks.is_split(cell.block, static_cast<int>(o));
     if (result.is_split) {
@@ -114,7 +114,7 @@ class Smoother {
 void smooth_leaves(CellTree* tree) {
   if (tree->levels.empty()) return;
   Smoother smoother(*tree);
-  const Cell root = {tree->root, 0, true};
+  const SmoothCell root = {tree->root, 0, true};
   Around around;
   for (std::size_t o = 0; o < 8; ++o) {
     around[at(1 + (o & 1), 1 + ((o >> 1) & 1), 1 + (o >> 2))] = smoother.octant(0, root, o);

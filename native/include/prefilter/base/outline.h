@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "prefilter/base/elementary.h"
 #include "prefilter/base/names.h"
 
 namespace prefilter {
@@ -25,6 +26,7 @@ inline Point2 operator+(const Point2& a, const Point2& b) { return {a.x + b.x, a
 inline Point2 operator-(const Point2& a, const Point2& b) { return {a.x - b.x, a.y - b.y}; }
 inline Point2 operator*(double s, const Point2& a) { return {s * a.x, s * a.y}; }
 inline double dot(const Point2& a, const Point2& b) { return a.x * b.x + a.y * b.y; }
+inline double length(const Point2& a) { return elementary::hypot(a.x, a.y); }
 /// The area of the parallelogram, positive where b lies to the left of a.
 inline double cross(const Point2& a, const Point2& b) { return a.x * b.y - a.y * b.x; }
 
