@@ -58,14 +58,17 @@ def pytest_configure(config: pytest.Config) -> None:
     What Blender is about to remove is not to be used.
     """
     config.addinivalue_line("markers", "once: the same whichever Blender runs it, so one does")
+    config.addinivalue_line("markers", "window: needs a Blender with a window, which takes long")
     config.addinivalue_line("filterwarnings", "error:.*expected to be removed in Blender")
     missing = [name for name in SAME_IN_ANY_BLENDER if not (HERE / name).exists()]
     assert not missing, missing
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Marks what one Blender runs for all."""
+    """Marks what one Blender runs for all, and what needs a window."""
     for item in items:
+        if "display" in getattr(item, "fixturenames", ()):
+            item.add_marker(pytest.mark.window)
         if item.path.relative_to(HERE).as_posix() in SAME_IN_ANY_BLENDER:
             item.add_marker(pytest.mark.once)
 

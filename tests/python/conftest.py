@@ -104,6 +104,34 @@ SAME_IN_ANY_PYTHON = {
     "test_wavelet_shapes.py",
 }
 
+# What takes longest, where shorter tests go the same ways: all but a few of a function's
+# parameters, or its larger case. By the module's name after test_.
+LONG = {
+    "adaptive_scans: a_closed_surface_stays_closed",
+    "cancel: a_cancel_can_come_at_any_time[fit_to_views]",
+    "clean_up: thin_sheets_do_not_cross[linear]",
+    "etc1s: quality_is_paid_for_in_bytes",
+    "etc1s: threads_change_nothing[2]",
+    "etc1s: threads_change_nothing[3]",
+    "fit_to_views: levels_for_both_are_nearer_either_way",
+    "fit_to_views: pixels_are_nearer_to_what_they_should_show[anisotropic]",
+    "lost_parts: lost_is_what_is_far_from_the_surface[0]",
+    "lost_parts: lost_is_what_is_far_from_the_surface[1]",
+    "memory_limit: limits_hold[ball-2.0]",
+    "memory_limit: limits_hold[terrain with values-2.0]",
+    "memory_limit: the_least_is_enough_and_what_is_taken[ball-options0]",
+    "memory_limit: the_least_is_enough_and_what_is_taken[ball-options2]",
+    "memory_limit: the_least_is_enough_and_what_is_taken[ball-options3]",
+    "memory_limit: the_least_is_enough_and_what_is_taken[terrain with values-options0]",
+    "memory_limit: the_least_is_enough_and_what_is_taken[terrain with values-options2]",
+    "memory_limit: the_least_is_enough_and_what_is_taken[terrain with values-options3]",
+    "point_clouds: a_surface_averages_the_noise_of_all",
+    "point_clouds: a_surface_brings_five_scans_back_to_a_tenth_of_a_cell[offset0]",
+    "reader: levels_are_as_good_as_those_of_a_dense_solver[1]",
+    "sharp_edges: edges_are_where_they_are[cylinder-how1]",
+    "sharp_edges: random_booleans_are_sound[clean]",
+}
+
 
 def pytest_configure(config):
     config.addinivalue_line("markers", "once: the same whichever Python runs it, so one does")
@@ -111,10 +139,18 @@ def pytest_configure(config):
     assert not missing, missing
 
 
-def pytest_collection_modifyitems(items):
+def pytest_collection_modifyitems(config, items):
     for item in items:
         if item.path.name in SAME_IN_ANY_PYTHON:
             item.add_marker(pytest.mark.once)
+    if not os.environ.get("PREFILTER_TEST_ALL"):
+        left_out = [
+            item
+            for item in items
+            if f"{item.path.stem.removeprefix('test_')}: {item.name.removeprefix('test_')}" in LONG
+        ]
+        config.hook.pytest_deselected(items=left_out)
+        items[:] = [item for item in items if item not in left_out]
 
 
 @pytest.fixture

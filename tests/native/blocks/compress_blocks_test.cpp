@@ -24,7 +24,7 @@ Bytes random_texels(int width, int height, unsigned seed) {
   return texels;
 }
 
-BlockOptions options_of(BlockFormat format, int threads = 1) {
+BlockOptions options_for(BlockFormat format, int threads = 1) {
   BlockOptions options;
   options.format = format;
   options.threads = threads;
@@ -32,7 +32,7 @@ BlockOptions options_of(BlockFormat format, int threads = 1) {
 }
 
 Bytes compressed(const Bytes& texels, int width, int height, BlockFormat format, int threads = 1) {
-  return compress_blocks(texels.data(), width, height, options_of(format, threads), Progress());
+  return compress_blocks(texels.data(), width, height, options_for(format, threads), Progress());
 }
 
 /// The value of texel `i` in a block of one channel, after the definition of BC4.
@@ -287,7 +287,7 @@ TEST(CompressBlocks, WeighColorsByAlpha) {
     texels.insert(texels.end(), color.begin(), color.end());
   }
   const auto error_of_opaque = [&texels](bool weigh) {
-    BlockOptions options = options_of(BlockFormat::kBc3);
+    BlockOptions options = options_for(BlockFormat::kBc3);
     options.weigh_by_alpha = weigh;
     const Bytes blocks = compress_blocks(texels.data(), 4, 4, options, Progress());
     double sum = 0.0;
@@ -306,7 +306,7 @@ TEST(CompressBlocks, RefusesTexelsOfAnotherKind) {
   const Bytes bytes(64);
   const std::vector<HalfBits> halves(64);
   EXPECT_THROW(compressed(bytes, 4, 4, BlockFormat::kBc6h), Error);
-  EXPECT_THROW(compress_blocks(halves.data(), 4, 4, options_of(BlockFormat::kBc7), Progress()),
+  EXPECT_THROW(compress_blocks(halves.data(), 4, 4, options_for(BlockFormat::kBc7), Progress()),
                Error);
 }
 
@@ -319,7 +319,7 @@ TEST(CompressBlocks, CanBeCancelled) {
   const Bytes texels = random_texels(64, 64, 6);
   const Progress stop([](double) { return false; });
   try {
-    compress_blocks(texels.data(), 64, 64, options_of(BlockFormat::kBc1), stop);
+    compress_blocks(texels.data(), 64, 64, options_for(BlockFormat::kBc1), stop);
     FAIL() << "was not cancelled";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::kCancelled);

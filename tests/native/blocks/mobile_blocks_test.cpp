@@ -21,7 +21,7 @@ constexpr BlockFormat kOfBytes[] = {
     BlockFormat::kAstc4x4, BlockFormat::kAstc6x6,  BlockFormat::kAstc8x8, BlockFormat::kUastc};
 constexpr BlockFormat kOfFloats[] = {BlockFormat::kAstc4x4Hdr, BlockFormat::kAstc6x6Hdr};
 
-BlockOptions options_of(BlockFormat format, int threads = 1) {
+BlockOptions mobile_options(BlockFormat format, int threads = 1) {
   BlockOptions options;
   options.format = format;
   options.threads = threads;
@@ -39,11 +39,11 @@ std::vector<Channel> random_texels(int width, int height, unsigned largest, unsi
 template <class Channel>
 Bytes compressed(const std::vector<Channel>& texels, int width, int height, BlockFormat format,
                  int threads = 1) {
-  return compress_blocks(texels.data(), width, height, options_of(format, threads), Progress());
+  return compress_blocks(texels.data(), width, height, mobile_options(format, threads), Progress());
 }
 
 /// Blocks of HDR as astcenc decodes them.
-std::vector<float> decoded(Bytes blocks, int width, int height, BlockFormat format) {
+std::vector<float> decoded_mobile(Bytes blocks, int width, int height, BlockFormat format) {
   const auto side = static_cast<unsigned>(layout_of(format).columns);
   astcenc_config config{};
   astcenc_config_init(ASTCENC_PRF_HDR_RGB_LDR_A, side, side, 1, ASTCENC_PRE_FASTEST,
@@ -92,7 +92,7 @@ TEST(MobileBlocks, AreTheSameForAnyNumberOfThreads) {
 // Decoders round colors of sRGB otherwise, so the nearest block may be another.
 TEST(MobileBlocks, OfAstcHeedTheEncoding) {
   const Bytes texels = random_texels<std::uint8_t>(48, 48, 255, 4);
-  BlockOptions options = options_of(BlockFormat::kAstc4x4);
+  BlockOptions options = mobile_options(BlockFormat::kAstc4x4);
   const Bytes linear = compress_blocks(texels.data(), 48, 48, options, Progress());
   options.is_srgb = true;
   EXPECT_NE(compress_blocks(texels.data(), 48, 48, options, Progress()), linear);
@@ -111,7 +111,7 @@ TEST(MobileBlocks, HdrHoldsAllHalfFloats) {
   }
   for (const BlockFormat format : kOfFloats) {
     const Bytes blocks = compressed(texels, width, height, format);
-    const std::vector<float> found = decoded(blocks, width, height, format);
+    const std::vector<float> found = decoded_mobile(blocks, width, height, format);
     for (int y = 0; y < height; ++y) {
       for (int i = 0; i < 4 * width; ++i) {
         const double wanted = i % 4 == 3 ? 1.0 : std::ldexp(1.0, y / 12 - 14);
@@ -125,7 +125,8 @@ TEST(MobileBlocks, HdrHasNoNegativeValues) {
   Halves texels(static_cast<std::size_t>(4 * 12 * 12), power_of_two(0));
   for (std::size_t i = 0; i < texels.size(); i += 4) texels[i] = power_of_two(3) | 0x8000;
   for (const BlockFormat format : kOfFloats) {
-    const std::vector<float> found = decoded(compressed(texels, 12, 12, format), 12, 12, format);
+    const std::vector<float> found =
+        decoded_mobile(compressed(texels, 12, 12, format), 12, 12, format);
     for (std::size_t i = 0; i < found.size(); ++i) EXPECT_EQ(found[i], i % 4 == 0 ? 0.0F : 1.0F);
   }
 }
@@ -133,7 +134,7 @@ TEST(MobileBlocks, HdrHasNoNegativeValues) {
 TEST(MobileBlocks, CanBeCancelled) {
   const Bytes texels = random_texels<std::uint8_t>(64, 64, 255, 6);
   const Progress stop([](double) { return false; });
-  EXPECT_THROW(compress_blocks(texels.data(), 64, 64, options_of(BlockFormat::kAstc8x8), stop),
+  EXPECT_THROW(compress_blocks(texels.data(), 64, 64, mobile_options(BlockFormat::kAstc8x8), stop),
                Error);
 }
 

@@ -102,19 +102,19 @@ std::vector<double> dense_solution(const Points& points, int side, double smooth
 }
 
 TEST(PaintTexture, IsTheLeastSquares) {
-  constexpr int kSide = 8;
+  constexpr int kTexels = 8;
   const auto color = [](double x, double y) {
     return 0.5 + 0.4 * std::sin(5 * x) * std::cos(4 * y);
   };
   for (const int count : {20, 500}) {
     const Points points = points_of(count, color);
     PaintOptions options;
-    options.width = kSide;
-    options.height = kSide;
+    options.width = kTexels;
+    options.height = kTexels;
     const PaintedTexture found =
         paint_texture(square(0.0, 1.0), points.places, points.values, 1, options);
     EXPECT_EQ(found.points, points.places.size());
-    const std::vector<double> expected = dense_solution(points, kSide, options.smoothing);
+    const std::vector<double> expected = dense_solution(points, kTexels, options.smoothing);
     for (std::size_t i = 0; i < expected.size(); ++i) {
       EXPECT_NEAR(static_cast<double>(found.image.data[i]), expected[i], 1e-3);
     }

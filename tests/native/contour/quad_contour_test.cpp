@@ -18,7 +18,7 @@
 namespace prefilter {
 namespace {
 
-constexpr Box kUnitBox = {{0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}};
+constexpr Box kUnit = {{0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}};
 
 // Empty for a closed two-manifold whose vertices are all used.
 std::string fault_of(const QuadMesh& mesh) {
@@ -80,7 +80,7 @@ TEST(QuadContour, IsManifoldWhateverTheCells) {
       ContourOptions options;
       options.interpolant = interpolant;
       options.threads = 1;
-      ASSERT_EQ(fault_of(contour_quads(uniform_tree(seed, 3), kUnitBox, options)), "") << seed;
+      ASSERT_EQ(fault_of(contour_quads(uniform_tree(seed, 3), kUnit, options)), "") << seed;
     }
   }
 }
@@ -91,7 +91,7 @@ TEST(QuadContour, IsManifoldWhateverTheTree) {
       ContourOptions options;
       options.interpolant = interpolant;
       options.threads = 1;
-      ASSERT_EQ(fault_of(contour_quads(random_tree(seed, 4), kUnitBox, options)), "") << seed;
+      ASSERT_EQ(fault_of(contour_quads(random_tree(seed, 4), kUnit, options)), "") << seed;
     }
   }
 }
@@ -101,7 +101,7 @@ TEST(QuadContour, OfOneCellIsACube) {
   tree.root = 1.0F;
   ContourOptions options;
   options.interpolant = Interpolant::kOccupancy;
-  const QuadMesh mesh = contour_quads(tree, kUnitBox, options);
+  const QuadMesh mesh = contour_quads(tree, kUnit, options);
   EXPECT_EQ(fault_of(mesh), "");
   EXPECT_EQ(mesh.positions.size(), mesh.quads.size() + 2);
 }
@@ -109,7 +109,7 @@ TEST(QuadContour, OfOneCellIsACube) {
 TEST(QuadContour, TakesNoOtherIsovalue) {
   ContourOptions options;
   options.isovalue = 0.4F;
-  EXPECT_THROW(contour_quads(uniform_tree(1, 2), kUnitBox, options), Error);
+  EXPECT_THROW(contour_quads(uniform_tree(1, 2), kUnit, options), Error);
 }
 
 // What lets one face be cut otherwise without a look at the others.

@@ -27,7 +27,7 @@ std::vector<Piece> pieces_of(std::span<const Point2> controls, double weight) {
 
 // Controls of curves of degree 4 and above are someone else's: pieces are looked at as they come.
 template <typename Check>
-void for_random_pieces(int trials, const Check& check) {
+void for_random_curves(int trials, const Check& check) {
   std::mt19937 random(1);
   for (int trial = 0; trial < trials; ++trial) {
     const RandomCurve curve = any_curve(&random, trial, 8.0);
@@ -58,17 +58,17 @@ TEST(MonotonePieces, JoinAndBeginAndEndWhereTheCurveDoes) {
 }
 
 TEST(MonotonePieces, NeitherTurnNorLeaveTheCurve) {
-  for_random_pieces(180, [](int trial, const RandomCurve& random, const MonotoneCurve& piece) {
+  for_random_curves(180, [](int trial, const RandomCurve& random, const MonotoneCurve& piece) {
     constexpr int kSteps = 40;
-    constexpr double kRounding = 1e-9;
+    constexpr double kNearly = 1e-9;
     const bool x_rises = piece.end.x >= piece.begin.x;
     const bool y_rises = piece.end.y >= piece.begin.y;
     Point2 last = piece.begin;
     for (int k = 0; k <= kSteps; ++k) {
       const double t = piece.t_begin + (piece.t_end - piece.t_begin) * k / kSteps;
       const Point2 at = k == kSteps ? piece.end : piece.curve.at(t);
-      ASSERT_GE(x_rises ? at.x - last.x : last.x - at.x, -kRounding) << trial;
-      ASSERT_GE(y_rises ? at.y - last.y : last.y - at.y, -kRounding) << trial;
+      ASSERT_GE(x_rises ? at.x - last.x : last.x - at.x, -kNearly) << trial;
+      ASSERT_GE(y_rises ? at.y - last.y : last.y - at.y, -kNearly) << trial;
       last = at;
       if (random.weight == 0.0) continue;
       // A conic in barycentric coordinates of its control points: b1^2 = 4 w^2 b0 b2.
@@ -149,7 +149,7 @@ TEST(TurningPoints, OfKnownCurves) {
 }
 
 TEST(Crossing, IsWhereTheCurveIs) {
-  for_random_pieces(180, [](int trial, const RandomCurve&, const MonotoneCurve& piece) {
+  for_random_curves(180, [](int trial, const RandomCurve&, const MonotoneCurve& piece) {
     for (int axis = 0; axis < 2; ++axis) {
       const double begin = axis == 0 ? piece.begin.x : piece.begin.y;
       const double end = axis == 0 ? piece.end.x : piece.end.y;
@@ -188,7 +188,7 @@ TEST(ParametricCurve, IsBernsteinsSum) {
 }
 
 TEST(ParametricCurve, SaysOfTwoParametersWhatItSaysOfEach) {
-  for_random_pieces(60, [](int, const RandomCurve&, const MonotoneCurve& piece) {
+  for_random_curves(60, [](int, const RandomCurve&, const MonotoneCurve& piece) {
     const ParametricCurve& curve = piece.curve;
     if (curve.kind == CurveKind::kBezier) return;
     const DoublePair t{piece.t_begin + 0.3 * (piece.t_end - piece.t_begin), piece.t_end};

@@ -11,9 +11,9 @@
 namespace prefilter {
 namespace {
 
-using Triangles = std::vector<std::array<std::int32_t, 3>>;
+using Corners = std::vector<std::array<std::int32_t, 3>>;
 
-FacetedMesh mesh_of(std::size_t vertices, const Triangles& triangles) {
+FacetedMesh mesh_of(std::size_t vertices, const Corners& triangles) {
   FacetedMesh mesh;
   mesh.positions.resize(vertices);
   mesh.triangles = triangles;
@@ -22,7 +22,7 @@ FacetedMesh mesh_of(std::size_t vertices, const Triangles& triangles) {
 
 // A strip of triangles, each beside the next; vertices are numbered along it.
 FacetedMesh strip(std::int32_t count, std::int32_t first = 0) {
-  Triangles triangles;
+  Corners triangles;
   for (std::int32_t t = first; t < first + count; ++t) {
     if (t % 2 == 0) triangles.push_back({t, t + 1, t + 2});
     if (t % 2 == 1) triangles.push_back({t + 1, t, t + 2});

@@ -155,13 +155,13 @@ TEST(Sample, IsTheSumOfWhatItsTexelsWeigh) {
     for (double& one : coordinates[i]) one = (one > 0.5 ? 0.8 : 0.2) + 0.3 * (one - 0.5);
   }
   const std::vector<double> scales = random_scales(1000);
-  constexpr std::array<Wrap, 3> kWraps{Wrap::kClamp, Wrap::kRepeat, Wrap::kBorder};
+  constexpr std::array<Wrap, 3> kModes{Wrap::kClamp, Wrap::kRepeat, Wrap::kBorder};
   int seed = 0;
   for (const auto& [width, height] :
        {std::pair{64, 64}, {37, 53}, {255, 63}, {40, 3}, {1, 17}, {1, 1}}) {
     const Levels levels(width, height, 1 + seed % 5);
     for (const SamplingTable* table : all) {
-      const WrapModes wrap{kWraps[seed % 3], kWraps[seed / 3 % 3]};
+      const WrapModes wrap{kModes[seed % 3], kModes[seed / 3 % 3]};
       ++seed;
       const auto found = sampled(levels.view(), table, coordinates, scales, wrap);
       std::size_t value = 0;

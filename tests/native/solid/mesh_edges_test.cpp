@@ -13,11 +13,11 @@
 namespace prefilter {
 namespace {
 
-using Triangles = std::vector<std::array<std::int32_t, 3>>;
+using EdgeTriangles = std::vector<std::array<std::int32_t, 3>>;
 
-Triangles random_triangles(int vertices, int count, unsigned seed) {
+EdgeTriangles random_triangles(int vertices, int count, unsigned seed) {
   std::mt19937 random(seed);
-  Triangles triangles(static_cast<std::size_t>(count));
+  EdgeTriangles triangles(static_cast<std::size_t>(count));
   for (auto& triangle : triangles) {
     for (std::int32_t& corner : triangle) {
       corner = static_cast<std::int32_t>(random() % static_cast<unsigned>(vertices));
@@ -27,7 +27,7 @@ Triangles random_triangles(int vertices, int count, unsigned seed) {
 }
 
 // One edge after another, by an ordered map.
-MeshEdges slow_edges(const Triangles& triangles) {
+MeshEdges slow_edges(const EdgeTriangles& triangles) {
   std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> numbers;
   for (const auto& triangle : triangles) {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -51,7 +51,7 @@ MeshEdges slow_edges(const Triangles& triangles) {
 
 TEST(MeshEdges, AreThoseOfAMapWhateverTheTriangles) {
   for (const auto& [vertices, count] : {std::pair{3, 1}, {3, 40}, {40, 100}, {20'000, 40'000}}) {
-    const Triangles triangles = random_triangles(vertices, count, 7);
+    const EdgeTriangles triangles = random_triangles(vertices, count, 7);
     const std::vector<Vector3> positions(static_cast<std::size_t>(vertices));
     const MeshEdges expected = slow_edges(triangles);
     for (const int threads : {1, 3}) {
@@ -64,8 +64,8 @@ TEST(MeshEdges, AreThoseOfAMapWhateverTheTriangles) {
 
 TEST(MeshEdges, RefuseWhatIsNoMesh) {
   const std::vector<Vector3> positions(3);
-  EXPECT_THROW(find_mesh_edges({positions, Triangles{}}, Progress(), 1), Error);
-  EXPECT_THROW(find_mesh_edges({positions, Triangles{{0, 1, 3}}}, Progress(), 1), Error);
+  EXPECT_THROW(find_mesh_edges({positions, EdgeTriangles{}}, Progress(), 1), Error);
+  EXPECT_THROW(find_mesh_edges({positions, EdgeTriangles{{0, 1, 3}}}, Progress(), 1), Error);
 }
 
 }  // namespace
