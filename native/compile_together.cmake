@@ -7,11 +7,11 @@
 # CMAKE_UNITY_BUILD=OFF; files with options of their own always do. CMake's own units name files by whole paths, so that
 # ccache would find nothing of another checkout.
 function(compile_together target root count)
-  # It warns of a class with a member of a nameless namespace wherever that is not in the unit's own file.
-  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   if(DEFINED CMAKE_UNITY_BUILD AND NOT CMAKE_UNITY_BUILD)
     return()
   endif()
+  # It warns of a class with a member of a nameless namespace wherever that is not in the unit's own file.
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   get_target_property(sources ${target} SOURCES)
   get_target_property(here ${target} SOURCE_DIR)
   set(units)
