@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <mutex>
 #include <new>
 #include <string>
 #include <type_traits>
@@ -33,11 +34,16 @@ inline AstcContext make_astc_context(const BlockLayout& layout, bool is_srgb, fl
                                      unsigned flags) {
   astcenc_profile profile = is_srgb ? ASTCENC_PRF_LDR_SRGB : ASTCENC_PRF_LDR;
   if (layout.is_float) profile = ASTCENC_PRF_HDR_RGB_LDR_A;
+  // astcenc 5 keeps the presets for a size of blocks in a static variable while it reads them.
+  static std::mutex presets;
   astcenc_config config{};
-  if (astcenc_config_init(profile, static_cast<unsigned>(layout.columns),
-                          static_cast<unsigned>(layout.rows), 1, effort, flags,
-                          &config) != ASTCENC_SUCCESS) {
-    throw_invalid("format: astcenc does not know '" + std::string(layout.name) + "'");
+  {
+    const std::lock_guard lock(presets);
+    if (astcenc_config_init(profile, static_cast<unsigned>(layout.columns),
+                            static_cast<unsigned>(layout.rows), 1, effort, flags,
+                            &config) != ASTCENC_SUCCESS) {
+      throw_invalid("format: astcenc does not know '" + std::string(layout.name) + "'");
+    }
   }
   astcenc_context* context = nullptr;
   if (astcenc_context_alloc(&config, 1, &context, nullptr) != ASTCENC_SUCCESS) {
