@@ -6,6 +6,8 @@ Every operator's test in tests/blender/test_smoke.py runs again and again in one
 scene is changed and taken back, and bakes are canceled at random moments. Memory, open files,
 threads and data-blocks are looked at after half of the runs, when all that is loaded once is
 there, and at the end: they are to be flat, memory but for 64 KiB a run, which pytest keeps of it.
+Memory is what the allocator has given out and what Python's objects take; the pages of the
+process, which it returns when it likes, are told beside it.
 
 usage: blender --background --python soak.py -- [PATTERN] [--count N] [--json FILE]
   scripts/run blender --background --factory-startup --python-exit-code 1 \\
@@ -14,6 +16,7 @@ usage: blender --background --python soak.py -- [PATTERN] [--count N] [--json FI
 
 import argparse
 import contextlib
+import ctypes
 import gc
 import os
 import random
@@ -37,6 +40,28 @@ from bench import report  # noqa: E402
 MOST_KIB_PER_RUN = 64.0
 _PAGE_KIB = os.sysconf("SC_PAGE_SIZE") / 1024
 _PACKAGE = "bl_ext.user_default.prefilter"
+_BYTES_OF_PYTHONS_BLOCK = 64
+
+
+class _Mallinfo2(ctypes.Structure):
+    """As in glibc's malloc.h."""
+
+    _names = "arena ordblks smblks hblks hblkhd usmblks fsmblks uordblks fordblks keepcost"
+    _fields_ = [(name, ctypes.c_size_t) for name in _names.split()]
+
+
+def _allocated() -> int:
+    """Returns how many bytes jemalloc, or else glibc, has given out and not got back."""
+    library = ctypes.CDLL(None)
+    if hasattr(library, "mallctl"):
+        found, epoch, size = ctypes.c_size_t(), ctypes.c_uint64(1), ctypes.c_size_t(8)
+        library.mallctl(b"epoch", None, None, ctypes.byref(epoch), size)
+        none = ctypes.c_size_t(0)
+        library.mallctl(b"stats.allocated", ctypes.byref(found), ctypes.byref(size), None, none)
+        return found.value
+    library.mallinfo2.restype = _Mallinfo2
+    info = library.mallinfo2()
+    return info.uordblks + info.hblkhd
 
 
 @dataclass(frozen=True)
@@ -44,6 +69,7 @@ class State:
     """What a process holds."""
 
     kib: float
+    resident_kib: float
     files: int
     threads: int
     blocks: int
@@ -52,6 +78,7 @@ class State:
     def now(cls) -> "State":
         """Returns that of this process."""
         gc.collect()
+        taken = _allocated() + _BYTES_OF_PYTHONS_BLOCK * sys.getallocatedblocks()
         resident = int(Path("/proc/self/statm").read_text().split()[1]) * _PAGE_KIB
         blocks = sum(
             len(kind)
@@ -60,7 +87,7 @@ class State:
         )
         folder = Path("/proc/self")
         files, threads = (len(os.listdir(folder / name)) for name in ("fd", "task"))
-        return cls(resident, files, threads, blocks)
+        return cls(taken / 1024, resident, files, threads, blocks)
 
 
 @dataclass(eq=False)  # pytest keeps plugins by their hashes.
@@ -105,6 +132,7 @@ class Soak:
                     name.removeprefix("test_"),
                     str(self.count),
                     f"{(last.kib - early.kib) / runs:.1f}",
+                    f"{(last.resident_kib - early.resident_kib) / runs:.1f}",
                     str(last.files - early.files),
                     str(last.threads - early.threads),
                     str(last.blocks - early.blocks),
@@ -179,10 +207,10 @@ def main() -> None:
     undo(soak)
     cancel(soak)
     told, rows = report.Report(), soak.rows()
-    head = ["Operator", "Runs", "KiB a run", "Files", "Threads", "Data-blocks"]
+    head = ["Operator", "Runs", "KiB a run", "Of pages", "Files", "Threads", "Data-blocks"]
     told.table("Growth", head, rows, "soak")
     told.verdict(not soak.failed, f"no run fails ({', '.join(sorted(set(soak.failed))[:5])})")
-    for index, what in ((3, "files"), (4, "threads"), (5, "data-blocks")):
+    for index, what in ((4, "files"), (5, "threads"), (6, "data-blocks")):
         grown = [row[0] for row in rows if int(row[index]) > 0]
         told.verdict(not grown, f"as many {what} as before {' '.join(grown)}")
     grown = [row[0] for row in rows if float(row[2]) > MOST_KIB_PER_RUN]
