@@ -33,7 +33,7 @@ py::bytes compressed(const py::array& rgba, const BlockOptions& options, const P
   return {reinterpret_cast<const char*>(blocks.data()), blocks.size()};
 }
 
-std::span<const std::uint8_t> bytes_of(const py::bytes& bytes) {
+std::span<const std::uint8_t> span_of(const py::bytes& bytes) {
   const auto view = static_cast<std::string_view>(bytes);
   return {reinterpret_cast<const std::uint8_t*>(view.data()), view.size()};
 }
@@ -43,7 +43,7 @@ py::array decoded(const Decode& decode, const py::bytes& blocks, int width, int 
                   const DecodeOptions& options, const Progress& progress) {
   std::vector<Channel> texels;
   {
-    const auto view = bytes_of(blocks);
+    const auto view = span_of(blocks);
     const py::gil_scoped_release unlocked;
     texels = decode(view, width, height, options, progress);
   }
@@ -58,11 +58,11 @@ using Level = std::tuple<int, int, py::bytes, py::bytes>;
 py::list decoded_etc1s(const Codebooks& given, const std::vector<Level>& levels,
                        const py::object& callback) {
   const auto& [endpoint_count, selector_count, endpoints, selectors, tables] = given;
-  const Etc1sCodebooks codebooks{endpoint_count, selector_count, bytes_of(endpoints),
-                                 bytes_of(selectors), bytes_of(tables)};
+  const Etc1sCodebooks codebooks{endpoint_count, selector_count, span_of(endpoints),
+                                 span_of(selectors), span_of(tables)};
   std::vector<Etc1sLevel> parts;
   for (const auto& [width, height, color, alpha] : levels) {
-    parts.push_back({width, height, bytes_of(color), bytes_of(alpha)});
+    parts.push_back({width, height, span_of(color), span_of(alpha)});
   }
   const Progress progress = to_progress(callback);
   std::vector<std::vector<std::uint8_t>> images;
@@ -147,7 +147,7 @@ void bind_blocks(py::module_& m) {
   m.def(
       "decompress",
       [](const py::bytes& frames, std::size_t count) {
-        const auto view = bytes_of(frames);
+        const auto view = span_of(frames);
         std::vector<std::uint8_t> bytes;
         {
           const py::gil_scoped_release unlocked;

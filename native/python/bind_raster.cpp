@@ -176,8 +176,9 @@ py::array bound_rasterize(const std::vector<DrawnShape>& drawn, RasterOptions op
   return to_array(std::move(image));
 }
 
-Outline bound_combine(const Outline& first, const std::string& first_rule, const Outline& second,
-                      const std::string& second_rule, const std::string& operation) {
+Outline bound_combine_outlines(const Outline& first, const std::string& first_rule,
+                               const Outline& second, const std::string& second_rule,
+                               const std::string& operation) {
   const FillRule rule = value_named("fill_rule", first_rule, kFillRules);
   const FillRule other = value_named("fill_rule", second_rule, kFillRules);
   const OutlineOperation what = value_named("operation", operation, kOutlineOperations);
@@ -194,7 +195,7 @@ std::pair<Outline, bool> bound_stroke(const Outline& outline, const StrokeOption
   return {std::move(covered), winds_once};
 }
 
-py::bytes bytes_of(std::span<const double> numbers) {
+py::bytes packed(std::span<const double> numbers) {
   return {reinterpret_cast<const char*>(numbers.data()), numbers.size_bytes()};
 }
 
@@ -203,7 +204,7 @@ py::tuple bound_read_path(const std::string& text, std::size_t most) {
   PathSteps steps;
   const PathOutcome outcome = read_path_data(text, most, &steps);
   if (outcome == PathOutcome::kTooMany) return py::make_tuple(py::none(), py::none(), false);
-  return py::make_tuple(py::bytes(steps.letters), bytes_of(steps.numbers),
+  return py::make_tuple(py::bytes(steps.letters), packed(steps.numbers),
                         outcome == PathOutcome::kWhole);
 }
 
@@ -268,7 +269,7 @@ void bind_raster(py::module_& m) {
           py::arg("matrix"))
       .def("copy", [](const Outline& outline) { return Outline(outline); })
       .def("stroked", &bound_stroke, py::arg("options"), py::arg("tolerance"))
-      .def("combined", &bound_combine, py::arg("fill_rule"), py::arg("other"),
+      .def("combined", &bound_combine_outlines, py::arg("fill_rule"), py::arg("other"),
            py::arg("other_rule"), py::arg("operation"))
       .def("bounds", &bound_bounds)
       .def_property_readonly("contour_count", &Outline::contour_count);

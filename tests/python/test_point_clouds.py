@@ -200,7 +200,7 @@ def farthest(scans, motions, found):
 @pytest.mark.parametrize("offset", [(0, 0, 0), (5e5, 4e6, 100)])
 def test_a_surface_brings_five_scans_back_to_a_tenth_of_a_cell(offset):
     """They were off by a cell and more; the oracle is the motion of each."""
-    scans, motions = body_scans(5, points=20_000, noise=0.005, offset=offset)
+    scans, motions = body_scans(5, points=8_000, noise=0.005, offset=offset)
     report = prefilter.ReconstructionReport()
     prefilter.reconstruct(scans, align="surface", report=report)
     found = prefilter.align_scans(scans, against="surface")
