@@ -2,12 +2,15 @@
 
 """What is up to date is left alone: by contents and settings, which files keep."""
 
+import gzip
+
 import numpy as np
 import prefilter
 import pytest
 from command_files import fails, noise, run, write_picture, write_quad
+from prefilter._work import mesh_files
 from prefilter._work.files import png
-from prefilter._work.up_to_date import KEY, fingerprint_of, is_up_to_date, kept
+from prefilter._work.up_to_date import KEY, fingerprint_of, is_up_to_date, kept, stands_alone
 
 oiio = pytest.importorskip("OpenImageIO", reason="scripts/decoders.txt is not installed")
 
@@ -77,6 +80,85 @@ def test_the_table_of_a_filter_counts(photo, tmp_path, capsys):
         assert not is_made(capsys, out, *command)
 
 
+@pytest.mark.parametrize("kind", ["ply", "obj", "stl", "glb"])
+def test_meshes(tmp_path, capsys, kind):
+    trimesh = pytest.importorskip("trimesh")
+    source, out, plain = tmp_path / "box.ply", tmp_path / f"out.{kind}", tmp_path / f"plain.{kind}"
+    trimesh.creation.box().export(source)
+    command = ("voxelize", source, out, "--depth", "4")
+    assert is_made(capsys, out, *command)
+    assert not is_made(capsys, out, *command)
+    assert not is_made(capsys, out, *command, "--threads", "1")
+    assert run("voxelize", source, plain, "--depth", "4") == 0
+    assert KEY.encode() not in plain.read_bytes()
+    found, expected = (trimesh.load(path, force="mesh") for path in (out, plain))
+    np.testing.assert_array_equal(found.vertices, expected.vertices)
+    np.testing.assert_array_equal(found.faces, expected.faces)
+    assert is_made(capsys, out, "voxelize", source, out, "--depth", "5")
+    trimesh.creation.box((1, 1, 2)).export(source)
+    assert is_made(capsys, out, "voxelize", source, out, "--depth", "5")
+    assert not is_made(capsys, out, "voxelize", source, out, "--depth", "5")
+
+
+@pytest.mark.parametrize("kind", ["png", "exr"])
+def test_drawings(tmp_path, capsys, kind):
+    drawing, out = tmp_path / "a.svg", tmp_path / f"a.{kind}"
+    drawing.write_text(
+        '<svg viewBox="0 0 4 4"><path id="a" d="M0 0h4L0 4z"/><use href="#a"/></svg>'
+    )
+    command = ("rasterize", drawing, out, "--side", "32")
+    assert is_made(capsys, out, *command)
+    assert not is_made(capsys, out, *command)
+    assert is_made(capsys, out, *command, "--filter", "tent")
+    drawing.write_text('<svg viewBox="0 0 4 4"><path d="M0 0h4L1 4z"/></svg>')
+    assert is_made(capsys, out, *command)
+    quad = write_quad(tmp_path / "quad.obj")
+    assert is_made(capsys, out, "rasterize", quad, out, "--uv", "--side", "32")
+    assert not is_made(capsys, out, "rasterize", quad, out, "--uv", "--side", "32")
+
+
+@pytest.mark.parametrize(
+    "inside",
+    [
+        '<text font-size="1">a</text>',
+        '<s:text xmlns:s="http://www.w3.org/2000/svg">a</s:text>',
+        '<image href="a.png"/>',
+        "<image xlink:href = ' a.png'/>",
+        "<style>@import 'a.css';</style>",
+        "<style>@font-face { src: url( a.woff) }</style>",
+        '<style>rect { fill: \\75rl("a.svg#b") }</style>',
+        '<rect fill="url(b.svg#c)"/>',
+    ],
+)
+def test_drawings_of_several_files_are_made_anew(tmp_path, inside):
+    path = tmp_path / "a.svg"
+    path.write_text(f"<svg>{inside}</svg>")
+    assert not stands_alone(path)
+    path.write_bytes(gzip.compress(path.read_bytes()))
+    assert not stands_alone(path)
+    path.write_bytes(f"<svg>{inside}</svg>".encode("utf-16"))
+    assert not stands_alone(path)
+
+
+@pytest.mark.parametrize(
+    "inside",
+    [
+        "",
+        '<image href="data:image/png;base64,AAAA"/>',
+        '<rect fill="url(#a)" filter="url( \'#b\' )"/><use xlink:href=" #a"/><use href=""/>',
+        '<g id="text" class="texture"/><context/><desc>text</desc>',
+    ],
+)
+def test_drawings_of_one_file_stand_alone(tmp_path, inside):
+    path = tmp_path / "a.svg"
+    path.write_text(f"<svg>{inside}</svg>")
+    assert stands_alone(path)
+    path.write_bytes(gzip.compress(path.read_bytes()))
+    assert stands_alone(path)
+    path.write_bytes(path.read_bytes()[:-9])
+    assert not stands_alone(path)
+
+
 def test_of_many_files_those_that_have_changed_are_made(tmp_path, capsys):
     pictures = [write_picture(tmp_path / f"{i}.png", noise(8, 8, seed=i)) for i in range(3)]
     (tmp_path / "out").mkdir()
@@ -102,7 +184,13 @@ def test_damaged_files_are_never_up_to_date(tmp_path):
     (tmp_path / "a.png").write_bytes(
         png.encoded(np.zeros((1, 1, 3), np.uint8), is_srgb=True, texts={"b": "c", KEY: number})
     )
-    for path in (tmp_path / "a.exr", tmp_path / "a.png"):
+    paths = [tmp_path / "a.exr", tmp_path / "a.png"]
+    corners = np.eye(3)
+    triangle = mesh_files.Part("a", corners, np.array([[0, 1, 2]]), None)
+    for kind in ("ply", "obj", "stl", "glb"):
+        paths.append(tmp_path / f"a.{kind}")
+        mesh_files.stage(paths[-1], [triangle], {KEY: number}).commit()
+    for path in paths:
         assert is_up_to_date([path], number)
         assert not is_up_to_date([path], "1" * 64)
         data = path.read_bytes()

@@ -66,6 +66,8 @@ def run(
     options: argparse.Namespace,
     do: Callable[[Pair], None],
     settings: Mapping[str, Any] | None = None,
+    kinds: Sequence[str] = PICTURES,
+    may_skip: Callable[[str], bool] = lambda _: True,
 ) -> None:
     """Does something with each file of this task, or lists the tasks.
 
@@ -76,6 +78,8 @@ def run(
         do: Reads a file, and writes another.
         settings: All that decides what is made of a file, where what is up to date may be left
             alone; None where it may not.
+        kinds: The extensions of files that can keep what they were made of.
+        may_skip: Tells whether a file has all that decides, but for the settings.
 
     Raises:
         ValueError: Some failed; of a single one, whatever `do` raises.
@@ -83,8 +87,8 @@ def run(
     tasks.check(options)
     pairs = _pairs(options)
     if settings is not None and options.skip_up_to_date:
-        telling.check_can_tell(options, options.target, PICTURES)
-        do = _skipping(do, settings)
+        telling.check_can_tell(options, options.target, kinds)
+        do = _skipping(do, settings, may_skip)
     if options.list:
         _list(options, pairs)
         return
@@ -102,10 +106,15 @@ def run(
         raise ValueError(f"not done: {listed(failed)}")
 
 
-def _skipping(do: Callable[[Pair], None], settings: Mapping[str, Any]) -> Callable[[Pair], None]:
+def _skipping(
+    do: Callable[[Pair], None], settings: Mapping[str, Any], may_skip: Callable[[str], bool]
+) -> Callable[[Pair], None]:
     """Returns what leaves files alone that are up to date."""
 
     def do_unless(pair: Pair) -> None:
+        if not may_skip(pair.source):
+            do(pair)
+            return
         target = pair.checked_target()
         number = fingerprint([pair.source], settings)
         if is_up_to_date([target], number):

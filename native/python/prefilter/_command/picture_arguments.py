@@ -6,7 +6,6 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from .._options.flags import given
 from .._work.files import pictures
 from .._work.picture import Picture
 from .._work.wording import either
@@ -40,10 +39,8 @@ def decisive(options: argparse.Namespace, host: Host, settings: type) -> dict[st
         host: Where the command runs.
         settings: The dataclass of its options.
     """
-    chosen = host.preset(options) | given(options, settings)
-    chosen.pop("threads", None)
-    more = {name: getattr(options, name, None) for name in ("data", "corners", "rectify", "scale")}
-    return {"command": settings.__name__, "chosen": chosen, **more}
+    names = ("data", "corners", "rectify", "scale")
+    return telling.decisive(options, settings, *names, preset=host.preset(options))
 
 
 def check_target(options: argparse.Namespace) -> None:

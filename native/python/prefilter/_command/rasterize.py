@@ -16,6 +16,7 @@ from .._work.files import pictures
 from .._work.shapes.layers import Source, svg_drawing, uv_layers
 from .._work.shapes.layouts import borders
 from .._work.shapes.rasterizing import RasterFile
+from .._work.up_to_date import stands_alone
 from .._work.wording import either
 from . import many, tasks, telling
 from .host import PLAIN, Host
@@ -53,6 +54,7 @@ def add(commands: Any, purpose: str) -> None:
     parser.add_argument("--uv", action="store_true", help="make a mask of the UV map of a mesh")
     add_flags(parser, RasterizeSettings, *FLAGS)
     tasks.add_flags(parser, "INPUT")
+    telling.add_skipping(parser)
     parser.set_defaults(execute=_rasterize, usage_error=parser.error)
 
 
@@ -81,7 +83,9 @@ def _rasterize(options: argparse.Namespace) -> None:
     if endings != {SVG} and not options.uv:
         options.usage_error("--uv: needed for meshes")
     settings = settings_of(options, PLAIN)
-    many.run(options, partial(_rasterize_one, options, settings))
+    decisive = telling.decisive(options, RasterizeSettings, "object", "uv")
+    do = partial(_rasterize_one, options, settings)
+    many.run(options, do, decisive, may_skip=lambda path: options.uv or stands_alone(path))
 
 
 def check_files(options: argparse.Namespace, allowed: Sequence[str]) -> set[str]:
@@ -100,7 +104,9 @@ def _rasterize_one(options: argparse.Namespace, settings: RasterizeSettings, pai
         source = svg_drawing("INPUT", pair.source)
     else:
         source = _layout(options, pair.source, settings, warnings)
-    telling.tell(telling.done(RasterFile(source, target, settings, warnings)))
+    work = RasterFile(source, target, settings, warnings)
+    work.metadata = pair.metadata
+    telling.tell(telling.done(work))
 
 
 def _layout(

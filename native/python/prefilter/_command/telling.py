@@ -4,16 +4,19 @@
 
 import argparse
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from types import MappingProxyType
 from typing import Any
 
 from .._border import stopping
+from .._options.flags import given
 from .._work import progress as works
 from .._work.outcome import Outcome
 from .._work.progress import Progress, Work, go_on
 from .voices import VOICES, Plain
 
+_NONE: Mapping[str, Any] = MappingProxyType({})
 _voice = Plain()
 _share: tuple[int, int] = (0, 1)
 """The part of the command that its work is now: which of how many."""
@@ -51,6 +54,23 @@ def add_skipping(parser: argparse.ArgumentParser) -> None:
         help="leave alone what was made of the same inputs, by their contents, with the same "
         "settings; files then keep a number that tells",
     )
+
+
+def decisive(
+    options: argparse.Namespace, settings: type, *names: str, preset: Mapping[str, Any] = _NONE
+) -> dict[str, Any]:
+    """Returns all that decides what a command makes of a file, but for the file itself.
+
+    Args:
+        options: The arguments.
+        settings: The dataclass of the command's options.
+        names: Of arguments that are no options.
+        preset: Options by a preset.
+    """
+    chosen = {**preset, **given(options, settings)}
+    chosen.pop("threads", None)
+    more = {name: getattr(options, name, None) for name in names}
+    return {"command": settings.__name__, "chosen": chosen, **more}
 
 
 def check_can_tell(options: argparse.Namespace, path: str, allowed: Sequence[str]) -> None:

@@ -3,6 +3,7 @@
 """The command `voxelize`."""
 
 import argparse
+from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from .._work import mesh_endings, mesh_files
 from .._work.mesh_files import Part
 from .._work.outcome import Outcome
 from .._work.progress import Progress, go_on, parts, share
+from .._work.up_to_date import MESHES
 from .._work.voxels import surfaces
 from .._work.voxels.grid import check_memory, choose_grid
 from .._work.wording import Sentence, amount, counted, either
@@ -54,6 +56,7 @@ def add(commands: Any, purpose: str) -> None:
     )
     add_flags(parser, VoxelizeSettings, *FLAGS, exclusive=RESOLUTIONS)
     tasks.add_flags(parser, "FILE")
+    telling.add_skipping(parser)
     parser.set_defaults(execute=_voxelize, usage_error=parser.error)
 
 
@@ -75,6 +78,8 @@ class VoxelFile:
 
     def __init__(self, meshes: list[Part], target: Path, settings: VoxelizeSettings) -> None:
         """Takes what to voxelize, where to, and how."""
+        self.metadata: Mapping[str, str] | None = None
+        """What the file is to keep, by keys."""
         self._meshes = meshes
         self._target = target
         self._settings = settings
@@ -101,7 +106,7 @@ class VoxelFile:
             except ValueError as error:
                 raise ValueError(f"mesh '{mesh.name}': {error}") from error
         go_on(progress, _COMPUTED)
-        self._staged = mesh_files.stage(self._target, made)
+        self._staged = mesh_files.stage(self._target, made, self.metadata)
         go_on(progress, 1.0)
 
     def write(self) -> Outcome:
@@ -151,11 +156,14 @@ def _voxelize(options: argparse.Namespace) -> None:
         telling.check_ending(options, "FILE", path, mesh_endings.ENDINGS)
     telling.check_ending(options, "OUTPUT", options.target, mesh_endings.TARGETS)
     settings = settings_of(options, PLAIN, VoxelizeSettings)
-    many.run(options, partial(_voxelize_one, options, settings))
+    decisive = telling.decisive(options, VoxelizeSettings, "object")
+    many.run(options, partial(_voxelize_one, options, settings), decisive, MESHES)
 
 
 def _voxelize_one(options: argparse.Namespace, settings: VoxelizeSettings, pair: Pair) -> None:
     target = pair.checked_target()
     found = mesh_files.chosen(mesh_files.read("FILE", [pair.source]), options.object)
     meshes = [mesh_files.without_seams(one) for one in found]
-    telling.tell(telling.done(VoxelFile(meshes, target, settings)))
+    work = VoxelFile(meshes, target, settings)
+    work.metadata = pair.metadata
+    telling.tell(telling.done(work))

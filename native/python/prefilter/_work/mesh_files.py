@@ -3,7 +3,7 @@
 """Mesh files, as trimesh reads them; it is imported when it is needed."""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 import prefilter
 
-from .._border.staging import StagedFile, stage_bytes
+from .._border.staging import StagedFile, stage_bytes, stage_data
+from .files.mesh_notes import with_note
 from .matrices import product
 from .wording import listed
 
@@ -70,8 +71,15 @@ def without_seams(part: Part) -> Part:
     return Part(part.name, places, np.asarray(triangles, np.int64), None)
 
 
-def stage(target: Path, parts: Sequence[Part]) -> StagedFile:
+def stage(
+    target: Path, parts: Sequence[Part], metadata: Mapping[str, str] | None = None
+) -> StagedFile:
     """Writes positions and triangles, in a format that the ending of the target says.
+
+    Args:
+        target: The file.
+        parts: The meshes.
+        metadata: What the file is to keep, by keys; see `with_note`.
 
     Raises:
         OSError: The file cannot be written.
@@ -85,7 +93,13 @@ def stage(target: Path, parts: Sequence[Part]) -> StagedFile:
         made = trimesh.Scene()
         for part, mesh in zip(parts, meshes, strict=True):
             made.add_geometry(mesh, node_name=part.name, geom_name=part.name)
-    return stage_bytes(target, lambda file: made.export(file, file_type=kind))
+    if not metadata:
+        return stage_bytes(target, lambda file: made.export(file, file_type=kind))
+    data = made.export(file_type=kind)
+    data = data.encode() if isinstance(data, str) else data
+    for key, text in metadata.items():
+        data = with_note(kind, data, key, text)
+    return stage_data(target, data)
 
 
 def surfaces(parts: Sequence[Part]) -> tuple[list[prefilter.Surface], list[str], list[str]]:

@@ -7,6 +7,7 @@ import json
 import os
 import re
 import struct
+import zlib
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -25,8 +26,16 @@ LEVELS = (".ktx2", ".exr", ".tif", ".tiff", ".tx")
 """The files of levels that can keep one: in DDS there is no place, and PNG files are several."""
 PICTURES = (".png", ".exr")
 """The same of pictures of one level."""
+MESHES = (".obj", ".ply", ".stl", ".glb")
+"""The same of meshes."""
 IN_DESCRIPTION = re.compile(rf" ?\b{KEY}=([0-9a-f]{{64}})\b")
 """What the description of a TIFF file has of it."""
+_GZIP = b"\x1f\x8b"
+# Texts, whose fonts are files, addresses, and what may stand for either.
+_ELSEWHERE = re.compile(
+    rb"<!ENTITY|\\|<([\w.-]+:)?text\b|@import|(href|src|url)\s*[=(]\s*[\"']?\s*(?!#|data:|[\"'\s])",
+    re.IGNORECASE,
+)
 _EXR_MAGIC = 20000630
 _MOST_HEADER = 1 << 20
 
@@ -62,6 +71,23 @@ def fingerprint_of(arrays: Iterable["NDArray[Any]"], settings: Mapping[str, Any]
     return str(found.hexdigest())
 
 
+def stands_alone(drawing: str | os.PathLike[str]) -> bool:
+    """Tells whether all that an SVG file shows is in it: no text, and no address of another file.
+
+    What is not sure counts as no.
+
+    Raises:
+        OSError: The file cannot be read.
+    """
+    data = Path(drawing).read_bytes()
+    if data[:2] == _GZIP:
+        try:
+            data = zlib.decompress(data, wbits=31)
+        except zlib.error:
+            return False
+    return b"\0" not in data and _ELSEWHERE.search(data) is None
+
+
 def is_up_to_date(targets: Sequence[Path], number: str) -> bool:
     """Tells whether files are all there, and have been made of what has this fingerprint."""
     for target in targets:
@@ -92,6 +118,10 @@ def kept(path: Path) -> str:
     if ending == ".exr":
         with path.open("rb") as file:
             return _exr_text(file.read(_MOST_HEADER), KEY)
+    if ending in MESHES:
+        from .files.mesh_notes import note_of
+
+        return note_of(path, KEY)
     from .openimageio import text_attribute
 
     found = IN_DESCRIPTION.search(text_attribute(path, "ImageDescription"))

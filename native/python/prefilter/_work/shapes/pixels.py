@@ -2,7 +2,7 @@
 
 """From coverage and associated colors to what images and files hold."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -160,8 +160,19 @@ def _whole(values: FloatArray, kind: type[np.uint8] | type[np.uint16]) -> NDArra
     return found
 
 
-def stage(target: Path, pixels: Pixels, settings: RasterizeSettings) -> staging.StagedFile:
+def stage(
+    target: Path,
+    pixels: Pixels,
+    settings: RasterizeSettings,
+    metadata: Mapping[str, str] | None = None,
+) -> staging.StagedFile:
     """Writes a picture beside its target: for PNG with 8 bits or, of floats, 16.
+
+    Args:
+        target: The file.
+        pixels: The picture.
+        settings: How it is stored.
+        metadata: What the file is to keep, by keys.
 
     Raises:
         OSError: The file cannot be written.
@@ -172,5 +183,9 @@ def stage(target: Path, pixels: Pixels, settings: RasterizeSettings) -> staging.
     else:
         values = pixels.floats()
     return pictures.stage(
-        target, values, is_data=pixels.is_mask, is_half=settings.pixel_type != "float"
+        target,
+        values,
+        is_data=pixels.is_mask,
+        is_half=settings.pixel_type != "float",
+        metadata=metadata,
     )

@@ -2,6 +2,7 @@
 
 """Shapes to an image, and to a file of it."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, cast
 
@@ -86,6 +87,8 @@ class RasterFile:
     ) -> None:
         """Takes what to draw, where to, and how; and what is to be told of it."""
         check(settings)
+        self.metadata: Mapping[str, str] | None = None
+        """What the file is to keep, by keys."""
         self._source = source
         self._target = target
         self._settings = settings
@@ -104,7 +107,7 @@ class RasterFile:
         go_on(progress, 0.9)
         self._warnings.extend(drawn.warnings)
         self._done = told(self._source.name, str(self._target), (drawn.width, drawn.height))
-        self._staged = pixels.stage(self._target, made, self._settings)
+        self._staged = pixels.stage(self._target, made, self._settings, self.metadata)
         go_on(progress, 1.0)
 
     def write(self) -> Outcome:

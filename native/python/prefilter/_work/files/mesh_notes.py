@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""A line of text that files of meshes keep beside the mesh: each format has room for one."""
+
+import json
+import re
+import struct
+from pathlib import Path
+from typing import Any
+
+_MOST_HEADER = 1 << 16
+_STL_HEADER = 80
+_GLB_HEADER = struct.Struct("<4sIIII")
+_JSON = 0x4E4F534A
+
+
+def with_note(kind: str, data: bytes, key: str, text: str) -> bytes:
+    """Returns a file with `key=text`: a comment, of STL the header, of GLB what its asset has more.
+
+    Args:
+        kind: "ply", "obj", "stl" (binary) or "glb".
+        data: The file.
+        key: A word.
+        text: Of STL at most what fits into 80 bytes with the key; letters and digits.
+    """
+    note = f"{key}={text}".encode()
+    if kind == "ply":
+        first, rest = data.split(b"\n", 1)
+        return b"%s\ncomment %s\n%s" % (first, note, rest)
+    if kind == "obj":
+        return b"# %s\n%s" % (note, data)
+    if kind == "stl":
+        assert len(note) <= _STL_HEADER
+        return note.ljust(_STL_HEADER) + data[_STL_HEADER:]
+    scene, rest = _split_glb(data)
+    scene.setdefault("asset", {}).setdefault("extras", {})[key] = text
+    said = json.dumps(scene, separators=(",", ":")).encode()
+    said += b" " * (-len(said) % 4)
+    whole = _GLB_HEADER.size + len(said) + len(rest)
+    return _GLB_HEADER.pack(b"glTF", 2, whole, len(said), _JSON) + said + rest
+
+
+def note_of(path: Path, key: str) -> str:
+    """Returns the text that a file has under a key; empty where it has none.
+
+    Raises:
+        ValueError: The file is damaged.
+        OSError: It cannot be read.
+    """
+    if path.suffix.lower() == ".glb":
+        found: Any = _split_glb(path.read_bytes())[0]
+        for name in ("asset", "extras", key):
+            found = found.get(name) if isinstance(found, dict) else None
+        return found if isinstance(found, str) else ""
+    with path.open("rb") as file:
+        header = file.read(_STL_HEADER if path.suffix.lower() == ".stl" else _MOST_HEADER)
+    header = header.partition(b"end_header")[0]
+    said = re.search(rb"\b%s=([0-9A-Za-z]+)" % re.escape(key.encode()), header)
+    return said[1].decode() if said else ""
+
+
+def _split_glb(data: bytes) -> tuple[dict[str, Any], bytes]:
+    """Returns the JSON of a GLB file, and what follows it.
+
+    Raises:
+        ValueError: The file is damaged.
+    """
+    try:
+        magic, version, _, size, kind = _GLB_HEADER.unpack_from(data)
+        end = _GLB_HEADER.size + size
+        scene = json.loads(data[_GLB_HEADER.size : end])
+    except (struct.error, ValueError) as error:
+        raise ValueError("damaged GLB file") from error
+    if (magic, version, kind) != (b"glTF", 2, _JSON) or not isinstance(scene, dict):
+        raise ValueError("damaged GLB file")
+    return scene, data[end:]
