@@ -24,6 +24,8 @@ namespace prefilter {
 namespace {
 
 constexpr int kMostDashes = 1000000;
+// Of the largest coordinate: points of curves are off by some 2^-51 of it.
+constexpr double kLeastTolerance = 0x1p-44;
 
 void check(const StrokeOptions& options) {
   const auto check_length = [](double value, const char* name) {
@@ -118,11 +120,20 @@ std::vector<StrokePath> dashes_of(StrokePath path, std::span<const double> patte
 
 namespace {
 
+// Far from the origin no piece of a curve comes nearer to it than coordinates are rounded.
+double reachable(double tolerance, const Outline& outline, const StrokeOptions& options) {
+  const Box2 box = control_box(outline);
+  const double farthest = std::max({std::fabs(box.low.x), std::fabs(box.low.y),
+                                    std::fabs(box.high.x), std::fabs(box.high.y), options.width});
+  return std::isfinite(farthest) ? std::max(tolerance, kLeastTolerance * farthest) : tolerance;
+}
+
 // Its parts, of which winding numbers are nowhere negative.
 Outline covered_by_parts(const Outline& outline, const StrokeOptions& options, double tolerance) {
   check(options);
   Outline covered;
   if (options.width == 0.0) return covered;
+  tolerance = reachable(tolerance, outline, options);
   std::vector<double> pattern = options.dashes;
   if (pattern.size() % 2 != 0) pattern.insert(pattern.end(), pattern.begin(), pattern.end());
   const double period = std::accumulate(pattern.begin(), pattern.end(), 0.0);

@@ -194,6 +194,16 @@ TEST(Stroke, DashesGoByLength) {
   EXPECT_EQ(stroke(line, options).contour_count(), 1u);
 }
 
+TEST(Stroke, FarCurvesAreCutIntoFewPieces) {
+  // Pieces as fine as the tolerance would be finer than coordinates are.
+  for (const double far : {1e13, 1e17, 1e31}) {
+    Outline outline;
+    outline.move_to({0.0, 0.0});
+    outline.curve_to({{{0.3 * far, 0.0}, {far, 0.2 * far}, {far, far}}});
+    EXPECT_LT(stroke(outline, {}).points().size(), 20000U) << far;
+  }
+}
+
 TEST(Stroke, BadOptionsAreTold) {
   const Outline line = curve({{0, 0}, {1000, 0}});
   const auto message = [&](const StrokeOptions& options) {
