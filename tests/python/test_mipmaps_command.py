@@ -119,6 +119,7 @@ def test_roughness_of_a_normal_map(quad, tmp_path):
 
 
 def test_chosen_objects(texture, tmp_path, capsys):
+    pytest.importorskip("trimesh", reason="scripts/decoders.txt is not installed")
     path = tmp_path / "two.obj"
     path.write_text(
         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\n"

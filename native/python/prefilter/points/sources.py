@@ -120,17 +120,26 @@ def joined_cloud(
     threads: int,
     choice: Choice | None = None,
     align: str | None = None,
+    *,
+    must_have_normals: bool = False,
 ) -> Cloud:
     """Several sources as one, with normals, of which only some points may be chosen.
 
     What has normals is read piece by piece, when the surface is made. All else is read into memory
     here: in a PLY file a scanner's grid or faces tell the normals, others are estimated, those seen
     from one place by themselves, and those seen from nobody knows where together.
+
+    Raises:
+        ValueError: A source has no normals, and must have them.
     """
     # Nothing is told of unpacking, which may be stopped.
     scans = [_opened(source, choice, progress_part(progress, 0.0, 0.0)) for source in sources]
     _place_scanners(scans, wanted.viewpoints)
     missing = [scan for scan in scans if not scan.has_normals]
+    if missing and must_have_normals:
+        raise ValueError(
+            f"'{missing[0].path}' has no normals that are known to point outward; steps need them"
+        )
     progress = progress_part(progress, 0.0, 0.5)
     for scan in scans:
         if scan.has_normals:

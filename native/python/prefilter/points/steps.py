@@ -16,7 +16,6 @@ from .._border.staging import as_target
 from .choice import as_choice
 from .directions import as_wanted
 from .reconstruction import CHECKS, ReconstructionReport, fill_in
-from .scan_files import is_undirected, open_points
 from .sources import Cloud, joined_cloud
 
 STEPS = ("measure", "count", "merge", "part", "join")
@@ -50,17 +49,11 @@ class Steps:
             settings: All options of `reconstruct_file`, by their names.
 
         Raises:
-            ValueError: A file has no normals, or files are to be aligned.
-            OSError: A file cannot be read, or the folder not be made.
+            ValueError: Files are to be aligned.
+            OSError: A file is not there, or the folder cannot be made.
         """
         if settings["align"] is not False:
             raise ValueError("align: not allowed in steps; align the files before")
-        for path in sources:
-            points = open_points(path)
-            if not points.has_normals or is_undirected(points):
-                raise ValueError(
-                    f"'{path}' has no normals that are known to point outward; steps need them"
-                )
         self.sources = sources
         self._settings = settings
         self._folder = folder
@@ -94,7 +87,7 @@ class Steps:
         """Does a run of a step but the last.
 
         Raises:
-            ValueError: As `reconstruct`, or for options that steps do not have.
+            ValueError: As `reconstruct`, or a file has no normals.
             OSError: A file of an earlier step is missing or damaged, or cannot be written.
             Cancelled: `progress` returned False.
         """
@@ -126,7 +119,12 @@ class Steps:
         wanted = as_wanted(self._settings["direction"], self._settings["viewpoint"])
         choice = as_choice(*(self._settings[name] for name in ("classes", "returns", "box")))
         cloud = joined_cloud(
-            list(self.sources), wanted, progress, self._settings["threads"], choice
+            list(self.sources),
+            wanted,
+            progress,
+            self._settings["threads"],
+            choice,
+            must_have_normals=True,
         )
         options.are_sides_known = cloud.are_sides_known
         return cloud, options
