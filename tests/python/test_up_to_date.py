@@ -11,6 +11,7 @@ from command_files import fails, noise, run, write_picture, write_quad
 from prefilter._work import mesh_files
 from prefilter._work.files import png
 from prefilter._work.up_to_date import KEY, fingerprint_of, is_up_to_date, kept, stands_alone
+from prefilter.shapes._svg.document import MOST_UNPACKED
 
 oiio = pytest.importorskip("OpenImageIO", reason="scripts/decoders.txt is not installed")
 
@@ -156,6 +157,14 @@ def test_drawings_of_one_file_stand_alone(tmp_path, inside):
     path.write_bytes(gzip.compress(path.read_bytes()))
     assert stands_alone(path)
     path.write_bytes(path.read_bytes()[:-9])
+    assert not stands_alone(path)
+
+
+def test_a_drawing_that_is_large_when_unpacked_is_not_looked_through(tmp_path):
+    path = tmp_path / "a.svg"
+    path.write_bytes(
+        gzip.compress(b"<svg>" + bytes(MOST_UNPACKED).replace(b"\0", b" ") + b"</svg>")
+    )
     assert not stands_alone(path)
 
 

@@ -7,7 +7,6 @@ import json
 import os
 import re
 import struct
-import zlib
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -81,9 +80,11 @@ def stands_alone(drawing: str | os.PathLike[str]) -> bool:
     """
     data = Path(drawing).read_bytes()
     if data[:2] == _GZIP:
+        from ..shapes._svg.document import unpacked
+
         try:
-            data = zlib.decompress(data, wbits=31)
-        except zlib.error:
+            data = b"".join(unpacked(data, str(drawing)))
+        except ValueError:
             return False
     return b"\0" not in data and _ELSEWHERE.search(data) is None
 

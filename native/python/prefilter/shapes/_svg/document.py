@@ -219,7 +219,7 @@ def read_document(
         raise ValueError(f"source: {source!r}; a path, markup, or bytes are needed")
 
     def parts() -> Iterator[bytes]:
-        return _unpacked(data, name) if data[:2] == b"\x1f\x8b" else iter((data,))
+        return unpacked(data, name) if data[:2] == b"\x1f\x8b" else iter((data,))
 
     if not any(part.strip() for part in parts()):
         raise ValueError(f"{name} is empty")
@@ -228,8 +228,12 @@ def read_document(
     return document
 
 
-def _unpacked(data: bytes, name: str) -> Iterator[bytes]:
-    """Yields the contents bit by bit: a small file may hold any number of bytes."""
+def unpacked(data: bytes, name: str) -> Iterator[bytes]:
+    """Yields the contents bit by bit: a small file may hold any number of bytes.
+
+    Raises:
+        ValueError: They are more than `MOST_UNPACKED`, or damaged.
+    """
     unpacker = zlib.decompressobj(wbits=31)
     count = 0
     while not unpacker.eof:
