@@ -24,8 +24,6 @@ namespace prefilter {
 namespace {
 
 constexpr int kMostDashes = 1000000;
-// Of the largest coordinate: points of curves are off by some 2^-51 of it.
-constexpr double kLeastTolerance = 0x1p-44;
 
 void check(const StrokeOptions& options) {
   const auto check_length = [](double value, const char* name) {
@@ -125,7 +123,7 @@ double reachable(double tolerance, const Outline& outline, const StrokeOptions& 
   const Box2 box = control_box(outline);
   const double farthest = std::max({std::fabs(box.low.x), std::fabs(box.low.y),
                                     std::fabs(box.high.x), std::fabs(box.high.y), options.width});
-  return std::isfinite(farthest) ? std::max(tolerance, kLeastTolerance * farthest) : tolerance;
+  return std::isfinite(farthest) ? std::max(tolerance, kLeastStrokeTolerance * farthest) : tolerance;
 }
 
 // Its parts, of which winding numbers are nowhere negative.

@@ -44,6 +44,18 @@ double turning(std::span<const Point2> controls) {
   return sum;
 }
 
+// Whether a curve is so small, as far from the origin as it is, that rounding gives its directions.
+bool has_no_shape(std::span<const Point2> controls) {
+  double farthest = 0.0;
+  double extent = 0.0;
+  for (const Point2& point : controls) {
+    const Point2 off = point - controls.front();
+    farthest = std::max({farthest, std::fabs(point.x), std::fabs(point.y)});
+    extent = std::max({extent, std::fabs(off.x), std::fabs(off.y)});
+  }
+  return extent > 0.0 && extent <= kLeastStrokeTolerance * farthest;
+}
+
 double distance_from_chord(std::span<const Point2> controls) {
   const Point2 chord = controls.back() - controls.front();
   const double size = length(chord);
@@ -99,6 +111,10 @@ class PieceMaker {
   }
 
   void append_curve_pieces(const Curve& curve, int depth) {
+    if (has_no_shape(curve.controls)) {
+      append_cusp(curve);
+      return;
+    }
     const double turn = turning(curve.controls);
     if (turn < 0.45 * std::numbers::pi && append_sides(curve)) return;
     const bool is_flat = distance_from_chord(curve.controls) <= tolerance_;
@@ -107,14 +123,18 @@ class PieceMaker {
       return;
     }
     if (depth == 0) {
-      const std::size_t count = pieces_.size();
-      append_line(curve.begin(), curve.end());
-      if (pieces_.size() > count) pieces_.back().is_cusp = true;
-      after_cusp_ = true;
+      append_cusp(curve);
       return;
     }
     append_curve_pieces(PartOfCurve(curve, 0.0, 0.5).curve(), depth - 1);
     append_curve_pieces(PartOfCurve(curve, 0.5, 1.0).curve(), depth - 1);
+  }
+
+  void append_cusp(const Curve& curve) {
+    const std::size_t count = pieces_.size();
+    append_line(curve.begin(), curve.end());
+    if (pieces_.size() > count) pieces_.back().is_cusp = true;
+    after_cusp_ = true;
   }
 
   StrokePiece with_normals(const Curve& curve, StrokePiece::Kind kind) {

@@ -12,6 +12,10 @@
 
 namespace prefilter {
 
+/// Of the largest coordinate, what no tolerance is below: points of curves are off by some 2^-51 of
+/// it.
+inline constexpr double kLeastStrokeTolerance = 0x1p-44;
+
 /// A piece of a pen's way with its normals, of length 1 and to the left, at both ends.
 struct StrokePiece {
   enum class Kind : std::uint8_t {

@@ -204,6 +204,18 @@ TEST(Stroke, FarCurvesAreCutIntoFewPieces) {
   }
 }
 
+TEST(Stroke, CurvesThatRoundingFoldsAreOnePiece) {
+  // As far away as it is, halves of an arc differ from each other by rounding alone.
+  constexpr double kFar = 9.1e21;
+  Outline outline;
+  outline.move_to({0.0, 0.0});
+  outline.line_to({30.0, kFar});
+  outline.conic_to({140.0, kFar}, std::sqrt(0.5), {140.0, kFar + 0x1p20});
+  outline.conic_to({-57870.0, kFar + 0x1p20}, std::sqrt(0.5), {-57860.0, kFar});
+  bool winds_once = false;
+  EXPECT_LT(stroke_soon(outline, {}, 1e-3, &winds_once).points().size(), 100U);
+}
+
 TEST(Stroke, BadOptionsAreTold) {
   const Outline line = curve({{0, 0}, {1000, 0}});
   const auto message = [&](const StrokeOptions& options) {
