@@ -16,6 +16,7 @@ usage: kills.py calls|random [PATTERN] [--count N] [--json FILE]
 
 import argparse
 import contextlib
+import functools
 import io
 import itertools
 import os
@@ -39,9 +40,8 @@ from bench.reliability import writers  # noqa: E402
 from bench.reliability.disk_full import Trial, contents  # noqa: E402
 from bench.reliability.writers import Writer  # noqa: E402
 
+_PROGRAM = str(Path(__file__).with_name("writers.py"))
 LIBRARY = ROOT / "build" / "bench" / "libprefilter_kill_at_call.so"
-_MANY = "1000000"
-
 
 Begin = Callable[[Trial, Path], "Running"]
 
@@ -84,12 +84,19 @@ class Found:
 
 def command(writer: Writer, *arguments: object) -> list[str]:
     """Returns what runs a writer in a process of its own."""
-    program = str(Path(__file__).with_name("writers.py"))
-    words = [f"{writer.kind}:{writer.name}", *map(str, arguments)]
-    if writer.is_blenders:
-        blender = ["blender", "--background", "--python-exit-code", "1", "--python"]
-        return [*blender, program, "--", *words]
-    return [sys.executable, program, *words]
+    words = [name_of(writer), *map(str, arguments)]
+    return [*blender(), *words] if writer.is_blenders else [sys.executable, _PROGRAM, *words]
+
+
+def blender(*options: str) -> list[str]:
+    """Returns what runs writers.py in a Blender."""
+    script = ["--python-exit-code", "1", "--python", _PROGRAM, "--"]
+    return ["blender", "--background", *options, *script]
+
+
+def name_of(writer: Writer) -> str:
+    """Returns what writers.py calls a writer."""
+    return f"{writer.kind}:{writer.name}"
 
 
 def run(words: list[str], **variables: str) -> subprocess.CompletedProcess[str]:
@@ -161,9 +168,9 @@ def _seconds(trial: Trial, place: Path, begin: Begin) -> float:
 class Running:
     """A writer that runs again and again, and says each time that it begins."""
 
-    def __init__(self, number: int, said: IO[str], program: subprocess.Popen[str] | None) -> None:
-        """Takes the number of the process, and what it prints."""
-        self._number, self._said, self._program = number, said, program
+    def __init__(self, number: int, said: IO[str], wait: Callable[[], object]) -> None:
+        """Takes the number of the process, what it prints, and what waits for its end."""
+        self._number, self._said, self._wait = number, said, wait
 
     def wait_for_begin(self) -> None:
         """Waits until it begins; raises OSError where it has ended."""
@@ -175,23 +182,25 @@ class Running:
     def kill(self) -> None:
         """Kills it."""
         os.kill(self._number, signal.SIGKILL)
-        if self._program is None:
-            os.waitpid(self._number, 0)
-        else:
-            self._program.wait()
-        self._said.close()
+        self._wait()
 
 
 def begin_program(trial: Trial, out: Path) -> Running:
     """Starts a writer in a program of its own."""
     process = subprocess.Popen(
-        command(trial.writer, trial.sources, out, _MANY),
+        command(trial.writer, trial.sources, out, writers.MANY),
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
         text=True,
     )
     assert process.stdout is not None
-    return Running(process.pid, process.stdout, process)
+    said = process.stdout
+
+    def wait() -> None:
+        process.wait()
+        said.close()
+
+    return Running(process.pid, said, wait)
 
 
 def begin_copy(trial: Trial, out: Path) -> Running:
@@ -209,13 +218,49 @@ def begin_copy(trial: Trial, out: Path) -> Running:
         finally:
             os._exit(1)
     os.close(writes)
-    return Running(child, os.fdopen(reads), None)
+    said = os.fdopen(reads)
+
+    def wait() -> None:
+        os.waitpid(child, 0)
+        said.close()
+
+    return Running(child, said, wait)
+
+
+class Copies:
+    """A Blender that has one thread, and runs writers in copies of itself."""
+
+    def __init__(self) -> None:
+        """Starts it."""
+        self._program = subprocess.Popen(
+            [*blender("--threads", "1"), "copies"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
+        )
+
+    def begin(self, trial: Trial, out: Path) -> Running:
+        """Starts a writer."""
+        asks, says = self._program.stdin, self._program.stdout
+        assert asks is not None
+        assert says is not None
+        asks.write("\t".join([name_of(trial.writer), str(trial.sources), str(out)]) + "\n")
+        asks.flush()
+        number = next(line for line in says if line.startswith("number ")).split()[1]
+        return Running(int(number), says, lambda: next(x for x in says if x == "ended\n"))
+
+
+@functools.cache
+def the_blender() -> Copies:
+    """Starts it once."""
+    return Copies()
 
 
 def begin_quickly(writer: Writer) -> Begin:
     """Returns what starts a writer; what it imports is imported once."""
     if writer.is_blenders:
-        return begin_program
+        return the_blender().begin
     import prefilter
     from prefilter._command import program
 
@@ -279,9 +324,7 @@ def main() -> None:
 
 def scene(sources: Path) -> list[str]:
     """Returns what makes the scene."""
-    program = str(Path(__file__).with_name("writers.py"))
-    blender = ["blender", "--background", "--python-exit-code", "1", "--python", program]
-    return [*blender, "--", "scene", str(sources)]
+    return [*blender(), "scene", str(sources)]
 
 
 if __name__ == "__main__":

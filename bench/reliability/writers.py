@@ -3,11 +3,18 @@
 """All that writes files: writers of the package, the command, and the commands of Blender.
 
 usage: writers.py NAME SOURCES OUT [COUNT]     (Blender's in a Blender, behind --)
+       writers.py copies
 
 Runs one, COUNT times in turn, into a folder: `SOURCES` holds what `make_sources` has made. It
-prints a line before each, and exits with the status of the last one.
+prints a line before each, and exits with the status of the last one. With "copies" it reads lines
+of NAME, SOURCES and OUT with tabs between, and runs each again and again in a copy of this process,
+which must not have used threads, until that is killed. It prints the copy's number before, and
+"ended" after that.
 """
 
+import contextlib
+import functools
+import os
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator
@@ -22,6 +29,8 @@ if TYPE_CHECKING:
     from bench.report import Report
 
 SIDE = 64
+# More runs in turn than end.
+MANY = 1000000
 
 
 @dataclass(frozen=True)
@@ -313,16 +322,46 @@ def make_scene(folder: Path) -> None:
     bpy.ops.wm.save_as_mainfile(filepath=str(folder / "scene.blend"), relative_remap=False)
 
 
+@functools.cache
+def _output() -> int:
+    # Commands of Blender keep what they say apart: after one, prints go to standard error.
+    return os.dup(1)
+
+
+def say(line: str) -> None:
+    """Prints a line by itself, whatever Blender prints."""
+    os.write(_output(), f"\n{line}\n".encode())
+
+
+def run_copies() -> None:
+    """Runs writers in copies of this process, as the module says."""
+    for line in sys.stdin:
+        child = os.fork()
+        if not child:
+            nowhere = os.open(os.devnull, os.O_RDWR)
+            os.dup2(nowhere, 0)
+            os.dup2(nowhere, 2)
+            with contextlib.suppress(BaseException):
+                main([*line.rstrip("\n").split("\t"), str(MANY)])
+            os._exit(1)
+        say(f"number {child}")
+        os.waitpid(child, 0)
+        say("ended")
+
+
 def main(arguments: list[str]) -> int:
     """Runs a writer, as the module says."""
     if arguments[0] == "scene":
         make_scene(Path(arguments[1]))
         return 0
+    if arguments[0] == "copies":
+        run_copies()
+        return 0
     kind, name = arguments[0].split(":")
     sources, out = Path(arguments[1]), Path(arguments[2])
     writer, status = named(kind, name), 1
     for _ in range(int(arguments[3]) if len(arguments) > 3 else 1):
-        print("\nbegins", flush=True)
+        say("begins")
         status = writer.run(sources, out)
     return status
 
