@@ -225,6 +225,8 @@ class CacheBake:
                 made[index] = tx.make(self._worn[index].source)
             except OSError as error:
                 made[index] = error
+            else:
+                tx.check(self._worn[index].source, made[index])
             go_on(advance, 1.0)
 
         # Blender's maker is not said to bear several calls at once.

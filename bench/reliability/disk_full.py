@@ -52,6 +52,8 @@ class Trial:
             self.new = contents(out)
         if status or any(self.new.get(name) in (None, EARLIER) for name in writer.targets):
             raise ValueError(f"{writer.kind} {writer.name}: {status}, {sorted(self.new)}")
+        if self.new == self.earlier():
+            raise ValueError(f"{writer.kind} {writer.name}: has written nothing")
 
     def first_status(self, out: Path) -> int:
         """Runs it once."""
@@ -65,14 +67,20 @@ class Trial:
         """Puts earlier files into a folder."""
         for name in self.writer.targets:
             (out / name).write_bytes(EARLIER)
-        if self.writer.in_place:
-            shutil.copy(self.sources / self.writer.in_place, out)
+        source = self.sources / self.writer.in_place
+        if self.writer.in_place and source.is_dir():
+            shutil.copytree(source, out, dirs_exist_ok=True)
+        elif self.writer.in_place:
+            shutil.copy(source, out)
 
     def earlier(self) -> dict[str, bytes]:
         """Returns what `prepare` puts there."""
         found = dict.fromkeys(self.writer.targets, EARLIER)
-        if self.writer.in_place:
-            found[self.writer.in_place] = (self.sources / self.writer.in_place).read_bytes()
+        source = self.sources / self.writer.in_place
+        if self.writer.in_place and source.is_dir():
+            found |= contents(source)
+        elif self.writer.in_place:
+            found[self.writer.in_place] = source.read_bytes()
         return found
 
     def state(self, found: dict[str, bytes]) -> str:
@@ -90,17 +98,17 @@ def is_whole(name: str, data: bytes) -> bool:
     """Tells whether a file that is never the same, as it says when it was written, is whole."""
     if data == EARLIER:
         return False
-    if name.endswith((".exr", ".tif")):
+    if name.endswith((".exr", ".tif", ".tx")):
         from prefilter._work import openimageio
 
         with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / name
+            path = Path(folder) / Path(name).name
             path.write_bytes(data)
             try:
                 openimageio.check_whole(path)
             except OSError:
                 return False
-        return True
+        return not name.endswith(".tx") or b"oiio:SHA-1" not in data  # Which Blender's have.
     if name.endswith(".fbx"):
         return data.startswith(b"Kaydara FBX Binary") and data.endswith(_END_OF_FBX)
     if name.endswith((".blend", ".blend1")):
@@ -111,8 +119,16 @@ def is_whole(name: str, data: bytes) -> bool:
 
 
 def contents(folder: Path) -> dict[str, bytes]:
-    """Returns what is in a folder."""
-    return {path.name: path.read_bytes() if path.is_file() else b"" for path in folder.iterdir()}
+    """Returns what is in a folder and those within."""
+    return {
+        str(path.relative_to(folder)): path.read_bytes() if path.is_file() else b""
+        for path in folder.rglob("*")
+    }
+
+
+def is_left(name: str) -> bool:
+    """Tells whether a name is one of ours for files that are not finished."""
+    return any(part.startswith(".prefilter-") for part in Path(name).parts)
 
 
 def quietly(writer: Writer, sources: Path, out: Path) -> int:
@@ -203,9 +219,12 @@ def read_only(trial: Trial, place: Path) -> str:
     with tempfile.TemporaryDirectory(dir=place) as name:
         out = Path(name)
         trial.prepare(out)
-        out.chmod(0o555)
+        folders = [out, *(path for path in out.iterdir() if path.is_dir())]
+        for folder in folders:
+            folder.chmod(0o555)
         status = quietly(trial.writer, trial.sources, out)
-        out.chmod(0o755)
+        for folder in folders:
+            folder.chmod(0o755)
         return outcome(trial.state(contents(out)), status)
 
 
@@ -228,7 +247,7 @@ def vanishing(trial: Trial, place: Path) -> str:
         if not elsewhere.exists():
             return outcome(trial.state(contents(out)), status)
         left = trial.state(
-            {k: v for k, v in contents(elsewhere).items() if k[:11] != ".prefilter-"}
+            {name: data for name, data in contents(elsewhere).items() if not is_left(name)}
         )
         if out.exists() and contents(out):
             return f"neither: {sorted(contents(out))}, status {status}"
@@ -264,7 +283,7 @@ def main() -> None:
         writers.make_sources(sources)
         if in_blender:
             writers.make_scene(sources)
-        for writer in writers.chosen(options.pattern, kinds, told):
+        for writer in writers.chosen(options.pattern, kinds, sources, told):
             trial = Trial(writer, sources, place)
             full, are_disks = on_full_disks(trial, place, options.sizes)
             others = [read_only(trial, place), vanishing(trial, place)]

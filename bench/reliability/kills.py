@@ -37,7 +37,7 @@ sys.path.insert(0, str(ROOT))
 
 from bench import report  # noqa: E402
 from bench.reliability import writers  # noqa: E402
-from bench.reliability.disk_full import Trial, contents  # noqa: E402
+from bench.reliability.disk_full import Trial, contents, is_left  # noqa: E402
 from bench.reliability.writers import Writer  # noqa: E402
 
 _PROGRAM = str(Path(__file__).with_name("writers.py"))
@@ -71,8 +71,9 @@ class Found:
         """Looks at a folder, as it is after the next run."""
         from prefilter._border import replacing
 
-        self.left += any(name.startswith(".prefilter-") for name in contents(out))
-        replacing.recover(out)
+        self.left += any(is_left(name) for name in contents(out))
+        for folder in [out, *(path for path in out.iterdir() if path.is_dir())]:
+            replacing.recover(folder)
         state = trial.state({k: v for k, v in contents(out).items() if not k.endswith(".blend@")})
         if state == "old":
             self.old += 1
@@ -304,7 +305,7 @@ def main() -> None:
         writers.make_sources(sources)
         has_blender = shutil.which("blender") is not None and not run(scene(sources)).returncode
         kinds = ("package", "command", *(("blender",) if has_blender else ()))
-        for writer in writers.chosen(options.pattern, kinds, told):
+        for writer in writers.chosen(options.pattern, kinds, sources, told):
             trial = Apart(writer, sources, place)
             if options.way == "calls":
                 found = at_calls(trial, place, LIBRARY)

@@ -16,6 +16,7 @@ import contextlib
 import functools
 import os
 import re
+import shutil
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
 SIDE = 64
 # More runs in turn than end.
 MANY = 1000000
+# A scene with its images, and Blender's texture cache of them.
+CACHED = "cached"
 
 
 @dataclass(frozen=True)
@@ -43,7 +46,8 @@ class Writer:
         targets: The names of what it writes.
         call: Of the package: what writes, into a folder.
         is_blenders: Whether it is a command of Blender.
-        in_place: The name of a source that it writes to, in the folder of what it writes.
+        in_place: The name of a source that it writes to: a file, copied to the folder of what it
+            writes, or a folder of files.
     """
 
     name: str
@@ -60,8 +64,10 @@ class Writer:
             return "package"
         return "blender" if self.is_blenders else "command"
 
-    def missing(self) -> str:
-        """Returns the module that it needs and this Python lacks; empty for none."""
+    def missing(self, sources: Path) -> str:
+        """Returns what it needs and is not here: a module, or a source; empty for none."""
+        if self.in_place and not (sources / self.in_place).exists():
+            return self.in_place
         needed = ("OpenImageIO", "trimesh") if self.kind == "command" else ()
         return next((name for name in needed if find_spec(name) is None), "")
 
@@ -230,6 +236,7 @@ WRITERS = [
         "scene.blend",
         in_place="scene.blend",
     ),
+    _blenders("bake-cache", "bake-cache out/scene.blend", in_place=CACHED),
     _blenders(
         "plot",
         "plot in/scene.blend --image paint.png --output out/out.png --table out/out.csv",
@@ -247,12 +254,12 @@ def of_kind(*kinds: str) -> list[Writer]:
     return [writer for writer in WRITERS if writer.kind in kinds]
 
 
-def chosen(pattern: str, kinds: Iterable[str], told: "Report") -> Iterator[Writer]:
+def chosen(pattern: str, kinds: Iterable[str], sources: Path, told: "Report") -> Iterator[Writer]:
     """Yields the writers that a pattern names and that can run here; says which cannot."""
     for writer in of_kind(*kinds):
         if not re.search(pattern, f"{writer.kind} {writer.name}"):
             continue
-        if missing := writer.missing():
+        if missing := writer.missing(sources):
             told.note(f"{writer.kind} {writer.name} left out: there is no {missing}")
             continue
         yield writer
@@ -304,7 +311,10 @@ def _write_ply(path: Path, names: str, rows: np.ndarray[Any, Any], faces: Any) -
 
 
 def make_scene(folder: Path) -> None:
-    """Makes a .blend file whose cube has two textures, in a Blender."""
+    """Makes a .blend file whose cube has two textures, in a Blender.
+
+    And a folder of it and a texture cache, where this Blender has one.
+    """
     import bpy
 
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
@@ -320,6 +330,18 @@ def make_scene(folder: Path) -> None:
         tree.links.new(node.outputs["Color"], principled.inputs[socket])
     bpy.context.object.data.materials.append(material)
     bpy.ops.wm.save_as_mainfile(filepath=str(folder / "scene.blend"), relative_remap=False)
+    import _cycles
+
+    if not hasattr(_cycles, "maketx"):
+        return
+    (folder / CACHED).mkdir(exist_ok=True)
+    bpy.context.scene.render.engine = "CYCLES"
+    for image in [image for image in bpy.data.images if image.filepath]:
+        copied = shutil.copy2(image.filepath, folder / CACHED)
+        _cycles.maketx(copied, colorspace="sRGB", alpha_type="straight", cache_dir="")
+        image.filepath = f"//{Path(copied).name}"
+    path = str(folder / CACHED / "scene.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path, relative_remap=False)
 
 
 @functools.cache

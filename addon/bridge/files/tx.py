@@ -39,6 +39,7 @@ _DEFAULT_FOLDER = "blender_tx"
 _ENCODED_SPACE = "scene_linear_srgb"
 _SOURCE_SPACE = re.compile(r"\(colorspace: ([^,]*), ")
 _START_OF_FILE = 1 << 14  # Bytes; the description of level 0 is in them.
+_MAKER = b"Blender maketx"
 _LARGEST_HALF = 65504.0
 # What OpenImageIO reads from the description of a TIFF, and does not write back.
 _DESCRIBED = ("oiio:ConstantColor", "oiio:AverageColor")
@@ -149,7 +150,7 @@ def _has_other_levels(path: Path) -> bool:
     """Tells whether a file is of Blender's texture cache, but its levels are not Blender's."""
     start = _start_of(path)
     described = (b"oiio:SHA-1", b"oiio:ConstantColor")
-    return b"Blender maketx" in start and not any(words in start for words in described)
+    return _MAKER in start and not any(words in start for words in described)
 
 
 def _start_of(path: Path) -> bytes:
@@ -167,7 +168,8 @@ def _is_baked(path: Path) -> bool:
 def _reads_as_baked(path: Path, *_: int) -> bool:
     start = _start_of(path)
     # See `_first_spec`: Blender's files have a hash of the image, and those written here have not.
-    return b"oiio:SHA-1" not in start or b"oiio:ConstantColor" in start
+    has_levels = b"oiio:SHA-1" not in start or b"oiio:ConstantColor" in start
+    return has_levels and _MAKER in start
 
 
 def make(source: Source) -> Path:
@@ -196,6 +198,36 @@ def make(source: Source) -> Path:
         ) from error
     staging.check_writable(Path(made))
     return Path(made)
+
+
+def check(source: Source, path: Path) -> None:
+    """Checks that Blender has written a cache file as a whole, which it does not tell.
+
+    A broken file is made again, as Blender would not. One that stays broken is removed: Cycles
+    would show it.
+
+    Raises:
+        OSError: The file is broken, or cannot be made again.
+    """
+    if _has_other_levels(path):
+        return  # Read when it was written.
+    try:
+        _check_whole(path)
+    except OSError:
+        path.unlink()
+        again = make(source)
+        try:
+            _check_whole(again)
+        except OSError:
+            again.unlink()
+            raise
+
+
+def _check_whole(path: Path) -> None:
+    reader, spec = _open(path)
+    reader.close()
+    is_constant = spec.getattribute("oiio:ConstantColor") is not None
+    openimageio.check_whole(path, 1 if is_constant else max(spec.width, spec.height).bit_length())
 
 
 def texel_count(path: Path) -> int:
@@ -295,7 +327,7 @@ def _open(path: Path) -> tuple[Any, Any]:
         raise OSError(f"cannot read '{path}': {oiio.geterror()}")
     spec = reader.spec()
     software = spec.getattribute("Software") or ""
-    if not software.startswith("Blender maketx"):
+    if not software.startswith(_MAKER.decode()):
         reader.close()
         raise OSError(
             f"'{path}' was not made by Blender's texture cache: its Software is '{software}'"

@@ -2,6 +2,11 @@
 
 """Baking the texture cache: what stays as it is, and what a user is told of it."""
 
+import os
+import shutil
+import sys
+from pathlib import Path
+
 import bpy
 import cycles_scenes as cycles
 import numpy as np
@@ -16,6 +21,10 @@ from cycles_scenes import (
     smooth,
     udim,
 )
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[3]))
+
+from bench.reliability import disk_full
 
 
 def test_an_image_of_one_color_stays(scene, tmp_path, capfd):
@@ -61,6 +70,43 @@ def test_no_space_leaves_the_cache(scene, tmp_path, addon, monkeypatch):
     with pytest.raises(RuntimeError, match="no space left"):
         bake()
     assert contents(tmp_path) == before
+
+
+@pytest.mark.parametrize(("name", "kind"), [("paint.png", "uint8"), ("paint.exr", "float")])
+@pytest.mark.parametrize("share", [0.0, 0.4, 0.9])
+def test_what_blender_has_not_written_as_a_whole_is_made_again(scene, tmp_path, name, kind, share):
+    cycles.shown_on(cycles.write_picture(tmp_path / name, smooth(256, 256, 3), kind))
+    generate()
+    assert bake() == {"FINISHED"}
+    (made,) = tmp_path.glob("blender_tx/*.tx")
+    expected = [cycles.level(made, number) for number in range(9)]
+    made.unlink()
+    generate()
+    status = made.stat()
+    os.truncate(made, int(share * status.st_size))
+    os.utime(made, ns=(status.st_mtime_ns, status.st_mtime_ns))
+    assert bake() == {"FINISHED"}
+    for number, level in enumerate(expected):
+        np.testing.assert_array_equal(level, cycles.level(made, number))
+
+
+@pytest.mark.parametrize("pages", [0, 1, 2, 4, 6, 9, 12])
+def test_a_full_disk_leaves_no_broken_cache(scene, tmp_path, addon, pages):
+    pixels = np.random.default_rng(1).random((64, 64, 3)).astype(np.float32)
+    pictures = [tmp_path / f"{i}.png" for i in range(2)]
+    for picture in pictures:
+        cycles.write_picture(picture, pixels, "uint8")
+    used = sum(-(-picture.stat().st_size // 4096) for picture in pictures)
+    with disk_full.disk(tmp_path, (used + 1 + pages) * 4096) as disk:
+        if disk is None:
+            pytest.skip("no disk can be mounted")
+        for picture in pictures:
+            copied = bpy.data.images.load(shutil.copy(picture, disk))
+            cycles.shown_on(copied, name=picture.name)
+        with pytest.raises(RuntimeError, match=r"cannot|full"):
+            bake()
+        for made in disk.glob("blender_tx/*"):
+            addon("bridge.openimageio").check_whole(made, 7)
 
 
 @pytest.mark.parametrize("has_cache", [False, True])
