@@ -222,11 +222,11 @@ class CacheBake:
         def make(index: int, advance: Progress) -> None:
             go_on(advance, 0.0)
             try:
-                made[index] = tx.make(self._worn[index].source)
+                made[index] = path = tx.make(self._worn[index].source)
             except OSError as error:
                 made[index] = error
             else:
-                tx.check(self._worn[index].source, made[index])
+                tx.check(self._worn[index].source, path)
             go_on(advance, 1.0)
 
         # Blender's maker is not said to bear several calls at once.

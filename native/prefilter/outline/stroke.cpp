@@ -123,7 +123,8 @@ double reachable(double tolerance, const Outline& outline, const StrokeOptions& 
   const Box2 box = control_box(outline);
   const double farthest = std::max({std::fabs(box.low.x), std::fabs(box.low.y),
                                     std::fabs(box.high.x), std::fabs(box.high.y), options.width});
-  return std::isfinite(farthest) ? std::max(tolerance, kLeastStrokeTolerance * farthest) : tolerance;
+  return std::isfinite(farthest) ? std::max(tolerance, kLeastStrokeTolerance * farthest)
+                                 : tolerance;
 }
 
 // Its parts, of which winding numbers are nowhere negative.
