@@ -7,7 +7,10 @@ Disks are file systems in memory, which root can mount; else no file may grow be
 each run there must be the earlier files, and an exit status that is not 0; or the new files as
 they are elsewhere, and 0. Nothing else may be left.
 
-usage: disk_full.py [PATTERN] [--sizes N] [--json FILE]
+With --quota they are folders of a large disk with a limit each, on a file system (Btrfs) that says
+so as late as it can. That needs root, and Btrfs's programs.
+
+usage: disk_full.py [PATTERN] [--sizes N] [--quota] [--json FILE]
   scripts/run python3 bench/reliability/disk_full.py            writers of the package, the command
   scripts/run blender --background --python-exit-code 1 --python bench/reliability/disk_full.py
 """
@@ -22,7 +25,9 @@ import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager
+from functools import partial
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -33,7 +38,11 @@ from bench.reliability import writers  # noqa: E402
 from bench.reliability.writers import Writer  # noqa: E402
 
 EARLIER = b"earlier"
+# What has room for so many bytes, if it can be had.
+Disk = Callable[[int], AbstractContextManager[Path | None]]
 _PAGE = 4096
+# Of a disk with quotas, and of what it keeps its lists in.
+_LARGE, _NODE = 1 << 27, 1 << 12
 # How Zstandard begins, and the table that its seekable format ends with.
 _ZSTANDARD, _SEEK_TABLE = b"\x28\xb5\x2f\xfd", b"\xb1\xea\x92\x8f"
 _END_OF_FBX = bytes.fromhex("f85a8c6adef5d97eece90ce3758f290b")
@@ -165,6 +174,49 @@ def disk(place: Path, size: int) -> Iterator[Path | None]:
 
 
 @contextlib.contextmanager
+def large_disk(place: Path) -> Iterator[Path]:
+    """Mounts a file system whose folders may have limits.
+
+    Raises:
+        OSError: It cannot be had here.
+    """
+    image, folder = place / "disk.btrfs", place / "disk"
+    folder.mkdir(exist_ok=True)
+    with image.open("wb") as file:
+        file.truncate(_LARGE)
+    try:
+        for words in (
+            ["mkfs.btrfs", "--quiet", "--nodesize", str(_NODE), str(image)],
+            ["mount", "-o", "loop", str(image), str(folder)],
+        ):
+            subprocess.run(words, capture_output=True, check=True)
+    except subprocess.CalledProcessError as error:
+        raise OSError(f"cannot make a disk with quotas: {error.stderr.decode()}") from error
+    try:
+        _btrfs("quota", "enable", folder)
+        yield folder
+    finally:
+        subprocess.run(["umount", "--lazy", str(folder)], check=True)
+
+
+@contextlib.contextmanager
+def limited(disk: Path, size: int) -> Iterator[Path]:
+    """Makes a folder of a large disk that may have a size."""
+    folder = disk / "limited"
+    _btrfs("subvolume", "create", folder)
+    try:
+        # An empty one takes some, and Btrfs sets some aside while it makes a file.
+        _btrfs("qgroup", "limit", size + 10 * _NODE, folder)
+        yield folder
+    finally:
+        _btrfs("subvolume", "delete", "--commit-after", folder)
+
+
+def _btrfs(*words: object) -> None:
+    subprocess.run(["btrfs", *map(str, words)], stdout=subprocess.DEVNULL, check=True)
+
+
+@contextlib.contextmanager
 def small_files(place: Path, size: int) -> Iterator[Path]:
     """Lets no file grow beyond a size."""
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
@@ -180,8 +232,16 @@ def small_files(place: Path, size: int) -> Iterator[Path]:
         signal.signal(signal.SIGXFSZ, handler)
 
 
-def on_full_disks(trial: Trial, place: Path, count: int) -> tuple[list[str], bool]:
+def on_full_disks(
+    trial: Trial, place: Path, count: int, disk_of: Disk | None = None
+) -> tuple[list[str], bool]:
     """Tries disks from one that has room for what is there to one that has room for all.
+
+    Args:
+        trial: The writer.
+        place: Where folders are made.
+        count: How many disks.
+        disk_of: What makes them; None for file systems in memory.
 
     Returns:
         What was found in each, and whether they were disks, and not limits of files.
@@ -189,9 +249,10 @@ def on_full_disks(trial: Trial, place: Path, count: int) -> tuple[list[str], boo
     old = sum(-(-len(data) // _PAGE) for data in trial.earlier().values())
     most = old + 3 * sum(-(-len(data) // _PAGE) for data in trial.new.values()) + 4
     found, are_disks = [], True
+    disk_of = disk_of or partial(disk, place)
     for i in range(count):
         pages = old + (most - old) * i // max(1, count - 1)
-        with disk(place, pages * _PAGE) as mounted:
+        with disk_of(pages * _PAGE) as mounted:
             if mounted is not None:
                 found.append(_tried(trial, mounted))
                 continue
@@ -270,6 +331,7 @@ def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("pattern", nargs="?", default="")
     parser.add_argument("--sizes", type=int, default=30)
+    parser.add_argument("--quota", action="store_true")
     report.add_json_option(parser)
     arguments = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else []
     in_blender = "bpy" in sys.modules
@@ -277,27 +339,31 @@ def main() -> None:
     kinds = ("blender",) if in_blender else ("package", "command")
     told = report.Report()
     rows, bad, tried = [], 0, 0
-    with tempfile.TemporaryDirectory() as name:
+    with tempfile.TemporaryDirectory() as name, contextlib.ExitStack() as held:
         sources, place = Path(name) / "sources", Path(name)
         sources.mkdir()
         writers.make_sources(sources)
         if in_blender:
             writers.make_scene(sources)
+        disk_of = None
+        if options.quota:
+            disk_of = partial(limited, held.enter_context(large_disk(place)))
         for writer in writers.chosen(options.pattern, kinds, sources, told):
             trial = Trial(writer, sources, place)
-            full, are_disks = on_full_disks(trial, place, options.sizes)
-            others = [read_only(trial, place), vanishing(trial, place)]
+            full, are_disks = on_full_disks(trial, place, options.sizes, disk_of)
+            others = [] if options.quota else [read_only(trial, place), vanishing(trial, place)]
             rows.append([f"{writer.kind}: {writer.name}", summary(full), *others])
             print("  ".join(rows[-1]), flush=True)
             tried += len(full) + len(others)
             bad += sum(one not in ("old", "new") for one in (*full, *others))
     told.table(
         "Files that cannot be written",
-        ["Writer", "Full disk", "Read-only", "Gone"],
+        ["Writer", "Over quota"] if options.quota else ["Writer", "Full disk", "Read-only", "Gone"],
         rows,
         "writers",
     )
     kind = "disks" if are_disks else "limits of the size of files"
+    kind = "quotas" if options.quota else kind
     told.verdict(not bad, f"{tried} runs, on {kind}: old files and a failure, or new ones and none")
     told.finish(options.json)
 
