@@ -66,11 +66,18 @@ class Trial:
 
     def first_status(self, out: Path) -> int:
         """Runs it once."""
-        return quietly(self.writer, self.sources, out)
+        return quietly(self.writer, self.sources, out)[0]
 
     def is_whole(self, name: str, data: bytes) -> bool:
         """Tells whether a file that is never the same is whole."""
         return is_whole(name, data)
+
+    def is_named(self, text: str) -> bool:
+        """Tells whether an error's message names a file that was to be written."""
+        _, _, message = text.rpartition("error: ")
+        earlier = self.earlier()
+        names = {Path(name).name for name, data in self.new.items() if data != earlier.get(name)}
+        return any(name in message for name in names) and ".prefilter-" not in message
 
     def prepare(self, out: Path) -> None:
         """Puts earlier files into a folder."""
@@ -140,8 +147,12 @@ def is_left(name: str) -> bool:
     return any(part.startswith(".prefilter-") for part in Path(name).parts)
 
 
-def quietly(writer: Writer, sources: Path, out: Path) -> int:
-    """Runs a writer; what it prints is not shown."""
+def quietly(writer: Writer, sources: Path, out: Path) -> tuple[int, str]:
+    """Runs a writer; what it prints is not shown.
+
+    Returns:
+        The exit status, and what Python printed.
+    """
     with open(os.devnull, "w") as nowhere:
         kept = [os.dup(stream) for stream in (1, 2)]
         sys.stdout.flush()
@@ -150,7 +161,8 @@ def quietly(writer: Writer, sources: Path, out: Path) -> int:
         try:
             text = io.StringIO()
             with contextlib.redirect_stdout(text), contextlib.redirect_stderr(text):
-                return writer.run(sources, out)
+                status = writer.run(sources, out)
+            return status, text.getvalue()
         finally:
             for stream, old in enumerate(kept, start=1):
                 os.dup2(old, stream)
@@ -265,7 +277,9 @@ def on_full_disks(
 
 def _tried(trial: Trial, out: Path) -> str:
     trial.prepare(out)
-    status = quietly(trial.writer, trial.sources, out)
+    status, text = quietly(trial.writer, trial.sources, out)
+    if status and not trial.is_named(text):
+        return f"a message that names no file: {text}"
     return outcome(trial.state(contents(out)), status)
 
 
@@ -283,7 +297,7 @@ def read_only(trial: Trial, place: Path) -> str:
         folders = [out, *(path for path in out.iterdir() if path.is_dir())]
         for folder in folders:
             folder.chmod(0o555)
-        status = quietly(trial.writer, trial.sources, out)
+        status, _ = quietly(trial.writer, trial.sources, out)
         for folder in folders:
             folder.chmod(0o755)
         return outcome(trial.state(contents(out)), status)
@@ -303,7 +317,7 @@ def vanishing(trial: Trial, place: Path) -> str:
                 out.rename(elsewhere)
 
         sys.addaudithook(watch)
-        status = quietly(trial.writer, trial.sources, out)
+        status, _ = quietly(trial.writer, trial.sources, out)
         moved.append(True)
         if not elsewhere.exists():
             return outcome(trial.state(contents(out)), status)

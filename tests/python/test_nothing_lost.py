@@ -5,12 +5,15 @@
 The programs there try 30 sizes of disks, and 200 kills.
 """
 
+import errno
+import os
 import random
 import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+from prefilter._border import staging
 from prefilter._work import openimageio
 
 pytest.importorskip("resource", reason="Windows has no such limits")
@@ -107,3 +110,35 @@ def test_what_is_neither_old_nor_new_is_told(sources, quick_path):
     assert disk_full.outcome("new", 0) == "new"
     assert disk_full.outcome("old", 0) == "old, status 0"
     assert disk_full.outcome("new", 1) == "new, status 1"
+
+
+def test_a_full_disk_is_told_by_the_name_that_was_given(quick_path, monkeypatch):
+    target = quick_path / "out.bin"
+
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    def text_of(path):
+        raise OSError(f"cannot write '{path}': {path.name} is broken")
+
+    with pytest.raises(OSError, match=r"out\.bin'$") as caught:
+        staging.stage_bytes(target, full)
+    assert caught.value.errno == errno.ENOSPC
+    assert caught.value.filename == str(target)
+    with pytest.raises(OSError, match=r"out\.bin'$"):
+        staging.stage_with(target, lambda path: os.truncate(path, 0))
+    with pytest.raises(OSError, match=r"^cannot write '.*out\.bin': out\.bin is broken$"):
+        staging.stage_with(target, text_of)
+    with pytest.raises(OSError, match=r"missing'$"):
+        staging.stage_with(target, lambda _: (quick_path / "missing").read_bytes())
+    with pytest.raises(
+        OSError, match=r"^cannot write '[^']*/out\.bin': out\.bin is broken$"
+    ) as caught:
+        staging.stage_folder(target, text_of)
+    assert ".prefilter" not in str(caught.value)
+    staged = staging.stage_data(target, b"data")
+    monkeypatch.setattr(staging, "rename", full)
+    with pytest.raises(OSError, match=r"out\.bin'$"):
+        staged.commit()
+    staged.discard()
+    assert not list(quick_path.iterdir())

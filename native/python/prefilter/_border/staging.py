@@ -9,8 +9,8 @@ import os
 import shutil
 import stat
 import threading
-from collections.abc import Callable, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO, cast
 
@@ -57,8 +57,10 @@ class StagedFile:
             path = self.target.with_name(random_name() + self.target.suffix)
             # The only way there leads through a symbolic link, which is followed by linkat alone.
             anywhere = os.open(self.target.parent, os.O_RDONLY)
+            own = _own_link(self._nameless)
             try:
-                os.link(_own_link(self._nameless), path, src_dir_fd=anywhere)
+                with _known_as(self.target, {path: self.target}):
+                    os.link(own, path, src_dir_fd=anywhere)
             finally:
                 os.close(anywhere)
             self._name = path
@@ -68,9 +70,10 @@ class StagedFile:
         """Renames the file into place."""
         check_regular(self.target)
         name = self.name()
-        if self.target.exists():
-            shutil.copymode(self.target, name)
-        rename(name, self.target)
+        with _known_as(self.target, {name: self.target}):
+            if self.target.exists():
+                shutil.copymode(self.target, name)
+            rename(name, self.target)
 
     def discard(self) -> None:
         """Removes the temporary file, if it is still there."""
@@ -97,12 +100,14 @@ class StagedFolder:
 
     def make(self, write: Callable[[Path], object]) -> None:
         """Has a function write the files."""
-        self._folder.mkdir()
-        write(self._folder / self.target.name)
-        if not (self._folder / self.target.name).exists():
-            raise OSError(f"'{self.target}' was not written")
-        for path in self._folder.iterdir():
-            sync(path)
+        made = self._folder / self.target.name
+        with _known_as(self.target, {self._folder: self.target.parent}):
+            self._folder.mkdir()
+            write(made)
+            if not made.exists():
+                raise OSError(f"'{self.target}' was not written")
+            for path in self._folder.iterdir():
+                sync(path)
 
     def commit(self) -> None:
         """Moves the files into place, the target last, and removes the folder."""
@@ -143,8 +148,9 @@ def stage_with(
     claim = claims.take(target.parent)
     staged = StagedFile(target, claim.beside(target.suffix if suffix is None else suffix))
     try:
-        write(staged.name())
-        sync(staged.name())
+        with _known_as(target, {staged.name(): target}):
+            write(staged.name())
+            sync(staged.name())
     except BaseException:
         staged.discard()
         raise
@@ -163,9 +169,10 @@ def stage_bytes(target: Path, write: Callable[[BinaryIO], object]) -> StagedFile
     staged = StagedFile(target, nameless=nameless)
     try:
         recover(target.parent)
-        write(nameless)
-        nameless.flush()
-        os.fsync(nameless.fileno())
+        with _known_as(target, {}):
+            write(nameless)
+            nameless.flush()
+            os.fsync(nameless.fileno())
     except BaseException:
         staged.discard()
         raise
@@ -294,6 +301,32 @@ def check_regular(path: Path, who: str = "") -> None:
     if not stat.S_ISREG(mode):
         kind = _KINDS.get(stat.S_IFMT(mode), "device")
         raise OSError(f"{who}'{path}' is a {kind}; a regular file, or a new one, is needed")
+
+
+@contextmanager
+def _known_as(target: Path, names: Mapping[Path, Path]) -> Iterator[None]:
+    """Lets errors name what was to be written, not what it is called until then.
+
+    Args:
+        target: What errors of the system are about that name nothing, or something temporary.
+        names: Temporary files or folders, and what texts are to call them.
+    """
+    try:
+        yield
+    except OSError as error:
+        if error.errno is not None:
+            named = [Path(name) for name in (error.filename, error.filename2) if name]
+            known = names.keys()
+            if named and not any(known & {name, *name.parents} for name in named):
+                raise
+            raise OSError(error.errno, error.strerror, os.fspath(target)) from error
+        text = str(error)
+        for temporary, other in names.items():
+            text = text.replace(os.fspath(temporary), os.fspath(other))
+            text = text.replace(temporary.name, other.name)
+        if text == str(error):
+            raise
+        raise OSError(text) from error
 
 
 def _is_writable(path: Path) -> bool:
