@@ -72,11 +72,12 @@ class Trial:
         """Tells whether a file that is never the same is whole."""
         return is_whole(name, data)
 
-    def is_named(self, text: str) -> bool:
-        """Tells whether an error's message names a file that was to be written."""
+    def is_named(self, text: str, out: Path) -> bool:
+        """Tells whether an error's message names a file that was to be written, or its folder."""
         _, _, message = text.rpartition("error: ")
         earlier = self.earlier()
         names = {Path(name).name for name, data in self.new.items() if data != earlier.get(name)}
+        names.add(f"'{out}'")
         return any(name in message for name in names) and ".prefilter-" not in message
 
     def prepare(self, out: Path) -> None:
@@ -278,7 +279,7 @@ def on_full_disks(
 def _tried(trial: Trial, out: Path) -> str:
     trial.prepare(out)
     status, text = quietly(trial.writer, trial.sources, out)
-    if status and not trial.is_named(text):
+    if status and not trial.is_named(text, out):
         return f"a message that names no file: {text}"
     return outcome(trial.state(contents(out)), status)
 

@@ -35,6 +35,11 @@ End = Callable[[Path, BinaryIO], bool]
 """Does what the file of a claim says; returns whether all that it owns can go."""
 
 
+def is_temporary(path: Path) -> bool:
+    """Tells whether a name, or that of a folder it is in, is one of those."""
+    return any(_STEM.match(part) for part in path.parts)
+
+
 class Claim:
     """Names in a folder, of this process until it ends; raises OSError where it cannot write."""
 

@@ -145,7 +145,8 @@ def stage_with(
         OSError: The file cannot be written.
     """
     recover(target.parent)
-    claim = claims.take(target.parent)
+    with _known_as(target, {}):
+        claim = claims.take(target.parent)
     staged = StagedFile(target, claim.beside(target.suffix if suffix is None else suffix))
     try:
         with _known_as(target, {staged.name(): target}):
@@ -191,7 +192,9 @@ def stage_folder(target: Path, write: Callable[[Path], object]) -> StagedFolder:
         OSError: The file cannot be written.
     """
     recover(target.parent)
-    staged = StagedFolder(target, claims.take(target.parent).beside(""))
+    with _known_as(target, {}):
+        claim = claims.take(target.parent)
+    staged = StagedFolder(target, claim.beside(""))
     try:
         staged.make(write)
     except BaseException:
@@ -243,7 +246,10 @@ def commit_all(files: Sequence[StagedFile]) -> None:
             files[0].put()
             sync(folders[0])
         elif files:
-            with undone_on_failure([(file.name(), file.target) for file in files]):
+            with (
+                _known_as(files[-1].target, {}),
+                undone_on_failure([(file.name(), file.target) for file in files]),
+            ):
                 for file in files:
                     file.put()
         for file in files:
@@ -316,8 +322,7 @@ def _known_as(target: Path, names: Mapping[Path, Path]) -> Iterator[None]:
     except OSError as error:
         if error.errno is not None:
             named = [Path(name) for name in (error.filename, error.filename2) if name]
-            known = names.keys()
-            if named and not any(known & {name, *name.parents} for name in named):
+            if named and not any(map(claims.is_temporary, named)):
                 raise
             raise OSError(error.errno, error.strerror, os.fspath(target)) from error
         text = str(error)
