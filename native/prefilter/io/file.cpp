@@ -99,7 +99,7 @@ void File::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
 
 void File::link(const std::string& path) {
   if (!system_file::link(handle_, path)) {
-    throw_system_error(name_ + ": cannot be named '" + path + "'");
+    throw_system_error(name_ + ": cannot be put into its folder");
   }
 }
 
