@@ -24,6 +24,8 @@ namespace prefilter {
 namespace {
 
 constexpr int kMostDashes = 1000000;
+// The exponent of coordinates whose products, three and more, are finite still.
+constexpr int kMostExponent = 300;
 
 void check(const StrokeOptions& options) {
   const auto check_length = [](double value, const char* name) {
@@ -118,18 +120,38 @@ std::vector<StrokePath> dashes_of(StrokePath path, std::span<const double> patte
 
 namespace {
 
+// The largest coordinate or width; 0 where that is not finite.
+double farthest(const Outline& outline, const StrokeOptions& options) {
+  const Box2 box = control_box(outline);
+  const double found = std::max({std::fabs(box.low.x), std::fabs(box.low.y), std::fabs(box.high.x),
+                                 std::fabs(box.high.y), options.width});
+  return std::isfinite(found) ? found : 0.0;
+}
+
 // Far from the origin no piece of a curve comes nearer to it than coordinates are rounded.
 double reachable(double tolerance, const Outline& outline, const StrokeOptions& options) {
-  const Box2 box = control_box(outline);
-  const double farthest = std::max({std::fabs(box.low.x), std::fabs(box.low.y),
-                                    std::fabs(box.high.x), std::fabs(box.high.y), options.width});
-  return std::isfinite(farthest) ? std::max(tolerance, kLeastStrokeTolerance * farthest)
-                                 : tolerance;
+  return std::max(tolerance, kLeastStrokeTolerance * farthest(outline, options));
+}
+
+// The power of 2 that makes all coordinates small enough; else 1.
+double shrinking(const Outline& outline, const StrokeOptions& options) {
+  const double largest = farthest(outline, options);
+  return largest > 0.0 ? std::ldexp(1.0, std::min(0, kMostExponent - std::ilogb(largest))) : 1.0;
+}
+
+Outline scaled(const Outline& outline, double scale) {
+  return outline.transformed({{scale, 0.0}, {0.0, scale}, {0.0, 0.0}});
+}
+
+StrokeOptions scaled(StrokeOptions options, double scale) {
+  options.width *= scale;
+  options.dash_offset *= scale;
+  for (double& dash : options.dashes) dash *= scale;
+  return options;
 }
 
 // Its parts, of which winding numbers are nowhere negative.
 Outline covered_by_parts(const Outline& outline, const StrokeOptions& options, double tolerance) {
-  check(options);
   Outline covered;
   if (options.width == 0.0) return covered;
   tolerance = reachable(tolerance, outline, options);
@@ -156,11 +178,22 @@ Outline covered_by_parts(const Outline& outline, const StrokeOptions& options, d
 }  // namespace
 
 Outline stroke(const Outline& outline, const StrokeOptions& options, double tolerance) {
+  check(options);
+  if (const double scale = shrinking(outline, options); scale < 1.0) {
+    const Outline small = scaled(outline, scale);
+    return scaled(stroke(small, scaled(options, scale), scale * tolerance), 1.0 / scale);
+  }
   return resolve(covered_by_parts(outline, options, tolerance), FillRule::kNonzero, tolerance);
 }
 
 Outline stroke_soon(const Outline& outline, const StrokeOptions& options, double tolerance,
                     bool* winds_once) {
+  check(options);
+  if (const double scale = shrinking(outline, options); scale < 1.0) {
+    const StrokeOptions small = scaled(options, scale);
+    const Outline made = stroke_soon(scaled(outline, scale), small, scale * tolerance, winds_once);
+    return scaled(made, 1.0 / scale);
+  }
   Outline covered = covered_by_parts(outline, options, tolerance);
   std::optional<Outline> united;
   *winds_once = resolve_soon(covered, FillRule::kNonzero, {}, &united);

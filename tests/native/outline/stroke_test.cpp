@@ -216,6 +216,33 @@ TEST(Stroke, CurvesThatRoundingFoldsAreOnePiece) {
   EXPECT_LT(stroke_soon(outline, {}, 1e-3, &winds_once).points().size(), 100U);
 }
 
+TEST(Stroke, LargeOutlinesAreSmallOnesScaled) {
+  // Products of their coordinates are not finite; powers of 2 change nothing else.
+  const auto wave = [](double size) {
+    Outline outline;
+    outline.move_to({2.0 * size, 0.0});
+    outline.line_to({9.0 * size, 6.0 * size});
+    outline.curve_to({{{17.0 * size, 12.0 * size}, {1.0 * size, 2.0 * size}, {size, 99.0 * size}}});
+    return outline;
+  };
+  StrokeOptions options;
+  options.width = 2.0;
+  options.dashes = {30.0, 5.0};
+  const Outline small = stroke(wave(1.0), options, 1e-3);
+  for (const int exponent : {310, 600, 1000}) {
+    const double size = std::ldexp(1.0, exponent);
+    StrokeOptions large = options;
+    large.width *= size;
+    for (double& dash : large.dashes) dash *= size;
+    const Outline found = stroke(wave(size), large, 1e-3 * size);
+    ASSERT_EQ(found.points().size(), small.points().size()) << exponent;
+    for (std::size_t i = 0; i < small.points().size(); ++i) {
+      EXPECT_EQ(found.points()[i].x, size * small.points()[i].x);
+      EXPECT_EQ(found.points()[i].y, size * small.points()[i].y);
+    }
+  }
+}
+
 TEST(Stroke, BadOptionsAreTold) {
   const Outline line = curve({{0, 0}, {1000, 0}});
   const auto message = [&](const StrokeOptions& options) {
