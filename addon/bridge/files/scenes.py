@@ -3,7 +3,7 @@
 """Files with objects, as Blender imports and exports them."""
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -172,27 +172,33 @@ def save_open(path: str) -> None:
         OSError: It cannot be written.
     """
     target = Path(os.path.realpath(path))
+    staged: list[staging.StagedFile] = []
     try:
-        staged = staging.stage_with(target, _write_blend)
+        staged.append(staging.stage_with(target, _write_blend))
+        for version in _earlier_versions(target, bpy.context.preferences.filepaths.save_version):
+            staged.insert(-1, version)
+        staging.commit_all(staged)
     except (RuntimeError, OSError) as error:
         raise OSError(f"--save: cannot write '{path}': {_reason(error)}") from error
-    try:
-        _keep_versions(target, bpy.context.preferences.filepaths.save_version)
-        staged.commit()
     finally:
-        staged.discard()
+        for file in staged:
+            file.discard()
 
 
 def _write_blend(path: Path) -> None:
-    bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True)
+    try:
+        bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True)
+    except RuntimeError:
+        path.with_name(f"{path.name}@").unlink(missing_ok=True)  # As Blender calls it until then.
+        raise
 
 
-def _keep_versions(target: Path, count: int) -> None:
-    """Gives earlier files the endings .blend1, .blend2 and so on; none is missing at any time."""
+def _earlier_versions(target: Path, count: int) -> Iterator[staging.StagedFile]:
+    """Stages earlier files under the endings .blend1, .blend2 and so on, the oldest first."""
     names = [Path(f"{target}{number or ''}") for number in range(count + 1)]
     for number in reversed(range(count)):
         if names[number].exists():
-            staging.keep(names[number], names[number + 1])
+            yield staging.stage_other_name(names[number], names[number + 1])
 
 
 def _load_one(path: str, *, is_first: bool) -> None:

@@ -11,9 +11,9 @@ from prefilter._border.staging import (
     check_target,
     check_writable,
     commit_all,
-    keep,
     stage_data,
     stage_folder,
+    stage_other_name,
     stage_with,
 )
 
@@ -25,9 +25,9 @@ __all__ = (
     "check_target",
     "check_writable",
     "commit_all",
-    "keep",
     "stage_data",
     "stage_folder",
+    "stage_other_name",
     "stage_with",
 )
 

@@ -154,10 +154,10 @@ def _put_back(target: Path, earlier: Path | None) -> str:
     try:
         if earlier is None:
             target.unlink(missing_ok=True)
+        elif target.exists() and target.samefile(earlier):
+            earlier.unlink()  # It was not replaced, and perhaps cannot be.
         else:
             rename(earlier, target)
-            # Renaming does nothing where both are still names of one file.
-            earlier.unlink(missing_ok=True)
     except OSError as error:
         kept = "" if earlier is None else f"; the earlier file is kept as '{earlier}'"
         return f"'{target}' was written, which cannot be undone{kept}: {error}"

@@ -203,17 +203,13 @@ def stage_folder(target: Path, write: Callable[[Path], object]) -> StagedFolder:
     return staged
 
 
-def keep(path: Path, other: Path) -> None:
-    """Gives a file a second name, in the same folder, at once: what has that name is replaced.
+def stage_other_name(path: Path, other: Path) -> StagedFile:
+    """Stages what there is under a name for another one in the same folder, where both stay.
 
     Raises:
         OSError: That cannot be done.
     """
-    staged = stage_with(other, lambda new: link_or_copy(path, new))
-    try:
-        staged.commit()
-    finally:
-        staged.discard()
+    return stage_with(other, lambda new: link_or_copy(path, new))
 
 
 def write_output(output: Path | BinaryIO, write: Callable[[BinaryIO], object]) -> None:

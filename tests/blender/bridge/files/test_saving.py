@@ -2,6 +2,10 @@
 
 """The .blend file that is open, saved by a command."""
 
+import os
+from pathlib import Path
+from types import SimpleNamespace
+
 import bpy
 import pytest
 
@@ -34,6 +38,45 @@ def test_a_file_that_cannot_be_replaced_stays(addon, tmp_path, monkeypatch):
     with pytest.raises(OSError, match="no rename"):
         addon("bridge.files.scenes").save_open(str(path))
     assert {one.name: one.read_bytes() for one in tmp_path.iterdir()} == {path.name: before}
+
+
+@pytest.mark.parametrize("number", [1, 2, 3])
+def test_versions_stay_where_the_file_cannot_be_replaced(addon, tmp_path, monkeypatch, number):
+    path = tmp_path / "scene.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    bpy.context.preferences.filepaths.save_version = 2
+    scenes = addon("bridge.files.scenes")
+    for text in ("one", "two"):
+        bpy.data.texts.new(text)
+        scenes.save_open(str(path))
+    before = {one.name: one.read_bytes() for one in tmp_path.iterdir()}
+    assert len(before) == 3
+    bpy.data.texts.new("three")
+    replace, calls = os.replace, []
+
+    def fail_once(source, target):
+        calls.append(target)
+        if len(calls) == number:
+            raise PermissionError("no rename")
+        replace(source, target)
+
+    monkeypatch.setattr(os, "replace", fail_once)
+    with pytest.raises(OSError, match=r"^--save: cannot write '.*scene\.blend': no rename"):
+        scenes.save_open(str(path))
+    assert {one.name: one.read_bytes() for one in tmp_path.iterdir()} == before
+
+
+def test_what_blender_cannot_rename_is_removed(addon, tmp_path, monkeypatch):
+    def save(filepath, **_):
+        Path(f"{filepath}@").write_bytes(b"whole")
+        raise RuntimeError("Error: Cannot change old file (file saved with @)")
+
+    scenes = addon("bridge.files.scenes")
+    monkeypatch.setattr(scenes, "bpy", SimpleNamespace(ops=SimpleNamespace(wm=SimpleNamespace())))
+    scenes.bpy.ops.wm.save_as_mainfile = save
+    with pytest.raises(RuntimeError, match="saved with @"):
+        scenes._write_blend(tmp_path / "scene.blend")
+    assert not list(tmp_path.iterdir())
 
 
 def test_relative_paths_stay(addon, tmp_path):
