@@ -74,7 +74,7 @@ class Found:
         self.left += any(is_left(name) for name in contents(out))
         for folder in [out, *(path for path in out.iterdir() if path.is_dir())]:
             replacing.recover(folder)
-        state = trial.state({k: v for k, v in contents(out).items() if not k.endswith(".blend@")})
+        state = trial.state(contents(out))
         if state == "old":
             self.old += 1
         elif state == "new":
