@@ -80,14 +80,15 @@ cross_headers() {
   )
 }
 
-# configure_cross PLATFORM [NAME=VALUE...]: prepares build/cross/<platform>.
+# configure_cross PLATFORM [NAME=VALUE...]: prepares build/cross/<platform>. Each file compiles by itself there: another
+# compiler warns of names that files of a unit share, and system headers define words.
 configure_cross() {
   local headers
   ensure_zig
   headers=$(cross_headers "$1")
   configure "cross/$1" "PREFILTER_PLATFORM=$1" "PREFILTER_ZIG=$zig_dir/bin" "PREFILTER_PYTHON_HEADERS=$headers" \
     "PREFILTER_PYBIND11_INCLUDE=$headers_dir/trixie/pybind11-include" "${source_options[@]}" \
-    "PREFILTER_WHEELS=$wheels_dir" "${@:2}"
+    "PREFILTER_WHEELS=$wheels_dir" CMAKE_UNITY_BUILD=OFF "${@:2}"
 }
 
 # build_cross PLATFORM TARGET...: builds in build/cross/<platform>, prepared before.

@@ -6,9 +6,8 @@
 
 namespace prefilter {
 
-using Flags = std::vector<std::uint8_t>;
-
-void mark_around(std::size_t loop, const LinkedLoops& loops, Flags* is_changed) {
+void mark_around(std::size_t loop, const LinkedLoops& loops,
+                 std::vector<std::uint8_t>* is_changed) {
   (*is_changed)[loop] = 1;
   for (std::size_t k = 0; k < loops.side_count(loop); ++k) {
     const std::int32_t other = loops.sides[loop][k].other;
@@ -38,7 +37,8 @@ SecondTry::SecondTry(const LinkedLoops& loops, std::span<const Feature> wanted,
 }
 
 LoopChanges SecondTry::changed() const {
-  LoopChanges changes{Flags(loops_.size(), 0), Flags(vertices_, 0)};
+  LoopChanges changes{std::vector<std::uint8_t>(loops_.size(), 0),
+                      std::vector<std::uint8_t>(vertices_, 0)};
   for (const auto& [i, settled] : settled_) mark_around(i, loops_, &changes.loops);
   for (const auto& [v, place] : settled_places_) changes.vertices[v] = 1;
   return changes;
@@ -46,7 +46,8 @@ LoopChanges SecondTry::changed() const {
 
 LoopChanges SecondTry::give_up(std::span<const std::size_t> loops,
                                std::span<const std::size_t> vertices) {
-  LoopChanges changes{Flags(loops_.size(), 0), Flags(vertices_, 0)};
+  LoopChanges changes{std::vector<std::uint8_t>(loops_.size(), 0),
+                      std::vector<std::uint8_t>(vertices_, 0)};
   states_.is_single = settled_single_;
   for (const std::size_t i : loops) put_back(settled_.find(i), &changes.loops);
   for (const std::size_t v : vertices) put_vertex_back(settled_places_.find(v), &changes.vertices);
@@ -56,7 +57,7 @@ LoopChanges SecondTry::give_up(std::span<const std::size_t> loops,
   return changes;
 }
 
-void SecondTry::put_back(Loops::iterator found, Flags* is_changed) {
+void SecondTry::put_back(Loops::iterator found, std::vector<std::uint8_t>* is_changed) {
   if (found == settled_.end()) return;
   const std::size_t i = found->first;
   states_.features[i] = std::move(found->second.feature);
@@ -65,7 +66,7 @@ void SecondTry::put_back(Loops::iterator found, Flags* is_changed) {
   mark_around(i, loops_, is_changed);
 }
 
-void SecondTry::put_vertex_back(Places::iterator found, Flags* is_changed) {
+void SecondTry::put_vertex_back(Places::iterator found, std::vector<std::uint8_t>* is_changed) {
   if (found == settled_places_.end()) return;
   positions_[found->first] = found->second;
   (*is_changed)[found->first] = 1;

@@ -422,7 +422,7 @@ class DrawnBox {
       // Control points between the ends have the curve between them, too.
       const auto [low, high] = std::minmax(along.front(), along.back());
       if (std::all_of(along.begin(), along.end(),
-                      [low = low, high = high](double v) { return v >= low && v <= high; })) {
+                      [least = low, most = high](double v) { return v >= least && v <= most; })) {
         continue;
       }
       std::array<double, 2> turns;

@@ -234,8 +234,8 @@ Support SupportField::at(FacingPoint point, int k) {
   const auto depth = static_cast<std::size_t>(std::clamp(k, 0, slabs_.depth()));
   levels_[depth].look(point, side(static_cast<int>(depth)), kNearCells, &best);
   if (static_cast<double>(best.distance) <= kNear) return best;
-  constexpr std::pair<int, double> kSteps[] = {{kMiddleCells, kMiddle}, {kExactCells, kExact}};
-  for (const auto& [cells, enough] : kSteps) {
+  constexpr std::pair<int, double> kReaches[] = {{kMiddleCells, kMiddle}, {kExactCells, kExact}};
+  for (const auto& [cells, enough] : kReaches) {
     for (int j = slabs_.depth(); j >= 0; --j) {
       levels_[static_cast<std::size_t>(j)].look(point, side(j), cells, &best);
     }

@@ -82,14 +82,14 @@ BoxTree::BoxTree(std::span<const std::uint64_t> keys, std::size_t leaf_items, co
     std::uint32_t end;
     std::uint32_t parent;
   };
-  constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  constexpr std::uint32_t kNoParent = std::numeric_limits<std::uint32_t>::max();
   std::array<Waiting, kDeepest> waiting;
   std::size_t count = 0;
-  waiting[count++] = {0, static_cast<std::uint32_t>(keys.size()), kNone};
+  waiting[count++] = {0, static_cast<std::uint32_t>(keys.size()), kNoParent};
   Pulse pulse(progress);
   while (count > 0) {
     auto [begin, end, parent] = waiting[--count];
-    if (parent != kNone) nodes_[parent].right = static_cast<std::uint32_t>(nodes_.size());
+    if (parent != kNoParent) nodes_[parent].right = static_cast<std::uint32_t>(nodes_.size());
     while (true) {
       pulse.step();
       nodes_.push_back({kEmptyBox, begin, end, 0});

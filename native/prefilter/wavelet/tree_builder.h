@@ -42,7 +42,7 @@ BuiltCell build_block(int depth, TreeLevels* levels, const BuildOctant& build_oc
 template <typename Cell, typename Rule>
 CellTree build_tree(const Cell& root, int most_depth, const Rule& rule, const Progress& progress,
                     int threads) {
-  constexpr int kTaskDepth = 3;
+  constexpr int kDepthOfTasks = 3;
   struct Task {
     Cell cell;
     BuiltCell built;
@@ -59,7 +59,7 @@ CellTree build_tree(const Cell& root, int most_depth, const Rule& rule, const Pr
   std::vector<Task> tasks;
   const auto find = [&](const auto& self, const Cell& cell, int depth) -> void {
     if (!rule.is_split(cell, depth)) return;
-    if (depth == kTaskDepth) {
+    if (depth == kDepthOfTasks) {
       tasks.push_back({cell, {}, {}});
       return;
     }
@@ -70,14 +70,14 @@ CellTree build_tree(const Cell& root, int most_depth, const Rule& rule, const Pr
                [&](std::int64_t i) {
                  Task& task = tasks[static_cast<std::size_t>(i)];
                  task.levels.resize(static_cast<std::size_t>(most_depth));
-                 task.built = build(build, task.cell, kTaskDepth, &task.levels);
+                 task.built = build(build, task.cell, kDepthOfTasks, &task.levels);
                });
   TreeLevels levels(static_cast<std::size_t>(most_depth));
   const Progress gathering = progress.part(0.8, 0.95);
   std::size_t next_task = 0;
   const auto gather = [&](const auto& self, const Cell& cell, int depth) -> BuiltCell {
     if (!rule.is_split(cell, depth)) return {rule.value(cell, depth), false};
-    if (depth == kTaskDepth) {
+    if (depth == kDepthOfTasks) {
       Task& task = tasks[next_task++];
       for (std::size_t k = 0; k < levels.size(); ++k) {
         TreeLevel& from = task.levels[k];
