@@ -43,7 +43,6 @@ constexpr std::array<float, kSide> places_of(const std::array<int, kSide>& shift
 }
 
 constexpr std::array<float, kSide> kRowPlaces = places_of(kRowShifts);
-constexpr std::array<float, kSide> kColumnPlaces = places_of(kColumnShifts);
 
 // The columns that are shifted by so much or more.
 constexpr std::array<std::uint64_t, kSide + 1> kShiftedFrom = [] {
