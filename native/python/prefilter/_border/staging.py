@@ -57,10 +57,9 @@ class StagedFile:
             path = self.target.with_name(random_name() + self.target.suffix)
             # The only way there leads through a symbolic link, which is followed by linkat alone.
             anywhere = os.open(self.target.parent, os.O_RDONLY)
-            own = _own_link(self._nameless)
             try:
                 with _known_as(self.target, {path: self.target}):
-                    os.link(own, path, src_dir_fd=anywhere)
+                    os.link(_own_link(self._nameless), path, src_dir_fd=anywhere)
             finally:
                 os.close(anywhere)
             self._name = path
