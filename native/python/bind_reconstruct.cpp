@@ -226,11 +226,14 @@ void bind_reconstruct(py::module_& m) {
            py::keep_alive<1, 3>(), py::keep_alive<1, 4>(), py::keep_alive<1, 5>());
   // So are the sources.
   py::class_<JoinedPoints, PointSource>(m, "JoinedPoints")
-      .def(py::init([](const py::tuple& sources) {
-             return std::make_unique<JoinedPoints>(sources.cast<std::vector<PointSource*>>());
+      .def(py::init([](const py::tuple& sources, std::size_t rows_a_share) {
+             return std::make_unique<JoinedPoints>(sources.cast<std::vector<PointSource*>>(),
+                                                   rows_a_share);
            }),
-           py::arg("sources"), py::keep_alive<1, 2>())
-      .def("choose", &JoinedPoints::choose, py::arg("source"));
+           py::arg("sources"), py::arg("rows_a_share") = JoinedPoints::kAllRows,
+           py::keep_alive<1, 2>())
+      .def_property_readonly("share_count", &JoinedPoints::share_count)
+      .def("choose_share", &JoinedPoints::choose_share, py::arg("share"));
   py::class_<TurnedPoints, PointSource>(m, "TurnedPoints")
       .def(py::init([](PointSource* source, bool is_up, const Array<double>& viewpoints) {
              const std::span<const Vector3> rows = rows_of(viewpoints);

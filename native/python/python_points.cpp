@@ -31,7 +31,8 @@ struct Held {
 
 // Throws where an array is not of the size that the reader has promised.
 template <typename T>
-const T* rows(const Array<T>& array, std::size_t count, std::size_t width, std::size_t first) {
+const T* checked_rows(const Array<T>& array, std::size_t count, std::size_t width,
+                      std::size_t first) {
   if (static_cast<std::size_t>(array.size()) != count * width) {
     throw py::value_error("reader: arrays of a chunk have different lengths");
   }
@@ -43,7 +44,8 @@ class PythonPoints final : public PointSource {
   explicit PythonPoints(const py::object& reader)
       : count_(reader.attr("count").cast<std::optional<std::size_t>>()),
         viewpoint_(reader.attr("viewpoint").cast<std::optional<Vector3>>()),
-        has_normals_(reader.attr("has_normals").cast<bool>()) {
+        has_normals_(reader.attr("has_normals").cast<bool>()),
+        can_seek_(reader.attr("can_seek").cast<bool>()) {
     for (auto& [name, is_byte] :
          reader.attr("attributes").cast<std::vector<std::pair<std::string, bool>>>()) {
       attributes_.push_back({std::move(name), is_byte});
@@ -60,12 +62,19 @@ class PythonPoints final : public PointSource {
     held_.reset();
   }
 
-  std::optional<std::size_t> count() const override { return count_; }
+  std::optional<std::size_t> count() const override {
+    return chosen_ ? chosen_->second - chosen_->first : count_;
+  }
   bool has_normals() const override { return has_normals_; }
   const std::vector<PointAttribute>& attributes() const override { return attributes_; }
   std::optional<Vector3> viewpoint() const override { return viewpoint_; }
   // These formats keep coordinates as scaled integers or doubles.
   bool is_double() const override { return true; }
+  std::optional<std::size_t> rows() const override { return can_seek_ ? count_ : std::nullopt; }
+  void choose_rows(std::size_t begin, std::size_t end) override {
+    chosen_ = {begin, end};
+    rewind();
+  }
 
   void rewind() override {
     const py::gil_scoped_acquire locked;
@@ -76,7 +85,7 @@ class PythonPoints final : public PointSource {
   bool read(std::size_t most, PointBatch* batch) override {
     const py::gil_scoped_acquire locked;
     batch->clear();
-    if (!held_->iterator) held_->iterator = held_->reader.attr("chunks")();
+    if (!held_->iterator) held_->iterator = chunks();
     while (!held_->chunk || done_ == size_) {
       PyObject* const next = PyIter_Next(held_->iterator.ptr());
       if (next == nullptr) {
@@ -93,9 +102,14 @@ class PythonPoints final : public PointSource {
   }
 
  private:
+  py::object chunks() const {
+    const py::object all = held_->reader.attr("chunks");
+    return chosen_ ? all(chosen_->first, chosen_->second) : all();
+  }
+
   template <typename T>
   void append(const Array<T>& array, std::size_t count, std::vector<std::array<T, 3>>* to) const {
-    const T* const row = rows(array, size_, 3, done_);
+    const T* const row = checked_rows(array, size_, 3, done_);
     for (std::size_t i = 0; i < count; ++i) {
       to->push_back({row[3 * i], row[3 * i + 1], row[3 * i + 2]});
     }
@@ -107,10 +121,10 @@ class PythonPoints final : public PointSource {
     if (has_normals_ && normals) append(*normals, count, &batch->normals);
     if (viewpoints) append(*viewpoints, count, &batch->viewpoints);
     if (weights) {
-      const float* const weight = rows(*weights, size_, 1, done_);
+      const float* const weight = checked_rows(*weights, size_, 1, done_);
       batch->weights.assign(weight, weight + count);
     }
-    const float* const values = rows(attributes, size_, attributes_.size(), done_);
+    const float* const values = checked_rows(attributes, size_, attributes_.size(), done_);
     batch->attributes.assign(values, values + count * attributes_.size());
     done_ += count;
   }
@@ -120,8 +134,10 @@ class PythonPoints final : public PointSource {
   std::optional<Vector3> viewpoint_;
   std::vector<PointAttribute> attributes_;
   bool has_normals_;
-  std::size_t size_ = 0;  // of the chunk
-  std::size_t done_ = 0;  // points of it
+  bool can_seek_;
+  std::optional<std::pair<std::size_t, std::size_t>> chosen_;  // rows
+  std::size_t size_ = 0;                                       // of the chunk
+  std::size_t done_ = 0;                                       // points of it
 };
 
 }  // namespace

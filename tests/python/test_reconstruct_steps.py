@@ -2,13 +2,17 @@
 
 """`reconstruct` in steps: by several processes, bit for bit what one makes."""
 
+import gzip
 import json
 import subprocess
 import sys
 
 import numpy as np
+import prefilter
 import pytest
 from command_files import fails, run
+from prefilter.points import sources
+from scan_writers import pcd
 
 DEPTH = ("--depth", "6")
 STEPS = ("measure", "count", "merge", "part", "join")
@@ -101,6 +105,84 @@ def test_a_single_source_and_limits_of_memory(scans, tmp_path):
     assert run("reconstruct", scans[1], one, *DEPTH) == 0
     limit = ("--memory-limit", "40", "--threads", "1")
     assert steps(scans[1:2], tmp_path, *limit) == one.read_bytes()
+
+
+SHARE = 60_000
+"""Points that are counted by themselves here, so that the scans have 1, 5, 1 and 3 such shares."""
+
+
+def test_files_are_counted_in_shares(scans, tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(sources, "POINTS_A_SHARE", SHARE)
+    whole = tmp_path / "whole.ply"
+    assert run("reconstruct", *scans, whole, *DEPTH) == 0
+    capsys.readouterr()
+    assert steps(scans, tmp_path, parts=3) == whole.read_bytes()
+    told = capsys.readouterr().out
+    assert told.count("Step measure") == told.count("Step count") == 1 + 5 + 1 + 3
+    words = ("reconstruct", *scans, whole, *DEPTH, "--work", tmp_path / "w", "--step", "count")
+    assert run(*words, "--list") == 0
+    assert len(capsys.readouterr().out.splitlines()) == 1 + 5 + 1 + 3
+
+
+def write_las(path, points):
+    laspy = pytest.importorskip("laspy", reason="laspy cannot be imported")
+    header = laspy.LasHeader(point_format=2, version="1.2")
+    header.scales = np.full(3, 1e-4)
+    for name in ("nx", "ny", "nz"):
+        header.add_extra_dim(laspy.ExtraBytesParams(name=name, type=np.float32))
+    las = laspy.LasData(header)
+    las.x, las.y, las.z = points.positions.T
+    for name, values in zip(("nx", "ny", "nz"), points.normals.T, strict=True):
+        las[name] = values
+    las.classification = np.arange(len(points.positions)) % 3
+    las.write(path)
+
+
+def write_other(path, points):
+    """Writes points in the format that the name asks for."""
+    rows = np.hstack([points.positions, points.normals])
+    if path.suffix in (".las", ".laz"):
+        write_las(path, points)
+    elif path.suffix == ".gz":
+        path.write_bytes(gzip.compress(path.with_name("1.ply").read_bytes(), 1))
+    elif path.suffix == ".xyzn":
+        np.savetxt(path, rows, "%.6g")
+    else:
+        fields = [(name, "<f4", 1) for name in ("x", "y", "z", "normal_x", "normal_y", "normal_z")]
+        path.write_bytes(pcd(path.stem, fields, rows))
+
+
+@pytest.mark.parametrize(
+    ("name", "flags", "shares"),
+    [
+        ("binary.pcd", (), 5),
+        ("binary_compressed.pcd", (), 5),
+        ("ascii.pcd", (), 1),
+        ("scan.las", (), 5),
+        ("scan.laz", ("--classes", "0,2"), 5),
+        ("scan.xyzn", (), 1),
+        ("1.ply.gz", (), 5),
+        ("1.ply", ("--box", "-0.8", "-2", "-2", "0.8", "2", "2"), 5),
+    ],
+)
+def test_shares_of_other_files(tmp_path, monkeypatch, capsys, name, flags, shares):
+    monkeypatch.setattr(sources, "POINTS_A_SHARE", 5_000)
+    source = tmp_path / name
+    scan = write_ball(tmp_path / "1.ply", 24_000, 1)
+    if source != scan:
+        write_other(source, prefilter.read_points(scan))
+    whole = tmp_path / "whole.ply"
+    assert run("reconstruct", source, whole, *DEPTH, *flags) == 0
+    capsys.readouterr()
+    assert steps([source], tmp_path, *flags, parts=1) == whole.read_bytes()
+    assert capsys.readouterr().out.count("Step count") == shares
+    # No point is lost, and none is counted twice.
+    monkeypatch.setattr(sources, "POINTS_A_SHARE", 1 << 30)
+    at_once = prefilter.read_points(whole)
+    assert run("reconstruct", source, whole, *DEPTH, *flags) == 0
+    again = prefilter.read_points(whole)
+    assert len(again.positions) == len(at_once.positions)
+    np.testing.assert_allclose(again.positions, at_once.positions, atol=1e-4)
 
 
 def test_four_processes_at_once(scans, expected, tmp_path):

@@ -364,6 +364,7 @@ class Reader:
 
     count = None
     has_normals = True
+    can_seek = False
     attributes = (("red", True), ("intensity", False))
     viewpoint = (1.0, 2.0, 3.0)
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Makes the surface of a scan in steps: each file is measured, and counted into the cells of all;
-// the counts are merged, the surface is made in parts, and these are joined. See docs/farm.md. What
-// steps have left in the folder for that is not made again.
+// Makes the surface of a scan in steps: each share of the points is measured, and counted into the
+// cells of all; the counts are merged, the surface is made in parts, and these are joined. See
+// docs/farm.md. What steps have left in the folder for that is not made again.
 
 const JOB_TYPE = {
     label: "Prefilter: Reconstruct Surface",

@@ -72,7 +72,7 @@ CloudExtent read_extent(ArchiveReader* file) {
   return extent;
 }
 
-// Of all sources, one after the other.
+// Of all shares, one after the other.
 CloudExtent whole_extent(const StepFiles& files) {
   CloudExtent whole;
   for (const std::string& path : files.measures) {
@@ -122,28 +122,27 @@ void check_steps(const ReconstructOptions& options) {
   }
 }
 
-void measure_step(PointSource* source, std::size_t number, const StepFiles& files,
+void measure_step(PointSource* share, std::size_t number, const StepFiles& files,
                   const ReconstructOptions& options) {
   check_steps(options);
-  const std::size_t points = source->count().value_or(PointOrder::kMostPoints);
-  const CloudLoad load = load_of(points, source->attributes().size(), options);
-  const CloudExtent extent =
-      measure_cloud(source, options.progress, batches_at_once(load, options));
+  const std::size_t points = share->count().value_or(PointOrder::kMostPoints);
+  const CloudLoad load = load_of(points, share->attributes().size(), options);
+  const CloudExtent extent = measure_cloud(share, options.progress, batches_at_once(load, options));
   ArchiveWriter file(files.measures[number], mark_of(StepFile::kMeasure, files));
   write_extent(extent, &file);
   file.commit();
 }
 
-void count_step(PointSource* source, std::size_t number, const StepFiles& files,
+void count_step(PointSource* share, std::size_t number, const StepFiles& files,
                 const ReconstructOptions& options) {
   check_steps(options);
   const CloudExtent extent = whole_extent(files);
   const SampleGrid grid = grid_of(extent.part.box, ThinnedPoints(), options);
-  const std::size_t attributes = source->attributes().size();
+  const std::size_t attributes = share->attributes().size();
   const CloudLoad load = load_of(extent.part.points, attributes, options);
   SampleStore store(grid.depth, slab_bits(grid.depth), attributes, options.memory_limit / 4,
                     options.folder);
-  gather_samples(source, grid, options.progress, batches_at_once(load, options), &store);
+  gather_samples(share, grid, options.progress, batches_at_once(load, options), &store);
   ArchiveWriter file(files.counts[number], mark_of(StepFile::kCounts, files));
   store.save(&file);
   file.commit();

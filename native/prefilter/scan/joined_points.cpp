@@ -50,8 +50,8 @@ std::optional<std::size_t> place_of(const std::vector<PointAttribute>& attribute
 
 }  // namespace
 
-JoinedPoints::JoinedPoints(std::vector<PointSource*> sources)
-    : sources_(std::move(sources)), end_(sources_.size()) {
+JoinedPoints::JoinedPoints(std::vector<PointSource*> sources, std::size_t rows_a_share)
+    : sources_(std::move(sources)) {
   if (sources_.empty()) throw_invalid("sources: none; at least one is needed");
   for (const PointSource* source : sources_) {
     if (source->has_normals() != sources_.front()->has_normals()) {
@@ -68,14 +68,28 @@ JoinedPoints::JoinedPoints(std::vector<PointSource*> sources)
       columns.push_back({from, from && source->attributes()[*from].is_byte});
     }
   }
+  for (std::size_t k = 0; k < sources_.size(); ++k) add_shares(k, rows_a_share);
+  end_ = shares_.size();
+}
+
+void JoinedPoints::add_shares(std::size_t source, std::size_t rows_a_share) {
+  const std::size_t rows = sources_[source]->rows().value_or(0);
+  if (rows <= rows_a_share) {
+    shares_.push_back({source, 0, std::nullopt});
+    return;
+  }
+  for (std::size_t begin = 0; begin < rows; begin += rows_a_share) {
+    shares_.push_back({source, begin, begin + std::min(rows_a_share, rows - begin)});
+  }
 }
 
 std::optional<std::size_t> JoinedPoints::count() const {
   std::size_t sum = 0;
   for (std::size_t k = first_; k < end_; ++k) {
-    const std::optional<std::size_t> count = sources_[k]->count();
+    const Share& share = shares_[k];
+    const std::optional<std::size_t> count = sources_[share.source]->count();
     if (!count) return std::nullopt;
-    sum += *count;
+    sum += share.end ? *share.end - share.begin : *count;
   }
   return sum;
 }
@@ -86,33 +100,45 @@ bool JoinedPoints::is_double() const {
 }
 
 void JoinedPoints::rewind() {
-  for (PointSource* source : sources_) source->rewind();
   current_ = first_;
+  is_begun_ = false;
 }
 
-void JoinedPoints::choose(std::size_t source) {
-  first_ = current_ = source;
-  end_ = source + 1;
+void JoinedPoints::choose_share(std::size_t share) {
+  first_ = share;
+  end_ = share + 1;
+  rewind();
+}
+
+void JoinedPoints::begin(const Share& share) {
+  PointSource* const source = sources_[share.source];
+  if (share.end) {
+    source->choose_rows(share.begin, *share.end);
+  } else {
+    source->rewind();
+  }
 }
 
 bool JoinedPoints::read(std::size_t most, PointBatch* batch) {
-  for (; current_ < end_; ++current_) {
-    PointSource* const source = sources_[current_];
+  for (; current_ < end_; ++current_, is_begun_ = false) {
+    const Share& share = shares_[current_];
+    if (!std::exchange(is_begun_, true)) begin(share);
+    PointSource* const source = sources_[share.source];
     if (!source->read(most, batch)) continue;
     const std::size_t count = batch->positions.size();
     const std::optional<Vector3> viewpoint = source->viewpoint();
     if (viewpoint) batch->viewpoints.assign(count, *viewpoint);
-    batch->attributes = carried(batch->attributes, count);
+    batch->attributes = carried(share.source, batch->attributes, count);
     batch->cloud = current_;
     return true;
   }
   return false;
 }
 
-std::vector<float> JoinedPoints::carried(const std::vector<float>& values,
+std::vector<float> JoinedPoints::carried(std::size_t source, const std::vector<float>& values,
                                          std::size_t points) const {
-  const std::vector<Column>& columns = columns_[current_];
-  const std::size_t width = sources_[current_]->attributes().size();
+  const std::vector<Column>& columns = columns_[source];
+  const std::size_t width = sources_[source]->attributes().size();
   std::vector<float> result(points * columns.size());
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const Column& column = columns[k];

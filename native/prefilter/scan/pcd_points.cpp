@@ -233,11 +233,12 @@ class PcdPoints final : public PointSource {
     } else {
       unpack();
     }
+    end_ = header_.points;
     find_color_scale(this, &layout_.fields);
   }
 
   std::optional<std::size_t> count() const override {
-    return static_cast<std::size_t>(header_.points);
+    return static_cast<std::size_t>(end_ - begin_);
   }
   bool has_normals() const override { return layout_.fields.has_normals(); }
   const std::vector<PointAttribute>& attributes() const override {
@@ -249,14 +250,26 @@ class PcdPoints final : public PointSource {
     return header_.viewpoint;
   }
 
+  std::optional<std::size_t> rows() const override {
+    if (header_.data == "ascii") return std::nullopt;
+    return static_cast<std::size_t>(header_.points);
+  }
+  void choose_rows(std::size_t begin, std::size_t end) override {
+    begin_ = begin;
+    end_ = end;
+    rewind();
+  }
+
   void rewind() override {
     text_.go_to(first_);
-    done_ = 0;
+    if (header_.data == "binary" && begin_ > 0) {
+      text_.bytes().seek(text_.bytes().offset() + begin_ * layout_.stride);
+    }
+    done_ = begin_;
   }
 
   bool read(std::size_t most, PointBatch* batch) override {
-    const auto count =
-        static_cast<std::size_t>(std::min<std::uint64_t>(most, header_.points - done_));
+    const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(most, end_ - done_));
     layout_.fields.resize(count, batch);
     if (header_.data == "ascii") {
       for (std::size_t point = 0; point < count; ++point) read_line(point, batch);
@@ -390,6 +403,8 @@ class PcdPoints final : public PointSource {
   Layout layout_;
   TextPlace first_;
   std::optional<TemporaryFile> columns_;  // of a compressed file
+  std::uint64_t begin_ = 0;
+  std::uint64_t end_ = 0;
   std::uint64_t done_ = 0;
   std::vector<double> values_;
 };

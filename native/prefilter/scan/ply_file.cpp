@@ -295,6 +295,11 @@ std::span<const std::byte> PlyFile::read_records(std::size_t most) {
   return found.first(count * size);
 }
 
+void PlyFile::skip_records(std::uint64_t count) {
+  text_.bytes().seek(text_.bytes().offset() + count * elements_[element_].row_size());
+  row_ += count;
+}
+
 void PlyFile::check_end() {
   if (element_ + 1 < elements_.size() || rows_left() > 0) return;
   while (true) {

@@ -61,6 +61,8 @@ class PlyFile {
   /// Binary rows as they lie there, `most` at the most and one at least, where the element has no
   /// lists.
   std::span<const std::byte> read_records(std::size_t most);
+  /// Goes over so many of these, which are there.
+  void skip_records(std::uint64_t count);
   /// Rows of this element that are left.
   std::uint64_t rows_left() const { return elements_[element_].count - row_; }
   /// Throws where anything follows the rows of the last element.

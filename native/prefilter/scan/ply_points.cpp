@@ -37,22 +37,34 @@ class PlyPoints final : public PointSource {
       : file_(std::move(bytes)),
         element_(vertex_element(file_)),
         fields_(fields_of(file_.elements()[element_], file_.name())),
-        has_records_(!file_.is_text() && !file_.elements()[element_].has_lists()) {
+        has_records_(!file_.is_text() && !file_.elements()[element_].has_lists()),
+        end_(size()) {
     find_color_scale(this, &fields_);
     rewind();
   }
 
-  std::optional<std::size_t> count() const override {
-    return static_cast<std::size_t>(file_.elements()[element_].count);
-  }
+  std::optional<std::size_t> count() const override { return end_ - begin_; }
   bool has_normals() const override { return fields_.has_normals(); }
   const std::vector<PointAttribute>& attributes() const override { return fields_.attributes(); }
   bool is_double() const override { return fields_.is_double(); }
 
-  void rewind() override { file_.go_to(element_); }
+  std::optional<std::size_t> rows() const override {
+    return has_records_ ? std::optional(size()) : std::nullopt;
+  }
+  void choose_rows(std::size_t begin, std::size_t end) override {
+    begin_ = begin;
+    end_ = end;
+    rewind();
+  }
+
+  void rewind() override {
+    file_.go_to(element_);
+    if (begin_ > 0) file_.skip_records(begin_);
+  }
 
   bool read(std::size_t most, PointBatch* batch) override {
-    const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(most, file_.rows_left()));
+    const std::uint64_t left = file_.rows_left() - (size() - end_);
+    const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(most, left));
     fields_.resize(count, batch);
     const std::size_t stride = file_.elements()[element_].row_size();
     for (std::size_t point = 0; point < count;) {
@@ -72,10 +84,14 @@ class PlyPoints final : public PointSource {
   }
 
  private:
+  std::size_t size() const { return static_cast<std::size_t>(file_.elements()[element_].count); }
+
   PlyFile file_;
   std::size_t element_;
   PointFields fields_;
   bool has_records_;
+  std::size_t begin_ = 0;
+  std::size_t end_;
 };
 
 }  // namespace

@@ -119,6 +119,10 @@ class SplatPoints final : public PointSource {
   const std::vector<PointAttribute>& attributes() const override { return attributes_; }
   std::optional<Vector3> viewpoint() const override { return source_->viewpoint(); }
   bool is_double() const override { return source_->is_double(); }
+  std::optional<std::size_t> rows() const override { return source_->rows(); }
+  void choose_rows(std::size_t begin, std::size_t end) override {
+    source_->choose_rows(begin, end);
+  }
   void rewind() override { source_->rewind(); }
 
   bool read(std::size_t most, PointBatch* batch) override {

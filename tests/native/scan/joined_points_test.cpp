@@ -69,6 +69,37 @@ TEST(JoinedPoints, AreThoseOfAllSourcesInOrder) {
   for (const std::size_t most : {1U, 2U, 100U}) EXPECT_EQ(all_of(&joined, most).x, expected);
 }
 
+TEST(JoinedPoints, CanBeReadInShares) {
+  const Scan first(0.0, 5, {{"k", false}});
+  const Scan none(5.0, 0, {{"k", false}});
+  const Scan last(5.0, 4, {{"k", false}});
+  ArraySource sources[] = {first.source(), none.source(), last.source()};
+  JoinedPoints joined({&sources[0], &sources[1], &sources[2]}, 2);
+  const std::vector<std::vector<double>> shares = {{0, 1}, {2, 3}, {4}, {}, {5, 6}, {7, 8}};
+  ASSERT_EQ(joined.share_count(), shares.size());
+  EXPECT_EQ(joined.count(), 9U);
+  for (const std::size_t most : {1U, 2U, 100U}) {
+    EXPECT_EQ(all_of(&joined, most).x, (std::vector<double>{0, 1, 2, 3, 4, 5, 6, 7, 8}));
+  }
+  PointBatch batch;
+  std::vector<std::size_t> clouds;
+  joined.rewind();
+  while (joined.read(100, &batch)) clouds.push_back(batch.cloud);
+  EXPECT_EQ(clouds, (std::vector<std::size_t>{0, 1, 2, 4, 5}));
+  // In any order, and again.
+  for (const std::size_t share : {5U, 0U, 3U, 2U, 1U, 4U, 4U}) {
+    joined.choose_share(share);
+    EXPECT_EQ(joined.count(), shares[share].size());
+    const Read read = all_of(&joined, 1);
+    EXPECT_EQ(read.x, shares[share]);
+    for (std::size_t i = 0; i < read.x.size(); ++i) {
+      EXPECT_EQ(read.attributes[i], static_cast<float>(10.0 * read.x[i]));
+    }
+    EXPECT_EQ(all_of(&joined, 100).x, shares[share]);
+  }
+  EXPECT_EQ(JoinedPoints({&sources[0]}, 5).share_count(), 1U);
+}
+
 TEST(JoinedPoints, HaveAttributesByName) {
   const Scan one(0.0, 2, {{"intensity", false}, {"age", false}});
   const Scan two(2.0, 1, {{"age", false}, {"red", true}, {"Paint.alpha", false}});

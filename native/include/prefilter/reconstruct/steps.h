@@ -2,8 +2,8 @@
 
 // The surface of a cloud in steps, which machines do side by side, each with files of its own.
 //
-// The cloud is several sources that are joined. Each is measured by itself; then each is counted
-// into the cells of all; the counts are merged; the surface is made in parts; and these are joined.
+// The cloud has shares: see JoinedPoints. Each is measured by itself; then each is counted into the
+// cells of all; the counts are merged; the surface is made in parts; and these are joined.
 // The mesh is, to the last bit, that of `reconstruct`, for any number of parts.
 #pragma once
 
@@ -20,7 +20,7 @@ namespace prefilter {
 /// The files that steps leave, of one work.
 struct StepFiles {
   std::string work;                   // what it is made of, in any words: other files are refused
-  std::vector<std::string> measures;  // one a source, in their order
+  std::vector<std::string> measures;  // one a share, in their order
   std::vector<std::string> counts;    // likewise
   std::string cells;
   std::vector<std::string> parts;  // in their order
@@ -31,13 +31,13 @@ struct StepFiles {
 /// are missing, damaged, or of another work. What they write is put in place when it is whole.
 void check_steps(const ReconstructOptions& options);
 
-/// Measures one source of a cloud, and writes measures[source].
-void measure_step(PointSource* source, std::size_t number, const StepFiles& files,
+/// Measures one share of a cloud, and writes measures[number].
+void measure_step(PointSource* share, std::size_t number, const StepFiles& files,
                   const ReconstructOptions& options);
 
-/// Counts the points of one source in the cells of all, and writes counts[source]. Needs all
+/// Counts the points of one share in the cells of all, and writes counts[number]. Needs all
 /// measures. Throws Error where points may be far from all others, which `reconstruct` leaves out.
-void count_step(PointSource* source, std::size_t number, const StepFiles& files,
+void count_step(PointSource* share, std::size_t number, const StepFiles& files,
                 const ReconstructOptions& options);
 
 /// Sums all counts up, and writes cells.

@@ -32,18 +32,22 @@ class ArraySource : public PointSource {
         weights_(weights),
         attributes_(attributes),
         names_(std::move(names)),
-        is_double_(is_double) {}
+        is_double_(is_double),
+        end_(size()) {}
 
-  std::optional<std::size_t> count() const override {
-    return std::visit([](const auto& rows) { return rows.size(); }, positions_);
-  }
+  std::optional<std::size_t> count() const override { return end_ - begin_; }
   bool has_normals() const override { return true; }
   const std::vector<PointAttribute>& attributes() const override { return names_; }
   bool is_double() const override { return is_double_; }
-  void rewind() override { next_ = 0; }
+  std::optional<std::size_t> rows() const override { return size(); }
+  void choose_rows(std::size_t begin, std::size_t end) override {
+    next_ = begin_ = begin;
+    end_ = end;
+  }
+  void rewind() override { next_ = begin_; }
 
   bool read(std::size_t most, PointBatch* batch) override {
-    const std::size_t n = std::min(most, *count() - next_);
+    const std::size_t n = std::min(most, end_ - next_);
     copy_rows(positions_, n, &batch->positions);
     copy_rows(normals_, n, &batch->normals);
     const auto copy = [&](std::span<const float> values, std::size_t width) {
@@ -58,6 +62,10 @@ class ArraySource : public PointSource {
   }
 
  private:
+  std::size_t size() const {
+    return std::visit([](const auto& rows) { return rows.size(); }, positions_);
+  }
+
   template <typename T>
   void copy_rows(const VectorRows& rows, std::size_t n, std::vector<std::array<T, 3>>* to) const {
     to->resize(n);
@@ -76,6 +84,8 @@ class ArraySource : public PointSource {
   std::span<const float> attributes_;
   std::vector<PointAttribute> names_;
   bool is_double_;
+  std::size_t begin_ = 0;
+  std::size_t end_;
   std::size_t next_ = 0;
 };
 

@@ -54,6 +54,13 @@ class PointSource {
   virtual std::optional<Vector3> viewpoint() const { return std::nullopt; }
   /// Whether positions need more than float precision (a file of doubles).
   virtual bool is_double() const { return false; }
+  /// How many rows points come from, where some of these can be read without those before them;
+  /// none where not. Rows that were not chosen count, too.
+  virtual std::optional<std::size_t> rows() const { return std::nullopt; }
+
+  /// Rewinds, and has the points of rows from `begin` up to `end` alone from now on. Only where
+  /// there are `rows`.
+  virtual void choose_rows(std::size_t /*begin*/, std::size_t /*end*/) {}
 
   /// Goes back to the first point.
   virtual void rewind() = 0;
@@ -75,6 +82,10 @@ class ChangedPoints : public PointSource {
   const std::vector<PointAttribute>& attributes() const override { return source_->attributes(); }
   std::optional<Vector3> viewpoint() const override { return source_->viewpoint(); }
   bool is_double() const override { return source_->is_double(); }
+  std::optional<std::size_t> rows() const override { return source_->rows(); }
+  void choose_rows(std::size_t begin, std::size_t end) override {
+    source_->choose_rows(begin, end);
+  }
   void rewind() override { source_->rewind(); }
 
  protected:

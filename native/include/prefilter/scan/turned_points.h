@@ -27,6 +27,10 @@ class TurnedPoints final : public ChangedPoints {
   TurnedPoints(PointSource* source, Side side, std::vector<Vector3> viewpoints);
 
   bool are_normals_directed() const override { return true; }
+  /// Viewpoints of points are in the order of these.
+  std::optional<std::size_t> rows() const override {
+    return viewpoints_.size() > 1 ? std::nullopt : source_->rows();
+  }
   void rewind() override;
   bool read(std::size_t most, PointBatch* batch) override;
 

@@ -29,6 +29,8 @@ class E57Reader:
     its translation; the origin tells nothing where there is only one scan, and no grid.
     """
 
+    can_seek = False
+
     def __init__(self, path: str) -> None:
         self._path = path
         self._pye57 = find_module("pye57", path, "E57 files", "pye57")
@@ -64,7 +66,9 @@ class E57Reader:
             self.viewpoint = (float(x), float(y), float(z))
             self._has_viewpoints = False
 
-    def chunks(self) -> Iterator[PointChunk]:
+    def chunks(self, begin: int = 0, end: int | None = None) -> Iterator[PointChunk]:
+        assert begin == 0
+        assert end is None
         with self._opened() as file:
             for k in range(file.scan_count):
                 yield from self._chunks_of(file, file.get_header(k))

@@ -29,6 +29,7 @@ class LasReader:
     """
 
     viewpoint = None
+    can_seek = True
 
     def __init__(self, path: str) -> None:
         self._path = path
@@ -60,9 +61,9 @@ class LasReader:
             self.attributes += [(name, True) for name in _COLORS]
             self._color_scale = self._find_color_scale()
 
-    def chunks(self) -> Iterator[PointChunk]:
-        found = 0
-        for points in self._pieces():
+    def chunks(self, begin: int = 0, end: int | None = None) -> Iterator[PointChunk]:
+        found = begin
+        for points in self._pieces(begin, end):
             found += len(points)
             positions = _positions(points)
             normals = _columns(points, self._normals) if self._normals else None
@@ -70,7 +71,7 @@ class LasReader:
             if self._has_colors:
                 columns.append(np.round(_columns(points, _COLORS) * self._color_scale))
             yield positions, normals, None, None, np.concatenate(columns, axis=1)
-        if found != self.count:
+        if found != (self.count if end is None else end):
             raise ValueError(
                 f"'{self._path}': ends after {found} of the {self.count} points in its header"
             )
@@ -98,14 +99,18 @@ class LasReader:
         with damage_of(self._path, "a LAS file"):
             return self._laspy.open(self._path)
 
-    def _pieces(self) -> Iterator[Any]:
+    def _pieces(self, begin: int = 0, end: int | None = None) -> Iterator[Any]:
         with self._opened() as file:
-            pieces = file.chunk_iterator(POINTS_AT_ONCE)
-            while True:
+            if begin > 0:
                 with damage_of(self._path, "a LAS file"):
-                    points = next(pieces, None)
-                if points is None or len(points) == 0:
+                    file.seek(begin)
+            while True:
+                some = POINTS_AT_ONCE if end is None else min(POINTS_AT_ONCE, end - begin)
+                with damage_of(self._path, "a LAS file"):
+                    points = file.read_points(some) if some > 0 else ()
+                if len(points) == 0:
                     return
+                begin += len(points)
                 yield points
 
 

@@ -46,8 +46,12 @@ class PointReader(Protocol):
         """Where the scanner stood, in the coordinates of the points; None where
         that differs among them, or is not known."""
 
-    def chunks(self) -> Iterator[PointChunk]:
-        """Yields points, some at a time, anew from the first."""
+    @property
+    def can_seek(self) -> bool:
+        """Whether points can be read without those before them."""
+
+    def chunks(self, begin: int = 0, end: int | None = None) -> Iterator[PointChunk]:
+        """Yields points, some at a time: all anew, or where it can seek, from one to another."""
 
 
 def find_module(name: str, path: str, files: str, package: str) -> ModuleType:

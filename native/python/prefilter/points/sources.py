@@ -32,6 +32,9 @@ from .scan_files import (
 Source: TypeAlias = str | os.PathLike[str] | ScanPoints
 """A file that `read_points` reads, or what it returns."""
 
+POINTS_A_SHARE = 1 << 26
+"""So many points of a source are summed up by themselves; machines can do that side by side."""
+
 _LARGEST_VALUE = 1e30
 _ENOUGH = 1_000_000
 _Told: TypeAlias = tuple[npt.NDArray[np.float64], npt.NDArray[np.float32] | None]
@@ -160,8 +163,9 @@ def joined_cloud(
     if alignment is not None:
         pairs = zip(native, alignment.matrices, strict=True)
         native = tuple(_native.MovedPoints(points, matrix) for points, matrix in pairs)
+    joined = _native.JoinedPoints(native, POINTS_A_SHARE)
     return Cloud(
-        native[0] if len(native) == 1 else _native.JoinedPoints(native),
+        native[0] if joined.share_count == 1 else joined,
         tuple(dict.fromkeys(scan.direction for scan in scans)),
         is_read=bool(missing) or alignment is not None,
         alignment=alignment,

@@ -2,6 +2,7 @@
 
 """`reconstruct_file` in steps that machines do side by side, each with files of its own."""
 
+import functools
 import hashlib
 import json
 import os
@@ -19,8 +20,8 @@ from .reconstruction import CHECKS, ReconstructionReport, fill_in
 from .sources import Cloud, joined_cloud
 
 STEPS = ("measure", "count", "merge", "part", "join")
-"""In their order: "measure" and "count" do each source by itself, "part" each part of the surface;
-each needs all of those before it."""
+"""In their order: "measure" and "count" do each share of the points by itself, "part" each part of
+the surface; each needs all of those before it."""
 
 _MAGIC = b"REFSTEP1"
 _SUM = 8
@@ -62,9 +63,15 @@ class Steps:
         self._work = self._fingerprint()
 
     def count(self, step: str) -> int:
-        """Returns how many runs of a step there are, which may be done side by side."""
-        each = {"measure": len(self.sources), "count": len(self.sources), "part": self._parts}
-        return each.get(step, 1)
+        """Returns how many runs of a step there are, which may be done side by side.
+
+        Raises:
+            ValueError: A file is damaged, or has no normals.
+            OSError: A file cannot be read.
+        """
+        if step == "part":
+            return self._parts
+        return self._shares if step in ("measure", "count") else 1
 
     def file(self, step: str, number: int) -> Path:
         """Returns what a run of a step leaves."""
@@ -91,9 +98,10 @@ class Steps:
             OSError: A file of an earlier step is missing or damaged, or cannot be written.
             Cancelled: `progress` returned False.
         """
-        cloud, options = self._begun(progress)
+        options, cloud = self._options(), self._cloud
+        options.are_sides_known = cloud.are_sides_known
         if isinstance(cloud.points, _native.JoinedPoints) and step in ("measure", "count"):
-            cloud.points.choose(number)
+            cloud.points.choose_share(number)
         recover(self._folder)
         told = as_progress(progress)
         _native.reconstruct_step(step, cloud.points, number, self._files(), options, told)
@@ -103,7 +111,8 @@ class Steps:
     ) -> ReconstructionReport:
         """Does the last step: writes the surface to a .ply file. Raises what `run` does."""
         place = as_target(target)
-        cloud, options = self._begun(progress)
+        options, cloud = self._options(), self._cloud
+        options.are_sides_known = cloud.are_sides_known
         recover(place.parent)
         report = ReconstructionReport()
         found = _native.join_steps(
@@ -112,22 +121,24 @@ class Steps:
         fill_in(report, found, cloud)
         return report
 
-    def _begun(self, progress: ProgressCallback | None) -> tuple[Cloud, _native.ReconstructOptions]:
+    @functools.cached_property
+    def _cloud(self) -> Cloud:
+        wanted = as_wanted(self._settings["direction"], self._settings["viewpoint"])
+        choice = as_choice(*(self._settings[name] for name in ("classes", "returns", "box")))
+        threads = self._settings["threads"]
+        sources = list(self.sources)
+        return joined_cloud(sources, wanted, None, threads, choice, must_have_normals=True)
+
+    @property
+    def _shares(self) -> int:
+        points = self._cloud.points
+        return points.share_count if isinstance(points, _native.JoinedPoints) else 1
+
+    def _options(self) -> _native.ReconstructOptions:
         options = set_options(_native.ReconstructOptions(), CHECKS, self._settings)
         options.folder = os.fsencode(self._folder)
         options.support = True
-        wanted = as_wanted(self._settings["direction"], self._settings["viewpoint"])
-        choice = as_choice(*(self._settings[name] for name in ("classes", "returns", "box")))
-        cloud = joined_cloud(
-            list(self.sources),
-            wanted,
-            progress,
-            self._settings["threads"],
-            choice,
-            must_have_normals=True,
-        )
-        options.are_sides_known = cloud.are_sides_known
-        return cloud, options
+        return options
 
     def _files(self) -> _native.StepFiles:
         def all_of(step: str) -> list[bytes]:
