@@ -13,6 +13,8 @@ from prefilter._command.many import Pair
 from prefilter._command.program import COMMANDS
 from prefilter._command.rasterize import SVG
 from prefilter._work.files import pictures
+from prefilter._work.outcome import up_to_date
+from prefilter._work.up_to_date import KEY, PICTURES, is_up_to_date
 
 from ..bridge.curves import is_curve
 from ..bridge.files import scenes
@@ -60,11 +62,14 @@ def add(commands: Any) -> None:
     presets.add_flag(parser)
     add_flags(parser, RasterizeSettings)
     tasks.add_flags(parser, "INPUT")
+    command.add_skipping(parser)
     parser.set_defaults(execute=_rasterize, usage_error=parser.error)
 
 
 def _rasterize(options: argparse.Namespace) -> None:
     rasterize.check_files(options, _SOURCES)
+    if options.skip_up_to_date:
+        command.check_can_tell(options, options.target, PICTURES)
     settings = rasterize.settings_of(options, presets.host(RASTERIZE))
     many.run(options, partial(_rasterize_one, options, settings))
 
@@ -79,6 +84,12 @@ def _rasterize_one(options: argparse.Namespace, settings: RasterizeSettings, pai
         (objects,) = scenes.load([pair.source], _is_wanted(is_curve), _CURVES)
         request = Request("curves", scenes.chosen(objects, options.object, _CURVES))
     work = Rasterization.read(request, settings, bpy.context, target=target)
+    number = work.inputs() if options.skip_up_to_date else None
+    if number is not None:
+        if is_up_to_date([target], number):
+            command.say(up_to_date([target]))
+            return
+        work.metadata = {KEY: number}
     command.tell(command.done(work))
 
 

@@ -2,6 +2,7 @@
 
 """Shapes to an image in three steps: read from Blender, compute, write to Blender or to a file."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -75,6 +76,8 @@ class Rasterization:
         """Keeps copies of what was read; use `Rasterization.read`."""
         self.warnings = warnings
         self.load: Load | None = None
+        self.metadata: Mapping[str, str] | None = None
+        """What a file is to keep, by keys."""
         self._source = source
         self._kind = request.source
         self._names = [obj.name for obj in request.objects]
@@ -128,6 +131,14 @@ class Rasterization:
             )
         return cls(source, request, settings, warnings, image=image, target=target)
 
+    def inputs(self) -> str | None:
+        """Returns a number of what was read, and of how it is drawn; None where it may not be all.
+
+        Raises:
+            OSError: A file cannot be read.
+        """
+        return self._source.inputs(self._settings)
+
     def compute(self, progress: Progress) -> None:
         """Draws the shapes.
 
@@ -146,7 +157,7 @@ class Rasterization:
         if self._target is None:
             self._drawing = pixels.drawing(made, settings)
         else:
-            self._staged = stage(self._target, made, settings)
+            self._staged = stage(self._target, made, settings, self.metadata)
         self._size, self._place = (drawn.width, drawn.height), drawn.place
         self.load = Load(drawn.width * drawn.height, settings)
         go_on(progress, 1.0)

@@ -112,6 +112,74 @@ def test_uv_mask(blend, tmp_path):
     np.testing.assert_array_equal(values[..., 0], np.repeat([[1, 0]], 8, axis=1).repeat(8, axis=0))
 
 
+def change_scene(blend, change):
+    bpy.ops.wm.open_mainfile(filepath=str(blend))
+    change()
+    bpy.ops.wm.save_as_mainfile(filepath=str(blend))
+
+
+def move_second():
+    bpy.data.objects["Second"].location.x += 0.25
+
+
+def paint_second():
+    second = bpy.data.objects["Second"]
+    second.data.materials.clear()
+    outlines.colored(second, (0, 1, 0))
+
+
+def move_uvs():
+    bpy.data.meshes["Quad"].uv_layers[0].data[1].uv.x = 0.75
+
+
+def move_hidden():
+    bpy.data.objects["Hidden"].location.x += 0.25
+
+
+@pytest.mark.parametrize(
+    ("change", "flags", "decides"),
+    [
+        (move_second, (), True),
+        (paint_second, (), True),
+        (move_hidden, (), False),
+        (move_hidden, ("--filter", "tent"), True),
+        (move_hidden, ("--threads", 1), False),
+        (move_uvs, ("--uv",), True),
+        (move_second, ("--uv",), False),
+    ],
+)
+def test_what_is_up_to_date_is_left_alone(blend, tmp_path, change, flags, decides):
+    target = tmp_path / "out.png"
+    uv = ("--uv",) if "--uv" in flags else ()
+    words = ("rasterize", blend, target, "--side", 40, *uv, "--skip-up-to-date")
+    assert run(*words).returncode == 0
+    first = target.read_bytes()
+    again = run(*words)
+    assert "Up to date" in again.stdout, again.stdout + again.stderr
+    change_scene(blend, change)
+    result = run(*words, *flags)
+    assert result.returncode == 0, result.stderr
+    assert ("Up to date" not in result.stdout) is decides
+    assert (target.read_bytes() != first) is decides
+    run(*words[:-1], *flags)
+    made = picture(target)[1]
+    target.write_bytes(first)
+    run(*words, *flags)
+    np.testing.assert_array_equal(picture(target)[1], made)
+
+
+def test_drawings_that_stand_alone_are_left_alone(svg, tmp_path):
+    words = ("rasterize", svg, tmp_path / "out.exr", "--side", 40, "--skip-up-to-date")
+    for expected in (False, True):
+        assert ("Up to date" in run(*words).stdout) is expected
+    svg.write_text(SVG.replace("#ff0000", "#0000ff"))
+    for expected in (False, True):
+        assert ("Up to date" in run(*words).stdout) is expected
+    svg.write_text(SVG.replace("</svg>", "<text>a</text></svg>"))
+    for _ in range(2):
+        assert "Up to date" not in run(*words).stdout
+
+
 def test_svg(svg, tmp_path):
     result = run("rasterize", svg, "out.png", "--density", 2, "--margin", 0, cwd=tmp_path)
     assert result.returncode == 0, result.stderr

@@ -3,7 +3,7 @@
 """What images are made of: contours that are filled, a UV map, an SVG file."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -18,6 +18,7 @@ from ...shapes.svg_image import SvgPicture
 from ..matrices import product
 from ..memory import Memory, free_memory
 from ..progress import Progress, go_on, share
+from ..up_to_date import fingerprint, fingerprint_of, stands_alone
 from .frames import Frame, check_memory, fitted_frame, whole_frame
 from .outlines import add_contour, box_of
 
@@ -61,6 +62,13 @@ class Source(Protocol):
     def name(self) -> str:
         """What the image is named after."""
 
+    def inputs(self, settings: RasterizeSettings) -> str | None:
+        """Returns a number of all that decides; None where it is not all known.
+
+        Raises:
+            OSError: A file cannot be read.
+        """
+
     def drawn(self, settings: RasterizeSettings, progress: Progress) -> Drawn:
         """Returns the shapes in an image.
 
@@ -94,6 +102,14 @@ class Layers:
     """Returns where the image is."""
     grown: float = 0.0
     """How many pixels farther than their contours shapes reach."""
+
+    def inputs(self, settings: RasterizeSettings) -> str:
+        """Returns a number of the contours, the colors and the settings."""
+        arrays = [contour for layer in self.layers for contour in layer.contours]
+        looks = [[len(each.contours), each.color, each.fill_rule] for each in self.layers]
+        if self.frame is not None:
+            arrays.append(self.frame.to_pixels)
+        return fingerprint_of(arrays, {**_decisive(settings), "looks": looks, "grown": self.grown})
 
     def drawn(self, settings: RasterizeSettings, progress: Progress) -> Drawn:
         """Returns the shapes in an image."""
@@ -133,6 +149,10 @@ class _Svg:
     placed: Callable[[FloatArray], Any]
     """Returns where the image is, of half of its sides."""
 
+    def inputs(self, settings: RasterizeSettings) -> str | None:
+        """Returns a number of the file and the settings."""
+        return fingerprint([self.path], _decisive(settings)) if stands_alone(self.path) else None
+
     def drawn(self, settings: RasterizeSettings, progress: Progress) -> Drawn:
         """Reads the file, and returns what draws it into an image."""
         fonts = [settings.font_folder] if settings.font_folder else None
@@ -171,6 +191,14 @@ class _Svg:
         if more > 0:
             warnings[_MOST_WARNINGS:] = [f"and {more} more"]
         return [f"'{self.path.name}': {'; '.join(warnings)}"] if warnings else []
+
+
+def _decisive(settings: RasterizeSettings) -> dict[str, Any]:
+    return {
+        name: value
+        for name, value in asdict(settings).items()
+        if name not in ("threads", "filepath", "image_name")
+    }
 
 
 def uv_layers(
