@@ -3,7 +3,7 @@
 """The job templates that the zip has: for Open Job Description, and for Flamenco 3.
 
 PREFILTER_OPENJD is the program `openjd`, PREFILTER_BLENDER_COMMAND one that starts a Blender with
-the extension; scripts/test sets both. Without them, what needs them is skipped.
+the extension; scripts/test sets both, for two Blenders. Without them, what needs them is skipped.
 """
 
 import json
@@ -151,6 +151,26 @@ def test_a_surface_of_a_million_points(tmp_path):
     assert log.count("openjd_status: Step ") == 2 + 2 + 1 + 2
     assert "openjd_status: Reconstructed 'surface.ply'" in log
     assert surface.read_bytes().startswith(b"ply\n")
+
+
+@needs_openjd
+@needs_blender
+def test_the_texture_cache_of_a_scene(tmp_path):
+    if run(BLENDER, "--version") < "Blender 5.2":
+        pytest.skip("this Blender has no texture cache")
+    scene = tmp_path / "scene.blend"
+    made = (
+        "import bpy; bpy.ops.wm.read_homefile(use_empty=True);"
+        f"bpy.ops.wm.obj_import(filepath={str(write_model(tmp_path))!r});"
+        f"bpy.ops.wm.save_as_mainfile(filepath={str(scene)!r})"
+    )
+    run(BLENDER, "--background", "--python-exit-code", "1", "--python-expr", made)
+    log = run_template("texture_cache", "TurnOn", Scene=scene, Tasks=2)
+    assert log.count("openjd_progress: 100.0") == 3
+    files = [path for path in tmp_path.rglob("*.tx") if b"PrefilterInputs=" in path.read_bytes()]
+    assert len(files) == 2
+    shown = "import bpy; assert bpy.context.scene.render.use_texture_cache"
+    run(BLENDER, "--background", scene, "--python-exit-code", "1", "--python-expr", shown)
 
 
 def test_flamenco_bakes_an_image_a_task():
