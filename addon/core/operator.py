@@ -15,7 +15,7 @@ from bpy.props import BoolProperty
 from . import queue, redo, running
 from .doing import Compute, Doing, read_at_once
 from .jobs import Progress, Work
-from .outcome import FAILURES
+from .outcome import FAILURES, reason
 from .parts import PartedWork
 from .queue import Queued, State
 from .running import TICK_SECONDS, Run
@@ -164,10 +164,10 @@ class BackgroundOperator(Doing):
         except prefilter.Cancelled:
             return self._end_cancelled(context)
         except FAILURES as error:
-            self._leave(context, State.FAILED, str(error))
+            self._leave(context, State.FAILED, reason(error))
             return self._fail(error)
         except BaseException as error:
-            self._leave(context, State.FAILED, str(error))
+            self._leave(context, State.FAILED, reason(error))
             raise
 
     def cancel(self, context: bpy.types.Context) -> None:
@@ -179,7 +179,7 @@ class BackgroundOperator(Doing):
         except prefilter.Cancelled:
             pass
         except FAILURES as error:
-            self.report({"WARNING"}, report(str(error)))
+            self.report({"WARNING"}, report(reason(error)))
         finally:
             self._let_go()
             if self._queued is not None:
@@ -226,10 +226,10 @@ class BackgroundOperator(Doing):
                 own = self._queued.switches if self._queued is not None else None
                 self._run = Run(context, self._key(), is_redo=bool(self._replaced), own=own)
         except FAILURES as error:
-            self._leave(context, State.FAILED, str(error))
+            self._leave(context, State.FAILED, reason(error))
             return self._fail(error)
         except BaseException as error:
-            self._leave(context, State.FAILED, str(error))
+            self._leave(context, State.FAILED, reason(error))
             raise
         if self._queued is not None:
             self._queued.begin(self._run)
@@ -386,8 +386,9 @@ class BackgroundOperator(Doing):
         self.report({"INFO"}, report("{} canceled").format(report(self.doing)))
         return {"CANCELLED"}
 
-    def _fail(self, error: object) -> set[str]:
-        self._problem = report(str(error))
+    def _fail(self, problem: BaseException | str) -> set[str]:
+        text = problem if isinstance(problem, str) else reason(problem)
+        self._problem = report(text)
         self.report({"ERROR"}, self._problem)
         return {"CANCELLED"}
 

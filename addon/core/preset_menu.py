@@ -10,6 +10,7 @@ from bl_operators.presets import AddPresetBase
 from bl_ui.utils import PresetPanel
 from bpy.props import StringProperty
 
+from .outcome import reason
 from .presets import SUFFIX, Kind, shown_name
 from .properties import reset
 from .registration import Step, classes, registration
@@ -48,7 +49,7 @@ class PREFILTER_OT_apply_preset(bpy.types.Operator):
         try:
             found = kind.read(Path(self.filepath))
         except (ValueError, OSError) as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, reason(error))
             return {"CANCELLED"}
         group = getattr(context.scene, kind.group)
         for name, value in found.items():
@@ -115,7 +116,7 @@ class _PresetFile(_OfKind):
             done = self.transfer(context, Path(bpy.path.abspath(self.filepath)))
             self.report({"INFO"}, report(done))
         except (ValueError, OSError) as error:
-            self.report({"ERROR"}, report(str(error)))
+            self.report({"ERROR"}, report(reason(error)))
             return {"CANCELLED"}
         return {"FINISHED"}
 

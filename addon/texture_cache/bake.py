@@ -26,7 +26,7 @@ from ..bridge.images import FloatArray, automatic_bounds, capped
 from ..bridge.tile_surfaces import TileSurfaces
 from ..core.alpha import associated, unassociated
 from ..core.jobs import Progress, at_once, go_on, share
-from ..core.outcome import Outcome
+from ..core.outcome import Outcome, reason
 from ..core.translations import marked
 from ..core.wording import Sentence, counted, joined, listed
 from . import states
@@ -139,7 +139,7 @@ class CacheBake:
                     notes.append(Sentence("image '{}': unpacked into {}", image.name, names))
                 files[image] = tx.sources(image)
             except (ValueError, OSError) as error:
-                warnings.append(str(error))
+                warnings.append(reason(error))
         users = {image: viewers[image].objects for image in files if not viewers[image].others}
         found = meshes.surfaces_of_images(users, depsgraph)
         parts = TileSurfaces()

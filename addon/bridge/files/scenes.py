@@ -9,6 +9,7 @@ from typing import Any
 
 import bpy
 
+from ...core.outcome import reason
 from ...core.wording import listed
 from . import staging
 from .complete import check_whole
@@ -140,7 +141,7 @@ def save(target: Path, names: Sequence[str]) -> None:
         else:
             staged = staging.stage_folder(target, _export)
     except (RuntimeError, OSError) as error:
-        raise OSError(f"file '{target}': cannot write it: {_reason(error)}") from error
+        raise OSError(f"file '{target}': cannot write it: {_last_line(error)}") from error
     try:
         staged.commit()
     finally:
@@ -159,9 +160,11 @@ def _export(path: Path) -> None:
     )
 
 
-def _reason(error: RuntimeError | OSError) -> str:
+def _last_line(error: RuntimeError | OSError) -> str:
     """Returns what an operator says of its failure; of one in Python, its last line."""
-    lines = [line for line in str(error).splitlines() if line and not line.startswith("Location:")]
+    lines = [
+        line for line in reason(error).splitlines() if line and not line.startswith("Location:")
+    ]
     return lines[-1] if lines else type(error).__name__
 
 
@@ -179,7 +182,7 @@ def save_open(path: str) -> None:
             staged.insert(-1, version)
         staging.commit_all(staged)
     except (RuntimeError, OSError) as error:
-        raise OSError(f"--save: cannot write '{path}': {_reason(error)}") from error
+        raise OSError(f"--save: cannot write '{path}': {_last_line(error)}") from error
     finally:
         for file in staged:
             file.discard()

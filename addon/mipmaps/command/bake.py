@@ -19,7 +19,7 @@ from ...bridge import images
 from ...bridge.files import scenes, staging
 from ...core import command, presets
 from ...core.flags import add_flags, given, tables
-from ...core.outcome import FAILURES
+from ...core.outcome import FAILURES, reason
 from ...core.wording import listed
 from .. import file_names, reading, udim, unnamed
 from ..choices import ModelSettings, Settings
@@ -173,7 +173,7 @@ def _bake_some(options: argparse.Namespace, settings: Settings) -> None:
         except FAILURES as error:
             if len(chosen) == 1:
                 raise
-            command.warn([str(error)])
+            command.warn([reason(error)])
             failed.append(image.name)
     if options.save and len(failed) < len(chosen):
         scenes.save_open(path)

@@ -16,7 +16,7 @@ from prefilter._work.mipmaps.outputs import Outputs
 
 from ...bridge import images, meshes
 from ...bridge.files.staging import commit_all
-from ...core.outcome import FAILURES
+from ...core.outcome import FAILURES, reason
 from .. import source
 from ..bake import Bake
 from ..choices import TEXTURE_SPACE_FILTERS, Settings
@@ -106,7 +106,7 @@ class Export:
                 try:
                     made, bake = self._fitted(picture)
                 except FAILURES as error:
-                    text = f"texture '{picture.image.name}' stays as it is: {error}"
+                    text = f"texture '{picture.image.name}' stays as it is: {reason(error)}"
                     log.warning(f"Prefilter: {text}", popup=True)
                     self.failed.append(picture.image.name)
                     self.warnings.append(text)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from prefilter._work.files import png
 
 from ...bridge import images, level_images
-from ...core.outcome import FAILURES
+from ...core.outcome import FAILURES, reason
 
 _IDENTIFIER = b"\xabKTX 20\xbb\r\n\x1a\n"
 
@@ -38,7 +38,7 @@ class Import:
             if levels[0].dtype != np.uint8:
                 raise ValueError(f"holds {levels[0].dtype}; bytes are needed, as glTF has them")
         except FAILURES as error:
-            gltf.log.error(f"Prefilter: texture '{name}' cannot be read: {error}")
+            gltf.log.error(f"Prefilter: texture '{name}' cannot be read: {reason(error)}")
             return
         levels = [_with_colors(level) for level in levels]
         picture = base64.b64encode(png.encoded(levels[0])).decode("ascii")
@@ -61,7 +61,9 @@ class Import:
                 floats = [level.astype(np.float32) / np.float32(255) for level in levels]
                 level_images.stage_levels(picture, floats).commit()
             except FAILURES as error:
-                gltf.log.error(f"Prefilter: the levels of '{image.name}' are not kept: {error}")
+                gltf.log.error(
+                    f"Prefilter: the levels of '{image.name}' are not kept: {reason(error)}"
+                )
         self._kept.clear()
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ...core.outcome import Outcome
+from ...core.outcome import Outcome, reason
 from ...core.wording import Sentence, counted, joined, listed, together
 from .plan import LeftOut
 
@@ -31,8 +31,7 @@ class Results:
 
     def fail(self, names: Iterable[str], error: BaseException) -> None:
         """Notes that images cannot be baked."""
-        text = str(error) or type(error).__name__
-        self.failed += without_names(names, text)
+        self.failed += without_names(names, reason(error))
 
     def outcome(self) -> Outcome:
         """Returns what was done, with all that a user should look at.

@@ -5,7 +5,7 @@
 import bpy
 
 from ...bridge import editors
-from ...core.outcome import FAILURES
+from ...core.outcome import FAILURES, reason
 from ...core.properties import single_property
 from ...core.translations import report
 from ..choices import RemoveSettings
@@ -51,7 +51,7 @@ class PREFILTER_OT_remove_levels(PictureOperator, bpy.types.Operator):
                 editors.show(context, chosen[0])
             outcome = removal.remove(chosen, self.kinds)
         except FAILURES as error:
-            self.report({"ERROR"}, report(str(error)))
+            self.report({"ERROR"}, report(reason(error)))
             return {"CANCELLED"}
         editors.redraw()
         self.report({"INFO"}, report(outcome.summary))

@@ -5,7 +5,7 @@
 import bpy
 
 from ...bridge.image_operator import ImageOperator
-from ...core.outcome import FAILURES
+from ...core.outcome import FAILURES, reason
 from ...core.properties import properties, values
 from ...core.translations import report, tr
 from ...core.wording import Sentence
@@ -52,7 +52,7 @@ class PREFILTER_OT_use_as_decal(ImageOperator, bpy.types.Operator):
             self.image = image.name
             outcome = use_as_decal(image, values(self, DecalSettings), context)
         except FAILURES as error:
-            self.report({"ERROR"}, report(str(error)))
+            self.report({"ERROR"}, report(reason(error)))
             return {"CANCELLED"}
         for warning in outcome.warnings:
             self.report({"WARNING"}, report(warning))

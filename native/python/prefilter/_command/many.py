@@ -11,7 +11,7 @@ from typing import Any
 
 from .._border.staging import check_target
 from .._work.files.target_files import PLACE
-from .._work.outcome import FAILURES, up_to_date
+from .._work.outcome import FAILURES, reason, up_to_date
 from .._work.up_to_date import KEY, PICTURES, fingerprint, is_up_to_date
 from .._work.wording import listed
 from . import tasks, telling
@@ -100,7 +100,7 @@ def run(
             except FAILURES as error:
                 if len(chosen) == 1:
                     raise
-                telling.warn([f"'{pair.source}': {error}"])
+                telling.warn([f"'{pair.source}': {reason(error)}"])
                 failed.append(pair.source)
     if failed:
         raise ValueError(f"not done: {listed(failed)}")

@@ -47,7 +47,7 @@ def execute(options: argparse.Namespace) -> None:
 
 def ended(run: Callable[[], object]) -> int:
     """Runs a command; returns its exit status, of which stderr says why it is not 0."""
-    from .._work.outcome import FAILURES
+    from .._work.outcome import FAILURES, reason
 
     telling.speak()
     with stopping.heeded():
@@ -62,7 +62,7 @@ def ended(run: Callable[[], object]) -> int:
                 return stopping.status()
             if not isinstance(error, FAILURES):
                 raise
-            telling.fail(str(error))
+            telling.fail(reason(error))
             return 1
     return 0
 

@@ -2,6 +2,7 @@
 
 """What work ends with."""
 
+import os
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -10,6 +11,14 @@ from .wording import listed
 
 FAILURES = (ValueError, OSError, MemoryError)
 """What work raises for a reason that the user can act on."""
+
+
+def reason(error: BaseException) -> str:
+    """Returns what an error says: one of the system without its number."""
+    if not isinstance(error, OSError) or error.strerror is None:
+        return str(error) or type(error).__name__
+    names = [os.fsdecode(name) for name in (error.filename, error.filename2) if name is not None]
+    return f"{error.strerror}: {' -> '.join(map(repr, names))}" if names else error.strerror
 
 
 @dataclass(frozen=True)

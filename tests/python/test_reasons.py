@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""What users are told of errors."""
+
+import errno
+
+import pytest
+from prefilter._work.outcome import reason
+
+FULL = "No space left on device"
+
+
+@pytest.mark.parametrize(
+    ("error", "expected"),
+    [
+        (OSError(errno.ENOSPC, FULL, "/a/o.exr"), f"{FULL}: '/a/o.exr'"),
+        (OSError(errno.ENOSPC, FULL, b"/a/o.exr"), f"{FULL}: '/a/o.exr'"),
+        (OSError(errno.EXDEV, "Other device", "a", None, "b"), "Other device: 'a' -> 'b'"),
+        (OSError(errno.ENOSPC, FULL), FULL),
+        (OSError("file 'a': cannot be written"), "file 'a': cannot be written"),
+        (ValueError("depth: 30; 1 to 15 are allowed"), "depth: 30; 1 to 15 are allowed"),
+        (MemoryError(), "MemoryError"),
+    ],
+)
+def test_errors_of_the_system_have_no_number(error, expected):
+    assert reason(error) == expected
