@@ -2,6 +2,7 @@
 
 """Points of LAS and LAZ files, read by laspy."""
 
+import functools
 import importlib
 import os
 import re
@@ -59,7 +60,6 @@ class LasReader:
         self.attributes += [(name, True) for name in _BYTES]
         if self._has_colors:
             self.attributes += [(name, True) for name in _COLORS]
-            self._color_scale = self._find_color_scale()
 
     def chunks(self, begin: int = 0, end: int | None = None) -> Iterator[PointChunk]:
         found = begin
@@ -82,9 +82,10 @@ class LasReader:
             with damage_of(self._path, "a LAZ file"):
                 check_chunks(self._path, header, importlib.import_module("lazrs"))
 
-    def _find_color_scale(self) -> np.float32:
+    @functools.cached_property
+    def _color_scale(self) -> np.float32:
         # Colors have 16 bits, of which some programs fill only the lower 8. Many that are not black
-        # tell which.
+        # tell which. Of thousands of files, a task on a farm reads but one.
         colored = 0
         for points in self._pieces():
             colors = _columns(points, _COLORS)
