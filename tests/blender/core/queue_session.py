@@ -153,6 +153,7 @@ def steps_of_their_own(stage: Stage) -> Iterator[None]:
     yield from stage.redo_panel()
     panel = RedoPanel(stage.window, stage.area)
     yield from panel.step("depth")
+    yield from until(lambda: counts() != told["after"])
     told["redone"] = counts()
     bpy.ops.ed.undo()
     yield
