@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-# compile_together TARGET ROOT COUNT: compiles files of a folder COUNT at a time, as much of what each takes is in
+# compile_together TARGET ROOT COUNT [ALWAYS]: compiles files of a folder COUNT at a time, as much of what each takes is in
 # headers. ROOT is a folder that holds them all, and is searched for headers.
 #
 # Names in nameless namespaces are to differ within a folder, then. Each file compiles by itself, too, as it does with
-# CMAKE_UNITY_BUILD=OFF; files with options of their own always do. CMake's own units name files by whole paths, so that
+# CMAKE_UNITY_BUILD=OFF unless ALWAYS is given; files with options of their own always do. CMake's own units name files by whole paths, so that
 # ccache would find nothing of another checkout.
 function(compile_together target root count)
-  if(DEFINED CMAKE_UNITY_BUILD AND NOT CMAKE_UNITY_BUILD)
+  if(NOT "${ARGN}" STREQUAL ALWAYS AND DEFINED CMAKE_UNITY_BUILD AND NOT CMAKE_UNITY_BUILD)
     return()
   endif()
   # It warns of a class with a member of a nameless namespace wherever that is not in the unit's own file.

@@ -80,8 +80,8 @@ cross_headers() {
   )
 }
 
-# configure_cross PLATFORM [NAME=VALUE...]: prepares build/cross/<platform>. Each file compiles by itself there: another
-# compiler warns of names that files of a unit share, and system headers define words.
+# configure_cross PLATFORM [NAME=VALUE...]: prepares build/cross/<platform>. Each file of the library and its tests compiles
+# by itself there: another compiler warns of names that files of a unit share, and system headers define words.
 configure_cross() {
   local headers
   ensure_zig
