@@ -115,7 +115,7 @@ def arc_residual(arc: list[complex], point: complex) -> float:
         return 0.0
 
     def unit(z: complex) -> complex:
-        turned = complex(z) * cmath.exp(-1j * turn.real)
+        turned = z * cmath.exp(-1j * turn.real)
         return complex(turned.real / rx, turned.imag / ry)
 
     a, b = unit(start), unit(end)

@@ -85,12 +85,12 @@ def test_arcs_are_on_their_ellipses():
         for letter, numbers in outline.segments():
             if letter != "W":
                 continue
-            control, weight, end = complex(*numbers[:2]), numbers[2], complex(*numbers[3:])
-            for t in np.linspace(0, 1, 7):
-                shares = (1 - t) ** 2, 2 * weight * t * (1 - t), t * t
-                point = np.dot(shares, (at, control, end)) / sum(shares)
-                assert arc_residual(arc, point) < 1e-9, text
-            swept += (np.conj(control - at) * (end - control)).imag
+            control, weight, end = complex(*numbers[:2]), float(numbers[2]), complex(*numbers[3:])
+            for t in (step / 6 for step in range(7)):
+                before, between, after = (1 - t) ** 2, 2 * weight * t * (1 - t), t * t
+                point = before * at + between * control + after * end
+                assert arc_residual(arc, point / (before + between + after)) < 1e-9, text
+            swept += ((control - at).conjugate() * (end - control)).imag
             at = end
         assert (swept > 0.0) == (arc[3].imag == 1.0), text
 
