@@ -128,7 +128,7 @@ def test_data_are_sheets_too(color):
         ("link.css", "neither in the file nor in its folder"),
         ("none.css", "no file 'none.css'"),
         ("in", "no file 'in'"),
-        ("a%00.css", "cannot be read"),
+        ("a%00.css", "damaged"),
         ("http://[", "damaged"),
         ("data:text/css", "damaged"),
         ("", "no style sheet"),
@@ -137,7 +137,10 @@ def test_data_are_sheets_too(color):
 )
 def test_files_elsewhere_are_not_read(color, tmp_path, address, words):
     (tmp_path / "d" / "in").mkdir(parents=True)
-    (tmp_path / "d" / "link.css").symlink_to(tmp_path / "a.css")
+    link = tmp_path / "d" / "link.css"
+    link.symlink_to(tmp_path / "a.css")
+    if address == link.name and not link.is_symlink():
+        pytest.skip("Wine makes no links")
     found, (warning,) = color({"a.css": RED}, "", imported(f'"{address}"'))
     assert found == "black"
     assert warning.startswith("@import '")

@@ -45,6 +45,9 @@ def read_address(address: str, place: Place | None, most_bytes: int) -> tuple[by
     except ValueError:
         raise UnusableError("as its address is damaged") from None
     name = unquote(parts.path)
+    # Windows tells of no file, and that by a name with a zero in it.
+    if "\0" in name:
+        raise UnusableError("as its address is damaged")
     # Asking Windows for a path such as //computer/folder would ask that computer.
     if parts.scheme or parts.netloc or PureWindowsPath(name).drive:
         raise ElsewhereError("as it is neither in the file nor in its folder")
