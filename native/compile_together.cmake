@@ -4,8 +4,8 @@
 # headers. ROOT is a folder that holds them all, and is searched for headers.
 #
 # Names in nameless namespaces are to differ within a folder, then. Each file compiles by itself, too, as it does with
-# CMAKE_UNITY_BUILD=OFF unless ALWAYS is given; files with options of their own always do. CMake's own units name files by whole paths, so that
-# ccache would find nothing of another checkout.
+# CMAKE_UNITY_BUILD=OFF unless ALWAYS is given; files with options of their own always do. CMake's own units name files by
+# whole paths, so that ccache would find nothing of another checkout.
 function(compile_together target root count)
   if(NOT "${ARGN}" STREQUAL ALWAYS AND DEFINED CMAKE_UNITY_BUILD AND NOT CMAKE_UNITY_BUILD)
     return()

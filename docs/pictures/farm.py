@@ -5,6 +5,7 @@
 usage: blender --background --python farm.py -- TARGET.png
 """
 
+import re
 import subprocess
 import sys
 import tempfile
@@ -41,8 +42,8 @@ def main(target: Path) -> None:
         for k, file in enumerate(files):
             own = share == k
             ply.write_points(file, int(own.sum()), [(cloud[0][own], cloud[1][own])])
-        whole = made_in_steps(files, work)
-        part = parts(whole)
+        whole, cell = made_in_steps(files, work)
+        part = parts(whole, cell * 2**DEPTH)
         subjects = [
             Subject(
                 "Count",
@@ -70,8 +71,8 @@ def shares(points: Floats) -> np.ndarray:
     return np.floor((angle / (2 * np.pi) + 0.4) * FILES).astype(int) % FILES
 
 
-def made_in_steps(files: list[Path], work: Path) -> Mesh:
-    """Returns the surface, of a process for each task."""
+def made_in_steps(files: list[Path], work: Path) -> tuple[Mesh, float]:
+    """Returns the surface, of a process for each task, and the side of a cell."""
     target = work / "surface.ply"
     words = [sys.executable, "-m", "prefilter", "reconstruct", *map(str, files), str(target)]
     words += ["--depth", str(DEPTH), "--parts", str(PARTS), "--work", str(work / "steps")]
@@ -80,16 +81,18 @@ def made_in_steps(files: list[Path], work: Path) -> Mesh:
         for task in range(1, tasks + 1):
             flags = ["--step", step, "--task", f"{task}/{tasks}"]
             subprocess.run([*words, *flags], check=True, env={"PYTHONPATH": search})
-    subprocess.run([*words, "--step", "join"], check=True, env={"PYTHONPATH": search})
+    last = [*words, "--step", "join"]
+    told = subprocess.check_output(last, text=True, env={"PYTHONPATH": search})
+    cell = re.search(r"in cells of ([0-9.]+):", told)
+    assert cell is not None
     read = ply.read_mesh(target)
-    return read.positions, read.triangles
+    return (read.positions, read.triangles), float(cell[1])
 
 
-def parts(mesh: Mesh) -> np.ndarray:
+def parts(mesh: Mesh, side: float) -> np.ndarray:
     """Tells which part each triangle is of: parts have equally many layers of the cube of cells."""
     positions, triangles = mesh
     low, high = positions.min(axis=0), positions.max(axis=0)
-    side = (high - low).max()
     height = positions[triangles][..., 2].mean(axis=1) - (low[2] + high[2]) / 2
     return np.clip(np.floor((height / side + 0.5) * PARTS), 0, PARTS - 1).astype(int)
 

@@ -98,8 +98,7 @@ class Steps:
             OSError: A file of an earlier step is missing or damaged, or cannot be written.
             Cancelled: `progress` returned False.
         """
-        options, cloud = self._options(), self._cloud
-        options.are_sides_known = cloud.are_sides_known
+        cloud, options = self._begun()
         if isinstance(cloud.points, _native.JoinedPoints) and step in ("measure", "count"):
             cloud.points.choose_share(number)
         recover(self._folder)
@@ -111,8 +110,7 @@ class Steps:
     ) -> ReconstructionReport:
         """Does the last step: writes the surface to a .ply file. Raises what `run` does."""
         place = as_target(target)
-        options, cloud = self._options(), self._cloud
-        options.are_sides_known = cloud.are_sides_known
+        cloud, options = self._begun()
         recover(place.parent)
         report = ReconstructionReport()
         found = _native.join_steps(
@@ -134,11 +132,12 @@ class Steps:
         points = self._cloud.points
         return points.share_count if isinstance(points, _native.JoinedPoints) else 1
 
-    def _options(self) -> _native.ReconstructOptions:
+    def _begun(self) -> tuple[Cloud, _native.ReconstructOptions]:
         options = set_options(_native.ReconstructOptions(), CHECKS, self._settings)
         options.folder = os.fsencode(self._folder)
         options.support = True
-        return options
+        options.are_sides_known = self._cloud.are_sides_known
+        return self._cloud, options
 
     def _files(self) -> _native.StepFiles:
         def all_of(step: str) -> list[bytes]:
