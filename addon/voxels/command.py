@@ -13,6 +13,8 @@ from prefilter._command import many, tasks, voxelize
 from prefilter._command.many import Pair
 from prefilter._command.program import COMMANDS
 from prefilter._command.voxelize import RESOLUTIONS
+from prefilter._work.outcome import up_to_date
+from prefilter._work.up_to_date import KEY, MESHES, is_up_to_date
 
 from ..bridge.files import scenes, staging
 from ..bridge.new_meshes import is_solid
@@ -65,6 +67,7 @@ def _add_voxelize(commands: Any) -> None:
     presets.add_flag(parser)
     add_flags(parser, VoxelizeSettings, exclusive=RESOLUTIONS)
     tasks.add_flags(parser, "FILE")
+    command.add_skipping(parser)
     parser.set_defaults(execute=_voxelize, usage_error=parser.error)
 
 
@@ -98,6 +101,8 @@ def _voxelize(options: argparse.Namespace) -> None:
     for path in options.sources:
         command.check_ending(options, "FILE", path, scenes.SOURCES)
     ending = command.check_ending(options, "OUTPUT", options.target, _TARGETS)
+    if options.skip_up_to_date:
+        command.check_can_tell(options, options.target, MESHES)
     many.run(options, partial(_voxelize_one, options, is_volume=ending == _VOLUME))
 
 
@@ -110,9 +115,17 @@ def _voxelize_one(options: argparse.Namespace, pair: Pair, *, is_volume: bool) -
         voxelize.settings_of(options, presets.host(VOXELIZE), VoxelizeSettings, **more),
         bpy.context.evaluated_depsgraph_get(),
     )
+    files = scenes.decisive_files(pair.source) if options.skip_up_to_date else None
+    metadata = {}
+    if files is not None:
+        metadata[KEY] = work.inputs(files)
+        is_there = is_up_to_date([target], metadata[KEY])
+        if is_there and all(one.is_file() for one in scenes.material_files(target)):
+            command.say(up_to_date([target]))
+            return
     outcome = command.done(work)
     if not is_volume:
-        scenes.save(target, outcome.objects)
+        scenes.save(target, outcome.objects, metadata)
     command.tell(outcome)
 
 

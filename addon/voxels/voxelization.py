@@ -6,10 +6,12 @@ The operator and the command are two ways to call this.
 """
 
 from collections.abc import Generator, Sequence
+from dataclasses import asdict
 from pathlib import Path
 
 import bpy
 from mathutils import Matrix
+from prefilter._work.up_to_date import arrays_of, fingerprint, fingerprint_of
 
 from ..bridge import new_meshes, solids
 from ..bridge.armatures import at_rest
@@ -105,6 +107,21 @@ class Voxelization:
     def result(self) -> Result:
         """What was computed of the only object."""
         return self._results[0]
+
+    def inputs(self, files: Sequence[str]) -> str:
+        """Returns a number of what was read, of how it is used, and of what else may decide.
+
+        Args:
+            files: They may, as those that hold the materials.
+
+        Raises:
+            OSError: A file cannot be read.
+        """
+        settings = asdict(self._settings)
+        for name in ("threads", "filepath"):
+            del settings[name]
+        read = fingerprint_of(arrays_of(self._read), settings)
+        return fingerprint(files, {"read": read, "blender": bpy.app.version_string})
 
     def compute(self, progress: Progress) -> None:
         """Voxelizes and contours.

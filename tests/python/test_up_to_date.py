@@ -3,6 +3,8 @@
 """What is up to date is left alone: by contents and settings, which files keep."""
 
 import gzip
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import prefilter
@@ -10,10 +12,26 @@ import pytest
 from command_files import fails, noise, run, write_picture, write_quad
 from prefilter._work import mesh_files
 from prefilter._work.files import png
-from prefilter._work.up_to_date import KEY, fingerprint_of, is_up_to_date, kept, stands_alone
+from prefilter._work.up_to_date import (
+    KEY,
+    arrays_of,
+    fingerprint_of,
+    is_up_to_date,
+    kept,
+    stands_alone,
+)
 from prefilter.shapes._svg.document import MOST_UNPACKED
 
 oiio = pytest.importorskip("OpenImageIO", reason="scripts/decoders.txt is not installed")
+
+
+@dataclass
+class Pair:
+    """Holds what may be read, in one of the ways."""
+
+    name: str
+    values: Any
+    more: dict[str, set[int]]
 
 
 @pytest.fixture
@@ -228,3 +246,26 @@ def test_a_number_of_arrays_is_of_all_that_is_in_them():
     numbers.add(fingerprint_of([ones], {"a": 2}))
     assert len(numbers) == 8
     assert fingerprint_of([np.repeat(ones, 2, 1)[:, ::2]], {"a": 1}) in numbers
+
+
+def test_numbers_of_what_was_read():
+    def number(read):
+        return fingerprint_of(arrays_of(read), {})
+
+    pair = Pair("a", np.arange(4.0), {"x": {2, 1}})
+    assert number(pair) == number(Pair("a", np.arange(4.0), {"x": {1, 2}}))
+    others = [
+        Pair("b", np.arange(4.0), {"x": {2, 1}}),
+        Pair("a", np.arange(4.0, dtype=np.float32), {"x": {2, 1}}),
+        Pair("a", np.arange(4.0).reshape(2, 2), {"x": {2, 1}}),
+        Pair("a", np.arange(4.0)[::-1], {"x": {2, 1}}),
+        Pair("a", np.arange(4.0), {"x": {2}}),
+        Pair("a", np.arange(4.0), {"y": {2, 1}}),
+        Pair("a", None, {"x": {2, 1}}),
+        [pair],
+        [[1, 2], [3]],
+        [[1], [2, 3]],
+        ["1", 2, 3],
+        [],
+    ]
+    assert len({number(one) for one in [pair, *others]}) == 1 + len(others)

@@ -3,11 +3,15 @@
 """Files with objects, as Blender imports and exports them."""
 
 import os
-from collections.abc import Callable, Iterator, Sequence
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
+from glob import escape, glob
 from pathlib import Path
 from typing import Any
 
 import bpy
+from prefilter._work.files.mesh_notes import with_note
 
 from ...core.outcome import reason
 from ...core.wording import listed
@@ -50,6 +54,11 @@ EXPORTERS: dict[str, Callable[[str], Any]] = {
 SOURCES = (".blend", *IMPORTERS)
 TARGETS = (".blend", *EXPORTERS)
 
+_LAYERED = (".usd", ".usda", ".usdc", ".usdz")
+"""Such files may refer to others, of which Blender keeps nothing."""
+_MATERIAL_FILES = re.compile(rb"^\s*mtllib\s+(.+)$", re.MULTILINE)
+_PATTERN = re.compile("<(UDIM|UVTILE)>")
+
 
 def load(
     paths: Sequence[str], is_wanted: Callable[[bpy.types.Object], bool], wanted: str
@@ -90,6 +99,28 @@ def load(
     return found
 
 
+def decisive_files(path: str) -> list[str] | None:
+    """Returns what a file that was loaded holds and refers to; None where that is not known.
+
+    Of paths with a pattern, such as those of UDIM tiles, all files that fit are among them.
+    """
+    source = Path(path)
+    if source.suffix.lower() in _LAYERED:
+        return None
+    found = {source, *material_files(source)}
+    for name in bpy.utils.blend_paths(absolute=True, packed=False, local=False):
+        found.update(map(Path, glob(_PATTERN.sub("*", escape(name)))))
+    return [str(one) for one in sorted(found) if one.is_file()]
+
+
+def material_files(path: Path) -> list[Path]:
+    """Returns the files of materials that an OBJ file names; of others there are none."""
+    if path.suffix.lower() != ".obj":
+        return []
+    names = _MATERIAL_FILES.findall(path.read_bytes())
+    return [path.parent / os.fsdecode(name.strip()) for name in names]
+
+
 def chosen(
     objects: list[bpy.types.Object], names: Sequence[str], wanted: str
 ) -> list[bpy.types.Object]:
@@ -125,8 +156,13 @@ def as_one(name: str, objects: Sequence[bpy.types.Object]) -> bpy.types.Object:
     return made
 
 
-def save(target: Path, names: Sequence[str]) -> None:
+def save(target: Path, names: Sequence[str], metadata: Mapping[str, str] | None = None) -> None:
     """Writes objects, or for a .blend file all there is, beside the target, and renames it.
+
+    Args:
+        target: The file.
+        names: Those of the objects.
+        metadata: What the file is to keep, by keys, of a format that `with_note` can give one.
 
     Raises:
         OSError: The file cannot be written.
@@ -139,7 +175,7 @@ def save(target: Path, names: Sequence[str]) -> None:
         if extension == ".blend":
             staged = staging.stage_with(target, _write_blend)
         else:
-            staged = staging.stage_folder(target, _export)
+            staged = staging.stage_folder(target, partial(_export, metadata or {}))
     except (RuntimeError, OSError) as error:
         raise OSError(f"file '{target}': cannot write it: {_last_line(error)}") from error
     try:
@@ -148,16 +184,20 @@ def save(target: Path, names: Sequence[str]) -> None:
         staged.discard()
 
 
-def _export(path: Path) -> None:
+def _export(metadata: Mapping[str, str], path: Path) -> None:
     """Writes the selected objects to a file in a folder of its own."""
     EXPORTERS[path.suffix.lower()](str(path))
     depsgraph = bpy.context.evaluated_depsgraph_get()
     meshes = [obj.evaluated_get(depsgraph).data for obj in bpy.context.selected_objects]
-    check_whole(
-        path.parent,
+    counts = (
         sum(len(mesh.vertices) for mesh in meshes),
         sum(len(mesh.polygons) for mesh in meshes),
     )
+    check_whole(path.parent, *counts)
+    for key, text in metadata.items():
+        kind = path.suffix.lower().removeprefix(".")
+        path.write_bytes(with_note(kind, path.read_bytes(), key, text))
+        check_whole(path.parent, *counts)
 
 
 def _last_line(error: RuntimeError | OSError) -> str:

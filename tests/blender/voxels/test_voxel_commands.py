@@ -6,8 +6,11 @@ import importlib.util
 
 import bodies
 import bpy
+import numpy as np
 import pytest
+import scenes
 from command_line import IMPORTERS, assert_fails, loaded, run
+from mathutils import Matrix
 
 
 @pytest.fixture
@@ -123,6 +126,76 @@ def test_boolean_appends_blend_files(blend, sphere, tmp_path):
     assert bodies.volume(made) == pytest.approx(12, rel=0.05)
 
 
+def blend_again(path, change):
+    bpy.ops.wm.open_mainfile(filepath=str(path))
+    change()
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+
+
+def is_left_alone(*words):
+    result = run(*words, "--depth", 3, "--skip-up-to-date")
+    assert result.returncode == 0, result.stderr
+    return "Up to date" in result.stdout
+
+
+def test_what_is_up_to_date_is_left_alone(blend, tmp_path):
+    words = ("voxelize", blend, tmp_path / "out.glb")
+    assert [is_left_alone(*words) for _ in range(2)] == [False, True]
+    assert is_left_alone(*words, "--threads", 1)
+    assert not is_left_alone(*words, "--object", "Hole")
+    assert set(loaded(words[2])) == {"Hole"}
+    blend_again(blend, lambda: bpy.data.objects["Body"].data.transform(Matrix.Scale(2, 4)))
+    assert [is_left_alone(*words) for _ in range(2)] == [False, True]
+    assert bodies.volume(loaded(words[2])["Body"]) == pytest.approx(64, rel=0.05)
+    words[2].unlink()
+    assert not is_left_alone(*words)
+
+
+def test_materials_and_textures_decide(blend, tmp_path):
+    texture = tmp_path / "texture.png"
+    image = bpy.data.images.new("Texture", 2, 2)
+
+    def paint(color):
+        image.pixels.foreach_set(np.tile(color, 4).astype(np.float32))
+        image.filepath_raw = str(texture)
+        image.file_format = "PNG"
+        image.save()
+
+    def wear():
+        material = scenes.material("Painted", bpy.data.images.load(str(texture)))
+        bpy.data.meshes["Body"].materials.append(material)
+
+    paint((1, 0, 0, 1))
+    blend_again(blend, wear)
+    words = ("voxelize", blend, tmp_path / "out.glb")
+    assert [is_left_alone(*words) for _ in range(2)] == [False, True]
+    image = bpy.data.images.new("Texture", 2, 2)
+    paint((0, 1, 0, 1))
+    assert [is_left_alone(*words) for _ in range(2)] == [False, True]
+
+
+@pytest.mark.parametrize("extension", [".obj", ".ply", ".stl", ".glb"])
+def test_files_tell_what_they_were_made_of(blend, tmp_path, extension):
+    run("voxelize", blend, tmp_path / "made.obj", "--depth", 3)
+    words = ("voxelize", tmp_path / "made.obj", tmp_path / f"out{extension}")
+    assert [is_left_alone(*words) for _ in range(2)] == [False, True]
+    assert set(loaded(words[2])) == {"Body", "Hole"} or extension in {".ply", ".stl"}
+    (tmp_path / "made.mtl").write_text("newmtl other\n")
+    assert not is_left_alone(*words)
+    if extension == ".obj":
+        words[2].with_suffix(".mtl").unlink()
+        assert not is_left_alone(*words)
+
+
+def test_layers_of_usd_may_be_elsewhere(blend, tmp_path):
+    if not bpy.app.build_options.usd:
+        pytest.skip("this Blender was built without USD")
+    source = tmp_path / "made.usda"
+    bpy.ops.wm.usd_export(filepath=str(source))
+    for _ in range(2):
+        assert not is_left_alone("voxelize", source, tmp_path / "out.ply")
+
+
 def test_failures_leave_nothing(blend, tmp_path):
     before = {file.name: file.read_bytes() for file in tmp_path.iterdir()}
     target = tmp_path / "out.ply"
@@ -130,6 +203,7 @@ def test_failures_leave_nothing(blend, tmp_path):
         (("voxelize", tmp_path / "gone.ply", target), ["there is no file"], 1),
         (("voxelize", blend, tmp_path / "gone" / "out.ply"), ["there is no folder"], 1),
         (("voxelize", blend, tmp_path / "out.txt"), ["OUTPUT: found", "allowed: "], 2),
+        (("voxelize", blend, tmp_path / "out.fbx", "--skip-up-to-date"), ["found", ".glb"], 2),
         (("voxelize", "image.png", target), ["FILE: found 'image.png'", "allowed: "], 2),
         (("voxelize", blend, target, "--depth", 13), ["--depth: found '13'", "1 to 12"], 2),
         (

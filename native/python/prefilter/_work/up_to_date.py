@@ -7,7 +7,8 @@ import json
 import os
 import re
 import struct
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from urllib.parse import unquote
@@ -68,6 +69,27 @@ def fingerprint_of(arrays: Iterable["NDArray[Any]"], settings: Mapping[str, Any]
         if array.size:
             found.update((array if array.flags.c_contiguous else array.copy()).data.cast("B"))
     return str(found.hexdigest())
+
+
+def arrays_of(read: Any) -> "Iterator[NDArray[Any]]":
+    """Yields all that dataclasses, sequences, sets and mappings hold, for `fingerprint_of`."""
+    import numpy as np
+
+    if isinstance(read, np.ndarray):
+        yield read
+    elif is_dataclass(read):
+        for field in fields(read):
+            yield from arrays_of(getattr(read, field.name))
+    elif isinstance(read, Mapping):
+        yield from arrays_of(sorted(read.items()))
+    elif isinstance(read, Set):
+        yield from arrays_of(sorted(read))
+    elif isinstance(read, Sequence) and not isinstance(read, str):
+        yield np.array(len(read))
+        for one in read:
+            yield from arrays_of(one)
+    else:
+        yield np.frombuffer(repr(read).encode(), np.uint8)
 
 
 def stands_alone(drawing: str | os.PathLike[str]) -> bool:
