@@ -16,6 +16,7 @@ from prefilter._work.openimageio import (
     find_by,
     holds_integers,
     module,
+    said,
     write_picture,
     write_texture,
 )
@@ -29,6 +30,7 @@ __all__ = (
     "color_convert",
     "holds_integers",
     "module",
+    "said",
     "write_picture",
     "write_texture",
 )

@@ -6,6 +6,7 @@ import numpy as np
 import prefilter
 import pytest
 from command_files import fails, noise, run, write_picture
+from prefilter._work import openimageio
 
 oiio = pytest.importorskip("OpenImageIO", reason="scripts/decoders.txt is not installed")
 
@@ -124,6 +125,27 @@ def test_failures(photo, tmp_path, capsys):
     told = fails(capsys, 1, "resample", photo, out, "--scale", "0")
     assert "the image would vanish" in told
     assert not out.exists()
+
+
+@pytest.mark.parametrize("ending", ["png", "jpg", "tif", "exr", "tga"])
+def test_pictures_that_are_cut_off(tmp_path, capsys, ending):
+    path = write_picture(tmp_path / f"photo.{ending}", noise(64, 64))
+    assert run("resize", path, tmp_path / "small.png", "--width", "8") == 0
+    before = (tmp_path / "small.png").read_bytes()
+    path.write_bytes(path.read_bytes()[:3000])
+    told = fails(capsys, 1, "resize", path, tmp_path / "small.png", "--width", "8")
+    assert f"'{path}' cannot be read as a picture: " in told
+    assert (tmp_path / "small.png").read_bytes() == before
+
+
+def test_a_picture_that_cannot_be_written_is_told_in_one_line(tmp_path):
+    path = tmp_path / "a.png"
+    path.write_bytes(write_picture(tmp_path / "whole.png", noise(64, 64)).read_bytes()[:3000])
+    with pytest.raises(
+        OSError, match=r"'a\.png' was not written as a whole; is the disk full"
+    ) as error:
+        openimageio.check_whole(path)
+    assert "\n" not in str(error.value)
 
 
 def test_a_picture_may_replace_itself(photo):

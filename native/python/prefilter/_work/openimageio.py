@@ -27,6 +27,8 @@ _MOST_CHANNELS = 4
 _PIXELS_A_BAND = 1 << 20
 _PATH_SEPARATOR = ";"
 _PLACEHOLDER = "%"
+_CUT_OFF = "Premature end of JPEG"
+"""What is said of a JPEG file whose rest, which is missing, was read as gray."""
 _PNG = b"\x89PNG\r\n\x1a\n"
 
 
@@ -49,6 +51,11 @@ def module() -> ModuleType:
         OSError: It is missing.
     """
     return _finder()
+
+
+def said(source: Any) -> str:
+    """Returns what the module, or something of it, says of its last failure, in one line."""
+    return " ".join(source.geterror().split())
 
 
 def find_by(finder: Callable[[], ModuleType]) -> None:
@@ -94,7 +101,7 @@ def color_convert(
             oiio.ImageBuf(colors[band]), source, target, unpremult=False, colorconfig=config
         )
         if result.has_error:
-            raise ValueError(f"{result.geterror()} (configuration '{config}')")
+            raise ValueError(f"{said(result)} (configuration '{config}')")
         converted[band] = result.get_pixels("float")
     return converted
 
@@ -134,7 +141,7 @@ def read_pixels(path: Path) -> Pixels:
     config.attribute("oiio:UnassociatedAlpha", 1)
     reader = oiio.ImageInput.open(str(path), config)
     if reader is None:
-        raise OSError(_unreadable(path, oiio.geterror()))
+        raise OSError(_unreadable(path, said(oiio)))
     try:
         spec = reader.spec()
         channels = _channels(list(spec.channelnames))
@@ -145,8 +152,9 @@ def read_pixels(path: Path) -> Pixels:
         is_float = kind in {oiio.HALF, oiio.FLOAT, oiio.DOUBLE}
         read_as = {oiio.UINT8: "uint8"}.get(kind, "float" if is_float else "uint16")
         values = reader.read_image(read_as)
-        if values is None:
-            raise OSError(_unreadable(path, reader.geterror()))
+        failure = said(reader)
+        if values is None or _CUT_OFF in failure:
+            raise OSError(_unreadable(path, failure))
         is_straight = bool(spec.get_int_attribute("oiio:UnassociatedAlpha", 0))
     finally:
         reader.close()
@@ -155,7 +163,7 @@ def read_pixels(path: Path) -> Pixels:
 
 
 def _unreadable(path: Path, reason: str) -> str:
-    return f"'{path}' cannot be read as a picture: {' '.join(reason.split())}"
+    return f"'{path}' cannot be read as a picture: {reason}"
 
 
 def _channels(names: list[str]) -> list[int]:
@@ -214,11 +222,11 @@ def write_picture(
         spec.attribute("oiio:UnassociatedAlpha", 1)
     output = oiio.ImageOutput.create(str(path))
     if output is None:
-        raise OSError(f"file '{path}': {oiio.geterror()}")
+        raise OSError(f"file '{path}': {said(oiio)}")
     written = output.open(str(path), spec) and output.write_image(pixels)
-    message = output.geterror()
+    message = said(output)
     if not (output.close() and written):
-        raise OSError(f"file '{path}': cannot be written: {message or output.geterror()}")
+        raise OSError(f"file '{path}': cannot be written: {message or said(output)}")
     del output  # An OpenEXR file is finished when its writer goes.
     check_whole(path)
 
@@ -231,7 +239,7 @@ def text_attribute(path: Path, name: str) -> str:
     """
     reader = module().ImageInput.open(str(path))
     if reader is None:
-        raise OSError(_unreadable(path, module().geterror()))
+        raise OSError(_unreadable(path, said(module())))
     try:
         return str(reader.spec().getattribute(name) or "")
     finally:
@@ -251,12 +259,12 @@ def check_whole(path: Path, levels: int = 1) -> None:
     """
     reader = module().ImageInput.open(str(path))
     if reader is None:
-        reason = module().geterror()
+        reason = said(module())
         raise OSError(f"'{path.name}' was not written as a whole; is the disk full? {reason}")
     try:
         if _levels_read(reader) < levels:
             raise OSError(
-                f"'{path.name}' was not written as a whole; is the disk full? {reader.geterror()}"
+                f"'{path.name}' was not written as a whole; is the disk full? {said(reader)}"
             )
     finally:
         reader.close()
@@ -355,7 +363,7 @@ def write_texture(
         full = _buffer(levels[0], has_alpha)
         made = str(folder / f"texture{path.suffix}")
         if not oiio.ImageBufAlgo.make_texture(oiio.MakeTxTexture, full, made, config):
-            raise OSError(f"cannot write '{made}': {oiio.geterror()}")
+            raise OSError(f"cannot write '{made}': {said(oiio)}")
         shutil.move(made, path)
     check_whole(path, len(levels))
 
@@ -378,10 +386,10 @@ def _work_folder(path: Path) -> str:
 def _write_level(path: str, buffer: Any, number: int) -> None:
     """Writes a level and opens it again: the texture maker aborts the process if it cannot."""
     if not buffer.write(path):
-        raise OSError(f"cannot write level {number} to '{path}': {buffer.geterror()}")
+        raise OSError(f"cannot write level {number} to '{path}': {said(buffer)}")
     reader = module().ImageInput.open(path)
     if reader is None:
-        raise OSError(f"cannot read level {number} back from '{path}': {module().geterror()}")
+        raise OSError(f"cannot read level {number} back from '{path}': {said(module())}")
     reader.close()
 
 
