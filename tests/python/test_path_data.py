@@ -95,6 +95,19 @@ def test_arcs_are_on_their_ellipses():
         assert (swept > 0.0) == (arc[3].imag == 1.0), text
 
 
+@pytest.mark.parametrize("radius", ["1e140", "1e156", "1e303", "1e308"])
+def test_arcs_of_ellipses_that_are_far_larger_than_their_chord(radius):
+    """They are lines, or end where they are told to; the fuzzer found one that did neither."""
+    for radii in (f"{radius} 1", f"1 {radius}", f"{radius} {radius}"):
+        for flags in ("0 0", "0 1", "1 0", "1 1"):
+            outline, is_whole = read_path(f"M 0 9 A {radii} 0 {flags} 0 6 A {radii} 0 {flags} 3 6")
+            assert is_whole
+            ends = [numbers[-2:] for _, numbers in outline.segments()]
+            assert np.isfinite(np.concatenate(ends)).all()
+            assert list(ends[-1]) == [3.0, 6.0]
+            assert any(list(end) == [0.0, 6.0] for end in ends)
+
+
 def test_numbers():
     source = random.Random(3)
     for _ in range(2000):

@@ -311,7 +311,9 @@ void PathPen::arc_to(const Point2& radii, double rotation, bool is_large, bool i
     y /= size;
     squared = 1.0;
   }
-  if (!(squared > 0.0 && squared <= 1.0) || !std::isfinite(rx * ry)) {
+  // Of radii so much larger than the chord, its inverse would not be finite.
+  constexpr double kLeastSquared = 1e-300;
+  if (!(squared >= kLeastSquared && squared <= 1.0) || !std::isfinite(rx * ry)) {
     add('L', {end});
     return;
   }
