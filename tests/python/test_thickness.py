@@ -6,7 +6,7 @@ import numpy as np
 import prefilter
 import pytest
 from octrees import octrees_are_same
-from solids import Solid, box, join, sheet, sphere, surface_faults
+from solids import Solid, box, join, mesh_volume, sheet, sphere, surface_faults
 
 from bench.solids import random_rotation
 from bench.voxels.measures import folds, topology
@@ -131,6 +131,55 @@ def test_parts_that_touch_or_overlap_are_no_sheets():
         second = box((10, 10, 30 + gap), (30, 30, 50))
         both = join(first, second)
         assert voxelized(both).volume == pytest.approx(voxelized(both, 0.0).volume, rel=1e-4)
+
+
+def ring_of(sides: int, radius: float, turn: float) -> np.ndarray:
+    angles = turn + 2 * np.pi * np.arange(sides) / sides
+    return radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+
+
+def between(rings: list[tuple[np.ndarray, float]]) -> Solid:
+    """Returns what lies between closed rings, each (outline, height), and the first one."""
+    sides = len(rings[0][0])
+    positions = np.concatenate([np.insert(ring, 2, z, axis=1) for ring, z in rings])
+    i = np.arange(sides)
+    j = (i + 1) % sides
+    triangles = []
+    for k in range(len(rings)):
+        a, b = k * sides, (k + 1) % len(rings) * sides
+        triangles += [np.stack([a + i, a + j, b + j], 1), np.stack([a + i, b + j, b + i], 1)]
+    return Solid(positions, np.concatenate(triangles).astype(np.int32))
+
+
+@pytest.mark.parametrize("sides", [17, 19, 31])
+@pytest.mark.parametrize("seed", range(3))
+def test_pins_in_holes_of_other_sides_are_not_thin(sides, seed):
+    """Their faces cross each other all around, a hair apart: nothing there is to be thickened."""
+    hole, rim, pin = ring_of(24, 9.0, 0.0), ring_of(24, 20.0, 0.0), ring_of(sides, 9.0, 0.1 * seed)
+    plate_ = between([(rim, -12.0), (rim, 12.0), (hole, 12.0), (hole, -12.0)])
+    end = 0.01 * pin
+    pin_ = between([(pin, -20.0), (pin, 12.0), (end, 12.0), (end, -20.0)])
+    both = join(plate_, pin_)
+    solid = Solid(both.positions @ random_rotation(seed).T + CELLS / 2, both.triangles)
+    assert mesh_volume(solid.positions, solid.triangles) > 0.9 * 24 * np.pi * 20**2
+    assert octrees_are_same(voxelized(solid), voxelized(solid, 0.0))
+
+
+def test_beside_what_is_sunk_in_it_a_solid_is_not_thin():
+    both = join(box((-16, -16, -16), (16, 16, 6)), box((-7, -7, 5.7), (7, 7, 12)))
+    around = 4 * 14
+    for seed in range(3):
+        turned = both.positions @ random_rotation(seed).T + CELLS / 2
+        solid = Solid(turned, both.triangles)
+        plain, made = voxelized(solid, 0.0).dense(), voxelized(solid).dense()
+        assert np.maximum(made - np.minimum(plain, 1), 0).sum() < 0.1 * around
+
+
+def test_a_board_is_as_thick_above_a_leg_as_beside_it():
+    board = box((4, 4, 40.2), (60, 60, 41.0))
+    legs = join(board, box((20, 20, 10.5), (30, 30, 40.6)))
+    alone, both = voxelized(board).dense(), voxelized(legs).dense()
+    np.testing.assert_array_equal(both[..., 41:], alone[..., 41:])
 
 
 @pytest.mark.parametrize("seed", [0, 1, 2, 9])

@@ -18,6 +18,12 @@ constexpr std::size_t kMostAcross = 128;  // beyond which the tree is searched
 constexpr int kMostSteps = 12;
 constexpr double kSettled = 1e-3;  // of a radius
 constexpr double kAlike = 0.02;    // what radii differ by, in cells
+constexpr double kBelow = 0.9;     // the cosine between a normal and the way up from what is below
+
+// A point a little outside, so that the other face of a sheet is below it.
+Vector3 just_outside(const Vector3& point, const Vector3& normal) {
+  return point + kJustOutside * normal;
+}
 
 }  // namespace
 
@@ -71,7 +77,7 @@ void InnerBalls::find_across(const std::array<Vector3, 3>& piece, const Vector3&
       const std::array<Vector3, 3> corners = mesh_.corners(t);
       const Box box = triangle_box(corners);
       if (box.squared_distance(center) > reach * reach) continue;
-      across->triangles.push_back({corners, box, facing});
+      across->triangles.push_back({corners, box, normals_[t], facing});
     }
     across->has_more = across->triangles.size() > kMostAcross;
   });
@@ -79,21 +85,24 @@ void InnerBalls::find_across(const std::array<Vector3, 3>& piece, const Vector3&
 
 std::optional<InnerBalls::Touched> InnerBalls::nearest_across(const Vector3& point, double reach,
                                                               const Vector3& normal,
-                                                              const Across& across) const {
+                                                              const Across& across,
+                                                              const Counts* counts) const {
   std::optional<Touched> touched;
   double best = reach * reach;
-  const auto look_at = [&](const std::array<Vector3, 3>& corners, double facing) {
+  const auto look_at = [&](const std::array<Vector3, 3>& corners, const Vector3& its,
+                           double facing) {
     const auto& [a, b, c] = corners;
     const Vector3 w = nearest_weights(point, a, b, c);
     const Vector3 p = w[0] * a + w[1] * b + w[2] * c;
     const Vector3 d = p - point;
     if (dot(d, d) >= best) return;
+    if (counts != nullptr && !(*counts)(p, its)) return;
     best = dot(d, d);
-    touched = {p, facing};
+    touched = {p, its, facing};
   };
   if (!across.has_more) {
     for (const Across::One& one : across.triangles) {
-      if (one.box.squared_distance(point) < best) look_at(one.corners, one.facing);
+      if (one.box.squared_distance(point) < best) look_at(one.corners, one.normal, one.facing);
     }
     return touched;
   }
@@ -104,23 +113,23 @@ std::optional<InnerBalls::Touched> InnerBalls::nearest_across(const Vector3& poi
   tree_.search(point, may_be, [&](std::size_t node) {
     const BoxTree::Node& leaf = tree_.nodes()[node];
     for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) {
-      const double facing = dot(normals_[triangles_[i]], normal);
-      if (facing <= kAcross) look_at(mesh_.corners(triangles_[i]), facing);
+      const std::uint32_t t = triangles_[i];
+      const double facing = dot(normals_[t], normal);
+      if (facing <= kAcross) look_at(mesh_.corners(t), normals_[t], facing);
     }
   });
   return touched;
 }
 
-std::optional<InnerBall> InnerBalls::at(const Vector3& point, const Vector3& normal, double largest,
-                                        const Across& across) const {
-  // From a little outside, so that the other face of a sheet is below the point.
-  const Vector3 start = point + kJustOutside * normal;
-  InnerBall ball = {largest, 0.0, 0.0};
+InnerBalls::Shrunk InnerBalls::shrunk(const Vector3& start, const Vector3& normal, double largest,
+                                      const Across& across, const Counts* counts) const {
+  Shrunk result = {{largest, 0.0, 0.0}, {}};
+  InnerBall& ball = result.ball;
   for (int step = 0; step < kMostSteps; ++step) {
     const double reach = ball.radius * (1.0 - kSettled) - 0.1 * kJustOutside;
     if (!(reach > 0.0)) break;
     const std::optional<Touched> touched =
-        nearest_across(start - ball.radius * normal, reach, normal, across);
+        nearest_across(start - ball.radius * normal, reach, normal, across, counts);
     if (!touched) break;
     const Vector3 away = start - touched->point;
     const double depth = dot(away, normal);
@@ -128,22 +137,40 @@ std::optional<InnerBall> InnerBalls::at(const Vector3& point, const Vector3& nor
     ball.facing = std::min(ball.facing, touched->facing);
     ball.across = touched->facing;
     ball.radius = dot(away, away) / (2.0 * depth);
+    result.touched = *touched;
   }
-  if (ball.radius >= largest) return std::nullopt;
-  ball.radius = std::max(0.0, ball.radius - kJustOutside / 2.0);
-  return ball;
+  return result;
+}
+
+std::optional<InnerBall> InnerBalls::at(const Vector3& point, const Vector3& normal, double largest,
+                                        const Across& across, const IsOuter& is_outer) const {
+  const Vector3 start = just_outside(point, normal);
+  const Counts counts = [&](const Vector3& p, const Vector3& its) {
+    const Vector3 away = start - p;
+    return dot(away, normal) >= kBelow * length(away) || is_outer(p, its);
+  };
+  Shrunk found = shrunk(start, normal, largest, across, nullptr);
+  // Rarely, so that not all that is near is asked for.
+  if (found.ball.radius < largest && !counts(found.touched.point, found.touched.normal)) {
+    found = shrunk(start, normal, largest, across, &counts);
+  }
+  if (found.ball.radius >= largest) return std::nullopt;
+  found.ball.radius = std::max(0.0, found.ball.radius - kJustOutside / 2.0);
+  return found.ball;
 }
 
 bool InnerBalls::are_alike(const std::array<Vector3, 3>& piece, const Vector3& normal,
                            double largest, const Across& across) const {
   const Vector3 middle = triangle_middle(piece);
-  const std::optional<InnerBall> first = at(middle, normal, largest, across);
-  if (!first) return false;
+  const auto radius_at = [&](const Vector3& point) {
+    return shrunk(just_outside(point, normal), normal, largest, across, nullptr).ball.radius;
+  };
+  const double first = radius_at(middle);
+  if (first >= largest) return false;
   for (const Vector3& corner : piece) {
     for (const double share : {0.5, 0.95}) {
-      const std::optional<InnerBall> ball =
-          at(middle + share * (corner - middle), normal, largest, across);
-      if (!ball || std::abs(ball->radius - first->radius) > kAlike) return false;
+      const double radius = radius_at(middle + share * (corner - middle));
+      if (radius >= largest || std::abs(radius - first) > kAlike) return false;
     }
   }
   return true;

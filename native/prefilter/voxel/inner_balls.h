@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -37,6 +38,7 @@ class InnerBalls {
     struct One {
       std::array<Vector3, 3> corners;
       Box box;
+      Vector3 normal;
       double facing;
     };
     std::vector<One> triangles;
@@ -46,23 +48,37 @@ class InnerBalls {
   void find_across(const std::array<Vector3, 3>& piece, const Vector3& normal, double largest,
                    Across* across) const;
 
-  /// The largest ball at a point of a piece that holds nothing of what is across from it: it
-  /// shrinks until it touches that. None where a ball of the largest radius fits.
-  std::optional<InnerBall> at(const Vector3& point, const Vector3& normal, double largest,
-                              const Across& across) const;
+  /// Whether a point of the surface with this normal bounds the solid.
+  using IsOuter = std::function<bool(const Vector3& point, const Vector3& normal)>;
 
-  /// Whether a piece of a triangle is as thin everywhere, by samples.
+  /// The largest ball at a point of a piece that holds nothing of what is across from it: it
+  /// shrinks until it touches that. None where a ball of the largest radius fits. What is within
+  /// another part counts below the point alone: a plate is as thin above a leg as beside it, but
+  /// not beside what is sunk into it.
+  std::optional<InnerBall> at(const Vector3& point, const Vector3& normal, double largest,
+                              const Across& across, const IsOuter& is_outer) const;
+
+  /// Whether a piece of a triangle is as thin everywhere, by samples, within other parts or not.
   bool are_alike(const std::array<Vector3, 3>& piece, const Vector3& normal, double largest,
                  const Across& across) const;
 
  private:
   struct Touched {
     Vector3 point;
+    Vector3 normal;
     double facing;
   };
+  using Counts = std::function<bool(const Vector3& point, const Vector3& normal)>;
+  struct Shrunk {
+    InnerBall ball;
+    Touched touched;  // nothing where the ball is the largest
+  };
+  // The ball that holds nothing of what is across, or of what of it counts.
+  Shrunk shrunk(const Vector3& start, const Vector3& normal, double largest, const Across& across,
+                const Counts* counts) const;
   // What is nearest to a point, and nearer than this, of all that is across from a normal.
   std::optional<Touched> nearest_across(const Vector3& point, double reach, const Vector3& normal,
-                                        const Across& across) const;
+                                        const Across& across, const Counts* counts) const;
 
   MeshView<std::int32_t> mesh_;
   std::span<const Vector3> normals_;

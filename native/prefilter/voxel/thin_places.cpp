@@ -198,7 +198,8 @@ class CandidateFinder {
       push(piece, kSheet);
       return true;
     }
-    const std::optional<InnerBall> ball = balls_.at(middle, normal_, largest_, across_);
+    const std::optional<InnerBall> ball =
+        balls_.at(middle, normal_, largest_, across_, is_across_outer_);
     if (ball) push(piece, *ball);
     return ball.has_value();
   }
@@ -253,6 +254,9 @@ class CandidateFinder {
   MayMeet may_meet_{bricks_};
   const InnerBalls& balls_;
   const OuterSides& outer_;
+  InnerBalls::IsOuter is_across_outer_ = [this](const Vector3& point, const Vector3& normal) {
+    return outer_.is_outer(point, normal);
+  };
   double largest_;
   std::vector<Candidate>* found_;
   InnerBalls::Across across_;
