@@ -48,7 +48,8 @@ class InnerBalls {
   void find_across(const std::array<Vector3, 3>& piece, const Vector3& normal, double largest,
                    Across* across) const;
 
-  /// Whether a point of the surface with this normal bounds the solid.
+  /// Whether a point of the surface with this normal bounds the solid, on either side: of sheets
+  /// both may.
   using IsOuter = std::function<bool(const Vector3& point, const Vector3& normal)>;
 
   /// The largest ball at a point of a piece that holds nothing of what is across from it: it

@@ -255,7 +255,7 @@ class CandidateFinder {
   const InnerBalls& balls_;
   const OuterSides& outer_;
   InnerBalls::IsOuter is_across_outer_ = [this](const Vector3& point, const Vector3& normal) {
-    return outer_.is_outer(point, normal);
+    return outer_.is_outer(point, normal) || outer_.is_outer(point, -1.0 * normal);
   };
   double largest_;
   std::vector<Candidate>* found_;
