@@ -109,10 +109,10 @@ class Voxelization:
         return self._results[0]
 
     def inputs(self, files: Sequence[str]) -> str:
-        """Returns a number of what was read, of how it is used, and of what else may decide.
+        """Returns a number of what was read, of how it is used, and of some files.
 
         Args:
-            files: They may, as those that hold the materials.
+            files: What is not read here, but decides what is written, such as materials.
 
         Raises:
             OSError: A file cannot be read.
