@@ -145,14 +145,15 @@ InnerBalls::Shrunk InnerBalls::shrunk(const Vector3& start, const Vector3& norma
 std::optional<InnerBall> InnerBalls::at(const Vector3& point, const Vector3& normal, double largest,
                                         const Across& across, const IsOuter& is_outer) const {
   const Vector3 start = just_outside(point, normal);
-  const Counts counts = [&](const Vector3& p, const Vector3& its) {
+  const auto counts = [&](const Vector3& p, const Vector3& its) {
     const Vector3 away = start - p;
     return dot(away, normal) >= kBelow * length(away) || is_outer(p, its);
   };
   Shrunk found = shrunk(start, normal, largest, across, nullptr);
   // Rarely, so that not all that is near is asked for.
   if (found.ball.radius < largest && !counts(found.touched.point, found.touched.normal)) {
-    found = shrunk(start, normal, largest, across, &counts);
+    const Counts only_these = counts;
+    found = shrunk(start, normal, largest, across, &only_these);
   }
   if (found.ball.radius >= largest) return std::nullopt;
   found.ball.radius = std::max(0.0, found.ball.radius - kJustOutside / 2.0);

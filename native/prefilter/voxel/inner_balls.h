@@ -69,7 +69,7 @@ class InnerBalls {
     Vector3 normal;
     double facing;
   };
-  using Counts = std::function<bool(const Vector3& point, const Vector3& normal)>;
+  using Counts = IsOuter;
   struct Shrunk {
     InnerBall ball;
     Touched touched;  // nothing where the ball is the largest
