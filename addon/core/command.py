@@ -5,6 +5,7 @@
 from prefilter._command.telling import (
     add_command,
     add_skipping,
+    are_up_to_date,
     check_can_tell,
     check_ending,
     done,
@@ -18,6 +19,7 @@ from prefilter._command.telling import (
 __all__ = (
     "add_command",
     "add_skipping",
+    "are_up_to_date",
     "check_can_tell",
     "check_ending",
     "done",

@@ -13,8 +13,7 @@ from prefilter._command.many import Pair
 from prefilter._command.program import COMMANDS
 from prefilter._command.rasterize import SVG
 from prefilter._work.files import pictures
-from prefilter._work.outcome import up_to_date
-from prefilter._work.up_to_date import KEY, PICTURES, is_up_to_date
+from prefilter._work.up_to_date import KEY, PICTURES
 
 from ..bridge.curves import is_curve
 from ..bridge.files import scenes
@@ -86,8 +85,7 @@ def _rasterize_one(options: argparse.Namespace, settings: RasterizeSettings, pai
     work = Rasterization.read(request, settings, bpy.context, target=target)
     number = work.inputs() if options.skip_up_to_date else None
     if number is not None:
-        if is_up_to_date([target], number):
-            command.say(up_to_date([target]))
+        if command.are_up_to_date([target], number):
             return
         work.metadata = {KEY: number}
     command.tell(command.done(work))

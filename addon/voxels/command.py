@@ -13,8 +13,7 @@ from prefilter._command import many, tasks, voxelize
 from prefilter._command.many import Pair
 from prefilter._command.program import COMMANDS
 from prefilter._command.voxelize import RESOLUTIONS
-from prefilter._work.outcome import up_to_date
-from prefilter._work.up_to_date import KEY, MESHES, is_up_to_date
+from prefilter._work.up_to_date import KEY, MESHES
 
 from ..bridge.files import scenes, staging
 from ..bridge.new_meshes import is_solid
@@ -119,9 +118,8 @@ def _voxelize_one(options: argparse.Namespace, pair: Pair, *, is_volume: bool) -
     metadata = {}
     if files is not None:
         metadata[KEY] = work.inputs(files)
-        is_there = is_up_to_date([target], metadata[KEY])
-        if is_there and all(one.is_file() for one in scenes.material_files(target)):
-            command.say(up_to_date([target]))
+        is_whole = not target.exists() or all(map(Path.is_file, scenes.material_files(target)))
+        if is_whole and command.are_up_to_date([target], metadata[KEY]):
             return
     outcome = command.done(work)
     if not is_volume:

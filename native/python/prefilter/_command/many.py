@@ -11,8 +11,8 @@ from typing import Any
 
 from .._border.staging import check_target
 from .._work.files.target_files import PLACE
-from .._work.outcome import FAILURES, reason, up_to_date
-from .._work.up_to_date import KEY, PICTURES, fingerprint, is_up_to_date
+from .._work.outcome import FAILURES, reason
+from .._work.up_to_date import KEY, PICTURES, fingerprint
 from .._work.wording import listed
 from . import tasks, telling
 
@@ -117,9 +117,7 @@ def _skipping(
             return
         target = pair.checked_target()
         number = fingerprint([pair.source], settings)
-        if is_up_to_date([target], number):
-            telling.say(up_to_date([target]))
-        else:
+        if not telling.are_up_to_date([target], number):
             do(replace(pair, metadata={KEY: number}))
 
     return do_unless

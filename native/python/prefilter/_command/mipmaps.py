@@ -10,8 +10,7 @@ from .._options.flags import add_flags, given, tables
 from .._options.mipmaps import FILTERS, TEXTURE_SPACE_FILTERS, Settings
 from .._work import mesh_endings
 from .._work.files import target_files
-from .._work.outcome import up_to_date
-from .._work.up_to_date import KEY, LEVELS, fingerprint, is_up_to_date
+from .._work.up_to_date import KEY, LEVELS, fingerprint
 from .._work.wording import either
 from . import telling
 
@@ -63,8 +62,7 @@ def _run(options: argparse.Namespace) -> None:
     number = _fingerprint(options, settings) if options.skip_up_to_date else None
     if number is not None:
         targets = [target_files.check_target(path) for path in _paths(settings)]
-        if is_up_to_date(targets, number):
-            telling.say(up_to_date(targets))
+        if telling.are_up_to_date(targets, number):
             return
     metadata = None if number is None else {KEY: number}
     from . import mipmap_levels  # A run that finds all up to date needs none of it.

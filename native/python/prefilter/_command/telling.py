@@ -6,14 +6,16 @@ import argparse
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
 from .._border import stopping
 from .._options.flags import given
 from .._work import progress as works
-from .._work.outcome import Outcome
+from .._work.outcome import Outcome, up_to_date
 from .._work.progress import Progress, Work, go_on
+from .._work.up_to_date import is_up_to_date
 from .voices import VOICES, Plain
 
 _NONE: Mapping[str, Any] = MappingProxyType({})
@@ -79,6 +81,14 @@ def check_can_tell(options: argparse.Namespace, path: str, allowed: Sequence[str
         options.usage_error(
             f"--skip-up-to-date: found '{path}', and only {', '.join(allowed)} files can tell"
         )
+
+
+def are_up_to_date(targets: Sequence[Path], number: str) -> bool:
+    """Tells whether files have been made of what has this fingerprint; says so where they have."""
+    if not is_up_to_date(targets, number):
+        return False
+    say(up_to_date(targets))
+    return True
 
 
 def speak(kind: str = "plain") -> None:
