@@ -3,6 +3,7 @@
 // What Basis Universal calls transcoding, to texels.
 #include <transcoder/basisu_transcoder.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstring>
@@ -51,6 +52,35 @@ std::uint32_t size_of(std::span<const std::uint8_t> bytes) {
   return static_cast<std::uint32_t>(bytes.size());
 }
 
+// Where a table has one symbol only, the library takes codes of any length for it, and from those
+// that its first look-up is too short for, it walks out of its tree.
+bool has_safe_tables(std::span<const std::uint8_t> bytes, int flag_count, int table_count) {
+  basist::bitwise_decoder bits;
+  if (!bits.init(bytes.data(), size_of(bytes))) return false;
+  for (int i = 0; i < flag_count; ++i) {
+    if (bits.get_bits(1) != 0) return true;  // without tables, or not read by the library
+  }
+  for (int i = 0; i < table_count; ++i) {
+    basist::huffman_decoding_table table;
+    if (!bits.read_huffman_table(table)) return false;
+    const basisu::uint8_vec& lengths = table.get_code_sizes();
+    std::uint32_t used = 0;
+    std::uint32_t longest = 0;
+    for (std::uint32_t symbol = 0; symbol < lengths.size(); ++symbol) {
+      used += lengths[symbol] != 0;
+      longest = std::max<std::uint32_t>(longest, lengths[symbol]);
+    }
+    if (used == 1 && longest > basisu::cHuffmanFastLookupBits) return false;
+  }
+  return true;
+}
+
+bool has_safe_tables(const Etc1sCodebooks& codebooks) {
+  constexpr int kSelectorFlags = 3;  // global, hybrid, raw
+  return has_safe_tables(codebooks.tables, 0, 4) && has_safe_tables(codebooks.endpoints, 0, 4) &&
+         has_safe_tables(codebooks.selectors, kSelectorFlags, 1);
+}
+
 std::vector<std::uint8_t> decoded(basist::basisu_lowlevel_etc1s_transcoder* transcoder,
                                   const Etc1sLevel& level) {
   if (level.width < 1 || level.height < 1) {
@@ -86,6 +116,7 @@ std::vector<std::vector<std::uint8_t>> decode_etc1s(const Etc1sCodebooks& codebo
   basist::basisu_lowlevel_etc1s_transcoder transcoder;
   const auto is_count = [](int count) { return count >= 1 && count <= 0xffff; };
   if (!is_count(codebooks.endpoint_count) || !is_count(codebooks.selector_count) ||
+      !has_safe_tables(codebooks) ||
       !transcoder.decode_tables(codebooks.tables.data(), size_of(codebooks.tables)) ||
       !transcoder.decode_palettes(static_cast<std::uint32_t>(codebooks.endpoint_count),
                                   codebooks.endpoints.data(), size_of(codebooks.endpoints),

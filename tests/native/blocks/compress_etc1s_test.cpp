@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -118,6 +119,30 @@ TEST(CompressEtc1s, RefusesWhatItCannotDo) {
   const std::uint8_t texel[4] = {};
   const std::vector<Etc1sImage> huge = {{texel, 1 << 20, 1 << 20}};
   EXPECT_THROW(compress_etc1s(huge, {}, Progress()), Error);
+}
+
+/// A codebook of selectors whose table has a code for one symbol, bit by bit: three flags, how many
+/// symbols and lengths there are, which of these has a code, in the order of the format, and it.
+Bytes selectors_of_one_symbol(int code_length) {
+  const std::vector<int> order = {17, 18, 19, 20, 0, 8, 7, 9, 6, 10, 5, 11};
+  const auto place = std::find(order.begin(), order.end(), code_length) - order.begin();
+  const auto count = static_cast<std::uint64_t>(order.size());
+  const std::uint64_t bits =
+      1 << 3 | count << (3 + 14) | std::uint64_t{1} << (3 + 14 + 5 + 3 * place);
+  Bytes bytes;
+  for (int i = 0; i < 64; i += 8) bytes.push_back(static_cast<std::uint8_t>(bits >> i));
+  return bytes;
+}
+
+TEST(DecodeEtc1s, RefusesLongCodesOfOneSymbol) {
+  const std::vector<Image> levels = {waves(32, 32)};
+  Etc1sTexture texture = compressed(levels, {});
+  for (const int length : {9, 10}) {
+    texture.selectors = selectors_of_one_symbol(length);
+    EXPECT_NO_THROW(decoded(texture, levels)) << length;
+  }
+  texture.selectors = selectors_of_one_symbol(11);
+  EXPECT_THROW(decoded(texture, levels), Error);
 }
 
 }  // namespace
