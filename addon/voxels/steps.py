@@ -9,6 +9,7 @@ import numpy as np
 import prefilter
 from numpy.typing import NDArray
 from prefilter._work.voxels import surfaces
+from prefilter._work.voxels.nothing import NO_CELL, NothingLeftError
 
 from ..bridge import solids
 from ..bridge.files.staging import StagedFile
@@ -182,7 +183,7 @@ def contoured(
     middle = (_CONTOURED - VOXELIZED) / (1.0 - VOXELIZED)
     positions, faces, origins = _surface(tree, sources, settings, share(progress, 0.0, middle))
     if len(faces) == 0:
-        raise ValueError(surfaces.empty())
+        raise NothingLeftError(NO_CELL)
     transfer = Transfer(sources, positions, faces, origins, grid.spacing, settings.threads)
     face_materials, layers = transfer.run(place, share(progress, middle, 1.0))
     go_on(progress, 1.0)
@@ -292,6 +293,12 @@ class Told:
         summed = line(result.place.name, found, result.topology)
         (self.warnings if any(one.lost for one in findings) else self.notes).append(summed)
         return found
+
+    def add(self, other: "Told") -> None:
+        """Adds what was told elsewhere."""
+        self.warnings += other.warnings
+        self.notes += other.notes
+        self.findings += other.findings
 
     def tell(self, name: str, made: surfaces.Occupancy) -> None:
         """Adds what was found in the mesh of an object."""

@@ -12,6 +12,7 @@ from pathlib import Path
 import bpy
 from mathutils import Matrix
 from prefilter._work.up_to_date import arrays_of, fingerprint, fingerprint_of
+from prefilter._work.voxels.nothing import LeftOut, NothingLeftError, check_area
 
 from ..bridge import new_meshes, solids
 from ..bridge.armatures import at_rest
@@ -127,14 +128,22 @@ class Voxelization:
         """Voxelizes and contours.
 
         Raises:
-            ValueError: An object encloses nothing, or its cells are too small.
+            ValueError: The cells of an object are too small, or nothing is left of any.
             MemoryError: A result does not fit into memory.
             prefilter.Cancelled: `progress` has said so.
         """
-        steps = parts(progress, len(self._read))
+        steps, left_out = parts(progress, len(self._read)), LeftOut()
         for i, ((place, solid), part) in enumerate(zip(self._read, steps, strict=True)):
+            found = Told()
             with naming(place.name):
-                self._results.append(self._compute_one(i, place, solid, part))
+                try:
+                    result = self._compute_one(i, place, solid, found, part)
+                except NothingLeftError as error:
+                    left_out.add(place.name, error)
+                    continue
+            self._results.append(result)
+            self._told.add(found)
+        self._told.warnings += left_out.warnings_beside(self._results)
         go_on(progress, 1.0)
         self._read.clear()
 
@@ -185,9 +194,10 @@ class Voxelization:
             self._told.warnings.append(Sentence(text, listed(empty)))
 
     def _compute_one(
-        self, index: int, place: Place, solid: solids.Solid, progress: Progress
+        self, index: int, place: Place, solid: solids.Solid, found: Told, progress: Progress
     ) -> Result:
         operand = Operand.of(solid, self._settings)
+        check_area(operand.measures.area)
         # Memory counts: what was read is the operand's, and goes with it.
         solid.parts.clear()
         box, area = operand.measures.box, operand.measures.area
@@ -197,7 +207,7 @@ class Voxelization:
         if self._targets:
             check_dense_memory(grid)
         steps = share(progress, 0.0, VOXELIZED)
-        tree, source = voxelized(operand, grid, self._settings, self._told, steps)
+        tree, source = voxelized(operand, grid, self._settings, found, steps)
         del operand
         if self._targets:
             staged = staging.stage_with(

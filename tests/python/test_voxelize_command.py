@@ -69,6 +69,32 @@ def test_each_mesh_by_itself(tmp_path, capsys):
     assert trimesh.load_scene(out).bounds[0].min() > 3
 
 
+def test_meshes_of_which_nothing_is_left_are_left_out(tmp_path, capsys):
+    positions, triangles = corners_and_faces()
+    line = trimesh.Trimesh([[9, 0, 0], [9, 1, 0], [9, 2, 0]], [[0, 1, 2]], process=False)
+    sheet = trimesh.Trimesh([[7, 0, 0], [7, 1, 0], [7, 2, 3]], [[0, 1, 2]], process=False)
+    scene = trimesh.Scene()
+    for name, mesh in {
+        "Line": line,
+        "Body": trimesh.Trimesh(positions, triangles, process=False),
+        "Sheet": sheet,
+    }.items():
+        scene.add_geometry(mesh, node_name=name, geom_name=name)
+    scene.export(tmp_path / "three.glb")
+    out = tmp_path / "out.glb"
+    arguments = (tmp_path / "three.glb", out, "--depth", "4", "--thickness", "0")
+    assert run("voxelize", *arguments) == 0
+    assert set(trimesh.load_scene(out).geometry) == {"Body"}
+    warnings = capsys.readouterr().err
+    assert "warning: left out: object 'Line': all its faces have zero area" in warnings
+    assert "warning: left out: object 'Sheet': the result is empty" in warnings
+    out.unlink()
+    assert run("voxelize", *arguments, "--object", "Line", "--object", "Sheet") == 1
+    error = capsys.readouterr().err
+    assert "error: object 'Line': all its faces have zero area; object 'Sheet': the" in error
+    assert not out.exists()
+
+
 def test_what_is_refused(cube, tmp_path, capsys):
     out = tmp_path / "out.ply"
     for words, arguments in {

@@ -21,6 +21,7 @@ from .._work.outcome import Outcome
 from .._work.progress import Progress, go_on, parts, share
 from .._work.voxels import booleans, surfaces
 from .._work.voxels.grid import check_memory, choose_grid
+from .._work.voxels.nothing import NO_CELL, NothingLeftError
 from .._work.wording import amount, either, listed
 from ..meshes.measures import measure_mesh
 from . import telling, voxelize
@@ -96,7 +97,7 @@ class BooleanFile:
             adaptivity=settings.adaptivity,
         )
         if len(triangles) == 0:
-            raise ValueError(surfaces.empty())
+            raise NothingLeftError(NO_CELL)
         name = self._operands[0].name
         others = listed(one.name for one in self._operands[1:])
         self._line = (

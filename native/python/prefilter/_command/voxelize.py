@@ -18,6 +18,7 @@ from .._work.progress import Progress, go_on, parts, share
 from .._work.up_to_date import MESHES
 from .._work.voxels import surfaces
 from .._work.voxels.grid import check_memory, choose_grid
+from .._work.voxels.nothing import NO_CELL, LeftOut, NothingLeftError, check_area
 from .._work.wording import Sentence, amount, counted, either
 from ..meshes.measures import measure_mesh
 from . import many, tasks, telling
@@ -93,18 +94,21 @@ class VoxelFile:
         """Voxelizes, contours, and stages the file.
 
         Raises:
-            ValueError: A mesh encloses nothing, or its cells are too small.
+            ValueError: The cells of a mesh are too small, or nothing is left of any.
             MemoryError: A result does not fit into memory.
             OSError: The file cannot be written.
             prefilter.Cancelled: `progress` returned False.
         """
         steps = parts(share(progress, 0.0, _COMPUTED), len(self._meshes))
-        made = []
+        made, left_out = [], LeftOut()
         for mesh, part in zip(self._meshes, steps, strict=True):
             try:
                 made.append(self._voxelized(mesh, part))
+            except NothingLeftError as error:
+                left_out.add(mesh.name, error)
             except ValueError as error:
                 raise ValueError(f"mesh '{mesh.name}': {error}") from error
+        self._warnings += left_out.warnings_beside(made)
         go_on(progress, _COMPUTED)
         self._staged = mesh_files.stage(self._target, made, self.metadata)
         go_on(progress, 1.0)
@@ -127,13 +131,11 @@ class VoxelFile:
     def _voxelized(self, mesh: Part, progress: Progress) -> Part:
         settings = self._settings
         measures = measure_mesh(mesh.positions, mesh.triangles, threads=settings.threads)
+        check_area(measures.area)
         grid = choose_grid(measures.box, settings)
         check_memory(grid, measures.area)
         steps = share(progress, 0.0, _VOXELIZED)
         made = surfaces.occupancy(mesh.positions, mesh.triangles, grid, settings, steps)
-        warnings, notes = surfaces.lines_of(mesh.name, made)
-        self._warnings += warnings
-        self._notes += notes
         positions, triangles, _ = surfaces.surface(
             made.tree,
             [(made.positions, made.triangles)],
@@ -142,7 +144,10 @@ class VoxelFile:
             adaptivity=settings.adaptivity,
         )
         if len(triangles) == 0:
-            raise ValueError(surfaces.empty())
+            raise NothingLeftError(NO_CELL)
+        warnings, notes = surfaces.lines_of(mesh.name, made)
+        self._warnings += warnings
+        self._notes += notes
         self._triangles += len(triangles)
         self._lines.append(
             f"'{mesh.name}' in {grid.cells}³ cells of {grid.spacing:.4g}: "

@@ -87,8 +87,8 @@ def stage(
     trimesh = _trimesh()
     kind = target.suffix.lower().removeprefix(".")
     meshes = [trimesh.Trimesh(one.positions, one.triangles, process=False) for one in parts]
-    if len(meshes) == 1 or kind in {"ply", "stl"}:
-        made = trimesh.util.concatenate(meshes) if len(meshes) > 1 else meshes[0]
+    if kind in {"ply", "stl"}:
+        made = trimesh.util.concatenate(meshes)
     else:
         made = trimesh.Scene()
         for part, mesh in zip(parts, meshes, strict=True):

@@ -511,7 +511,7 @@ def plane():
         (of_edges_alone, {}, "object 'Wire': found no faces"),
         (of_no_faces, {}, "object 'None': found no faces"),
         (with_a_broken_vertex, {}, "object 'Cube': vertex 3 .*nan.*finite"),
-        (at_one_place, {}, "object 'Cube': all its vertices coincide"),
+        (at_one_place, {}, "object 'Cube': all its faces have zero area"),
         (flat, {}, "object 'Cube': its scale is 0 along an axis"),
         (plane, {"thickness": 0.0}, "object 'Plane': the result is empty"),
         (
@@ -538,6 +538,25 @@ def test_objects_without_faces_are_left_out(capfd):
     assert_close_to(box, 8.0)
     assert len(wire.data.vertices) == 2
     assert "Warning: left out, as they have no faces: 'Wire'" in capfd.readouterr().out
+
+
+def test_objects_of_which_nothing_is_left_are_left_out(capfd):
+    box, sheet = bodies.cube(), plane()
+    count = len(sheet.data.vertices)
+    assert voxelize(thickness=0.0) == {"FINISHED"}
+    assert_close_to(box, 8.0)
+    assert len(sheet.data.vertices) == count
+    assert "Warning: left out: object 'Plane': the result is empty" in capfd.readouterr().out
+
+
+def test_nothing_is_left_of_any_object():
+    sheet, box = plane(), at_one_place()
+    for obj in (sheet, box):
+        obj.select_set(True)
+    found = "object 'Plane': the result is empty.*; object 'Cube': all its faces have zero area"
+    with pytest.raises(RuntimeError, match=found):
+        voxelize(thickness=0.0)
+    assert len(bpy.data.meshes) == 2
 
 
 def test_too_large_for_memory(addon, monkeypatch):

@@ -147,14 +147,6 @@ def surface(
     return traced.positions, traced.triangles, traced.origins
 
 
-def empty() -> Sentence:
-    """Returns what is told of a surface that has no face."""
-    return Sentence(
-        "the result is empty: no cell is at least half full. Parts that are thinner "
-        "than a cell, or enclose nothing, disappear"
-    )
-
-
 def lines_of(name: str, made: Occupancy) -> tuple[list[str], list[str]]:
     """Returns warnings and notes of what was odd about the mesh of an object."""
     warnings: list[str] = []
