@@ -419,6 +419,23 @@ def test_filters_of_what_is_turned_are_turned(turn):
         np.testing.assert_allclose(drawn(step, element), drawn(step, other), atol=0.015)
 
 
+def test_what_rounding_leaves_of_colors_stays_small():
+    from prefilter.shapes._svg.filtering import filtered
+    from prefilter.shapes._svg.tree import Filter, Group, Step
+
+    def blurred(pixels):
+        identity = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
+        blur = Step("feGaussianBlur", ("SourceGraphic",), "", (1.0, 1.0), "", True, None)
+        filter_ = Filter((blur,), None, identity, is_linear=False)
+        return filtered(lambda _: pixels, Group([]), filter_, identity, (0, 0, 7, 6))
+
+    clean = np.zeros((6, 7, 4), np.float32)
+    clean[4, 5] = 0.1, 0.2, 0.3, 0.4
+    noisy = clean.copy()
+    noisy[2, 2] = -4.2e-13, -3.6e-12, 4.5e-12, 7.1e-26
+    np.testing.assert_allclose(blurred(noisy), blurred(clean), atol=1e-6)
+
+
 @pytest.mark.parametrize(
     "steps",
     [

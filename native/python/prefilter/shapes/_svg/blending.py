@@ -28,7 +28,7 @@ def blended(below: FloatArray, above: FloatArray, mode: str) -> FloatArray:
         return below
     mix = _MODES[mode]
     alpha_below, alpha_above = below[..., 3:], above[..., 3:]
-    mixed = mix(_straight(below), _straight(above))
+    mixed = mix(straight_colors(below), straight_colors(above))
     result = np.empty_like(below)
     result[..., :3] = (
         (_ONE - alpha_below) * above[..., :3]
@@ -39,7 +39,7 @@ def blended(below: FloatArray, above: FloatArray, mode: str) -> FloatArray:
     return result
 
 
-def _straight(colors: FloatArray) -> FloatArray:
+def straight_colors(colors: FloatArray) -> FloatArray:
     """Colors in [0, 1] that are not multiplied by alpha; 0 where that is 0."""
     alpha = colors[..., 3:]
     found = np.zeros_like(colors[..., :3])

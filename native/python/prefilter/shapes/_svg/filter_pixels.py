@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ... import _native
-from .blending import blended
+from .blending import blended, straight_colors
 
 FloatArray = npt.NDArray[np.float32]
 
@@ -140,10 +140,7 @@ def _valid(pixels: FloatArray) -> FloatArray:
 
 
 def _straight(pixels: FloatArray) -> FloatArray:
-    straight = pixels.clip(0.0, 1.0)
-    np.divide(pixels[..., :3], pixels[..., 3:], out=straight[..., :3], where=pixels[..., 3:] > 0.0)
-    found: FloatArray = straight.clip(0.0, 1.0)
-    return found
+    return np.concatenate([straight_colors(pixels), pixels[..., 3:].clip(0.0, 1.0)], -1)
 
 
 def _multiplied(straight: FloatArray) -> FloatArray:

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from ...images.color import to_linear, to_srgb
 from ..affine import Matrix, inverse, multiplied
-from .blending import blended
+from .blending import blended, straight_colors
 from .document import TooLargeError
 from .filter_pixels import blurred, composited, recolored, shifted, transferred
 from .lighting import lit
@@ -315,9 +315,7 @@ def _with_colors(result: _Result, is_linear: bool) -> FloatArray:
     if result.is_linear == is_linear:
         return pixels
     found = pixels.copy()
-    alpha = pixels[..., 3:]
-    straight = np.zeros_like(pixels[..., :3])
-    np.divide(pixels[..., :3], alpha, out=straight, where=alpha > 0.0)
-    changed = to_linear(straight) if is_linear else to_srgb(straight)
-    found[..., :3] = changed * alpha
+    colors = straight_colors(pixels)
+    changed = to_linear(colors) if is_linear else to_srgb(colors)
+    found[..., :3] = changed * pixels[..., 3:]
     return found

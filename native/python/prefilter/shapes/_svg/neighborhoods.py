@@ -5,6 +5,8 @@
 import numpy as np
 import numpy.typing as npt
 
+from .blending import straight_colors
+
 FloatArray = npt.NDArray[np.float32]
 
 _PADDING = {"duplicate": "edge", "wrap": "wrap", "none": "constant"}
@@ -53,7 +55,7 @@ def convolved(pixels: FloatArray, numbers: tuple[float, ...], edge_mode: str) ->
     weights = np.array(numbers[6:], np.float32).reshape(rows, columns)
     height, width = pixels.shape[:2]
     alpha = pixels[..., 3:]
-    source = _straight(pixels) if keeps_alpha else pixels
+    source = straight_colors(pixels) if keeps_alpha else pixels
     around = ((y, rows - 1 - y), (x, columns - 1 - x), (0, 0))
     padded = np.pad(source, around, _PADDING[edge_mode])  # type: ignore[call-overload]
     found = np.zeros_like(source)
@@ -68,12 +70,6 @@ def convolved(pixels: FloatArray, numbers: tuple[float, ...], edge_mode: str) ->
         return np.concatenate([found, alpha], -1)
     found = (found + bias).clip(0.0, 1.0)
     found[..., :3] = np.minimum(found[..., :3], found[..., 3:])
-    return found
-
-
-def _straight(pixels: FloatArray) -> FloatArray:
-    found = np.zeros_like(pixels[..., :3])
-    np.divide(pixels[..., :3], pixels[..., 3:], out=found, where=pixels[..., 3:] > 0.0)
     return found
 
 
