@@ -114,7 +114,7 @@ def command() -> str:
     if "--python" in started:  # Blender
         program = Path(started[started.index("--python") + 1])
         before = "scripts/run blender --background --python-exit-code 1 --python"
-        if "--background" not in started:
+        if "--enable-event-simulate" in started:
             before = "scripts/run xvfb-run -a blender --enable-event-simulate --python"
         arguments = started[started.index("--") :] if "--" in started else []
     elif "-m" in started[:3]:

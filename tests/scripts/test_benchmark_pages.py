@@ -126,6 +126,11 @@ def test_a_report_becomes_a_result(tmp_path, capsys, monkeypatch):
             ["blender", "-b", "--python", "bench/a.py", "--", "--json", "b"],
             "scripts/run blender --background --python-exit-code 1 --python bench/a.py",
         ),
+        (
+            ["blender", "--enable-event-simulate", "--python", "bench/a.py", "--", "--count", "9"],
+            "scripts/run xvfb-run -a blender --enable-event-simulate --python bench/a.py"
+            " -- --count 9",
+        ),
     ],
 )
 def test_the_command_is_as_typed(monkeypatch, started, expected):
