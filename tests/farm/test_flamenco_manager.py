@@ -55,13 +55,12 @@ pytestmark = [
 Call = Callable[..., dict[str, Any]]
 
 
-def wait_for(found: Callable[[], Any], seconds: float) -> Any:
-    """Returns what is found as soon as it is true."""
+def wait_for(condition: Callable[[], bool], seconds: float) -> None:
+    """Waits until a condition holds."""
     end = time.monotonic() + seconds
-    while not (value := found()):
-        assert time.monotonic() < end, f"nothing in {seconds} s"
+    while not condition():
+        assert time.monotonic() < end, f"waited {seconds} s"
         time.sleep(0.3)
-    return value
 
 
 @pytest.fixture(scope="module")
@@ -180,7 +179,8 @@ def test_a_surface_of_a_million_points_is_canceled_and_goes_on(call, tmp_path):
     places = {"points": points, "surface": surface, "work": work}
     job = submit(call, "prefilter-reconstruct", **places, depth=8, parts=4, tasks=2)
     wait_for(lambda: statuses(call, job)["part-1"] == "active", 300)
-    # A Manager takes a job for active again whose task's first word comes after it is canceled.
+    # Where a Worker says that it has begun a task only after its job is canceled, the Manager makes
+    # the job active again.
     time.sleep(3)
     call(f"jobs/{job}/setstatus", {"status": "cancel-requested", "reason": "tests"})
     wait_for(lambda: call(f"jobs/{job}")["status"] == "canceled", 60)
