@@ -134,7 +134,7 @@ def textured() -> Path:
 def display(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, str]]:
     """Runs an X server without a screen, and returns the environment for programs to use it.
 
-    FRAMEBUFFER is a file with what its screen shows; see `scenes.screen`.
+    FRAMEBUFFER is a file with the pixels of its screen; see `scenes.screen`.
     """
     folder = tmp_path_factory.mktemp("display")
     if shutil.which("Xvfb") is None:
@@ -183,7 +183,7 @@ def in_window(display: dict[str, str]) -> Callable[[Path, Path], None]:
             env={**os.environ, **display},
             capture_output=True,
             text=True,
-            timeout=300,
+            timeout=1500,
             check=False,
         )
         output = result.stdout + result.stderr

@@ -2,6 +2,7 @@
 
 """What the sessions share that run in a Blender with a window."""
 
+import ctypes
 import importlib
 import os
 import sys
@@ -12,15 +13,19 @@ from collections.abc import Callable, Generator, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import addon_utils
 import bpy
+import numpy as np
+import scenes
+from numpy.typing import NDArray
 
 PACKAGE = "bl_ext.user_default.prefilter"
 
 SECONDS_PER_STEP = 0.05
-LONGEST_WAIT = 60.0
+LONGEST_WAIT = 240.0
+"""Seconds after which an event that a session waits for counts as missing, on a busy machine."""
 
 
 def until(condition: Callable[[], bool]) -> Iterator[None]:
@@ -114,6 +119,65 @@ def cancelled(window: bpy.types.Window, area: bpy.types.Area) -> Iterator[None]:
             yield from clicked(window, x, y)
             return
     raise AssertionError("there is no button Cancel in the sidebar")
+
+
+def pixels(area: bpy.types.Area, kind: str = "WINDOW") -> NDArray[np.uint8]:
+    """Returns what the X server shows of a region, (height, width, 3), row 0 at the bottom.
+
+    That may be older than what Blender has drawn; see `picture`.
+    """
+    part = region(area, kind)
+    screen = scenes.screen(os.environ["FRAMEBUFFER"])
+    return screen[part.y : part.y + part.height, part.x : part.x + part.width]
+
+
+def picture(area: bpy.types.Area, kind: str = "WINDOW") -> Generator[None, None, NDArray[np.uint8]]:
+    """Draws a region, waits until the X server shows it, and returns its pixels as `pixels` does.
+
+    The server may be late on a busy machine. A change of the pointer's shape is sent behind the
+    picture, and the server does one after the other: once it has the new pointer, which is
+    invisible, it shows the picture.
+    """
+    area.tag_redraw()
+    yield
+    yield
+    window, pointer = bpy.context.window_manager.windows[0], Pointer()
+    before = pointer.serial()
+    window.cursor_modal_set("NONE")
+    yield from until(lambda: pointer.serial() != before)
+    result = pixels(area, kind).copy()
+    window.cursor_modal_restore()
+    return result
+
+
+class Pointer:
+    """The pointer as the X server has it, by the extension XFixes."""
+
+    class _Image(ctypes.Structure):
+        """XFixesCursorImage, up to the last field that is read."""
+
+        _fields_: ClassVar = [
+            *((name, ctypes.c_short) for name in ("x", "y")),
+            *((name, ctypes.c_ushort) for name in ("width", "height", "x_hot", "y_hot")),
+            ("serial", ctypes.c_ulong),
+        ]
+
+    def __init__(self) -> None:
+        """Connects to the server."""
+        self._x = ctypes.CDLL("libX11.so.6")
+        self._fixes = ctypes.CDLL("libXfixes.so.3")
+        self._x.XOpenDisplay.restype = ctypes.c_void_p
+        self._x.XFree.argtypes = [ctypes.c_void_p]
+        self._fixes.XFixesGetCursorImage.restype = ctypes.POINTER(self._Image)
+        self._fixes.XFixesGetCursorImage.argtypes = [ctypes.c_void_p]
+        self._display = self._x.XOpenDisplay(None)
+
+    def serial(self) -> int:
+        """Returns a number that is another one for each shape of the pointer."""
+        image = self._fixes.XFixesGetCursorImage(self._display)
+        number = int(image.contents.serial)
+        self._x.XFree(image)
+        return number
 
 
 def browser() -> bpy.types.Window | None:

@@ -31,14 +31,15 @@ def test_returning_false_stops_soon(filter):
 
     def stop_after_a_while(fraction):
         if fraction > 0.02:
-            stopped.append(time.perf_counter())
+            stopped.append(time.process_time())
             return False
         return True
 
     with pytest.raises(prefilter.Cancelled):
         prefilter.mipmaps(image, surface, filter=filter, progress=stop_after_a_while)
     assert len(stopped) == 1
-    assert time.perf_counter() - stopped[0] < 1.0
+    # Seconds of processors, which other programs do not change; the whole takes many.
+    assert time.process_time() - stopped[0] < 1.0
 
 
 def test_an_exception_in_the_callback_passes_through():

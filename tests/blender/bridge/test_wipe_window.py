@@ -22,9 +22,7 @@ def test_it_follows_the_mouse(here):
 
 
 def test_it_and_the_pointer_show_that_it_can_be_taken(here):
-    assert here["drawn under the mouse"] > 0.8
-    assert here["pointer changes"]
-    assert here["changes back"]
+    assert here["shows that it can be taken"]
 
 
 def test_ctrl_snaps(here):

@@ -6,13 +6,13 @@ Usage: blender --factory-startup --enable-event-simulate --python wipe_session.p
 """
 
 import json
-import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
@@ -22,6 +22,7 @@ from window import Stage, begun, idle, moved, play, region, until
 
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
 windows.SECONDS_PER_STEP = 0.05
+SCREEN_MIDDLE = 640, 400
 
 found: dict[str, dict[str, object]] = {}
 
@@ -57,24 +58,27 @@ def dragged(stage: Stage, state: bpy.types.PropertyGroup, name: str) -> Iterator
     width = region(stage.area, "WINDOW").width
     state.wipe = 0.5
     x, y = line(stage, state.wipe)
-    pictures = []
-    # Twice, as Blender has set no pointer before.
-    for place in (x, x - 90, x, x - 90):
-        yield from moved(stage.window, place, y)
-        pictures.append((yield from steady(stage)))
-    _, off, on, off_again = pictures
-    differs = np.any(on != off, axis=-1)
-    here["drawn under the mouse"] = float(np.mean(differs[:, width // 2]))
-    # The server draws the pointer where it really is: in the middle of the screen.
-    here["pointer changes"] = bool(np.any(differs[:, width // 2 + 30 :]))
-    # The server may have hidden the pointer in one of the pictures.
-    for _ in range(5):
-        here["changes back"] = bool(np.all(off_again == off))
-        if here["changes back"]:
-            break
-        yield from moved(stage.window, x - 80, y)
-        yield from moved(stage.window, x - 90, y)
-        off_again = yield from steady(stage)
+    yield from moved(stage.window, x, y)
+    yield from moved(stage.window, x - 90, y)
+    off, pointer = (yield from windows.picture(stage.area)), windows.Pointer()
+    elsewhere = pointer.serial()
+
+    def changed() -> NDArray[np.bool_]:
+        differs = np.any(windows.pixels(stage.area) != off, axis=-1)
+        # The server draws its pointer in the middle of the screen, and hides it at times.
+        part = region(stage.area, "WINDOW")
+        column, row = SCREEN_MIDDLE[0] - part.x, SCREEN_MIDDLE[1] - part.y
+        differs[row - 32 : row + 32, column - 32 : column + 32] = False
+        return differs
+
+    yield from moved(stage.window, x, y)
+    # The server hears of it sooner or later.
+    yield from until(lambda: pointer.serial() != elsewhere)
+    yield from until(lambda: np.mean(changed()[:, width // 2]) > 0.8)
+    yield from moved(stage.window, x - 90, y)
+    yield from until(lambda: pointer.serial() == elsewhere)
+    yield from until(lambda: not changed().any())
+    here["shows that it can be taken"] = True
     here["dragged"] = yield from dragged_by(stage, state.wipe, 60, state)
     here["beside"] = yield from dragged_by(stage, state.wipe + 0.1, -60, state)
     here["near"] = yield from dragged_by(stage, state.wipe, -40, state, off=4)
@@ -129,27 +133,6 @@ def line(stage: Stage, share: float) -> tuple[int, int]:
     """Returns where in the window a line is."""
     part = region(stage.area, "WINDOW")
     return part.x + round(share * part.width), part.y + part.height // 3
-
-
-def steady(stage: Stage) -> Iterator[None]:
-    """Returns what the editor shows at rest; the server hides the pointer at times."""
-    yield from stage.redrawn()
-    now = seen(stage)
-    for _ in range(10):
-        before = now
-        yield from stage.redrawn()
-        yield
-        now = seen(stage)
-        if np.array_equal(before, now):
-            break
-    return now
-
-
-def seen(stage: Stage) -> np.ndarray:
-    """Returns what the editor shows."""
-    part = region(stage.area, "WINDOW")
-    screen = scenes.screen(os.environ["FRAMEBUFFER"])
-    return screen[part.y : part.y + part.height, part.x : part.x + part.width]
 
 
 play(session())

@@ -7,10 +7,9 @@ Usage: blender --factory-startup --enable-event-simulate --python queue_session.
 
 import importlib
 import json
-import os
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from pathlib import Path
 
 import bpy
@@ -27,6 +26,7 @@ from window import (
     clicked,
     idle,
     moved,
+    picture,
     play,
     region,
     until,
@@ -120,19 +120,17 @@ def mouse_over_progress(stage: Stage) -> Iterator[None]:
         yield from until(lambda: running_text() == "50 %")
         for _ in range(8):
             yield
-        told = found["blue"] = [blue(stage)]
+        told = found["blue"] = [(yield from blue(stage))]
     yield from until(idle)
     for _ in range(8):
         yield
-    told.append(blue(stage))
+    told.append((yield from blue(stage)))
     bpy.ops.ed.undo_push(message="before")
 
 
-def blue(stage: Stage) -> int:
+def blue(stage: Stage) -> Generator[None, None, int]:
     """Returns how many pixels of the sidebar are as blue as what is selected, or progress."""
-    side = region(stage.area, "UI")
-    seen = scenes.screen(os.environ["FRAMEBUFFER"])
-    there = seen[side.y : side.y + side.height, side.x : side.x + side.width].astype(int)
+    there = (yield from picture(stage.area, "UI")).astype(int)
     return int(((there[..., 2] > 140) & (there[..., 0] < 100)).sum())
 
 

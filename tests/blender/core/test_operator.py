@@ -175,22 +175,24 @@ def test_second_run_waits_for_the_first(probe, context):
     first.cancel(context)
 
 
-def test_esc_ends_within_a_tick_of_the_work(addon, probe, context):
-    operator, ended = probe(), []
+def test_esc_ends_the_work_at_its_next_report(addon, probe, context):
+    operator, reports_after_esc, is_pressed = probe(), [], threading.Event()
 
     def compute(progress):
         while progress(0.5):
+            if is_pressed.is_set():
+                reports_after_esc.append(True)
             time.sleep(0.001)
-        ended.append(time.monotonic())
         raise prefilter.Cancelled("cancelled")
 
     operator.compute = compute
     operator.invoke(context, None)
     assert operator.modal(context, ESC) == {"RUNNING_MODAL"}
-    began = time.monotonic()
+    is_pressed.set()
     while operator.modal(context, TIMER) != {"CANCELLED"}:
         time.sleep(0.001)
-    assert ended[0] - began < 0.1
+    # One report may have been under way.
+    assert len(reports_after_esc) <= 1
     assert addon("core.running").TICK_SECONDS <= 0.05
     assert operator.reports == ["Probing canceled"]
     assert operator.discarded == 1
@@ -253,25 +255,20 @@ def test_while_it_reads_only_the_button_takes_clicks(addon, probe, context, monk
 
 
 def test_esc_does_not_wait_for_a_step_that_cannot_stop(probe, context):
-    waited = []
-    for _ in range(3):
-        operator, may_end, released = probe(), threading.Event(), threading.Event()
-        operator.compute = lambda progress, may_end=may_end: may_end.wait(10)
-        operator.releaser = lambda released=released: released.set
-        operator.invoke(context, None)
-        job = operator._parts.job
-        began = time.monotonic()
-        operator.modal(context, ESC)
-        while operator.modal(context, TIMER) != {"CANCELLED"}:
-            time.sleep(0.05)
-        waited.append(time.monotonic() - began)
-        assert not released.is_set()
-        may_end.set()
-        job.result()
-        assert released.is_set()
-        assert operator.discarded == 0
-    # The machine may be busy with something else, but not each time.
-    assert min(waited) < 0.2
+    operator, may_end, released = probe(), threading.Event(), threading.Event()
+    operator.compute = lambda progress: may_end.wait()
+    operator.releaser = lambda: released.set
+    operator.invoke(context, None)
+    job = operator._parts.job
+    operator.modal(context, ESC)
+    while operator.modal(context, TIMER) != {"CANCELLED"}:
+        time.sleep(0.05)
+    assert not job.is_done
+    assert not released.is_set()
+    may_end.set()
+    job.result()
+    assert released.is_set()
+    assert operator.discarded == 0
 
 
 def test_redo_that_is_slow_waits(probe, context):
@@ -291,9 +288,8 @@ def test_redo_that_turns_out_slow_is_cut_short_and_waits(addon, probe, context, 
     operator.options = SimpleNamespace(is_repeat=True, is_repeat_last=False)
 
     def compute(progress):
-        began = time.monotonic()
-        while progress(min(1.0, (time.monotonic() - began) / 10.0)):
-            assert time.monotonic() - began < 5.0
+        while progress(0.01):
+            time.sleep(0.001)
         raise prefilter.Cancelled("cancelled")
 
     operator.compute = compute

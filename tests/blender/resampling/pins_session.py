@@ -7,9 +7,8 @@ Usage: blender --factory-startup --enable-event-simulate --python pins_session.p
 
 import importlib
 import json
-import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from pathlib import Path
 
 import bpy
@@ -19,7 +18,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import scenes
 import window as windows
-from window import PACKAGE, Stage, begun, idle, moved, play, region, until
+from window import PACKAGE, Stage, begun, idle, moved, picture, play, region, until
 
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
 windows.SECONDS_PER_STEP = 0.05
@@ -48,19 +47,19 @@ def session() -> Iterator[None]:
 
 def dragged(stage: Stage) -> Iterator[None]:
     """Presses the button, and drags corners, with and without Ctrl; undoes the last."""
-    before = seen(stage)
+    before = yield from picture(stage.area)
     yield from started(stage)
     found["warp"] = settings().warp
     found["corners at first"] = pixels()
-    found["changed on screen"] = float(np.mean(seen(stage) != before))
+    shown = yield from picture(stage.area)
+    found["changed on screen"] = float(np.mean(shown != before))
     found["button"] = importlib.import_module(f"{PACKAGE}.resampling.view.pins").is_on(
         bpy.data.images["Facade"]
     )
     for index, place in enumerate(((90, 60), (210, 60), (210, 140), (90, 140))):
         yield from drag(stage, index, place, ctrl=True)
     found["dragged"] = pixels()
-    yield from stage.redrawn()
-    found["straightened on screen"] = orange(stage)
+    found["straightened on screen"] = yield from orange(stage)
     yield from drag(stage, 2, (250, 180))
     found["before undo"] = pixels()[2]
     bpy.ops.ed.undo()
@@ -180,16 +179,9 @@ def pressed(stage: Stage, key: str, at: tuple[int, int], **keys: bool) -> Iterat
         yield
 
 
-def seen(stage: Stage) -> np.ndarray:
-    """Returns what the editor shows."""
-    part = region(stage.area, "WINDOW")
-    screen = scenes.screen(os.environ["FRAMEBUFFER"])
-    return screen[part.y : part.y + part.height, part.x : part.x + part.width]
-
-
-def orange(stage: Stage) -> float:
+def orange(stage: Stage) -> Generator[None, None, float]:
     """Returns how much of the lower left quarter of the editor has the facade's color."""
-    shown = seen(stage).astype(int)
+    shown = (yield from picture(stage.area)).astype(int)
     height, width = shown.shape[0] // 4, shown.shape[1] // 4
     corner = shown[:height, :width]
     return float(np.mean((corner[..., 0] > 230) & (corner[..., 2] < 60)))

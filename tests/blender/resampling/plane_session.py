@@ -6,7 +6,6 @@ Usage: blender --factory-startup --enable-event-simulate --python plane_session.
 """
 
 import importlib
-import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -18,7 +17,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import scenes
-from window import PACKAGE, begun, idle, play, region, until
+from window import PACKAGE, begun, idle, picture, play, region, until
 
 RESULT = sys.argv[sys.argv.index("--") + 1]
 WIDTH, HEIGHT = 64, 48  # Of an offscreen picture.
@@ -49,12 +48,10 @@ def session() -> Iterator[None]:
         found["started"] = sorted(started)
     yield from until(idle)
     yield
-    found["on screen"] = shown(area)
+    found["on screen"] = yield from picture(area)
     settings = bpy.context.window_manager.prefilter_plane
     settings.use_plane = False
-    yield
-    yield
-    found["off screen"] = shown(area)
+    found["off screen"] = yield from picture(area)
     settings.use_plane = True
 
     with bpy.context.temp_override(**override):
@@ -78,13 +75,6 @@ def session() -> Iterator[None]:
     yield
     found["kept in next file"] = len(kept._planes)
     np.savez(RESULT, **found)
-
-
-def shown(area: bpy.types.Area) -> np.ndarray:
-    """Returns what the area's main region shows, row 0 at the bottom."""
-    seen = scenes.screen(os.environ["FRAMEBUFFER"])
-    part = region(area, "WINDOW")
-    return seen[part.y : part.y + part.height, part.x : part.x + part.width]
 
 
 def offscreen(plane: object, view: tuple[float, ...], texels: int, name: str) -> Iterator[None]:

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <random>
 
 namespace prefilter {
@@ -177,9 +177,9 @@ TEST(NearestPoints, OfManyCoincidentTrianglesAreFoundSoon) {
     soup.triangles.push_back({3, 3, 3});
   }
   const Soup asked = random_soup(9, 20000, 0.5);
-  const auto began = std::chrono::steady_clock::now();
+  const std::clock_t began = std::clock();
   const auto found = nearest_points(asked.positions, soup.view(), Progress(), 1);
-  EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(20));
+  EXPECT_LT(std::clock() - began, 20 * CLOCKS_PER_SEC);
   for (const SurfacePoint& point : found) EXPECT_LE(point.triangle, 1);
 }
 

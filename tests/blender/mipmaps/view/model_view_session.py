@@ -7,9 +7,8 @@ Usage: blender --factory-startup --enable-event-simulate --python model_view_ses
 
 import importlib
 import json
-import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from pathlib import Path
 
 import bpy
@@ -18,7 +17,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 import scenes
-from window import PACKAGE, Stage, begun, idle, moved, play, region, until, without_objects
+from window import PACKAGE, Stage, begun, idle, moved, picture, play, region, until, without_objects
 
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
 SIDE = 64
@@ -46,7 +45,7 @@ def session() -> Iterator[None]:
     for _ in range(10):
         yield
     before = data()
-    found["plain"] = sides(stage)
+    found["plain"] = yield from sides(stage)
     with bpy.context.temp_override(**stage.override):
         started = bpy.ops.prefilter.preview_on_model("INVOKE_DEFAULT", compare="box")
     found["started"] = list(started)
@@ -63,23 +62,23 @@ def shown(stage: Stage) -> Iterator[None]:
     view = settings()
     view.use_wipe, view.compare, view.choice, view.mip_value = True, "box", "level", 6.0
     yield from stage.redrawn()
-    found["coarsest"] = sides(stage)
+    found["coarsest"] = yield from sides(stage)
     for kind in ("MATERIAL", "SOLID"):
         stage.area.spaces.active.shading.type = kind
         for overlays in (True, False):
             stage.area.spaces.active.overlay.show_overlays = overlays
             for _ in range(5 if kind == "MATERIAL" else 2):
                 yield from stage.redrawn()
-            found[f"{kind} {overlays}"] = sides(stage)
+            found[f"{kind} {overlays}"] = yield from sides(stage)
     view.choice, view.distance = "distance", 1024.0
     yield from stage.redrawn()
-    found["far"] = sides(stage)
+    found["far"] = yield from sides(stage)
     view.distance = 1.0
     yield from stage.redrawn()
-    found["near"] = sides(stage)
+    found["near"] = yield from sides(stage)
     view.use_model = False
     yield from stage.redrawn()
-    found["switched off"] = sides(stage)
+    found["switched off"] = yield from sides(stage)
     view.use_model, view.choice = True, "level"
     found["levels"] = {
         name: [float(one) for one in made[-1][0, 0, :3]]
@@ -88,7 +87,7 @@ def shown(stage: Stage) -> Iterator[None]:
     quad = bpy.data.objects["Quad"]
     quad.hide_set(True)
     yield from stage.redrawn()
-    found["hidden"] = sides(stage)
+    found["hidden"] = yield from sides(stage)
     quad.hide_set(False)
     yield from stage.redrawn()
 
@@ -121,11 +120,11 @@ def ended(stage: Stage) -> Iterator[None]:
     yield from stage.redrawn()
     settings().wipe = 0.5
     yield from stage.redrawn()
-    found["after undo"] = sides(stage)
+    found["after undo"] = yield from sides(stage)
     with bpy.context.temp_override(**stage.override):
         bpy.ops.prefilter.end_model_preview()
     yield from stage.redrawn()
-    found["ended"] = sides(stage)
+    found["ended"] = yield from sides(stage)
     found["kept"] = module("on_model").current() is not None
 
 
@@ -146,12 +145,11 @@ def data() -> list[list[str]]:
     return [*([one.name for one in kind] for kind in kinds), nodes]
 
 
-def sides(stage: Stage) -> list[list[float]]:
+def sides(stage: Stage) -> Generator[None, None, list[list[float]]]:
     """Returns the mean color left and right of the middle of the view, below the line's arrows."""
-    part = region(stage.area, "WINDOW")
-    screen = scenes.screen(os.environ["FRAMEBUFFER"])
-    x, y = part.x + part.width // 2, part.y + part.height // 2 - 40
-    boxes = (screen[y - 15 : y + 15, x - 35 : x - 5], screen[y - 15 : y + 15, x + 5 : x + 35])
+    shown = yield from picture(stage.area)
+    x, y = shown.shape[1] // 2, shown.shape[0] // 2 - 40
+    boxes = (shown[y - 15 : y + 15, x - 35 : x - 5], shown[y - 15 : y + 15, x + 5 : x + 35])
     return [np.mean(box, axis=(0, 1)).tolist() for box in boxes]
 
 

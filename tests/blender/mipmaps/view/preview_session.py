@@ -6,7 +6,6 @@ Usage: blender --factory-startup --enable-event-simulate --python preview_sessio
 """
 
 import importlib
-import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -21,7 +20,7 @@ from mathutils import Matrix
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 import scenes
-from window import PACKAGE, Stage, begun, play, region, until
+from window import PACKAGE, Stage, begun, picture, play, region, until
 
 RESULT = sys.argv[sys.argv.index("--") + 1]
 CHANNELS = {
@@ -74,11 +73,8 @@ def state() -> bpy.types.PropertyGroup:
 
 def shoot(stage: Stage, name: str) -> Iterator[None]:
     """Keeps what the screen shows, and where in the image that is."""
-    yield from stage.redrawn()
+    found[f"{name}.screen"] = yield from picture(stage.area)
     inside = region(stage.area, "WINDOW")
-    seen = scenes.screen(os.environ["FRAMEBUFFER"])
-    bottom, left = inside.y, inside.x
-    found[f"{name}.screen"] = seen[bottom : bottom + inside.height, left : left + inside.width]
     low = inside.view2d.region_to_view(0.5, 0.5)
     high = inside.view2d.region_to_view(inside.width - 0.5, inside.height - 0.5)
     found[f"{name}.u"] = np.linspace(low[0], high[0], inside.width)
