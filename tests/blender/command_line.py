@@ -76,7 +76,7 @@ def run_blender(*arguments: object, cwd: Path | None = None) -> Result:
         [bpy.app.binary_path, "--background", "--command", "prefilter", *map(str, arguments)],
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=600,
         cwd=cwd,
         check=False,
     )

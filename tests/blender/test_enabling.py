@@ -47,7 +47,7 @@ def loaded_at_enabling() -> set[str]:
         command = [bpy.app.binary_path, "--background", "--factory-startup"]
         command += ["--python-exit-code", "1", "--python-expr", PROGRAM]
     done = subprocess.run(
-        command, env=dict(os.environ), capture_output=True, text=True, timeout=300, check=False
+        command, env=dict(os.environ), capture_output=True, text=True, timeout=1500, check=False
     )
     lines = [line for line in done.stdout.splitlines() if line.startswith("LOADED ")]
     assert lines, done.stdout + done.stderr

@@ -40,7 +40,7 @@ def test_a_path(name, display, tmp_path):
         env={**os.environ, **display},
         capture_output=True,
         text=True,
-        timeout=300,
+        timeout=1500,
         check=False,
     )
     lines = [line for line in done.stdout.splitlines() if line.startswith(page.TOLD)]

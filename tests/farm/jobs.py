@@ -21,7 +21,7 @@ needs_blender = pytest.mark.skipif(not BLENDER, reason="no Blender with the exte
 def run(*command: object) -> str:
     """Runs a program that is to succeed, and returns what it prints."""
     words = [str(word) for word in command]
-    done = subprocess.run(words, capture_output=True, text=True, timeout=300)
+    done = subprocess.run(words, capture_output=True, text=True, timeout=1500)
     assert done.returncode == 0, done.stdout[-4000:] + done.stderr[-4000:]
     return done.stdout
 

@@ -16,7 +16,7 @@ def run(*arguments):
         [sys.executable, "-m", "prefilter", *map(str, arguments)],
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=600,
         check=False,
     )
 

@@ -200,7 +200,7 @@ def test_four_processes_at_once(scans, expected, tmp_path):
             for number in range(1, count + 1)
         ]
         for one in runs:
-            told = one.communicate(timeout=120)[1]
+            told = one.communicate(timeout=600)[1]
             assert one.returncode == 0, told
     assert target.read_bytes() == expected()
 

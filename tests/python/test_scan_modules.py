@@ -202,7 +202,7 @@ def test_damaged_laz_files_end_no_process(laspy, tmp_path, point_format):
         env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
         capture_output=True,
         text=True,
-        timeout=100,
+        timeout=600,
         check=False,
     )
     assert read.stdout == f"read {len(paths) + 1}\n", read.stderr[-2000:]

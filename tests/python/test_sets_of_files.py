@@ -185,7 +185,7 @@ def test_one_who_lives_is_left_alone(quick_path):
                 str(quick_path),
             ],
             env=environment(),
-            timeout=60,
+            timeout=600,
         )
         assert run.returncode == 0
         assert target.read_text() == "new"

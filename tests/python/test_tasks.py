@@ -138,6 +138,6 @@ def test_four_processes_at_once_make_what_one_makes(pictures, tmp_path):
         for number in (1, 2, 3, 4)
     ]
     for one in runs:
-        told = one.communicate(timeout=60)[1]
+        told = one.communicate(timeout=600)[1]
         assert one.returncode == 0, told
     assert contents(parts.parent) == contents(whole.parent)

@@ -642,7 +642,7 @@ def ktx_parse(path: Path) -> dict:
     """What the npm package ktx-parse says, which node finds beside the tests or in NODE_PATH."""
     command = ["node", "--input-type=module", "--eval", KTX_PARSE, str(path)]
     try:
-        run = subprocess.run(command, capture_output=True, text=True, timeout=60)
+        run = subprocess.run(command, capture_output=True, text=True, timeout=600)
     except FileNotFoundError:
         pytest.skip("there is no node")
     if "Cannot find module 'ktx-parse'" in run.stderr:

@@ -76,5 +76,5 @@ def compiled(
     made = folder / (name or f"_native.{SUFFIXES[platform]}")
     command = [*compiler(platform), "-O2", "-shared", "-fvisibility=hidden", "-o", made]
     command += ["-s"] if strip else []
-    subprocess.run([*command, source, *flags], check=True, timeout=300, cwd=folder)
+    subprocess.run([*command, source, *flags], check=True, timeout=1500, cwd=folder)
     return made

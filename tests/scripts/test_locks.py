@@ -26,7 +26,7 @@ def test_a_build_folder_is_changed_by_one_process_at_a_time(tmp_path: Path, comm
         subprocess.Popen(["bash", "-c", LIBRARY + each], cwd=tmp_path)
         for each in (command, command, "build_packages cp311")
     ]
-    assert [process.wait(timeout=30) for process in started] == [0, 0, 0]
+    assert [process.wait(timeout=600) for process in started] == [0, 0, 0]
     log = (tmp_path / "log").read_text().splitlines()
     assert len(log) >= 6
     for began, ended in zip(log[::2], log[1::2], strict=True):
@@ -42,7 +42,7 @@ def test_folders_are_locked_each_by_itself(tmp_path: Path) -> None:
             ("compile sanitize", "touch other;"),
         )
     ]
-    assert [process.wait(timeout=30) for process in started] == [0, 0]
+    assert [process.wait(timeout=600) for process in started] == [0, 0]
 
 
 def test_what_fails_under_a_lock_fails_the_program_and_leaves_the_lock(tmp_path: Path) -> None:
@@ -50,9 +50,9 @@ def test_what_fails_under_a_lock_fails_the_program_and_leaves_the_lock(tmp_path:
         "ninja() { return 3; }\nconfigure_release() { :; }\nbuild_packages cp311\necho went on"
     )
     done = subprocess.run(
-        ["bash", "-c", LIBRARY + failing], cwd=tmp_path, timeout=30, capture_output=True, text=True
+        ["bash", "-c", LIBRARY + failing], cwd=tmp_path, timeout=600, capture_output=True, text=True
     )
     assert done.returncode != 0
     assert "went on" not in done.stdout
     free = f"flock --nonblock '{tmp_path}/.release.lock' true"
-    assert subprocess.run(["bash", "-c", free], timeout=30).returncode == 0
+    assert subprocess.run(["bash", "-c", free], timeout=600).returncode == 0

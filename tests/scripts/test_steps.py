@@ -18,7 +18,7 @@ def run(program: str, folder: Path, only: str = "") -> tuple[int, str]:
         ["bash", "-c", f"set -euo pipefail\n. '{STEPS}'\n{program}\nrun_steps"],
         cwd=folder,
         env={**os.environ, "PREFILTER_TEST_ONLY": only},
-        timeout=30,
+        timeout=600,
         text=True,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,

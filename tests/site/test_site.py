@@ -150,7 +150,7 @@ def opened(url, folder, width=1280):
         "--virtual-time-budget=3000",
     ]
     words += ["--enable-logging=stderr", "--v=0", "--dump-dom", url]
-    done = subprocess.run(words, capture_output=True, text=True, timeout=120, check=True)
+    done = subprocess.run(words, capture_output=True, text=True, timeout=600, check=True)
     return done.stdout, [line for line in done.stderr.splitlines() if ":CONSOLE" in line]
 
 

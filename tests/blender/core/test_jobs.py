@@ -30,11 +30,11 @@ def test_progress_and_cancel(addon):
     def work(progress):
         before = progress(0.25)
         told.set()
-        may_go_on.wait(10)
+        may_go_on.wait()
         return before, progress(0.5)
 
     job = addon("core.jobs").Job(work)
-    assert told.wait(10)
+    assert told.wait()
     assert job.progress == 0.25
     assert not job.is_done
     job.cancel()

@@ -167,7 +167,7 @@ def test_thread_that_does_not_start_leaves_nothing(addon, probe, context, monkey
 
 def test_second_run_waits_for_the_first(probe, context):
     first, second, may_end = probe(), probe(), threading.Event()
-    first.compute = lambda progress: may_end.wait(10)
+    first.compute = lambda progress: may_end.wait()
     assert first.invoke(context, None) == {"RUNNING_MODAL"}
     assert second.invoke(context, None) == {"CANCELLED"}
     assert "press Esc" in second.reports[0]
