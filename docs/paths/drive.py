@@ -20,7 +20,7 @@ sys.path.append(str(HERE.parent / "pictures" / "windows"))
 import photograph  # noqa: E402
 
 SIZE = (1280, 800)
-MOST_SECONDS = 300
+MOST_SECONDS = 1500
 
 
 def main(names: list[str]) -> None:

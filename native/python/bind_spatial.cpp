@@ -2,6 +2,7 @@
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <memory>
 #include <tuple>
 #include <utility>
@@ -9,6 +10,7 @@
 
 #include "convert.h"
 #include "instances.h"
+#include "prefilter/remesh/self_intersections.h"
 #include "prefilter/spatial/corner_points.h"
 #include "prefilter/spatial/measure_mesh.h"
 #include "prefilter/spatial/nearest.h"
@@ -100,6 +102,21 @@ std::tuple<std::pair<Vector3, Vector3>, double, double> bound_measure_mesh(
   return {{measures.box.low, measures.box.high}, measures.area, measures.volume};
 }
 
+Array<std::int64_t> bound_self_intersections(const py::array& positions, const py::array& triangles,
+                                             const py::object& callback, int threads) {
+  const Progress progress = to_progress(callback);
+  const InputMesh mesh = mesh_of(positions, triangles);
+  std::vector<std::array<std::uint32_t, 2>> pairs;
+  {
+    const py::gil_scoped_release unlocked;
+    pairs = self_intersections(mesh, progress, threads);
+  }
+  Array<std::int64_t> rows({static_cast<py::ssize_t>(pairs.size()), py::ssize_t{2}});
+  std::int64_t* next = rows.mutable_data();
+  for (const auto& pair : pairs) next = std::copy(pair.begin(), pair.end(), next);
+  return rows;
+}
+
 }  // namespace
 
 void bind_spatial(py::module_& m) {
@@ -111,6 +128,8 @@ void bind_spatial(py::module_& m) {
         py::arg("origins"), py::arg("source_positions"), py::arg("source_triangles"),
         py::arg("labels"), py::arg("progress"), py::arg("threads"));
   m.def("measure_mesh", &bound_measure_mesh, py::arg("positions"), py::arg("triangles"),
+        py::arg("progress"), py::arg("threads"));
+  m.def("self_intersections", &bound_self_intersections, py::arg("positions"), py::arg("triangles"),
         py::arg("progress"), py::arg("threads"));
   m.def("nearest_points", &bound_nearest_points, py::arg("points"), py::arg("positions"),
         py::arg("triangles"), py::arg("progress"), py::arg("threads"));

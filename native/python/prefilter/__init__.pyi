@@ -28,6 +28,7 @@ from .meshes.holes import ClosedMesh as ClosedMesh
 from .meshes.holes import close_holes as close_holes
 from .meshes.measures import MeshMeasures as MeshMeasures
 from .meshes.measures import measure_mesh as measure_mesh
+from .meshes.measures import self_intersections as self_intersections
 from .meshes.nearest import CornerPoints as CornerPoints
 from .meshes.nearest import NearestPoints as NearestPoints
 from .meshes.nearest import corner_points as corner_points

@@ -321,6 +321,12 @@ def measure_mesh(
     progress: ProgressCallback | None,
     threads: int,
 ) -> tuple[tuple[list[float], list[float]], float, float]: ...
+def self_intersections(
+    positions: npt.NDArray[np.floating],
+    triangles: npt.NDArray[np.integer],
+    progress: ProgressCallback | None,
+    threads: int,
+) -> npt.NDArray[np.int64]: ...
 def mesh_edges(
     positions: npt.NDArray[np.floating],
     triangles: npt.NDArray[np.integer],

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The extent of meshes."""
+"""The extent of meshes, and where they intersect themselves."""
 
 from dataclasses import dataclass
 
@@ -52,3 +52,34 @@ def measure_mesh(
         *as_mesh(positions, triangles), as_progress(progress), as_threads(threads)
     )
     return MeshMeasures((np.array(low), np.array(high)), area, volume)
+
+
+def self_intersections(
+    positions: npt.ArrayLike,
+    triangles: npt.ArrayLike,
+    *,
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> npt.NDArray[np.int64]:
+    """The pairs of triangles that meet beyond the vertices and edges that they share by index.
+
+    Those are the pairs that cross, overlap or touch, by exact predicates. Triangles without area
+    are left out.
+
+    Args:
+        positions: (vertices, 3), in any unit of length.
+        triangles: (triangles, 3) integer indices of vertices.
+        progress: Called with the fraction done; returning False stops the work.
+        threads: 0 means all processors. The result does not depend on it.
+
+    Returns:
+        (pairs, 2) indices of triangles, the lower one first, in order.
+
+    Raises:
+        ValueError: A shape or type is wrong, there is no triangle, an index names no vertex, or a
+            value is not finite.
+        Cancelled: `progress` returned False.
+    """
+    return _native.self_intersections(
+        *as_mesh(positions, triangles), as_progress(progress), as_threads(threads)
+    )
