@@ -25,24 +25,19 @@ def _settings(options: argparse.Namespace, settings: type, **more: Any) -> Any:
     return settings(**given(options, settings) | more)
 
 
-def _read(argument: str, path: str, *, is_data: bool) -> Picture:
-    return picture_files.read(argument, path, is_data=is_data)
-
-
 @dataclass(frozen=True)
 class Host:
     """Where a command runs; by default without Blender.
 
     Attributes:
-        read: Reads a picture: what the path is called in messages, the path, and whether its
-            values are no colors.
+        read: Reads a picture, as `picture_files.read` does.
         add_preset: Adds the flag that names a preset, where there are any.
         preset: Returns what the preset sets that the arguments name.
         settings: Returns settings: by keywords, else by flags, else by what the host knows.
         preferred: See `add_flags`.
     """
 
-    read: Callable[..., Picture] = _read
+    read: Callable[..., Picture] = picture_files.read
     add_preset: Callable[[argparse.ArgumentParser], None] = _nothing
     preset: Callable[[argparse.Namespace], dict[str, Any]] = _no_preset
     settings: Callable[..., Any] = _settings

@@ -2,6 +2,7 @@
 
 """What the command `mipmaps` does: the levels of one texture, from files to files."""
 
+import argparse
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -11,7 +12,7 @@ from pathlib import Path
 from .._border.staging import StagedFile, commit_all
 from .._options.mipmaps import Settings
 from .._work import mesh_files, picture_files
-from .._work.files import engines, target_files
+from .._work.files import engines, target_files, textures
 from .._work.mipmaps import checks, contents, levels, stretching
 from .._work.mipmaps.checks import Rough
 from .._work.mipmaps.outputs import Outputs, staged, summary
@@ -19,6 +20,7 @@ from .._work.mipmaps.source import Source
 from .._work.outcome import Outcome
 from .._work.picture import Encoding, Picture
 from .._work.progress import Progress, go_on, share
+from . import picture_arguments
 
 _FILTERED = 0.9  # What the progress is once the levels are filtered.
 
@@ -87,6 +89,7 @@ def read(
     objects: Sequence[str],
     settings: Settings,
     metadata: Mapping[str, str] | None,
+    options: argparse.Namespace,
 ) -> Levels:
     """Reads the files, and checks what the settings say of them.
 
@@ -96,6 +99,7 @@ def read(
         objects: The names of those in these files that count; all where there are none.
         settings: What to make.
         metadata: What KTX 2 files are to keep, by keys.
+        options: The flags of colors: see `picture_arguments.add_color_flags`.
 
     Raises:
         OSError: A file cannot be read, or not be written.
@@ -103,7 +107,14 @@ def read(
     """
     target = target_files.check_target(settings.filepath)
     is_data = settings.content in {"normal", "data"}
-    picture = picture_files.read("TEXTURE", texture, is_data=is_data)
+    picture = picture_files.read(
+        "TEXTURE",
+        texture,
+        is_data=is_data,
+        colorspace=options.colorspace,
+        keeps_bytes=textures.is_stored(target),
+        turns=not meshes,
+    )
     _check_sources([texture, settings.roughness, *meshes], settings)
     content = settings.content
     if content == "auto":
@@ -117,7 +128,10 @@ def read(
         chosen = checks.suiting_blocks([picture], content)
         settings = replace(settings, texture_format=chosen)
     threshold = settings.threshold if content == "cutout" else None
-    told = engines.checked(
+    if not _holds_all_colors(picture, target, settings.texture_format):
+        picture_arguments.check_range("TEXTURE", picture, target, options)
+    told = _of_orientation(picture)
+    told += engines.checked(
         picture,
         target,
         settings.texture_format,
@@ -125,7 +139,8 @@ def read(
         may_lose_channels=blocks,
         is_stretched=settings.use_multiples_of_4,
     )
-    rough = checks.roughness_of(settings, picture, content, [target], partial(_rough, settings))
+    read_rough = partial(_rough, settings, turns=not meshes)
+    rough = checks.roughness_of(settings, picture, content, [target], read_rough)
     if rough.roughness is not None:
         told += engines.checked(
             rough.roughness.picture,
@@ -155,8 +170,26 @@ def _on_meshes(
     return Source(picture, surfaces, names, settings, content, wraps)
 
 
-def _rough(settings: Settings) -> Picture:
-    return picture_files.read("--roughness", settings.roughness, is_data=True)
+def _holds_all_colors(picture: Picture, target: Path, texture_format: str) -> bool:
+    """Tells whether a file holds colors below 0 and above 1."""
+    if engines.is_for_engines(target):
+        return engines.keeps_range(picture, target, texture_format)
+    return picture.is_float
+
+
+def _of_orientation(picture: Picture) -> list[str]:
+    """Returns what to tell of a texture that is not turned as its file says."""
+    if picture.orientation == 1:
+        return []
+    return [
+        f"TEXTURE: '{picture.name}' has the orientation {picture.orientation} of EXIF, which is "
+        f"left out, as UV maps in Blender and glTF refer to rows as they are stored; turn the "
+        f"picture where the mesh was made for it upright"
+    ]
+
+
+def _rough(settings: Settings, *, turns: bool) -> Picture:
+    return picture_files.read("--roughness", settings.roughness, is_data=True, turns=turns)
 
 
 def _of(rough: Rough) -> tuple[contents.Roughness | None, Path | None]:

@@ -12,7 +12,7 @@ from .._work import mesh_endings
 from .._work.files import target_files
 from .._work.up_to_date import KEY, LEVELS, fingerprint
 from .._work.wording import either
-from . import telling
+from . import picture_arguments, telling
 
 FLAGS = (
     *("filter", "reader", "lookups", "wrap", "wrap_v", "content", "threshold", "roughness"),
@@ -51,6 +51,7 @@ def add(commands: Any, purpose: str) -> None:
         help="a mesh of the files that counts; repeat for several (default: all)",
     )
     add_flags(parser, Settings, *FLAGS, short={"filepath": "-o"})
+    picture_arguments.add_color_flags(parser, "TEXTURE")
     telling.add_skipping(parser)
     parser.set_defaults(execute=_run, usage_error=parser.error)
 
@@ -67,7 +68,9 @@ def _run(options: argparse.Namespace) -> None:
     metadata = None if number is None else {KEY: number}
     from . import mipmap_levels  # A run that finds all up to date needs none of it.
 
-    work = mipmap_levels.read(options.texture, options.meshes, options.object, settings, metadata)
+    work = mipmap_levels.read(
+        options.texture, options.meshes, options.object, settings, metadata, options
+    )
     telling.tell(telling.done(work))
 
 
@@ -83,6 +86,7 @@ def _fingerprint(options: argparse.Namespace, settings: Settings) -> str:
     for name in ("filepath", "roughness_filepath", "roughness", "threads"):
         del chosen[name]
     sources = [options.texture, *([settings.roughness] if settings.roughness else [])]
+    chosen |= {name: getattr(options, name) for name in ("colorspace", "clip")}
     chosen["objects of the meshes"] = options.object
     chosen["sources"] = [len(sources), len(options.meshes)]
     return fingerprint([*sources, *options.meshes], chosen)

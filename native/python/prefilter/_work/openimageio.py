@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._border.claims import temporary_folder
+from .memory import free_memory
 
 FloatArray = NDArray[np.float32]
 
@@ -30,6 +31,35 @@ _PLACEHOLDER = "%"
 _CUT_OFF = "Premature end of JPEG"
 """What is said of a JPEG file whose rest, which is missing, was read as gray."""
 _PNG = b"\x89PNG\r\n\x1a\n"
+_MOST_ORIENTATIONS = 8
+_RGB_MODELS = frozenset({"", "RGB", "YCbCr", "Grayscale", "gray", "palette"})
+_EXIF_ADOBE_RGB, _ADOBE_RGB_RULE = 2, "R03"
+
+
+class Stated(NamedTuple):
+    """What a picture file says of its colors and of how it is shown.
+
+    Attributes:
+        format: The name of its format.
+        orientation: That of EXIF, 1 to 8; 1 is upright.
+        model: What its colors are where they are no RGB and not gray, such as "CMYK"; else empty.
+        interop_id: The Color Interop Forum's name of its color space; empty where none.
+        color_space: What OpenImageIO calls that; empty where it calls it nothing.
+        gamma: The exponent of light that `color_space` leaves open.
+        icc: An ICC profile; empty where none.
+        chromaticities: x and y of red, green, blue and white; None where none.
+        is_adobe_rgb: Whether EXIF names Adobe RGB.
+    """
+
+    format: str
+    orientation: int = 1
+    model: str = ""
+    interop_id: str = ""
+    color_space: str = ""
+    gamma: float = 1.0
+    icc: bytes = b""
+    chromaticities: tuple[float, ...] | None = None
+    is_adobe_rgb: bool = False
 
 
 class Pixels(NamedTuple):
@@ -38,10 +68,12 @@ class Pixels(NamedTuple):
     Attributes:
         values: (h, w, c) array of uint8, uint16 or float32, rows from the top.
         is_straight: Whether colors are not multiplied by alpha.
+        stated: What the file says of them.
     """
 
     values: NDArray[Any]
     is_straight: bool
+    stated: Stated
 
 
 def module() -> ModuleType:
@@ -134,14 +166,11 @@ def read_pixels(path: Path) -> Pixels:
 
     Raises:
         ValueError: It has neither one, two, three nor four channels, nor those of an RGB image.
+        MemoryError: It is larger than the memory that is free, by the size in its header.
         OSError: It is no picture that OpenImageIO reads, or it is damaged.
     """
     oiio = module()
-    config = oiio.ImageSpec()
-    config.attribute("oiio:UnassociatedAlpha", 1)
-    reader = oiio.ImageInput.open(str(path), config)
-    if reader is None:
-        raise OSError(_unreadable(path, said(oiio)))
+    reader = _opened(path)
     try:
         spec = reader.spec()
         channels = _channels(list(spec.channelnames))
@@ -151,15 +180,79 @@ def read_pixels(path: Path) -> Pixels:
         kind = spec.format.basetype
         is_float = kind in {oiio.HALF, oiio.FLOAT, oiio.DOUBLE}
         read_as = {oiio.UINT8: "uint8"}.get(kind, "float" if is_float else "uint16")
+        _check_memory(spec, read_as)
+        stated = _stated(reader.format_name(), spec)
         values = reader.read_image(read_as)
         failure = said(reader)
-        if values is None or _CUT_OFF in failure:
+        # Readers of JPEG files also tell of what does no harm.
+        if values is None or (_CUT_OFF in failure if stated.format == "jpeg" else failure):
             raise OSError(_unreadable(path, failure))
         is_straight = bool(spec.get_int_attribute("oiio:UnassociatedAlpha", 0))
     finally:
         reader.close()
     values = np.asarray(values).reshape(spec.height, spec.width, spec.nchannels)[..., channels]
-    return Pixels(_on_canvas(values, spec), is_straight)
+    return Pixels(_on_canvas(values, spec), is_straight, stated)
+
+
+def read_stated(path: Path) -> tuple[Stated, int]:
+    """Returns what a picture file says of itself, and the number of its channels; reads no pixels.
+
+    Raises:
+        MemoryError: As for `read_pixels`.
+        OSError: As for `read_pixels`.
+    """
+    reader = _opened(path)
+    try:
+        spec = reader.spec()
+        _check_memory(spec, "float")
+        return _stated(reader.format_name(), spec), len(_channels(list(spec.channelnames)))
+    finally:
+        reader.close()
+
+
+def _opened(path: Path) -> Any:
+    oiio = module()
+    config = oiio.ImageSpec()
+    config.attribute("oiio:UnassociatedAlpha", 1)
+    reader = oiio.ImageInput.open(str(path), config)
+    if reader is None:
+        raise OSError(_unreadable(path, said(oiio)))
+    return reader
+
+
+def _check_memory(spec: Any, read_as: str) -> None:
+    """Raises MemoryError where a picture cannot be held, before anything of it is decoded."""
+    size = np.dtype(read_as.replace("float", "float32")).itemsize
+    read = spec.width * spec.height * spec.nchannels * size
+    # With the rows in our order; more bits than 8 become floats.
+    kept = spec.full_width * spec.full_height * min(max(spec.nchannels, 3), _MOST_CHANNELS)
+    needed = read + kept * (1 if size == 1 else 8)
+    free, why = free_memory()
+    if needed > free:
+        raise MemoryError(
+            f"a picture of {spec.full_width} x {spec.full_height} pixels needs about "
+            f"{needed / 1e9:.1f} GB of memory; {why}"
+        )
+
+
+def _stated(format: str, spec: Any) -> Stated:
+    model = str(spec.getattribute(f"{format}:ColorSpace") or "")
+    interop = str(spec.getattribute("Exif:InteroperabilityIndex") or "")
+    points = spec.getattribute("chromaticities")
+    profile = spec.getattribute("ICCProfile")
+    orientation = spec.get_int_attribute("Orientation", 1)
+    return Stated(
+        format=format,
+        orientation=orientation if 1 <= orientation <= _MOST_ORIENTATIONS else 1,
+        model="" if model in _RGB_MODELS else model,
+        interop_id=str(spec.getattribute("colorInteropID") or ""),
+        color_space=str(spec.getattribute("oiio:ColorSpace") or ""),
+        gamma=float(spec.get_float_attribute("oiio:Gamma", 1.0)),
+        icc=b"" if profile is None else np.asarray(profile).astype(np.uint8).tobytes(),
+        chromaticities=None if points is None else tuple(float(one) for one in points),
+        is_adobe_rgb=spec.get_int_attribute("Exif:ColorSpace", 0) == _EXIF_ADOBE_RGB
+        or interop.startswith(_ADOBE_RGB_RULE),
+    )
 
 
 def _unreadable(path: Path, reason: str) -> str:
@@ -396,6 +489,8 @@ def _write_level(path: str, buffer: Any, number: int) -> None:
 def _buffer(pixels: NDArray[Any], has_alpha: bool) -> Any:
     """Returns an ImageBuf that says what is alpha."""
     buffer = module().ImageBuf(pixels)
-    if not has_alpha:
-        buffer.specmod().alpha_channel = -1
+    spec = buffer.specmod()
+    if pixels.shape[2] < 3:
+        spec.channelnames = ("Y", "A")[: pixels.shape[2]]
+    spec.alpha_channel = pixels.shape[2] - 1 if has_alpha and pixels.shape[2] in {2, 4} else -1
     return buffer

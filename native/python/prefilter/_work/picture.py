@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 import prefilter
 
 from . import openimageio
+from .color_spaces import Space
 from .openimageio import Check
 
 FloatArray = NDArray[np.float32]
@@ -30,6 +31,7 @@ class Encoding(Enum):
     NONE = "none"
     SRGB = "srgb"
     OCIO = "ocio"
+    SPACE = "space"
 
 
 @dataclass(frozen=True)
@@ -50,6 +52,12 @@ class Picture:
         linear_space: The name of the scene-linear space.
         ocio_config: Path of the OpenColorIO configuration.
         covers: Whether alpha is known to be coverage, whatever the alpha mode.
+        is_gray: Whether the file has one channel for all colors.
+        space: The color space that `Encoding.SPACE` encodes in, and whose primaries the light has;
+            None for `linear_space`.
+        outside: The share of texels whose colors are beyond the range of sRGB, although they are
+            within that of their own color space.
+        orientation: That of EXIF, where it was not heeded; 1 is upright.
     """
 
     name: str
@@ -64,6 +72,10 @@ class Picture:
     linear_space: str
     ocio_config: str
     covers: bool = False
+    is_gray: bool = False
+    space: Space | None = None
+    outside: float = 0.0
+    orientation: int = 1
 
     @property
     def shape(self) -> tuple[int, int, int]:
@@ -168,7 +180,7 @@ def light_or_bytes(picture: Picture, check: Check = lambda: None) -> tuple[Texel
         ValueError: As `scene_linear`.
         OSError: As `scene_linear`.
     """
-    if picture.texels.dtype == np.uint8 and picture.encoding is not Encoding.OCIO:
+    if picture.texels.dtype == np.uint8 and picture.encoding in {Encoding.NONE, Encoding.SRGB}:
         return picture.texels, "srgb" if picture.encoding is Encoding.SRGB else "linear"
     return scene_linear(picture, check), "linear"
 
@@ -224,6 +236,12 @@ def _convert(picture: Picture, pixels: FloatArray, check: Check, *, decode: bool
         return pixels
     if picture.encoding is Encoding.SRGB:
         return prefilter.to_linear(pixels) if decode else prefilter.to_srgb(pixels)
+    if picture.encoding is Encoding.SPACE:
+        assert picture.space is not None
+        made = pixels.copy()
+        change = picture.space.decoded if decode else picture.space.encoded
+        made[..., :3] = change(np.ascontiguousarray(pixels[..., :3]))
+        return made
     spaces = (picture.colorspace, picture.linear_space)
     source, target = spaces if decode else reversed(spaces)
     colors = np.ascontiguousarray(pixels[..., :3])

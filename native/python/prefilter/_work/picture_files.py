@@ -2,6 +2,7 @@
 
 """Picture files as pictures, with the values that Blender has of them."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,56 +11,157 @@ from numpy.typing import NDArray
 
 import prefilter
 
-from . import openimageio
+from . import color_spaces, openimageio
 from .alpha import associated, unassociated
+from .color_spaces import AUTO, Space
+from .files.embedded import embedded
 from .picture import Encoding, FloatArray, Picture, without_fourth
+from .picture_colors import orientation_of, space_of
 
 _LINEAR, _DATA, _SRGB = "Linear Rec.709", "Non-Color", "sRGB"
-_SHORT = np.float32(65535)
+_UNSEEN = np.float32(1 / 2048)
+"""How far colors may be beyond a range whose ends they become."""
 
 
-def read(argument: str, path: str, *, is_data: bool) -> Picture:
+def read(
+    argument: str,
+    path: str,
+    *,
+    is_data: bool,
+    colorspace: str = AUTO,
+    keeps_chunks: bool = False,
+    keeps_bytes: bool = False,
+    turns: bool = True,
+) -> Picture:
     """Reads a picture file.
 
-    Bytes stay bytes, sRGB-encoded and with straight alpha. Of more bits than 8 become floats as
-    light, with associated alpha, as floats are.
+    Bytes in sRGB stay bytes, with straight alpha. Of more bits than 8 become floats as light, with
+    associated alpha, as floats are. Colors of other spaces become linear Rec. 709.
 
     Args:
         argument: What the path is called in messages.
         path: The file.
         is_data: Whether its values are no colors: they are then taken as they are.
+        colorspace: The color space that it is taken for; `AUTO` for what the file says.
+        keeps_chunks: Whether it becomes a PNG file, which can say to be in a space of its own.
+        keeps_bytes: Whether bytes of other spaces become bytes in sRGB.
+        turns: Whether it is turned upright as EXIF says.
 
     Raises:
-        ValueError: Its channels are no image's.
+        ValueError: Its channels are no image's, or its color space cannot be converted.
+        MemoryError: It is too large for the memory that is free.
         OSError: It cannot be read.
     """
     try:
         if not Path(path).is_file():
             raise OSError(f"there is no file '{path}'")
-        values, is_straight = openimageio.read_pixels(Path(path))
-    except (ValueError, OSError) as error:
+        values, is_straight, stated = openimageio.read_pixels(Path(path))
+        found = embedded(Path(path))
+    except (ValueError, OSError, MemoryError) as error:
         raise type(error)(f"{argument}: {error}") from error
-    values = np.ascontiguousarray(_with_colors(values)[::-1])
-    is_float = values.dtype != np.uint8
-    is_integer = values.dtype != np.float32
-    if values.dtype == np.uint8:
-        texels: NDArray[Any] = values if is_straight else _straight_bytes(values)
-    else:
-        texels = _light(values, is_straight=is_straight, is_data=is_data)
-    space = _DATA if is_data else _SRGB if is_integer else _LINEAR
-    return Picture(
+    try:
+        space = space_of(
+            stated, found, is_integer=values.dtype != np.float32, colorspace=colorspace
+        )
+    except ValueError as error:
+        if not is_data or stated.model:
+            raise ValueError(f"{argument}: '{path}': {error}") from error
+        space = None
+    orientation = orientation_of(stated, found)
+    values = turned(values, orientation) if turns else values
+    picture = _read_in(
+        None if is_data else space,
+        np.ascontiguousarray(_with_colors(values)[::-1]),
+        is_straight=is_straight,
+        is_gray=values.shape[2] < 3,
+        keeps_chunks=keeps_chunks,
+        keeps_bytes=keeps_bytes,
+    )
+    return replace(
+        picture,
         name=Path(path).name,
         full_name=str(Path(path).resolve()),
-        texels=_without_full_alpha(texels),
-        is_float=is_float,
+        texels=_without_full_alpha(picture.texels),
+        orientation=1 if turns else orientation,
+    )
+
+
+def turned(values: NDArray[Any], orientation: int) -> NDArray[Any]:
+    """Returns a picture upright: rows from the top, as they are stored with an orientation."""
+    if orientation in {5, 6, 7, 8}:
+        values = values.swapaxes(0, 1)
+    if orientation in {2, 3, 6, 7}:
+        values = values[:, ::-1]
+    if orientation in {3, 4, 7, 8}:
+        values = values[::-1]
+    return values
+
+
+def _read_in(
+    space: Space | None,
+    values: NDArray[Any],
+    *,
+    is_straight: bool,
+    is_gray: bool,
+    keeps_chunks: bool,
+    keeps_bytes: bool,
+) -> Picture:
+    """Returns a picture without a name, of values that are in a space; None for data."""
+    is_byte, is_integer = values.dtype == np.uint8, values.dtype != np.float32
+    picture = Picture(
+        name="",
+        full_name="",
+        texels=values,
+        is_float=not is_byte,
         is_integer=is_integer,
-        encoding=Encoding.NONE if is_float or is_data else Encoding.SRGB,
-        colorspace=space,
-        is_data=is_data,
+        encoding=Encoding.NONE if not is_byte or space is None else Encoding.SRGB,
+        colorspace=_DATA if space is None else _SRGB if is_integer else _LINEAR,
+        is_data=space is None,
         alpha_mode="STRAIGHT" if is_integer else "PREMUL",
         linear_space=_LINEAR,
         ocio_config="",
+        is_gray=is_gray,
     )
+    if is_byte and (space is None or space is color_spaces.SRGB):
+        return replace(picture, texels=values if is_straight else _straight_bytes(values))
+    if space is None:
+        return replace(picture, texels=_as_floats(values))
+    if keeps_chunks and space.can_be_kept(is_gray=is_gray):
+        if is_byte:
+            texels = values if is_straight else _straight_bytes(values)
+            return replace(picture, texels=texels, encoding=Encoding.SPACE, space=space)
+        return replace(picture, texels=_light(values, space, is_straight), space=space)
+    light = _light(values, space, is_straight)
+    if not space.is_rec709:
+        colors = space.in_rec709(np.ascontiguousarray(light[..., :3]))
+        outside = _share_outside(light, colors)
+        light[..., :3] = colors
+        picture = replace(picture, outside=outside)
+    if is_byte and keeps_bytes:
+        return replace(picture, texels=_srgb_bytes(light))
+    return replace(picture, texels=light, is_float=True, encoding=Encoding.NONE)
+
+
+def _share_outside(light: FloatArray, converted: FloatArray) -> float:
+    """Returns the share of texels that were within [0, 1], and are no more.
+
+    Args:
+        light: Colors of one space, and alpha by which they are multiplied.
+        converted: The same colors in another.
+    """
+    most: Any = light[..., 3:] if light.shape[2] == 4 else np.float32(1)
+    within = np.all((light[..., :3] >= 0) & (light[..., :3] <= most), axis=2)
+    slack = most * _UNSEEN
+    beyond = np.any((converted < -slack) | (converted > most + slack), axis=2)
+    return float(np.mean(within & beyond))
+
+
+def _srgb_bytes(light: FloatArray) -> NDArray[np.uint8]:
+    """Returns light with associated alpha as bytes with straight alpha."""
+    straight = unassociated(light) if light.shape[2] == 4 else light
+    stored = prefilter.to_srgb(straight).clip(0, 1)
+    rounded: NDArray[np.uint8] = np.rint(stored * np.float32(255)).astype(np.uint8)
+    return rounded
 
 
 def _with_colors(values: NDArray[Any]) -> NDArray[Any]:
@@ -78,17 +180,26 @@ def _straight_bytes(values: NDArray[np.uint8]) -> NDArray[np.uint8]:
     return rounded
 
 
-def _light(values: NDArray[Any], *, is_straight: bool, is_data: bool) -> FloatArray:
-    """Returns floats as light, or as they are stored where they are data."""
+def _as_floats(values: NDArray[Any]) -> FloatArray:
     if values.dtype == np.float32:
         return values
-    floats: FloatArray = values.astype(np.float32) / _SHORT
-    has_alpha = values.shape[2] == 4
-    if is_data:
-        return floats
+    floats: FloatArray = values.astype(np.float32) / np.float32(np.iinfo(values.dtype).max)
+    return floats
+
+
+def _light(values: NDArray[Any], space: Space, is_straight: bool) -> FloatArray:
+    """Returns values of a space as light of its primaries, with associated alpha."""
+    floats = _as_floats(values)
+    has_alpha = floats.shape[2] == 4
+    if space.is_linear:
+        return associated(floats) if has_alpha and is_straight else floats
     if has_alpha and not is_straight:
         floats = unassociated(floats)
-    floats = prefilter.to_linear(floats)
+    if space is color_spaces.SRGB:
+        floats = prefilter.to_linear(floats)
+    else:
+        floats = floats.copy()
+        floats[..., :3] = space.decoded(np.ascontiguousarray(floats[..., :3]))
     return associated(floats) if has_alpha else floats
 
 

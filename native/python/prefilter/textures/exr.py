@@ -25,7 +25,8 @@ _CHANNELS = {1: "Y", 2: "AY", 3: "BGR", 4: "ABGR"}
 _MAGIC, _VERSION, _TILED, _LONG_NAMES = 20000630, 2, 0x200, 0x400
 _LONGEST_SHORT_NAME, _LONGEST_NAME = 31, 255
 _ZIP = 3
-_MIPMAP_ROUNDED_DOWN = 1
+_ONE_LEVEL, _MIPMAP_ROUNDED_DOWN = 0, 1
+_POINTS = 8
 
 
 def write_exr(
@@ -36,6 +37,7 @@ def write_exr(
     encoding: Encoding = "linear",
     alpha: Alpha = "straight",
     attributes: Mapping[str, str] | None = None,
+    chromaticities: Sequence[float] | None = None,
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> None:
@@ -58,6 +60,7 @@ def write_exr(
             "premultiplied" (they are already) or "independent" (no alpha). In halves alpha is
             clipped to [0, 1].
         attributes: Texts for the file's header, such as {"wrapmodes": "periodic,periodic"}.
+        chromaticities: x and y of red, green, blue and white, for the header; None says nothing.
         progress: Called with the fraction done, in [0, 1]; may return False to stop.
         threads: How many to use; 0 = all processors. The file does not depend on it.
 
@@ -68,9 +71,76 @@ def write_exr(
     """
     srgb = is_srgb(encoding)
     images = _as_all_levels(levels, srgb)
+    _write_images(
+        path,
+        images,
+        format=format,
+        srgb=srgb,
+        alpha=alpha,
+        mode=_MIPMAP_ROUNDED_DOWN,
+        attributes=attributes,
+        chromaticities=chromaticities,
+        progress=progress,
+        threads=threads,
+    )
+
+
+def write_exr_picture(
+    path: Output,
+    pixels: npt.ArrayLike,
+    *,
+    format: ExrFormat = "half",
+    alpha: Alpha = "premultiplied",
+    attributes: Mapping[str, str] | None = None,
+    chromaticities: Sequence[float] | None = None,
+    threads: int = 0,
+) -> None:
+    """Writes a picture of one level as `write_exr` writes all of them, into tiles.
+
+    Args:
+        path: As for `write_exr`.
+        pixels: (height, width, 1 to 4 channels) floats, scene-linear, row 0 at the bottom.
+        format: As for `write_exr`.
+        alpha: As for `write_exr`.
+        attributes: As for `write_exr`.
+        chromaticities: As for `write_exr`.
+        threads: As for `write_exr`.
+
+    Raises:
+        ValueError: An argument is out of range.
+        OSError: The file cannot be written.
+    """
+    _write_images(
+        path,
+        halving_levels([pixels], False),
+        format=format,
+        srgb=False,
+        alpha=alpha,
+        mode=_ONE_LEVEL,
+        attributes=attributes,
+        chromaticities=chromaticities,
+        progress=None,
+        threads=threads,
+    )
+
+
+def _write_images(
+    path: Output,
+    images: Sequence[np.ndarray],
+    *,
+    format: str,
+    srgb: bool,
+    alpha: str,
+    mode: int,
+    attributes: Mapping[str, str] | None,
+    chromaticities: Sequence[float] | None,
+    progress: ProgressCallback | None,
+    threads: int,
+) -> None:
     as_one_of("format", format, _FORMATS)
     has_alpha = as_one_of("alpha", alpha, ALPHAS) != "independent" and images[0].shape[2] in (2, 4)
     texts = _as_texts(attributes)
+    points = _as_points(chromaticities)
     output = as_output(path)
     report = as_progress(progress)
     tiles = partial(
@@ -81,7 +151,7 @@ def write_exr(
         multiplies=has_alpha and alpha == "straight",
         threads=as_threads(threads),
     )
-    header = _header(images[0], format, texts)
+    header = _header(images[0], format, mode, {**texts, **points})
     write_output(output, lambda file: _write_parts(file, header, images, tiles, report))
     if report is not None:
         report(1.0)
@@ -127,14 +197,26 @@ def _as_all_levels(levels: Sequence[npt.ArrayLike], srgb: bool) -> list[np.ndarr
     return images
 
 
-def _as_texts(attributes: Mapping[str, str] | None) -> dict[bytes, bytes]:
+def _as_points(chromaticities: Sequence[float] | None) -> "_Attributes":
+    if chromaticities is None:
+        return {}
+    points = np.asarray(chromaticities, np.float64)
+    if points.shape != (_POINTS,) or not np.isfinite(points).all():
+        raise ValueError(
+            f"chromaticities: found {chromaticities!r}; x and y of red, green, blue and white are "
+            f"needed"
+        )
+    return {b"chromaticities": (b"chromaticities", points.astype("<f4").tobytes())}
+
+
+def _as_texts(attributes: Mapping[str, str] | None) -> "_Attributes":
     if attributes is None:
         return {}
     if not isinstance(attributes, Mapping):
         raise ValueError(
             f"attributes: a {type(attributes).__name__}; names and texts are needed, in a dict"
         )
-    texts = {}
+    texts: _Attributes = {}
     for name, text in attributes.items():
         if not isinstance(name, str) or not isinstance(text, str):
             raise ValueError(f"attributes: found {name!r}: {text!r}; a name and a text are needed")
@@ -146,24 +228,27 @@ def _as_texts(attributes: Mapping[str, str] | None) -> dict[bytes, bytes]:
             )
         if encoded in _REQUIRED:
             raise ValueError(f"attributes: the name {name!r} is one that OpenEXR files have anyway")
-        texts[encoded] = text.encode()
+        texts[encoded] = (b"string", text.encode())
     return texts
 
 
+_Attributes = dict[bytes, tuple[bytes, bytes]]
+"""Types and values, by names."""
+
 _REQUIRED = frozenset(
-    b"channels compression dataWindow displayWindow lineOrder pixelAspectRatio screenWindowCenter "
-    b"screenWindowWidth tiles".split()
+    b"channels chromaticities compression dataWindow displayWindow lineOrder pixelAspectRatio "
+    b"screenWindowCenter screenWindowWidth tiles".split()
 )
 
 
-def _header(image: np.ndarray, format: str, texts: Mapping[bytes, bytes]) -> bytes:
+def _header(image: np.ndarray, format: str, mode: int, more: "_Attributes") -> bytes:
     height, width, channels = image.shape
     names = _CHANNELS[channels].encode()
     listed = b"".join(
         struct.pack("<2siB3xii", bytes([name, 0]), _FORMATS[format], 0, 1, 1) for name in names
     )
     window = struct.pack("<4i", 0, 0, width - 1, height - 1)
-    found = {
+    found: _Attributes = {
         b"channels": (b"chlist", listed + b"\0"),
         b"compression": (b"compression", bytes([_ZIP])),
         b"dataWindow": (b"box2i", window),
@@ -172,8 +257,8 @@ def _header(image: np.ndarray, format: str, texts: Mapping[bytes, bytes]) -> byt
         b"pixelAspectRatio": (b"float", struct.pack("<f", 1.0)),
         b"screenWindowCenter": (b"v2f", struct.pack("<2f", 0.0, 0.0)),
         b"screenWindowWidth": (b"float", struct.pack("<f", 1.0)),
-        b"tiles": (b"tiledesc", struct.pack("<2IB", _TILE_SIDE, _TILE_SIDE, _MIPMAP_ROUNDED_DOWN)),
-        **{name: (b"string", text) for name, text in texts.items()},
+        b"tiles": (b"tiledesc", struct.pack("<2IB", _TILE_SIDE, _TILE_SIDE, mode)),
+        **more,
     }
     is_long = any(len(name) > _LONGEST_SHORT_NAME for name in found)
     flags = _VERSION | _TILED | (_LONG_NAMES if is_long else 0)

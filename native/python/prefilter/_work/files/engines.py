@@ -26,6 +26,7 @@ from ..alpha import unassociated
 from ..openimageio import Check
 from ..picture import Encoding, FloatArray, Picture
 from . import png
+from .pictures import in_file_channels
 from .target_files import has_formats, has_supercompression, numbered
 
 _WRITERS: dict[str, Callable[..., None]] = {
@@ -83,6 +84,11 @@ def checked(
     told += _lost_channels(picture, chosen, who, threshold, may_lose_channels)
     told += _lost_values(picture, chosen, who)
     return told
+
+
+def keeps_range(picture: Picture, target: Path, texture_format: str) -> bool:
+    """Tells whether a picture's file holds values below 0 and above 1."""
+    return has_formats(target.name) and _chosen(picture, texture_format).keeps_negatives
 
 
 def unit_of_sides(picture: Picture, target: Path | None, texture_format: str) -> int:
@@ -216,7 +222,8 @@ def _stage_numbered(
     try:
         for number, level in enumerate(linear_levels if picture.is_float else stored_levels):
             check()
-            data = png.encoded(_png_pixels(picture, level), is_srgb=is_srgb)
+            pixels = in_file_channels(_png_pixels(picture, level), is_gray=picture.is_gray)
+            data = png.encoded(pixels, is_srgb=is_srgb)
             staged.append(staging.stage_data(numbered(target, number), data))
     except BaseException:
         for file in staged:

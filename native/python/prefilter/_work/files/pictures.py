@@ -2,7 +2,8 @@
 
 """Pictures of one level, as PNG and OpenEXR files."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..._border import staging
-from .. import openimageio
+from ...textures.exr import write_exr_picture
+from .. import color_spaces
 from . import png
 
 ENDINGS = (".png", ".exr")
@@ -22,32 +24,58 @@ def stage(
     *,
     is_data: bool,
     is_half: bool,
+    linear_space: str = color_spaces.REC709_LINEAR,
+    has_alpha: bool = True,
+    chunks: Sequence[tuple[bytes, bytes]] = (),
     metadata: Mapping[str, str] | None = None,
 ) -> staging.StagedFile:
     """Writes a picture beside its target.
 
     Args:
         target: A path that ends in one of `ENDINGS`.
-        pixels: (h, w, 1, 3 or 4) array, row 0 at the bottom. For PNG it is of uint8 or uint16, and
+        pixels: (h, w, 1 to 4) array, row 0 at the bottom. For PNG it is of uint8 or uint16, and
             sRGB-encoded unless it is data; for OpenEXR of float32 and scene-linear. It is written
             as it is: PNG files should have straight alpha, and OpenEXR files associated alpha.
         is_data: Whether the values are no colors; OpenEXR files say so.
         is_half: Whether OpenEXR gets 16-bit floats instead of 32-bit ones.
+        linear_space: The name of the space of colors for OpenEXR.
+        has_alpha: Whether the last one of two or four channels is alpha.
+        chunks: What a PNG file says of its colors, in the place of sRGB.
         metadata: What the file is to keep, by keys.
 
     Raises:
         OSError: The file cannot be written.
     """
     if target.suffix.lower() == ".png":
-        return staging.stage_data(target, png.encoded(pixels, is_srgb=not is_data, texts=metadata))
-    flipped = np.ascontiguousarray(pixels[::-1], np.float32)
-    return staging.stage_with(
-        target,
-        lambda path: openimageio.write_picture(
-            path,
-            flipped,
-            "raw" if is_data else "scene_linear",
-            pixel_type="half" if is_half else "float",
-            attributes=metadata,
-        ),
+        is_srgb = not is_data and not chunks
+        data = png.encoded(pixels, is_srgb=is_srgb, texts=metadata, chunks=chunks)
+        return staging.stage_data(target, data)
+    write = partial(
+        write_exr_picture,
+        pixels=np.asarray(pixels, np.float32),
+        format="half" if is_half else "float",
+        alpha="premultiplied" if has_alpha and not is_data else "independent",
+        attributes={
+            **exr_attributes(color_spaces.DATA if is_data else linear_space),
+            **(metadata or {}),
+        },
+        chromaticities=None if is_data else color_spaces.chromaticities_of(linear_space),
     )
+    return staging.stage_bytes(target, write)
+
+
+def exr_attributes(space: str) -> dict[str, str]:
+    """Returns what the header of an OpenEXR file says of a color space, beside chromaticities."""
+    name = color_spaces.interop_name(space)
+    known = {"colorInteropID": name} if name else {}
+    return {"Software": "Prefilter", "oiio:ColorSpace": name or space, **known}
+
+
+def in_file_channels(pixels: NDArray[Any], *, is_gray: bool) -> NDArray[Any]:
+    """Returns pixels with one channel for all colors, where a file had one and they are equal."""
+    if not is_gray or pixels.shape[2] < 3:
+        return pixels
+    gray = pixels[..., :1]
+    if not all(np.array_equal(gray[..., 0], pixels[..., other]) for other in (1, 2)):
+        return pixels
+    return np.ascontiguousarray(pixels[..., [0, 3][: pixels.shape[2] - 2]])

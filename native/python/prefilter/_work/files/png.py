@@ -5,30 +5,37 @@
 import os
 import struct
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Set
 from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 
-_SIGNATURE = b"\x89PNG\r\n\x1a\n"
-_COLOR_TYPES = {1: 0, 3: 2, 4: 6}
+SIGNATURE = b"\x89PNG\r\n\x1a\n"
+_COLOR_TYPES = {1: 0, 2: 4, 3: 2, 4: 6}
 _PERCEPTUAL = b"\0"
 _COMPRESSION = 3
 _ROWS_AT_ONCE = 64
 _MOST_TEXT = 1 << 16
+_COLOR_CHUNKS = frozenset({b"cICP", b"iCCP", b"sRGB", b"gAMA", b"cHRM", b"eXIf"})
+_MOST_COLOR_BYTES = 1 << 24
 
 
 def encoded(
-    pixels: NDArray[Any], *, is_srgb: bool = False, texts: Mapping[str, str] | None = None
+    pixels: NDArray[Any],
+    *,
+    is_srgb: bool = False,
+    texts: Mapping[str, str] | None = None,
+    chunks: Iterable[tuple[bytes, bytes]] = (),
 ) -> bytes:
     """Returns a PNG file.
 
     Args:
-        pixels: (h, w, 1, 3 or 4) array of uint8 or uint16, row 0 at the bottom: gray, colors, or
-            colors and straight alpha.
+        pixels: (h, w, 1 to 4) array of uint8 or uint16, row 0 at the bottom: gray or colors, and
+            straight alpha where there are two or four.
         is_srgb: Whether to say that it is sRGB-encoded, as most readers take for granted.
         texts: What the file is to keep, by keys: Latin letters both.
+        chunks: More chunks that say what the colors are: kinds, and what they hold.
     """
     height, width, channels = pixels.shape
     size = pixels.dtype.itemsize
@@ -38,9 +45,10 @@ def encoded(
     data.append(compressor.flush())
     return b"".join(
         [
-            _SIGNATURE,
+            SIGNATURE,
             _chunk(b"IHDR", header),
             *([_chunk(b"sRGB", _PERCEPTUAL)] if is_srgb else []),
+            *(_chunk(kind, content) for kind, content in chunks),
             *(_chunk(b"tEXt", _text(key, value)) for key, value in (texts or {}).items()),
             _chunk(b"IDAT", b"".join(data)),
             _chunk(b"IEND", b""),
@@ -55,20 +63,36 @@ def texts(file: BinaryIO) -> dict[str, str]:
         ValueError: The file is no PNG file, or damaged.
     """
     found: dict[str, str] = {}
-    if file.read(len(_SIGNATURE)) != _SIGNATURE:
+    for _, data in _chunks(file, {b"tEXt"}, _MOST_TEXT):
+        key, _, value = data.partition(b"\0")
+        found[key.decode("latin-1")] = value.decode("latin-1")
+    return found
+
+
+def color_chunks(file: BinaryIO) -> dict[bytes, bytes]:
+    """Returns what a PNG file says of its colors and its orientation, by the kinds of chunks.
+
+    Raises:
+        ValueError: The file is no PNG file, or damaged.
+    """
+    return dict(_chunks(file, _COLOR_CHUNKS, _MOST_COLOR_BYTES))
+
+
+def _chunks(file: BinaryIO, kinds: Set[bytes], most: int) -> Iterator[tuple[bytes, bytes]]:
+    """Yields the chunks of some kinds before the pixels."""
+    if file.read(len(SIGNATURE)) != SIGNATURE:
         raise ValueError("no PNG file")
     while len(head := file.read(8)) == 8:
         size, kind = struct.unpack(">I4s", head)
         if kind == b"IDAT":
-            return found
-        if kind != b"tEXt":
+            return
+        if kind not in kinds:
             file.seek(size + 4, os.SEEK_CUR)
             continue
-        data = file.read(min(size, _MOST_TEXT))
-        if size > _MOST_TEXT or len(file.read(4)) < 4:
+        data = file.read(min(size, most))
+        if size > most or len(file.read(4)) < 4:
             break
-        key, _, value = data.partition(b"\0")
-        found[key.decode("latin-1")] = value.decode("latin-1")
+        yield kind, data
     raise ValueError("damaged PNG file")
 
 

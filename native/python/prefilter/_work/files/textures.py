@@ -20,11 +20,12 @@ import numpy as np
 import prefilter
 
 from ..._border.staging import StagedFile, stage_bytes, stage_with
-from .. import alpha, openimageio
+from .. import alpha, color_spaces, openimageio
 from .. import picture as images
 from ..picture import FloatArray, Picture
 from ..wording import Sentence
 from . import target_files
+from .pictures import exr_attributes, in_file_channels
 
 _WRAP_MODES = {"repeat": "periodic", "clamp": "clamp", "border": "black"}
 
@@ -79,9 +80,10 @@ def stage(
         full = picture.texels
     else:
         full = picture.stored if keep_bytes else images.scene_linear(picture, check)
+    is_gray = _is_gray(picture, [full, *levels])
     write = partial(
         openimageio.write_texture,
-        levels=[_file_pixels(picture, level) for level in (full, *levels)],
+        levels=[_file_pixels(picture, level, is_gray=is_gray) for level in (full, *levels)],
         pixel_type="uint8" if keep_bytes else "float",
         color_space=_color_space(picture, keep_bytes),
         wrap_modes=wrap_modes,
@@ -107,34 +109,42 @@ def _stage_exr(
         return True
 
     full, encoding = images.light_or_bytes(picture, check)
+    is_gray = _is_gray(picture, [full, *linear_levels])
+    space = color_spaces.DATA if picture.is_data else picture.linear_space
     attributes = {
-        "Software": "Prefilter",
         "textureformat": "Plain Texture",
+        **exr_attributes(space),
         **more,
     }
-    if picture.is_data:
-        attributes["oiio:ColorSpace"] = _color_space(picture, keep_bytes=False)
     kind = "independent"
     if picture.alpha_is_coverage:
         kind = "straight" if picture.alpha_is_straight else "premultiplied"
     write = partial(
         prefilter.write_exr,
-        levels=[full, *linear_levels],
+        levels=[in_file_channels(one, is_gray=is_gray) for one in (full, *linear_levels)],
         format="half" if half else "float",
         encoding=cast("Any", encoding),
         alpha=cast("Any", kind),
         attributes=attributes,
+        chromaticities=None if picture.is_data else color_spaces.chromaticities_of(space),
         progress=go_on,
         threads=threads,
     )
     return stage_bytes(target, write)
 
 
-def _file_pixels(picture: Picture, level: images.Texels) -> images.Texels:
+def _is_gray(picture: Picture, levels: Sequence[images.Texels]) -> bool:
+    """Tells whether all levels are to have one channel for all colors."""
+    return picture.is_gray and all(
+        in_file_channels(one, is_gray=True).shape[2] < 3 for one in levels
+    )
+
+
+def _file_pixels(picture: Picture, level: images.Texels, *, is_gray: bool) -> images.Texels:
     """Returns a level with associated alpha and rows from the top."""
     if picture.alpha_is_straight:
         level = alpha.associated(level)
-    return np.ascontiguousarray(level[::-1])
+    return np.ascontiguousarray(in_file_channels(level, is_gray=is_gray)[::-1])
 
 
 def _color_space(picture: Picture, keep_bytes: bool) -> str:

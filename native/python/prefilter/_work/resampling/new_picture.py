@@ -11,13 +11,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-import prefilter
-
 from ..._border import staging
 from .. import alpha
 from ..files import pictures
 from ..outcome import Outcome
-from ..picture import Encoding, FloatArray, Picture, encoded, scene_linear
+from ..picture import Encoding, FloatArray, Picture, as_srgb, encoded, scene_linear
 from ..progress import Progress, go_on, share
 from ..wording import Sentence
 
@@ -137,7 +135,7 @@ class NewPicture:
         else:
             self._staged = pictures.stage(
                 self._target,
-                made,
+                pictures.in_file_channels(made, is_gray=picture.is_gray),
                 is_data=picture.is_data,
                 is_half=False,
                 metadata=self.metadata,
@@ -167,14 +165,30 @@ def _stage(
     target: Path, picture: Picture, linear: FloatArray, metadata: Mapping[str, str] | None
 ) -> staging.StagedFile:
     """Writes a file with the alpha, the encoding and the depth that its kind should have."""
-    stage = partial(pictures.stage, target, is_data=picture.is_data, metadata=metadata)
     covers, straight = picture.alpha_is_coverage, picture.alpha_is_straight
     if target.suffix.lower() == ".exr":
         pixels = alpha.associated(linear) if straight else linear
-        return stage(pixels, is_half=not picture.is_float)
+        return pictures.stage(
+            target,
+            pictures.in_file_channels(pixels, is_gray=picture.is_gray),
+            is_data=picture.is_data,
+            is_half=not picture.is_float,
+            linear_space=picture.linear_space,
+            has_alpha=covers,
+            metadata=metadata,
+        )
     pixels = alpha.unassociated(linear) if covers and not straight else linear
-    if not picture.is_data:
-        pixels = prefilter.to_srgb(pixels)
+    if picture.space is not None:
+        pixels = encoded(replace(picture, encoding=Encoding.SPACE), pixels)
+    elif not picture.is_data:
+        pixels = encoded(as_srgb(picture), pixels)
     most = _SHORT if picture.is_float else _BYTE
     whole = np.rint(pixels.clip(0.0, 1.0) * most).astype(np.uint16 if most == _SHORT else np.uint8)
-    return stage(whole, is_half=False)
+    return pictures.stage(
+        target,
+        pictures.in_file_channels(whole, is_gray=picture.is_gray),
+        is_data=picture.is_data,
+        is_half=False,
+        chunks=() if picture.space is None else picture.space.chunks,
+        metadata=metadata,
+    )

@@ -53,8 +53,8 @@ def _by_openimageio(data: bytes) -> Texels:
         with temporary_folder() as folder:
             path = folder / f"image{ending_of(data)}"
             path.write_bytes(data)
-            values, _ = openimageio.read_pixels(path)
-    except (OSError, ValueError) as error:
+            values = openimageio.read_pixels(path).values
+    except (OSError, ValueError, MemoryError) as error:
         raise PictureError(f"as it cannot be read: {error}") from None
     if values.dtype != np.uint8:
         values = np.rint(values / 257.0).clip(0.0, 255.0).astype(np.uint8)

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""What picture files embed, read by itself: some versions of OpenImageIO leave it out."""
+
+import os
+import struct
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import BinaryIO
+
+from . import png
+
+_MOST_BYTES = 1 << 24
+_EXIF = b"Exif\0\0"
+_ORIENTATION, _EXIF_FOLDER, _RULE_FOLDER, _COLOR_SPACE, _RULE = 0x112, 0x8769, 0xA005, 0xA001, 1
+_ADOBE_RGB_RULE, _ADOBE_RGB = b"R03", 2
+_SHORT = 3
+_MOST_ENTRIES = 1000
+
+
+@dataclass(frozen=True)
+class Embedded:
+    """What is embedded in a picture file.
+
+    Attributes:
+        exif: The block of EXIF, as a TIFF file; empty where there is none.
+        icc: An ICC profile that only some versions of OpenImageIO read; empty where there is none.
+        chunks: Of a PNG file, the chunks before its pixels that tell of colors, by their kinds.
+    """
+
+    exif: bytes = b""
+    icc: bytes = b""
+    chunks: Mapping[bytes, bytes] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Exif:
+    """What EXIF says.
+
+    Attributes:
+        orientation: 1 to 8; 1 is upright.
+        is_adobe_rgb: Whether colors are in Adobe RGB.
+    """
+
+    orientation: int = 1
+    is_adobe_rgb: bool = False
+
+
+def embedded(path: Path) -> Embedded:
+    """Returns what a PNG, WebP or JPEG file embeds; nothing for other files, and damaged ones."""
+    try:
+        with path.open("rb") as file:
+            start = file.read(12)
+            file.seek(0)
+            if start[:8] == png.SIGNATURE:
+                chunks = png.color_chunks(file)
+                return Embedded(chunks.get(b"eXIf", b""), b"", chunks)
+            if start[:4] == b"RIFF" and start[8:] == b"WEBP":
+                found = dict(_riff(file))
+                return Embedded(
+                    found.get(b"EXIF", b"").removeprefix(_EXIF), found.get(b"ICCP", b"")
+                )
+            if start[:2] == b"\xff\xd8":
+                return Embedded(_jpeg_exif(file))
+    except (OSError, ValueError, struct.error):
+        pass  # Its reader says what is wrong.
+    return Embedded()
+
+
+def _riff(file: BinaryIO) -> Iterator[tuple[bytes, bytes]]:
+    file.seek(12)
+    while len(head := file.read(8)) == 8:
+        kind, size = struct.unpack("<4sI", head)
+        if kind in {b"EXIF", b"ICCP"} and size <= _MOST_BYTES:
+            yield kind, file.read(size)
+            file.seek(size % 2, os.SEEK_CUR)
+        else:
+            file.seek(size + size % 2, os.SEEK_CUR)
+
+
+def _jpeg_exif(file: BinaryIO) -> bytes:
+    file.seek(2)
+    while len(head := file.read(4)) == 4:
+        mark, kind, size = struct.unpack(">BBH", head)
+        if mark != 0xFF or kind == 0xDA or size < 2:
+            return b""
+        data = file.read(size - 2)
+        if kind == 0xE1 and data.startswith(_EXIF):
+            return data[len(_EXIF) :]
+    return b""
+
+
+def exif_of(block: bytes) -> Exif:
+    """Returns what a block of EXIF says; what is damaged says nothing."""
+    try:
+        order = {b"II": "<", b"MM": ">"}[block[:2]]
+        (start,) = struct.unpack_from(f"{order}I", block, 4)
+        main = _entries(block, order, start)
+        shown = _number(main.get(_ORIENTATION), order)
+        folder = _entries(block, order, _number(main.get(_EXIF_FOLDER), order))
+        rules = _entries(block, order, _number(folder.get(_RULE_FOLDER), order))
+        rules |= _entries(block, order, _number(main.get(_RULE_FOLDER), order))
+    except (KeyError, IndexError, struct.error):
+        return Exif()
+    spaces = [_number(one.get(_COLOR_SPACE), order) for one in (main, folder)]
+    adobe = rules.get(_RULE, (0, b""))[1].startswith(_ADOBE_RGB_RULE) or _ADOBE_RGB in spaces
+    return Exif(shown if 1 <= shown <= 8 else 1, adobe)
+
+
+def _entries(block: bytes, order: str, start: int) -> dict[int, tuple[int, bytes]]:
+    """Returns the types and the four bytes of the values of a folder, by tags."""
+    if start == 0:
+        return {}
+    (count,) = struct.unpack_from(f"{order}H", block, start)
+    found = {}
+    for number in range(min(count, _MOST_ENTRIES)):
+        tag, kind, _, value = struct.unpack_from(f"{order}HHI4s", block, start + 2 + 12 * number)
+        found[tag] = (kind, value)
+    return found
+
+
+def _number(entry: tuple[int, bytes] | None, order: str) -> int:
+    if entry is None:
+        return 0
+    return int(struct.unpack_from(f"{order}{'H' if entry[0] == _SHORT else 'I'}", entry[1])[0])

@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""The color space of a picture file, by all that the file says of it."""
+
+import struct
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+from . import color_spaces, icc
+from .color_spaces import Space
+from .files.embedded import Embedded, exif_of
+from .openimageio import Stated
+
+_CICP_PRIMARIES = {1: "rec709", 9: "rec2020", 12: "p3d65"}
+_CICP_CURVES = {4: "g22", 8: "lin", 13: "srgb"}
+_PNG_UNIT = 100000
+_UNKNOWN = frozenset({"", "unknown"})
+# What readers say of files that say nothing.
+_TAKEN_FOR_GRANTED = {
+    "openexr": frozenset({"Linear", "lin_rec709", "lin_srgb", "linear", "scene_linear"}),
+    "": frozenset({"sRGB", "srgb_rec709_scene", "srgb_rec709_display"}),
+}
+_WAY_OUT = "--colorspace says which color space to take it for"
+
+
+def orientation_of(stated: Stated, embedded: Embedded) -> int:
+    """Returns the orientation of EXIF: 1 to 8, of which 1 is upright."""
+    if stated.orientation != 1:
+        return stated.orientation
+    return exif_of(embedded.exif).orientation
+
+
+def space_of(
+    stated: Stated, embedded: Embedded, *, is_integer: bool, colorspace: str = color_spaces.AUTO
+) -> Space | None:
+    """Returns the color space of a picture; None where its values are no colors.
+
+    Args:
+        stated: What OpenImageIO reads of it.
+        embedded: What is read by itself.
+        is_integer: Whether it holds integers, which are sRGB where nothing is said; floats are
+            linear Rec. 709.
+        colorspace: The name of a space that counts whatever the file says, or `AUTO`.
+
+    Raises:
+        ValueError: The space is of no known kind, or the file contradicts itself.
+    """
+    if stated.model:
+        raise ValueError(
+            f"its colors are {stated.model}, which cannot be converted; save it as RGB first"
+        )
+    if colorspace != color_spaces.AUTO:
+        color_spaces.checked_name(colorspace)
+        return color_spaces.named(colorspace)
+    if color_spaces.is_data_name(stated.interop_id):
+        return None
+    # The first claim counts: the order is that of the PNG specification, after the name.
+    claims = list(_claims(stated, embedded))
+    if not claims:
+        if color_spaces.is_data_name(stated.color_space):
+            return None
+        return color_spaces.SRGB if is_integer else color_spaces.LINEAR
+    _check_agreement(claims)
+    space = claims[0][1]
+    if space.is_srgb and is_integer:
+        return color_spaces.SRGB
+    return space
+
+
+def _check_agreement(claims: list[tuple[str, Space]]) -> None:
+    """Raises ValueError where a name and something else say different things."""
+    (first, space), *others = claims
+    for other, found in others:
+        if first.startswith("colorInteropID") and not space.agrees(found):
+            raise ValueError(f"{first} and {other} are different color spaces; {_WAY_OUT}")
+
+
+def _claims(stated: Stated, embedded: Embedded) -> Iterator[tuple[str, Space]]:
+    """Yields what says which space, and the space; nothing where nothing is said."""
+    if stated.interop_id not in _UNKNOWN:
+        what = f"colorInteropID '{stated.interop_id}'"
+        yield what, _named(stated.interop_id, what)
+    chunks = embedded.chunks
+    if b"cICP" in chunks:
+        yield "its cICP chunk", _of_cicp(chunks[b"cICP"])
+        return
+    profile = stated.icc or embedded.icc
+    if profile:
+        yield "its ICC profile", _of_icc(profile)
+        return
+    if b"sRGB" in chunks:
+        yield "its sRGB chunk", color_spaces.SRGB
+        return
+    if b"gAMA" in chunks:
+        yield "its gAMA chunk", _of_gamma(chunks)
+        return
+    if stated.chromaticities is not None:
+        points = tuple(round(one, 6) for one in stated.chromaticities)
+        yield "its chromaticities", _of_chromaticities(points)
+        return
+    if stated.is_adobe_rgb or exif_of(embedded.exif).is_adobe_rgb:
+        yield "its EXIF", _named("g22_adobergb_scene", "EXIF")
+        return
+    granted = _TAKEN_FOR_GRANTED.get(stated.format, _TAKEN_FOR_GRANTED[""])
+    name = stated.color_space
+    if name not in _UNKNOWN | granted and not color_spaces.is_data_name(name) and not chunks:
+        if name == "GammaCorrected":
+            name = f"Gamma{stated.gamma:g}"
+        if stated.interop_id in _UNKNOWN:
+            yield f"its color space '{name}'", _named(name, f"the color space '{name}'")
+
+
+def _named(name: str, what: str) -> Space:
+    space = color_spaces.named(name)
+    if space is None:
+        raise ValueError(f"{what}: is not known; {_WAY_OUT}")
+    return space
+
+
+def _of_icc(profile: bytes) -> Space:
+    try:
+        return icc.space_of(profile)
+    except ValueError as error:
+        raise ValueError(f"it has {error}, and cannot be converted; {_WAY_OUT}") from error
+
+
+def _of_cicp(data: bytes) -> Space:
+    values = tuple(data)
+    if len(values) == 4 and values[2:] == (0, 1):
+        primaries, curve = _CICP_PRIMARIES.get(values[0]), _CICP_CURVES.get(values[1])
+        if primaries is not None and curve is not None:
+            space = _named(f"{curve}_{primaries}_display", "cICP")
+            return replace(space, chunks=((b"cICP", data),))
+    raise ValueError(f"its cICP chunk {values} names colors that cannot be converted; {_WAY_OUT}")
+
+
+def _of_gamma(chunks: Mapping[bytes, bytes]) -> Space:
+    try:
+        (number,) = struct.unpack(">I", chunks[b"gAMA"])
+        points = struct.unpack(">8I", chunks[b"cHRM"]) if b"cHRM" in chunks else None
+    except struct.error as error:
+        raise ValueError(f"its gAMA or cHRM chunk is damaged; {_WAY_OUT}") from error
+    if number == 0:
+        raise ValueError(f"its gAMA chunk says 0, which is no exponent; {_WAY_OUT}")
+    white_last = color_spaces.REC709
+    if points is not None:
+        white_last = tuple(one / _PNG_UNIT for one in (*points[2:], *points[:2]))
+    gamma = _PNG_UNIT / number
+    space = _of_chromaticities(white_last)
+    return replace(
+        space,
+        name=f"the gamma {gamma:.3g}",
+        curves=(color_spaces.Parametric(gamma),),
+        chunks=tuple((kind, chunks[kind]) for kind in (b"gAMA", b"cHRM") if kind in chunks),
+    )
+
+
+def _of_chromaticities(points: tuple[float, ...]) -> Space:
+    try:
+        matrix = color_spaces.matrix_of(points)
+    except ValueError as error:
+        raise ValueError(f"its {error}; {_WAY_OUT}") from error
+    return Space(f"the chromaticities {points}", to_rec709=matrix)
