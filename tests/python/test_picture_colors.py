@@ -2,12 +2,14 @@
 
 """The color spaces of picture files, through all commands that read and write pictures."""
 
+import io
 import struct
 import zlib
 
 import numpy as np
+import prefilter
 import pytest
-from command_files import fails, run
+from command_files import fails, noise, run
 
 oiio = pytest.importorskip("OpenImageIO", reason="scripts/decoders.txt is not installed")
 
@@ -108,12 +110,16 @@ def light_of(path):
     return color, False
 
 
-@pytest.mark.parametrize("ending", ["exr", "png", "tif", "tx"])
-@pytest.mark.parametrize("command", COMMANDS)
+ENDINGS = {"mipmaps": ("exr", "png", "tif", "tx")}
+"""What a command writes, beside OpenEXR and PNG files."""
+
+
+@pytest.mark.parametrize(
+    ("command", "ending"),
+    [(name, one) for name in COMMANDS for one in ENDINGS.get(name, ("exr", "png"))],
+)
 @pytest.mark.parametrize("kind", KINDS)
 def test_colors_are_those_of_the_input(tmp_path, kind, command, ending):
-    if ending in {"tif", "tx"} and command != "mipmaps":
-        pytest.skip("no such files")
     attributes, matrix = KINDS[kind]
     source = flat_exr(tmp_path / "in.exr", INSIDE, attributes)
     target = tmp_path / f"out.{ending}"
@@ -145,3 +151,233 @@ def test_colors_outside_of_srgb(tmp_path, capsys, kind, command):
         written = tmp_path / ("out.00.png" if command == "mipmaps" else "out.png")
         clipped = (matrix @ OUTSIDE).clip(0, 1)
         assert np.abs(light_of(written)[0] - clipped).max() < 1 / 1024
+
+
+def test_levels_for_engines(tmp_path):
+    source = flat_exr(tmp_path / "in.exr", INSIDE, {"colorInteropID": "lin_ap1_scene"})
+    assert run("mipmaps", source, "-o", tmp_path / "out.ktx2") == 0
+    levels, *_ = prefilter.read_ktx2(tmp_path / "out.ktx2")
+    assert np.abs(levels[0][0, 0, :3] - FROM_AP1 @ INSIDE).max() < 1 / 1024
+
+
+def test_the_color_space_can_be_said(tmp_path, capsys):
+    source = flat_exr(tmp_path / "in.exr", INSIDE, {"colorInteropID": "lin_p3d65_scene"})
+    target = tmp_path / "out.exr"
+    for name, matrix in (("ACEScg", FROM_AP1), ("lin_rec709_scene", np.eye(3)), ("raw", np.eye(3))):
+        assert run("resize", source, target, "--percent", "50", "--colorspace", name) == 0
+        color, is_data = light_of(target)
+        assert is_data == (name == "raw")
+        assert np.abs(color - matrix @ INSIDE).max() < 1 / 1024
+    told = fails(capsys, 2, "resize", source, target, "--percent", "50", "--colorspace", "srbg")
+    assert "--colorspace: found 'srbg'; auto, sRGB" in told
+
+
+def test_files_that_contradict_themselves(tmp_path, capsys):
+    both = {"colorInteropID": "lin_rec709_scene", "chromaticities": AP1}
+    source = flat_exr(tmp_path / "in.exr", INSIDE, both)
+    told = fails(capsys, 1, "resize", source, tmp_path / "out.exr", "--percent", "50")
+    assert "colorInteropID 'lin_rec709_scene' and its chromaticities are different" in told
+    more = ("--percent", "50", "--colorspace", "ACEScg")
+    assert run("resize", source, tmp_path / "out.exr", *more) == 0
+    unknown = flat_exr(tmp_path / "b.exr", INSIDE, {"colorInteropID": "pq_rec2020_display"})
+    told = fails(capsys, 1, "resize", unknown, tmp_path / "out.exr", "--percent", "50")
+    assert "colorInteropID 'pq_rec2020_display': is not known; --colorspace" in told
+
+
+GAMMA = struct.pack(">I", 45455)
+P3_POINTS = struct.pack(">8I", 31270, 32900, 68000, 32000, 26500, 69000, 15000, 6000)
+
+
+@pytest.mark.parametrize(
+    ("chunks", "light", "matrix"),
+    [
+        ([], srgb_light, np.eye(3)),
+        ([(b"gAMA", GAMMA)], lambda values: values**2.2, np.eye(3)),
+        ([(b"gAMA", struct.pack(">I", 100000))], lambda values: values, np.eye(3)),
+        ([(b"cHRM", P3_POINTS), (b"gAMA", GAMMA)], lambda values: values**2.2, FROM_P3),
+        ([(b"cICP", bytes([12, 13, 0, 1]))], srgb_light, FROM_P3),
+        ([(b"sRGB", b"\0"), (b"gAMA", struct.pack(">I", 90000))], srgb_light, np.eye(3)),
+    ],
+)
+@pytest.mark.parametrize("kind", [np.uint8, np.uint16])
+def test_colors_of_png_files(tmp_path, chunks, light, matrix, kind):
+    most = np.iinfo(kind).max
+    color = np.array([150, 120, 90]) / 255
+    values = np.rint(color * most).astype(kind)
+    source = png_file(tmp_path / "in.png", np.full((16, 16, 3), values), *chunks)
+    expected = matrix @ light(values / most)
+    assert run("resize", source, tmp_path / "out.exr", "--percent", "50") == 0
+    assert np.abs(light_of(tmp_path / "out.exr")[0] - expected).max() < 1 / 1024
+    assert run("mipmaps", source, "-o", tmp_path / "levels.png") == 0
+    step = 0.51 / most * 2.4 + 1 / 4096
+    assert np.abs(light_of(tmp_path / "levels.00.png")[0] - expected).max() < step
+    # A PNG file keeps both the numbers and what they mean.
+    assert run("resize", source, tmp_path / "out.png", "--percent", "50") == 0
+    made = chunks_of(tmp_path / "out.png")
+    said = [one for one in chunks if one[0] != b"gAMA" or (b"sRGB", b"\0") not in chunks]
+    assert all(made[name] == content for name, content in said)
+    buffer = oiio.ImageBuf(str(tmp_path / "out.png"))
+    assert (np.rint(buffer.get_pixels(oiio.FLOAT)[4, 4] * most) == values).all()
+
+
+def icc_profile(matrix, curves, kind=b"RGB "):
+    """Returns an ICC profile: colorants as columns of XYZ (D50), and tags of curves."""
+    names = [b"rTRC", b"gTRC", b"bTRC"] if kind == b"RGB " else [b"kTRC"]
+    tags = {b"desc": b"desc" + bytes(4) + struct.pack(">I", 5) + b"Test\0" + bytes(78)}
+    tags[b"wtpt"] = b"XYZ " + bytes(4) + struct.pack(">3i", 63190, 65536, 54061)
+    tags[b"cprt"] = b"text" + bytes(4) + b"none\0"
+    for name, curve in zip(names, curves, strict=True):
+        tags[name] = curve
+    if matrix is not None:
+        for name, column in zip((b"rXYZ", b"gXYZ", b"bXYZ"), np.array(matrix).T, strict=True):
+            tags[name] = (
+                b"XYZ " + bytes(4) + struct.pack(">3i", *np.rint(column * 65536).astype(int))
+            )
+    table, data, start = b"", b"", 132 + 12 * len(tags)
+    for name, content in tags.items():
+        table += struct.pack(">4sII", name, start + len(data), len(content))
+        data += content + bytes(-len(content) % 4)
+    size = start + len(data)
+    head = struct.pack(
+        ">I4sI4s4s4s12s4s", size, bytes(4), 0x02400000, b"mntr", kind, b"XYZ ", bytes(12), b"acsp"
+    )
+    head += bytes(28) + struct.pack(">3i", 63190, 65536, 54061)
+    return head.ljust(128, b"\0") + struct.pack(">I", len(tags)) + table + data
+
+
+ADOBE_RGB = [[0.60974, 0.20528, 0.14919], [0.31111, 0.62567, 0.06322], [0.01947, 0.06087, 0.74457]]
+"""As Adobe publishes it, for D50."""
+POWER = b"curv" + bytes(4) + struct.pack(">IH", 1, 563)
+SRGB_PARAMETERS = [
+    round(one * 65536) for one in (2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045)
+]
+SRGB_CURVE = b"para" + bytes(4) + struct.pack(">HH5i", 3, 0, *SRGB_PARAMETERS)
+SAMPLES = np.rint((np.arange(64) / 63) ** 1.8 * 65535).astype(">u2")
+TABLE = b"curv" + bytes(4) + struct.pack(">I", 64) + SAMPLES.tobytes()
+
+
+def by_icc(pixels, profile):
+    """Returns what another library makes of bytes, in sRGB."""
+    cms = pytest.importorskip("PIL.ImageCms")
+    image = pytest.importorskip("PIL.Image").fromarray(pixels)
+    source = cms.ImageCmsProfile(io.BytesIO(profile))
+    made = cms.profileToProfile(image, source, cms.createProfile("sRGB"), outputMode="RGB")
+    return np.asarray(made)
+
+
+def with_profile(path, pixels, profile):
+    """Writes a picture file that embeds a profile."""
+    if path.suffix == ".png":
+        return png_file(path, pixels, (b"iCCP", b"it\0\0" + zlib.compress(profile)))
+    image = pytest.importorskip("PIL.Image").fromarray(
+        pixels[..., 0] if pixels.shape[2] == 1 else pixels
+    )
+    more = {"quality": 100, "subsampling": 0} if path.suffix == ".jpg" else {}
+    image.save(path, icc_profile=profile, **more)
+    return path
+
+
+@pytest.mark.parametrize("curve", [POWER, SRGB_CURVE, TABLE], ids=["gamma", "parametric", "table"])
+@pytest.mark.parametrize("ending", ["png", "jpg", "tif"])
+def test_icc_profiles(tmp_path, ending, curve):
+    profile = icc_profile(ADOBE_RGB, [curve] * 3)
+    pixels = np.full((16, 16, 3), (130, 120, 90), np.uint8)
+    source = with_profile(tmp_path / f"in.{ending}", pixels, profile)
+    # OpenEXR files get other numbers for the same color; one step of 8 bits is lost on the way.
+    assert run("resize", source, tmp_path / "out.exr", "--percent", "50") == 0
+    made = light_of(tmp_path / "out.exr")[0]
+    expected = by_icc(pixels, profile)[4, 4]
+    assert np.abs(made - srgb_light(expected / 255.0)).max() < 1 / 200
+    # PNG files keep the profile with the numbers.
+    assert run("resize", source, tmp_path / "out.png", "--percent", "50") == 0
+    kept = chunks_of(tmp_path / "out.png")
+    assert zlib.decompress(kept[b"iCCP"].partition(b"\0\0")[2]) == profile
+    assert b"sRGB" not in kept
+    buffer = oiio.ImageBuf(str(tmp_path / "out.png"))
+    read = oiio.ImageBuf(str(source)).get_pixels(oiio.FLOAT)[4, 4]
+    assert np.abs(buffer.get_pixels(oiio.FLOAT)[4, 4] - read).max() * 255 < 0.01
+    # Levels hold bytes of sRGB.
+    assert run("mipmaps", source, "-o", tmp_path / "levels.png") == 0
+    buffer = oiio.ImageBuf(str(tmp_path / "levels.00.png"))
+    assert np.abs(buffer.get_pixels(oiio.FLOAT)[4, 4] * 255 - expected).max() < 1.6
+
+
+def test_light_is_averaged_in_the_curve_of_a_profile(tmp_path):
+    profile = icc_profile(ADOBE_RGB, [POWER] * 3)
+    pixels = np.zeros((16, 16, 3), np.uint8)
+    pixels[:, ::2] = 255
+    source = with_profile(tmp_path / "in.png", pixels, profile)
+    more = ("--width", "8", "--height", "16", "--filter", "box")
+    assert run("resize", source, tmp_path / "out.png", *more) == 0
+    made = oiio.ImageBuf(str(tmp_path / "out.png")).get_pixels(oiio.FLOAT)
+    assert np.abs(made[8, 4] - 0.5 ** (256 / 563)).max() < 0.51 / 255
+
+
+def test_gray_profiles(tmp_path):
+    profile = icc_profile(None, [POWER], b"GRAY")
+    pixels = np.full((16, 16, 1), 100, np.uint8)
+    source = with_profile(tmp_path / "in.png", pixels, profile)
+    assert run("resize", source, tmp_path / "out.png", "--percent", "50") == 0
+    kept = chunks_of(tmp_path / "out.png")
+    assert kept[b"IHDR"][8:10] == bytes([8, 0])
+    assert zlib.decompress(kept[b"iCCP"].partition(b"\0\0")[2]) == profile
+    assert run("resize", source, tmp_path / "out.exr", "--percent", "50") == 0
+    buffer = oiio.ImageBuf(str(tmp_path / "out.exr"))
+    assert buffer.spec().channelnames == ("Y",)
+    expected = (100 / 255) ** (563 / 256)
+    assert abs(buffer.get_pixels(oiio.FLOAT)[4, 4, 0] - expected) < 1 / 1024
+
+
+def test_a_profile_of_srgb_is_srgb(tmp_path):
+    srgb = [[0.43607, 0.38515, 0.14307], [0.22249, 0.71687, 0.06061], [0.01392, 0.09708, 0.71410]]
+    profile = icc_profile(srgb, [SRGB_CURVE] * 3)
+    source = with_profile(tmp_path / "in.png", noise(16, 16), profile)
+    plain = png_file(tmp_path / "plain.png", noise(16, 16))
+    for name in (source, plain):
+        assert run("resize", name, tmp_path / f"{name.stem}-out.png", "--percent", "50") == 0
+    made, expected = ((tmp_path / f"{one}-out.png").read_bytes() for one in ("in", "plain"))
+    assert made == expected
+
+
+def test_profiles_that_cannot_be_converted(tmp_path, capsys):
+    plain = icc_profile(ADOBE_RGB, [POWER] * 3)
+    tables = plain.replace(b"cprt", b"A2B0")
+    falling = icc_profile(ADOBE_RGB, [b"curv" + bytes(4) + struct.pack(">I2H", 2, 9, 3)] * 3)
+    cases = {
+        "tables": (tables, "the ICC profile 'Test', which has tables and not only a matrix"),
+        "falling": (falling, "an ICC profile whose curve falls"),
+        "cut off": (plain[:300], "an ICC profile that is cut off"),
+        "gray": (icc_profile(None, [POWER], b"GRAY"), "its ICC profile is for gray values"),
+        "cmyk": (plain.replace(b"RGB XYZ ", b"CMYKXYZ "), "which is for CMYK values"),
+    }
+    for profile, words in cases.values():
+        source = with_profile(tmp_path / "in.png", noise(16, 16), profile)
+        told = fails(capsys, 1, "resize", source, tmp_path / "out.png", "--percent", "50")
+        assert words in told
+        assert "--colorspace" in told
+        assert not (tmp_path / "out.png").exists()
+    more = ("--percent", "50", "--colorspace", "sRGB")
+    assert run("resize", source, tmp_path / "out.png", *more) == 0
+    assert b"iCCP" not in chunks_of(tmp_path / "out.png")
+
+
+def test_cmyk_is_refused(tmp_path, capsys):
+    image = pytest.importorskip("PIL.Image").fromarray(noise(16, 16))
+    for name in ("in.jpg", "in.tif"):
+        image.convert("CMYK").save(tmp_path / name)
+        told = fails(capsys, 1, "resize", tmp_path / name, tmp_path / "out.png", "--percent", "50")
+        assert "its colors are CMYK, which cannot be converted" in told
+
+
+def test_adobe_rgb_by_exif(tmp_path):
+    image = pytest.importorskip("PIL.Image")
+    pixels = np.full((16, 16, 3), (130, 120, 90), np.uint8)
+    block = image.Exif()
+    block.get_ifd(0x8769)[0xA001] = 0xFFFF
+    block.get_ifd(0x8769)[0xA005] = {1: "R03"}
+    image.fromarray(pixels).save(tmp_path / "in.jpg", exif=block, quality=100, subsampling=0)
+    assert run("resize", tmp_path / "in.jpg", tmp_path / "out.exr", "--percent", "50") == 0
+    read = oiio.ImageBuf(str(tmp_path / "in.jpg")).get_pixels(oiio.FLOAT)[4, 4]
+    to_rec709 = np.array([[1.39836, -0.39836, 0.0], [0.0, 1.0, 0.0], [0.0, -0.04293, 1.04293]])
+    expected = to_rec709 @ (read**2.2)
+    assert np.abs(light_of(tmp_path / "out.exr")[0] - expected).max() < 1 / 512

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._border.claims import temporary_folder
+from .files.tiff import NO_DATE, remove_dates
 from .memory import free_memory
 
 FloatArray = NDArray[np.float32]
@@ -445,6 +446,7 @@ def write_texture(
         config.set_format(pixel_type)
         config.tile_width = config.tile_height = TILE_SIZE
         config.attribute("Software", "Prefilter")
+        config.attribute("DateTime", NO_DATE)
         config.attribute("compression", "zip")
         if description:
             config.attribute("ImageDescription", description)
@@ -457,6 +459,7 @@ def write_texture(
         made = str(folder / f"texture{path.suffix}")
         if not oiio.ImageBufAlgo.make_texture(oiio.MakeTxTexture, full, made, config):
             raise OSError(f"cannot write '{made}': {said(oiio)}")
+        remove_dates(Path(made))
         shutil.move(made, path)
     check_whole(path, len(levels))
 

@@ -31,7 +31,12 @@ def orientation_of(stated: Stated, embedded: Embedded) -> int:
 
 
 def space_of(
-    stated: Stated, embedded: Embedded, *, is_integer: bool, colorspace: str = color_spaces.AUTO
+    stated: Stated,
+    embedded: Embedded,
+    *,
+    is_integer: bool,
+    is_gray: bool,
+    colorspace: str = color_spaces.AUTO,
 ) -> Space | None:
     """Returns the color space of a picture; None where its values are no colors.
 
@@ -40,6 +45,7 @@ def space_of(
         embedded: What is read by itself.
         is_integer: Whether it holds integers, which are sRGB where nothing is said; floats are
             linear Rec. 709.
+        is_gray: Whether it has one channel for all colors.
         colorspace: The name of a space that counts whatever the file says, or `AUTO`.
 
     Raises:
@@ -61,7 +67,9 @@ def space_of(
             return None
         return color_spaces.SRGB if is_integer else color_spaces.LINEAR
     _check_agreement(claims)
-    space = claims[0][1]
+    what, space = claims[0]
+    if space.is_for_gray and not is_gray:
+        raise ValueError(f"{what} is for gray values, and it has colors; {_WAY_OUT}")
     if space.is_srgb and is_integer:
         return color_spaces.SRGB
     return space
@@ -84,7 +92,7 @@ def _claims(stated: Stated, embedded: Embedded) -> Iterator[tuple[str, Space]]:
     if b"cICP" in chunks:
         yield "its cICP chunk", _of_cicp(chunks[b"cICP"])
         return
-    profile = stated.icc or embedded.icc
+    profile = embedded.icc or stated.icc
     if profile:
         yield "its ICC profile", _of_icc(profile)
         return

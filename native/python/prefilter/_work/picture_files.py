@@ -61,7 +61,11 @@ def read(
         raise type(error)(f"{argument}: {error}") from error
     try:
         space = space_of(
-            stated, found, is_integer=values.dtype != np.float32, colorspace=colorspace
+            stated,
+            found,
+            is_integer=values.dtype != np.float32,
+            is_gray=values.shape[2] < 3,
+            colorspace=colorspace,
         )
     except ValueError as error:
         if not is_data or stated.model:

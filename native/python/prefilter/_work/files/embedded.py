@@ -4,6 +4,7 @@
 
 import os
 import struct
+import zlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,6 +17,7 @@ _EXIF = b"Exif\0\0"
 _ORIENTATION, _EXIF_FOLDER, _RULE_FOLDER, _COLOR_SPACE, _RULE = 0x112, 0x8769, 0xA005, 0xA001, 1
 _ADOBE_RGB_RULE, _ADOBE_RGB = b"R03", 2
 _SHORT = 3
+_DAMAGED = b"damaged"
 _MOST_ENTRIES = 1000
 
 
@@ -25,7 +27,7 @@ class Embedded:
 
     Attributes:
         exif: The block of EXIF, as a TIFF file; empty where there is none.
-        icc: An ICC profile that only some versions of OpenImageIO read; empty where there is none.
+        icc: An ICC profile that OpenImageIO may leave out; empty where there is none.
         chunks: Of a PNG file, the chunks before its pixels that tell of colors, by their kinds.
     """
 
@@ -55,7 +57,7 @@ def embedded(path: Path) -> Embedded:
             file.seek(0)
             if start[:8] == png.SIGNATURE:
                 chunks = png.color_chunks(file)
-                return Embedded(chunks.get(b"eXIf", b""), b"", chunks)
+                return Embedded(chunks.get(b"eXIf", b""), _png_profile(chunks), chunks)
             if start[:4] == b"RIFF" and start[8:] == b"WEBP":
                 found = dict(_riff(file))
                 return Embedded(
@@ -66,6 +68,17 @@ def embedded(path: Path) -> Embedded:
     except (OSError, ValueError, struct.error):
         pass  # Its reader says what is wrong.
     return Embedded()
+
+
+def _png_profile(chunks: Mapping[bytes, bytes]) -> bytes:
+    """Returns the ICC profile; not empty where it is damaged: libpng then leaves it out."""
+    if b"iCCP" not in chunks:
+        return b""
+    packed = chunks[b"iCCP"].partition(b"\0")[2][1:]
+    try:
+        return zlib.decompressobj().decompress(packed, _MOST_BYTES) or _DAMAGED
+    except zlib.error:
+        return _DAMAGED
 
 
 def _riff(file: BinaryIO) -> Iterator[tuple[bytes, bytes]]:
