@@ -34,7 +34,7 @@ def write_picture(path: Path, pixels: np.ndarray, *, is_straight: bool = True) -
     """Writes pixels, rows from the top, just as they are."""
     oiio = pytest.importorskip("OpenImageIO", reason="scripts/decoders.txt is not installed")
     height, width, channels = pixels.shape
-    spec = oiio.ImageSpec(width, height, channels, str(pixels.dtype))
+    spec = oiio.ImageSpec(width, height, channels, str(pixels.dtype).replace("float32", "float"))
     if is_straight:
         spec.attribute("oiio:UnassociatedAlpha", 1)
     output = oiio.ImageOutput.create(str(path))

@@ -20,7 +20,7 @@ from .._work.mipmaps.source import Source
 from .._work.outcome import Outcome
 from .._work.picture import Encoding, Picture
 from .._work.progress import Progress, go_on, share
-from . import picture_arguments
+from . import color_arguments
 
 _FILTERED = 0.9  # What the progress is once the levels are filtered.
 
@@ -99,7 +99,7 @@ def read(
         objects: The names of those in these files that count; all where there are none.
         settings: What to make.
         metadata: What KTX 2 files are to keep, by keys.
-        options: The flags of colors: see `picture_arguments.add_color_flags`.
+        options: The flags of colors: see `color_arguments.add_flags`.
 
     Raises:
         OSError: A file cannot be read, or not be written.
@@ -129,7 +129,7 @@ def read(
         settings = replace(settings, texture_format=chosen)
     threshold = settings.threshold if content == "cutout" else None
     if not _holds_all_colors(picture, target, settings.texture_format):
-        picture_arguments.check_range("TEXTURE", picture, target, options)
+        color_arguments.check_range("TEXTURE", picture, target, options)
     told = _of_orientation(picture)
     told += engines.checked(
         picture,

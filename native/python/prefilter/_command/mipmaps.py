@@ -12,7 +12,7 @@ from .._work import mesh_endings
 from .._work.files import target_files
 from .._work.up_to_date import KEY, LEVELS, fingerprint
 from .._work.wording import either
-from . import picture_arguments, telling
+from . import color_arguments, telling
 
 FLAGS = (
     *("filter", "reader", "lookups", "wrap", "wrap_v", "content", "threshold", "roughness"),
@@ -51,7 +51,7 @@ def add(commands: Any, purpose: str) -> None:
         help="a mesh of the files that counts; repeat for several (default: all)",
     )
     add_flags(parser, Settings, *FLAGS, short={"filepath": "-o"})
-    picture_arguments.add_color_flags(parser, "TEXTURE")
+    color_arguments.add_flags(parser, "TEXTURE")
     telling.add_skipping(parser)
     parser.set_defaults(execute=_run, usage_error=parser.error)
 

@@ -7,7 +7,7 @@ import zlib
 
 import numpy as np
 
-from .color_spaces import LINE, Curve, Parametric, Sampled, Space, from_d50
+from .color_spaces import LINE, Curve, Parametric, Sampled, Space, from_d50, is_regular
 
 _HEADER = 128
 _MOST_TAGS = 1000
@@ -25,7 +25,7 @@ def space_of(profile: bytes) -> Space:
     """
     try:
         return _space_of(profile)
-    except (struct.error, IndexError, np.linalg.LinAlgError) as error:
+    except (struct.error, IndexError) as error:
         raise ValueError("an ICC profile that is damaged") from error
 
 
@@ -49,7 +49,7 @@ def _space_of(profile: bytes) -> Space:
     curves: tuple[Curve, ...] = tuple(_curve(tags[one]) for one in _CURVES)
     if curves[0] == curves[1] == curves[2]:
         curves = curves[:1]
-    if abs(np.linalg.det(matrix)) < 1e-9:
+    if not is_regular(matrix):
         raise ValueError(f"{what}, whose colors all lie in a plane")
     return Space(what, curves, from_d50(matrix), ((b"iCCP", chunk),))
 

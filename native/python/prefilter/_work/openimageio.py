@@ -232,7 +232,7 @@ def _check_memory(spec: Any, read_as: str) -> None:
     if needed > free:
         raise MemoryError(
             f"a picture of {spec.full_width} x {spec.full_height} pixels needs about "
-            f"{needed / 1e9:.1f} GB of memory; {why}"
+            f"{needed / 1e9:.3g} GB of memory; {why}"
         )
 
 

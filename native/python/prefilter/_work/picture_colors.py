@@ -6,7 +6,7 @@ import struct
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
-from . import color_spaces, icc
+from . import color_spaces, icc, space_names
 from .color_spaces import Space
 from .files.embedded import Embedded, exif_of
 from .openimageio import Stated
@@ -36,7 +36,7 @@ def space_of(
     *,
     is_integer: bool,
     is_gray: bool,
-    colorspace: str = color_spaces.AUTO,
+    colorspace: str = space_names.AUTO,
 ) -> Space | None:
     """Returns the color space of a picture; None where its values are no colors.
 
@@ -55,15 +55,15 @@ def space_of(
         raise ValueError(
             f"its colors are {stated.model}, which cannot be converted; save it as RGB first"
         )
-    if colorspace != color_spaces.AUTO:
-        color_spaces.checked_name(colorspace)
+    if colorspace != space_names.AUTO:
+        space_names.checked_name(colorspace)
         return color_spaces.named(colorspace)
-    if color_spaces.is_data_name(stated.interop_id):
+    if space_names.is_data_name(stated.interop_id):
         return None
     # The first claim counts: the order is that of the PNG specification, after the name.
     claims = list(_claims(stated, embedded))
     if not claims:
-        if color_spaces.is_data_name(stated.color_space):
+        if space_names.is_data_name(stated.color_space):
             return None
         return color_spaces.SRGB if is_integer else color_spaces.LINEAR
     _check_agreement(claims)
@@ -111,7 +111,7 @@ def _claims(stated: Stated, embedded: Embedded) -> Iterator[tuple[str, Space]]:
         return
     granted = _TAKEN_FOR_GRANTED.get(stated.format, _TAKEN_FOR_GRANTED[""])
     name = stated.color_space
-    if name not in _UNKNOWN | granted and not color_spaces.is_data_name(name) and not chunks:
+    if name not in _UNKNOWN | granted and not space_names.is_data_name(name) and not chunks:
         if name == "GammaCorrected":
             name = f"Gamma{stated.gamma:g}"
         if stated.interop_id in _UNKNOWN:

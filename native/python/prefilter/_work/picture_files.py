@@ -13,10 +13,11 @@ import prefilter
 
 from . import color_spaces, openimageio
 from .alpha import associated, unassociated
-from .color_spaces import AUTO, Space
+from .color_spaces import Space
 from .files.embedded import embedded
 from .picture import Encoding, FloatArray, Picture, without_fourth
 from .picture_colors import orientation_of, space_of
+from .space_names import AUTO
 
 _LINEAR, _DATA, _SRGB = "Linear Rec.709", "Non-Color", "sRGB"
 _UNSEEN = np.float32(1 / 2048)

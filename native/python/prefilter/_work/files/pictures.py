@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..._border import staging
 from ...textures.exr import write_exr_picture
-from .. import color_spaces
+from .. import space_names
 from . import png
 
 ENDINGS = (".png", ".exr")
@@ -24,7 +24,7 @@ def stage(
     *,
     is_data: bool,
     is_half: bool,
-    linear_space: str = color_spaces.REC709_LINEAR,
+    linear_space: str = space_names.REC709_LINEAR,
     has_alpha: bool = True,
     chunks: Sequence[tuple[bytes, bytes]] = (),
     metadata: Mapping[str, str] | None = None,
@@ -56,17 +56,17 @@ def stage(
         format="half" if is_half else "float",
         alpha="premultiplied" if has_alpha and not is_data else "independent",
         attributes={
-            **exr_attributes(color_spaces.DATA if is_data else linear_space),
+            **exr_attributes(space_names.DATA if is_data else linear_space),
             **(metadata or {}),
         },
-        chromaticities=None if is_data else color_spaces.chromaticities_of(linear_space),
+        chromaticities=None if is_data else space_names.chromaticities_of(linear_space),
     )
     return staging.stage_bytes(target, write)
 
 
 def exr_attributes(space: str) -> dict[str, str]:
     """Returns what the header of an OpenEXR file says of a color space, beside chromaticities."""
-    name = color_spaces.interop_name(space)
+    name = space_names.interop_name(space)
     known = {"colorInteropID": name} if name else {}
     return {"Software": "Prefilter", "oiio:ColorSpace": name or space, **known}
 

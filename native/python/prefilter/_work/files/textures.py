@@ -20,7 +20,7 @@ import numpy as np
 import prefilter
 
 from ..._border.staging import StagedFile, stage_bytes, stage_with
-from .. import alpha, color_spaces, openimageio
+from .. import alpha, openimageio, space_names
 from .. import picture as images
 from ..picture import FloatArray, Picture
 from ..wording import Sentence
@@ -110,7 +110,7 @@ def _stage_exr(
 
     full, encoding = images.light_or_bytes(picture, check)
     is_gray = _is_gray(picture, [full, *linear_levels])
-    space = color_spaces.DATA if picture.is_data else picture.linear_space
+    space = space_names.DATA if picture.is_data else picture.linear_space
     attributes = {
         "textureformat": "Plain Texture",
         **exr_attributes(space),
@@ -126,7 +126,7 @@ def _stage_exr(
         encoding=cast("Any", encoding),
         alpha=cast("Any", kind),
         attributes=attributes,
-        chromaticities=None if picture.is_data else color_spaces.chromaticities_of(space),
+        chromaticities=None if picture.is_data else space_names.chromaticities_of(space),
         progress=go_on,
         threads=threads,
     )

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Flags of commands that read pictures: which colors these have, and what becomes of some."""
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from .._work import space_names
+
+if TYPE_CHECKING:
+    from .._work.picture import Picture
+
+
+def add_flags(parser: argparse.ArgumentParser, thing: str) -> None:
+    """Adds the flags that say which colors a picture has, and what becomes of some.
+
+    Args:
+        parser: Gets them.
+        thing: What the picture is called.
+    """
+    parser.add_argument(
+        "--colorspace",
+        metavar="NAME",
+        type=_space_name,
+        default=space_names.AUTO,
+        help=f"the color space of {thing}, whatever the file says: "
+        f"{', '.join(space_names.EXAMPLES)}, or a name of the Color Interop Forum such as "
+        f"lin_ap1_scene (default: {space_names.AUTO})",
+    )
+    parser.add_argument(
+        "--clip",
+        action="store_true",
+        help=f"where {thing} is in another color space, let colors outside of sRGB become the "
+        "nearest ones that the file can hold; without this flag they are refused",
+    )
+
+
+def _space_name(name: str) -> str:
+    try:
+        return space_names.checked_name(name)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from error
+
+
+def check_range(
+    argument: str, picture: "Picture", target: Path, options: argparse.Namespace
+) -> None:
+    """Raises ValueError where a file would lose colors of a picture, and nothing says it may.
+
+    Args:
+        argument: What the picture is called in messages.
+        picture: The picture.
+        target: A file that holds no colors outside of sRGB.
+        options: The arguments.
+    """
+    if picture.outside > 0.0 and not options.clip:
+        raise ValueError(
+            f"{argument}: {100 * picture.outside:.3g} % of the pixels of '{picture.name}' have "
+            f"colors outside of sRGB, which '{target.name}' cannot hold; write an .exr file, or "
+            f"clip them by --clip"
+        )
