@@ -2,11 +2,14 @@
 
 """The commands."""
 
+from dataclasses import replace
 from typing import Any
 
 from prefilter._command import resample, resize, sampling_table
 from prefilter._command.host import Host
 from prefilter._command.program import COMMANDS
+from prefilter._work import picture_files
+from prefilter._work.space_names import AUTO
 
 from ...bridge import images
 from ...bridge.images import Picture
@@ -23,5 +26,12 @@ def add(commands: Any) -> None:
     sampling_table.add(commands, COMMANDS["sampling-table"], preferences)
 
 
-def _read(argument: str, path: str, *, is_data: bool) -> Picture:
-    return read(images.load(argument, path, is_data=is_data))
+def _read(
+    argument: str, path: str, *, is_data: bool, colorspace: str = AUTO, **more: Any
+) -> Picture:
+    """Reads a picture as Blender does, or as the package does what Blender takes for another."""
+    seen = picture_files.look(argument, path, is_data=is_data)
+    if colorspace != AUTO or (seen is not None and not seen.is_plain):
+        return picture_files.read(argument, path, is_data=is_data, colorspace=colorspace, **more)
+    picture = read(images.load(argument, path, is_data=is_data))
+    return replace(picture, is_gray=seen is not None and seen.is_gray)

@@ -3,6 +3,7 @@
 """OpenImageIO's own Python module, as far as pictures need it; imported when it is needed."""
 
 import itertools
+import re
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -34,6 +35,8 @@ _CUT_OFF = "Premature end of JPEG"
 _PNG = b"\x89PNG\r\n\x1a\n"
 _MOST_ORIENTATIONS = 8
 _RGB_MODELS = frozenset({"", "RGB", "YCbCr", "Grayscale", "gray", "palette"})
+_DESCRIBED_SPACE = re.compile(r"\bcolorInteropID=(\w+)")
+"""What is said in TIFF files of levels."""
 _EXIF_ADOBE_RGB, _ADOBE_RGB_RULE = 2, "R03"
 
 
@@ -195,18 +198,23 @@ def read_pixels(path: Path) -> Pixels:
     return Pixels(_on_canvas(values, spec), is_straight, stated)
 
 
-def read_stated(path: Path) -> tuple[Stated, int]:
-    """Returns what a picture file says of itself, and the number of its channels; reads no pixels.
+def read_stated(path: Path) -> tuple[Stated, int, bool]:
+    """Returns what a picture file says of itself, and reads no pixels.
+
+    Returns:
+        What it says, the number of channels that count, and whether they are floats.
 
     Raises:
         MemoryError: As for `read_pixels`.
         OSError: As for `read_pixels`.
     """
-    reader = _opened(path)
+    oiio, reader = module(), _opened(path)
     try:
         spec = reader.spec()
         _check_memory(spec, "float")
-        return _stated(reader.format_name(), spec), len(_channels(list(spec.channelnames)))
+        is_float = spec.format.basetype in {oiio.HALF, oiio.FLOAT, oiio.DOUBLE}
+        channels = len(_channels(list(spec.channelnames)))
+        return _stated(reader.format_name(), spec), channels, is_float
     finally:
         reader.close()
 
@@ -242,11 +250,12 @@ def _stated(format: str, spec: Any) -> Stated:
     points = spec.getattribute("chromaticities")
     profile = spec.getattribute("ICCProfile")
     orientation = spec.get_int_attribute("Orientation", 1)
+    described = _DESCRIBED_SPACE.search(str(spec.getattribute("ImageDescription") or ""))
     return Stated(
         format=format,
         orientation=orientation if 1 <= orientation <= _MOST_ORIENTATIONS else 1,
         model="" if model in _RGB_MODELS else model,
-        interop_id=str(spec.getattribute("colorInteropID") or ""),
+        interop_id=str(spec.getattribute("colorInteropID") or (described[1] if described else "")),
         color_space=str(spec.getattribute("oiio:ColorSpace") or ""),
         gamma=float(spec.get_float_attribute("oiio:Gamma", 1.0)),
         icc=b"" if profile is None else np.asarray(profile).astype(np.uint8).tobytes(),

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 import prefilter
 
 from . import openimageio
-from .color_spaces import Space
+from .color_spaces import Space, named
 from .openimageio import Check
 
 FloatArray = NDArray[np.float32]
@@ -205,6 +205,28 @@ def as_srgb(picture: Picture) -> Picture:
     if picture.linear_space in LINEAR_REC709_NAMES:
         return replace(picture, encoding=Encoding.SRGB)
     return replace(picture, encoding=Encoding.OCIO, colorspace="sRGB")
+
+
+def in_rec709(picture: Picture, light: FloatArray, check: Check = lambda: None) -> FloatArray:
+    """Returns scene-linear values, of the primaries of Rec. 709 now.
+
+    Args:
+        picture: What says which primaries they have; data are returned as they are.
+        light: The values, with alpha as it is stored.
+        check: As for `scene_linear`.
+
+    Raises:
+        ValueError: As `scene_linear`.
+        OSError: As `scene_linear`.
+    """
+    if picture.is_data or picture.linear_space in LINEAR_REC709_NAMES:
+        return light
+    space = named(picture.linear_space)
+    if space is None or not space.is_linear:
+        return prefilter.to_linear(encoded(as_srgb(picture), light, check))
+    made = light.copy()
+    made[..., :3] = space.in_rec709(np.ascontiguousarray(light[..., :3]))
+    return made
 
 
 def automatic_bounds(

@@ -2,7 +2,7 @@
 
 """Picture files as pictures, with the values that Blender has of them."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -89,6 +89,49 @@ def read(
         texels=_without_full_alpha(picture.texels),
         orientation=1 if turns else orientation,
     )
+
+
+@dataclass(frozen=True)
+class Look:
+    """What a picture file says, before its pixels are read.
+
+    Attributes:
+        is_plain: Whether it is upright and its colors are those that readers take for granted.
+        is_gray: Whether it has one channel for all colors.
+    """
+
+    is_plain: bool
+    is_gray: bool
+
+
+def look(argument: str, path: str, *, is_data: bool) -> Look | None:
+    """Returns what a picture file says; None where OpenImageIO is missing, or does not read it.
+
+    Args:
+        argument: What the path is called in messages.
+        path: The file.
+        is_data: Whether its values are no colors.
+
+    Raises:
+        MemoryError: It is too large for the memory that is free.
+    """
+    try:
+        stated, channels, is_float = openimageio.read_stated(Path(path))
+    except OSError:
+        return None
+    except MemoryError as error:
+        raise MemoryError(f"{argument}: {error}") from error
+    found, is_gray = embedded(Path(path)), channels in {1, 2}
+    is_usual = not stated.model
+    if is_usual and not is_data:
+        try:
+            space = space_of(stated, found, is_integer=not is_float, is_gray=is_gray)
+        except ValueError:
+            is_usual = False
+        else:
+            usual = color_spaces.LINEAR if is_float else color_spaces.SRGB
+            is_usual = space is not None and space.agrees(usual)
+    return Look(is_usual and orientation_of(stated, found) == 1, is_gray)
 
 
 def turned(values: NDArray[Any], orientation: int) -> NDArray[Any]:

@@ -81,16 +81,18 @@ def stage(
     else:
         full = picture.stored if keep_bytes else images.scene_linear(picture, check)
     is_gray = _is_gray(picture, [full, *levels])
+    color_space = _color_space(picture, keep_bytes)
+    told = {"colorInteropID": color_space, **(metadata or {})}
     write = partial(
         openimageio.write_texture,
         levels=[_file_pixels(picture, level, is_gray=is_gray) for level in (full, *levels)],
         pixel_type="uint8" if keep_bytes else "float",
-        color_space=_color_space(picture, keep_bytes),
+        color_space=color_space,
         wrap_modes=wrap_modes,
         has_alpha=picture.alpha_is_coverage,
         check=check,
         # TIFF files have no keys of their own that all readers keep.
-        description=" ".join(f"{key}={value}" for key, value in (metadata or {}).items()),
+        description=" ".join(f"{key}={value}" for key, value in told.items()),
     )
     return stage_with(target, write)
 
@@ -149,7 +151,8 @@ def _file_pixels(picture: Picture, level: images.Texels, *, is_gray: bool) -> im
 
 def _color_space(picture: Picture, keep_bytes: bool) -> str:
     if picture.is_data:
-        return "raw"
-    if keep_bytes and picture.encoding is not images.Encoding.NONE:
-        return picture.colorspace
-    return "scene_linear"
+        return space_names.DATA
+    is_encoded = keep_bytes and picture.encoding is not images.Encoding.NONE
+    name = picture.colorspace if is_encoded else picture.linear_space
+    # A name that has a space in it would end early in a description.
+    return space_names.interop_name(name) or name.replace(" ", "_")

@@ -10,7 +10,7 @@ from pathlib import Path
 from ..._border.staging import StagedFile
 from ..._options.mipmaps import CONTENTS, FILTERS, Settings
 from ..files import engines, textures
-from ..picture import FloatArray, Picture, encoded, scene_linear
+from ..picture import FloatArray, Picture, encoded, in_rec709, scene_linear
 from ..up_to_date import fingerprint_of
 from ..wording import Sentence, counted, joined, together
 from . import lookups
@@ -136,7 +136,7 @@ def _staged(
         files += engines.stage(
             target,
             picture,
-            [linear, *made],
+            [in_rec709(picture, level, check) for level in (linear, *made)],
             [picture.stored, *stored],
             texture_format,
             check,

@@ -11,11 +11,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+import prefilter
+
 from ..._border import staging
 from .. import alpha
 from ..files import pictures
 from ..outcome import Outcome
-from ..picture import Encoding, FloatArray, Picture, as_srgb, encoded, scene_linear
+from ..picture import Encoding, FloatArray, Picture, encoded, in_rec709, scene_linear
 from ..progress import Progress, go_on, share
 from ..wording import Sentence
 
@@ -181,7 +183,7 @@ def _stage(
     if picture.space is not None:
         pixels = encoded(replace(picture, encoding=Encoding.SPACE), pixels)
     elif not picture.is_data:
-        pixels = encoded(as_srgb(picture), pixels)
+        pixels = prefilter.to_srgb(in_rec709(picture, pixels))
     most = _SHORT if picture.is_float else _BYTE
     whole = np.rint(pixels.clip(0.0, 1.0) * most).astype(np.uint16 if most == _SHORT else np.uint8)
     return pictures.stage(
