@@ -137,18 +137,20 @@ def read(image: bpy.types.Image) -> Picture:
         channels = 3
     space = image.colorspace_settings
     linear_space = scene_linear_name()
+    file = _file_of(image)
     picture = Picture(
         name=image.name,
         full_name=image.name_full,
         texels=texels.reshape(height, width, channels),
         is_float=image.is_float,
-        is_integer=not image.is_float or _has_integer_file(image),
+        is_integer=not image.is_float or file.is_integer,
         encoding=_encoding(image, linear_space),
         colorspace=space.name,
         is_data=space.is_data,
         alpha_mode=image.alpha_mode,
         linear_space=linear_space,
         ocio_config=_ocio_config(),
+        is_gray=file.is_gray,
     )
     if not was_loaded and image.source == "FILE" and not image.is_dirty:
         # Blender read the file for this alone, and reads it again where it needs it.
@@ -172,16 +174,16 @@ def _as_bytes(pixels: FloatArray) -> NDArray[np.uint8]:
     return pixels.view(np.uint8)[:count]
 
 
-def _has_integer_file(image: bpy.types.Image) -> bool:
-    """Tells whether the pixels come from a file of integers, as 16-bit PNG; Blender has floats."""
+def _file_of(image: bpy.types.Image) -> openimageio.Contents:
+    """Returns what the file of an image holds: integers, as 16-bit PNG, are floats in Blender."""
     if image.source != "FILE":
-        return False
+        return openimageio.Contents(is_integer=False, is_gray=False)
     if image.packed_file is None:
-        return openimageio.holds_integers(bpy.path.abspath(image.filepath, library=image.library))
+        return openimageio.contents(bpy.path.abspath(image.filepath, library=image.library))
     with temporary_folder() as folder:
         copy = folder / "picture"
         copy.write_bytes(image.packed_file.data)
-        return openimageio.holds_integers(str(copy))
+        return openimageio.contents(str(copy))
 
 
 def check_untiled(image: bpy.types.Image) -> None:

@@ -3,7 +3,10 @@
 """The color spaces of picture files, through all commands that read and write pictures."""
 
 import io
+import os
 import struct
+import subprocess
+import sys
 import zlib
 
 import numpy as np
@@ -151,6 +154,20 @@ def test_colors_outside_of_srgb(tmp_path, capsys, kind, command):
         written = tmp_path / ("out.00.png" if command == "mipmaps" else "out.png")
         clipped = (matrix @ OUTSIDE).clip(0, 1)
         assert np.abs(light_of(written)[0] - clipped).max() < 1 / 1024
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_colors_under_a_configuration_of_aces(tmp_path, kind):
+    attributes, matrix = KINDS[kind]
+    source = flat_exr(tmp_path / "in.exr", INSIDE, attributes)
+    settings = {"OCIO": "ocio://cg-config-v1.0.0_aces-v1.3_ocio-v2.1"}
+    for ending in ("exr", "png"):
+        target = tmp_path / f"out.{ending}"
+        command = [sys.executable, "-m", "prefilter", "resize", source, target, "--percent", "50"]
+        subprocess.run(command, check=True, env=os.environ | settings)
+        color, is_data = light_of(target)
+        assert is_data == (kind == "raw")
+        assert np.abs(color - matrix @ INSIDE).max() < 1 / 1024
 
 
 def test_levels_for_engines(tmp_path):

@@ -142,19 +142,35 @@ def color_convert(
     return converted
 
 
-def holds_integers(path: str) -> bool:
-    """Tells whether a picture file has integers in it; False where that cannot be found out."""
+class Contents(NamedTuple):
+    """What values a picture file has.
+
+    Attributes:
+        is_integer: Whether they are integers; False where that cannot be found out.
+        is_gray: Whether one channel stands for all colors; likewise.
+    """
+
+    is_integer: bool
+    is_gray: bool
+
+
+def contents(path: str) -> Contents:
+    """Returns what values a picture file has, as far as that can be found out."""
     try:
         oiio = module()
     except OSError:
-        return _is_png(path)
+        return Contents(is_integer=_is_png(path), is_gray=False)
     reader = oiio.ImageInput.open(path)
     if reader is None:
         oiio.geterror()
-        return False
-    kind = reader.spec().format.basetype
+        return Contents(is_integer=False, is_gray=False)
+    spec = reader.spec()
     reader.close()
-    return kind not in {oiio.HALF, oiio.FLOAT, oiio.DOUBLE}
+    kind, channels = spec.format.basetype, _channels(list(spec.channelnames))
+    return Contents(
+        is_integer=kind not in {oiio.HALF, oiio.FLOAT, oiio.DOUBLE},
+        is_gray=len(channels) in {1, 2},
+    )
 
 
 def _is_png(path: str) -> bool:

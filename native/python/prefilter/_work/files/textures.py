@@ -27,6 +27,12 @@ from ..wording import Sentence
 from . import target_files
 from .pictures import exr_attributes, in_file_channels
 
+_KNOWN_BEFORE = {
+    space_names.SRGB: "sRGB",
+    space_names.REC709_LINEAR: "lin_rec709",
+    space_names.DATA: "raw",
+}
+"""What OpenImageIO calls spaces in all of its versions."""
 _WRAP_MODES = {"repeat": "periodic", "clamp": "clamp", "border": "black"}
 
 
@@ -87,7 +93,7 @@ def stage(
         openimageio.write_texture,
         levels=[_file_pixels(picture, level, is_gray=is_gray) for level in (full, *levels)],
         pixel_type="uint8" if keep_bytes else "float",
-        color_space=color_space,
+        color_space=_KNOWN_BEFORE.get(color_space, color_space),
         wrap_modes=wrap_modes,
         has_alpha=picture.alpha_is_coverage,
         check=check,
