@@ -2,7 +2,6 @@
 
 """The package's command `mipmaps` writes the same bytes as the command `bake`."""
 
-
 import numpy as np
 import OpenImageIO as oiio
 import pytest

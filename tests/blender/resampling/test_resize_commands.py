@@ -2,6 +2,9 @@
 
 """The command `resize`."""
 
+import struct
+import zlib
+
 import numpy as np
 import prefilter
 import pytest
@@ -35,6 +38,68 @@ def test_bytes(paint, tmp_path):
     assert kind == "uint8"
     expected = scenes.to_srgb(scenes.halved(scenes.to_linear(pixels)))
     np.testing.assert_allclose(found, expected, atol=0.5 / 255 + 1e-5)
+
+
+def chunked(path, pixels, *chunks):
+    """Writes a PNG file of bytes, rows from the top, with more chunks."""
+    height, width, channels = pixels.shape
+    kind = {1: 0, 2: 4, 3: 2}[channels]
+    header = struct.pack(">IIBBBBB", width, height, 8, kind, 0, 0, 0)
+    rows = zlib.compress(b"".join(b"\0" + row.tobytes() for row in pixels))
+    parts = [(b"IHDR", header), *chunks, (b"IDAT", rows), (b"IEND", b"")]
+    made = (
+        struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+        for name, data in parts
+    )
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + b"".join(made))
+    return path
+
+
+SAME_SIZE = ("--percent", 100, "--filter", "box")
+
+
+def test_pictures_are_turned_upright(tmp_path):
+    pixels = (scenes.noise(8, 12)[..., :3] * 255).astype(np.uint8)
+    turn = b"MM\0\x2a\0\0\0\x08\0\x01" + struct.pack(">HHIHHI", 0x112, 3, 1, 6, 0, 0)
+    source = chunked(tmp_path / "in.png", pixels, (b"eXIf", turn))
+    result = run("resize", source, tmp_path / "out.png", *SAME_SIZE)
+    assert result.returncode == 0, result.stderr
+    found, _ = content(tmp_path / "out.png")
+    np.testing.assert_array_equal(np.rint(found[::-1] * 255), np.rot90(pixels, -1))
+
+
+@pytest.mark.parametrize("channels", [1, 2])
+def test_gray_stays_gray(tmp_path, channels):
+    pixels = (scenes.noise(8, 12)[..., :channels] * 255).astype(np.uint8)
+    source = chunked(tmp_path / "in.png", pixels)
+    result = run("resize", source, tmp_path / "out.png", *SAME_SIZE)
+    assert result.returncode == 0, result.stderr
+    found, _ = content(tmp_path / "out.png")
+    np.testing.assert_array_equal(np.rint(found[::-1] * 255), pixels)
+
+
+def test_colors_of_other_spaces(tmp_path):
+    pixels = np.full((8, 8, 3), (150, 120, 90), np.uint8)
+    source = chunked(tmp_path / "in.png", pixels, (b"cICP", bytes([12, 13, 0, 1])))
+    result = run("resize", source, tmp_path / "out.exr", "--percent", 50)
+    assert result.returncode == 0, result.stderr
+    found, _ = content(tmp_path / "out.exr")
+    # As SMPTE publishes it, from Display P3 to Rec. 709.
+    matrix = [[1.22494, -0.22494, 0.0], [-0.04206, 1.04206, 0.0], [-0.01964, -0.07864, 1.09828]]
+    expected = np.array(matrix) @ scenes.to_linear(pixels[0, 0] / 255)
+    assert np.abs(found[2, 2] - expected).max() < 1 / 1024
+    result = run("resize", source, tmp_path / "out.png", "--percent", 50)
+    assert result.returncode == 0, result.stderr
+    assert b"cICP\x0c\x0d\0\1" in (tmp_path / "out.png").read_bytes()
+
+
+def test_the_color_space_can_be_said(tmp_path):
+    source = chunked(tmp_path / "in.png", np.full((8, 8, 3), (150, 120, 90), np.uint8))
+    more = ("--percent", 50, "--colorspace", "lin_rec709_scene")
+    result = run("resize", source, tmp_path / "out.exr", *more)
+    assert result.returncode == 0, result.stderr
+    found, _ = content(tmp_path / "out.exr")
+    assert np.abs(found[2, 2] - np.array([150, 120, 90]) / 255).max() < 1 / 1024
 
 
 def test_data(paint, tmp_path):

@@ -288,6 +288,8 @@ def _unreadable(path: Path, reason: str) -> str:
 def _channels(names: list[str]) -> list[int]:
     """Returns which channels are gray, or red, green and blue, each with or without alpha."""
     by_name = {name.upper(): index for index, name in enumerate(names)}
+    if "RY" in by_name or "BY" in by_name:
+        return []  # Luminance, with colors of fewer pixels.
     for colors in (("R", "G", "B"), ("Y",)):
         if all(name in by_name for name in colors):
             return [by_name[name] for name in (*colors, "A") if name in by_name]

@@ -99,6 +99,12 @@ def _claims(stated: Stated, embedded: Embedded) -> Iterator[tuple[str, Space]]:
     if b"sRGB" in chunks:
         yield "its sRGB chunk", color_spaces.SRGB
         return
+    name = stated.color_space
+    found = None if name in _UNKNOWN else color_spaces.named(name)
+    if chunks and found is not None and not found.is_rec709:
+        # OpenImageIO before 3.1 keeps the name in a text.
+        yield f"its color space '{name}'", found
+        return
     if b"gAMA" in chunks:
         yield "its gAMA chunk", _of_gamma(chunks)
         return
@@ -110,8 +116,7 @@ def _claims(stated: Stated, embedded: Embedded) -> Iterator[tuple[str, Space]]:
         yield "its EXIF", _named("g22_adobergb_scene", "EXIF")
         return
     granted = _TAKEN_FOR_GRANTED.get(stated.format, _TAKEN_FOR_GRANTED[""])
-    name = stated.color_space
-    if name not in _UNKNOWN | granted and not space_names.is_data_name(name) and not chunks:
+    if name not in _UNKNOWN | granted and not space_names.is_data_name(name):
         if name == "GammaCorrected":
             name = f"Gamma{stated.gamma:g}"
         if stated.interop_id in _UNKNOWN:
