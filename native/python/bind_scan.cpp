@@ -202,6 +202,24 @@ py::object bound_read_range_grid(const File& file, const py::object& callback) {
   return to_array<std::int64_t>(std::move(grid->points), {grid->rows, grid->columns});
 }
 
+py::tuple bound_read_ply_mesh(const std::string& path, const py::object& callback) {
+  const Progress progress = to_progress(callback);
+  PlyMesh mesh;
+  {
+    const py::gil_scoped_release unlocked;
+    mesh = read_ply_mesh(path, progress);
+  }
+  const auto rows = [](const auto& vector) { return static_cast<py::ssize_t>(vector.size()); };
+  const py::ssize_t counts[] = {rows(mesh.positions), rows(mesh.sizes), rows(mesh.corners)};
+  const bool has_uvs = !mesh.uvs.empty();
+  const py::ssize_t uv_count = rows(mesh.uvs);
+  return py::make_tuple(
+      to_array<double>(std::move(mesh.positions), {counts[0], 3}),
+      to_array<std::int64_t>(std::move(mesh.corners), {counts[2]}),
+      to_array<std::int64_t>(std::move(mesh.sizes), {counts[1]}),
+      has_uvs ? py::object(to_array<double>(std::move(mesh.uvs), {uv_count, 2})) : py::none());
+}
+
 template <typename File>
 Array<std::int64_t> bound_read_faces(const File& file, const py::object& callback) {
   const Progress progress = to_progress(callback);
@@ -337,6 +355,7 @@ void bind_scan(py::module_& m) {
         py::arg("progress"));
   m.def("read_range_grid", &bound_read_range_grid<UnpackedFile>, py::arg("file"),
         py::arg("progress"));
+  m.def("read_ply_mesh", &bound_read_ply_mesh, py::arg("path"), py::arg("progress"));
   m.def("read_faces", &bound_read_faces<std::string>, py::arg("path"), py::arg("progress"));
   m.def("read_faces", &bound_read_faces<UnpackedFile>, py::arg("file"), py::arg("progress"));
   m.def("read_points", &bound_read_points, py::arg("source"), py::arg("most"), py::arg("progress"));

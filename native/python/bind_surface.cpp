@@ -13,6 +13,7 @@
 #include "instances.h"
 #include "prefilter/base/names.h"
 #include "prefilter/surface/charts.h"
+#include "prefilter/surface/polygon_triangles.h"
 #include "prefilter/surface/subdivision.h"
 #include "prefilter/surface/surface.h"
 #include "prefilter/surface/udim_tile.h"
@@ -72,6 +73,22 @@ Array<std::int32_t> bound_uv_charts(const py::array& positions, const py::array&
     charts = find_charts(mesh, maps, progress, threads);
   }
   return to_array<std::int32_t>(std::move(charts), {triangles.shape(0)});
+}
+
+Array<std::int64_t> bound_triangulate_polygons(const Array<double>& positions,
+                                               const Array<std::int64_t>& corners,
+                                               const Array<std::int64_t>& sizes,
+                                               const py::object& callback) {
+  const Progress progress = to_progress(callback);
+  const PositionView points = rows_of(positions);
+  std::vector<std::array<std::int64_t, 3>> triangles;
+  {
+    const py::gil_scoped_release unlocked;
+    triangles = triangulate_polygons(points, {corners.data(), length(corners)},
+                                     {sizes.data(), length(sizes)}, progress);
+  }
+  const auto count = static_cast<py::ssize_t>(triangles.size());
+  return to_array<std::int64_t>(std::move(triangles), {count, 3});
 }
 
 Surface bound_placed(const Surface& surface, const Array<double>& matrices) {
@@ -180,6 +197,8 @@ void bind_surface(py::module_& m) {
       .def_property_readonly("areas", [](const Surface& s) { return rows<double>(s.areas, {}); });
   m.def("uv_charts", &bound_uv_charts, py::arg("positions"), py::arg("triangles"), py::arg("uvs"),
         py::arg("progress"), py::arg("threads"));
+  m.def("triangulate_polygons", &bound_triangulate_polygons, py::arg("positions"),
+        py::arg("corners"), py::arg("sizes"), py::arg("progress"));
   bind_subdivision(m);
   m.def("subdivide", &bound_subdivide, py::arg("mesh"), py::arg("options"), py::arg("progress"));
 }

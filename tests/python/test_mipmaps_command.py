@@ -219,11 +219,12 @@ def test_a_failure_leaves_the_file_as_it_was(texture, tmp_path, capsys, monkeypa
     assert sorted(path.name for path in tmp_path.iterdir()) == ["out.ktx2", "paint.png"]
 
 
-def test_missing_modules_are_named(texture, quad, tmp_path, capsys, monkeypatch):
+def test_missing_modules_are_named(texture, tmp_path, capsys, monkeypatch):
     import sys
 
     monkeypatch.setitem(sys.modules, "trimesh", None)
-    told = fails(capsys, 1, "mipmaps", texture, quad, "-o", tmp_path / "out.dds")
+    (tmp_path / "part.stl").write_text("solid\nendsolid\n")
+    told = fails(capsys, 1, "mipmaps", texture, tmp_path / "part.stl", "-o", tmp_path / "out.dds")
     assert "meshes need trimesh, which is missing: pip install 'prefilter[command]'" in told
     monkeypatch.setitem(sys.modules, "OpenImageIO", None)
     told = fails(capsys, 1, "mipmaps", texture, "-o", tmp_path / "out.dds")

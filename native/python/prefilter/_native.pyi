@@ -288,6 +288,14 @@ def read_range_grid(
 def read_range_grid(
     file: UnpackedFile, progress: ProgressCallback | None
 ) -> npt.NDArray[np.int64] | None: ...
+def read_ply_mesh(
+    path: bytes, progress: ProgressCallback | None
+) -> tuple[
+    npt.NDArray[np.float64],
+    npt.NDArray[np.int64],
+    npt.NDArray[np.int64],
+    npt.NDArray[np.float64] | None,
+]: ...
 @overload
 def read_faces(path: bytes, progress: ProgressCallback | None) -> npt.NDArray[np.int64]: ...
 @overload
@@ -347,6 +355,12 @@ def nearest_points(
     progress: ProgressCallback | None,
     threads: int,
 ) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.float64], npt.NDArray[np.float64]]: ...
+def triangulate_polygons(
+    positions: npt.NDArray[np.floating],
+    corners: npt.NDArray[np.int64],
+    sizes: npt.NDArray[np.int64],
+    progress: ProgressCallback | None,
+) -> npt.NDArray[np.int64]: ...
 def uv_charts(
     positions: npt.NDArray[np.floating],
     triangles: npt.NDArray[np.integer],

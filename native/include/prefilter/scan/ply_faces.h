@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "prefilter/base/geometry.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/scan/range_grid.h"
 #include "prefilter/scan/unpacked_file.h"
@@ -21,8 +22,23 @@ namespace prefilter {
 std::optional<RangeGrid> read_range_grid(const std::string& path, const Progress& progress);
 std::optional<RangeGrid> read_range_grid(const UnpackedFile& file, const Progress& progress);
 
-/// The element "face" of a PLY file as triangles, polygons as fans around their first corner;
-/// none where it has none. Throws Error likewise.
+/// The polygons of a PLY file.
+struct PlyMesh {
+  std::vector<Vector3> positions;
+  /// The number of corners of each polygon, and the vertices of all corners.
+  std::vector<std::int64_t> sizes;
+  std::vector<std::int64_t> corners;
+  /// The UVs of all corners; empty for a file without. They are those of a list "texcoord" of
+  /// faces, else those of vertices, called s and t, u and v, or texture_u and texture_v.
+  std::vector<std::array<double, 2>> uvs;
+};
+
+/// The elements "vertex" and "face" of a PLY file; without polygons where it has no faces.
+/// Throws Error likewise.
+PlyMesh read_ply_mesh(const std::string& path, const Progress& progress);
+
+/// The element "face" of a PLY file as triangles, polygons by `triangulate_polygons`; none where it
+/// has none. Throws Error likewise.
 std::vector<std::array<std::int64_t, 3>> read_faces(const std::string& path,
                                                     const Progress& progress);
 std::vector<std::array<std::int64_t, 3>> read_faces(const UnpackedFile& file,

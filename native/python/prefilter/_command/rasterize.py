@@ -120,9 +120,10 @@ def _layout(
     (part,) = found
     if part.uvs is None:
         raise ValueError(f"mesh '{part.name}' has no UV map")
-    if not np.isfinite(part.uvs).all():
+    _, uvs = part.mapped()
+    if not np.isfinite(uvs).all():
         raise ValueError(f"mesh '{part.name}': the UV map has UVs that are not finite")
-    polygons = borders(part.uvs.astype(np.float32)[part.triangles])
+    polygons = borders(uvs.astype(np.float32))
     if not polygons:
         warnings.append(f"mesh '{part.name}': no face has an area in the UV map")
     return uv_layers(f"{part.name}.uv", polygons, settings)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Mesh files, as trimesh reads them; it is imported when it is needed."""
+"""Mesh files, as triangles. trimesh reads STL files and writes all; it is imported if needed."""
 
 import os
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -14,10 +14,14 @@ from numpy.typing import NDArray
 
 import prefilter
 
+from .. import _native
 from .._border.staging import StagedFile, stage_bytes, stage_data
+from .files.gltf import read_gltf
 from .files.mesh_notes import with_note
-from .matrices import product
-from .wording import listed
+from .files.obj import read_obj
+from .files.off import read_off
+from .files.polygons import PolygonMesh, rounded
+from .wording import counted, listed
 
 
 @dataclass(frozen=True)
@@ -28,13 +32,24 @@ class Part:
         name: What the file calls it; the name of the file where it has one mesh.
         positions: (vertices, 3) float64.
         triangles: (triangles, 3) integers.
-        uvs: (vertices, 2) float64; None for a mesh without a UV map.
+        uvs: (triangles, 3, 2) float64 of the triangles' corners, NaN for one without, or
+            (vertices, 2); None for a mesh without a UV map.
+        bare: (triangles,) whether a triangle has corners without UVs; None if none has.
     """
 
     name: str
     positions: NDArray[np.float64]
     triangles: NDArray[np.integer]
     uvs: NDArray[np.float64] | None
+    bare: NDArray[np.bool_] | None = None
+
+    def mapped(self) -> tuple[NDArray[np.integer], NDArray[np.float64]]:
+        """Returns the triangles that have UVs, and those of their corners, (triangles, 3, 2)."""
+        assert self.uvs is not None
+        uvs = self.uvs if self.uvs.ndim == 3 else self.uvs[self.triangles]
+        if self.bare is None:
+            return self.triangles, uvs
+        return self.triangles[~self.bare], uvs[~self.bare]
 
 
 def read(argument: str, paths: Sequence[str]) -> list[Part]:
@@ -111,66 +126,96 @@ def surfaces(parts: Sequence[Part]) -> tuple[list[prefilter.Surface], list[str],
     found: list[prefilter.Surface] = []
     names: list[str] = []
     without: list[str] = []
+    told: list[str] = []
     for part in parts:
         if part.uvs is None:
             without.append(part.name)
             continue
         try:
-            found.append(prefilter.Surface(part.positions, part.triangles, part.uvs))
+            found.append(prefilter.Surface(part.positions, *part.mapped()))
         except ValueError as error:
             raise ValueError(f"mesh '{part.name}': {error}") from error
+        if part.bare is not None:
+            count = counted(range(int(part.bare.sum())), "triangle")
+            told.append(f"mesh '{part.name}': left out {count} without UVs")
         names.append(part.name)
     if without and not found:
         raise ValueError(f"no mesh has a UV map; found {listed(without)}")
-    told = [f"left out, because there is no UV map: {listed(without)}"] if without else []
+    if without:
+        told.insert(0, f"left out, because there is no UV map: {listed(without)}")
     return found, names, told
 
 
 def _parts(argument: str, path: str) -> list[Part]:
     if not os.path.isfile(path):
         raise OSError(f"{argument}: there is no file '{path}'")
-    trimesh = _trimesh()
-    more: dict[str, Any] = {}
-    if path.lower().endswith(".obj"):
-        more = {"split_objects": True, "group_material": False, "skip_materials": True}
+    reader = _READERS.get(os.path.splitext(path)[1].lower(), _read_by_trimesh)
     try:
-        scene = trimesh.load_scene(path, process=False, **more)
-    except Exception as error:  # Its readers raise whatever goes wrong in them.
+        meshes = reader(path)
+    except MissingModuleError:
+        raise
+    except Exception as error:  # Readers raise whatever goes wrong in them.
         reason = " ".join(str(error).split())
         raise OSError(f"{argument}: '{path}' cannot be read as a mesh: {reason}") from error
-    nodes = sorted(scene.graph.nodes_geometry, key=str)
-    parts = [_part(scene, node) for node in nodes]
+    parts = [_part(mesh) for mesh in sorted(meshes, key=lambda mesh: mesh.name)]
     parts = [part for part in parts if len(part.triangles)]
     if not parts:
         raise ValueError(f"{argument}: there is no triangle in '{path}'")
-    if len(parts) == 1 and scene.graph[nodes[0]][1] == os.path.basename(path):
-        stem = os.path.splitext(os.path.basename(path))[0]
-        parts = [Part(stem, parts[0].positions, parts[0].triangles, parts[0].uvs)]
-    return parts
+    stem = os.path.splitext(os.path.basename(path))[0]
+    return [part if part.name else replace(part, name=stem) for part in parts]
 
 
-def _part(scene: Any, node: Any) -> Part:
-    matrix, geometry = scene.graph[node]
-    mesh = scene.geometry[geometry]
-    positions = _rounded(getattr(mesh, "vertices", np.empty((0, 3))))
-    if not np.array_equal(matrix, np.eye(4)):
-        positions = product(positions, matrix[:3, :3].T) + matrix[:3, 3]
-    triangles = np.asarray(getattr(mesh, "faces", np.empty((0, 3))), np.int64).reshape(-1, 3)
-    uvs = getattr(getattr(mesh, "visual", None), "uv", None)
-    if uvs is not None:
-        uvs = _rounded(uvs)[:, :2]
-    return Part(str(geometry), positions, triangles, uvs)
+def _part(mesh: PolygonMesh) -> Part:
+    corners = mesh.triangle_corners()
+    triangles = mesh.corners[corners]
+    if mesh.uvs is None:
+        return Part(mesh.name, mesh.positions, triangles, None)
+    uvs = mesh.uvs[corners]
+    bare = np.asarray(np.isnan(uvs).any(axis=(1, 2)), np.bool_)
+    if bare.all():
+        return Part(mesh.name, mesh.positions, triangles, None)
+    return Part(mesh.name, mesh.positions, triangles, uvs, bare if bare.any() else None)
 
 
-def _rounded(numbers: Any) -> NDArray[np.float64]:
-    """Returns numbers in single precision, as Blender keeps them: results are then the same."""
-    return np.asarray(numbers, np.float32).astype(np.float64)
+def _read_by_trimesh(path: str) -> list[PolygonMesh]:
+    """Reads a file whose faces are triangles without UVs."""
+    trimesh = _trimesh()
+    scene = trimesh.load_scene(path, process=False)
+    found = []
+    for node in scene.graph.nodes_geometry:
+        mesh = scene.geometry[scene.graph[node][1]]
+        triangles = np.asarray(getattr(mesh, "faces", np.empty((0, 3))), np.int64).reshape(-1, 3)
+        points = rounded(getattr(mesh, "vertices", np.empty((0, 3))))
+        name = str(scene.graph[node][1])
+        name = "" if name == os.path.basename(path) else name
+        sizes = np.full(len(triangles), 3, np.int64)
+        found.append(PolygonMesh(name, points, triangles.reshape(-1), sizes, None))
+    return found
+
+
+def _read_ply(path: str) -> list[PolygonMesh]:
+    positions, corners, sizes, uvs = _native.read_ply_mesh(os.fsencode(path), None)
+    uvs = None if uvs is None else rounded(uvs)
+    return [PolygonMesh("", rounded(positions), corners, sizes, uvs)]
+
+
+_READERS: dict[str, Callable[[str], list[PolygonMesh]]] = {
+    ".obj": lambda path: read_obj(Path(path).read_bytes()),
+    ".off": lambda path: read_off(Path(path).read_bytes()),
+    ".ply": _read_ply,
+    ".glb": read_gltf,
+    ".gltf": read_gltf,
+}
+
+
+class MissingModuleError(OSError):
+    """A module of Python that files need is missing."""
 
 
 def _trimesh() -> Any:
     try:
         return import_module("trimesh")
     except ImportError as error:
-        raise OSError(
+        raise MissingModuleError(
             "meshes need trimesh, which is missing: pip install 'prefilter[command]'"
         ) from error

@@ -202,7 +202,7 @@ def read_faces(
 ) -> npt.NDArray[np.int64]:
     """Reads the faces of a PLY file as (triangles, 3) indices of its points.
 
-    Polygons become fans around their first corner; (0, 3) where there are no faces.
+    Polygons are triangulated, concave ones too; (0, 3) where there are no faces.
 
     Raises:
         ValueError: This is no PLY file, or it is damaged.
