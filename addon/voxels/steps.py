@@ -44,7 +44,10 @@ VOXELIZED, _CONTOURED = 0.5, 0.75
 
 @dataclass(frozen=True)
 class Result:
-    """A surface, or a staged file of a volume, and numbers about it."""
+    """A surface, or a staged file of a volume, and numbers about it.
+
+    `volume` is what the surface encloses; of a volume, how much is filled.
+    """
 
     place: Place
     grid: Grid
@@ -204,13 +207,12 @@ def contoured(
         solid.locked_groups,
         solid.kept_modifiers,
     )
-    topology = prefilter.mesh_topology(
-        positions, halves(faces), weld=False, threads=settings.threads
-    )
+    triangles = halves(faces)
+    topology = prefilter.mesh_topology(positions, triangles, weld=False, threads=settings.threads)
     return Result(
         place,
         grid,
-        tree.volume,
+        prefilter.measure_mesh(positions, triangles, threads=settings.threads).volume,
         len(faces),
         contour,
         topology=topology,

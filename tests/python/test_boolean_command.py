@@ -53,6 +53,18 @@ def test_the_surface_is_that_of_the_package(files, capsys, operation):
     np.testing.assert_allclose(found.vertices, expected, atol=1e-6)
 
 
+def test_the_volume_is_that_of_the_result(tmp_path, capsys):
+    """A film of cells is left where faces coincide; the surface has none, nor has the volume."""
+    for name, size in {"plate": (4, 4, 1), "hole": (2, 2, 1)}.items():
+        trimesh.creation.box(size).export(tmp_path / f"{name}.ply")
+    files = (tmp_path / "plate.ply", tmp_path / "hole.ply", "-o", tmp_path / "out.ply")
+    for depth in (6, 7):
+        assert run("boolean", *files, "--operation", "difference", "--depth", depth) == 0
+        told = float(capsys.readouterr().out.split("volume ")[1])
+        assert told == pytest.approx(12, rel=0.005)
+        assert told == pytest.approx(trimesh.load_mesh(tmp_path / "out.ply").volume, rel=0.001)
+
+
 def test_meshes_of_one_file_as_operands(files):
     scene = trimesh.Scene()
     for name in CORNERS:

@@ -9,6 +9,7 @@ import bmesh
 import bodies
 import bpy
 import pytest
+from mathutils import Matrix
 from voxel_reports import outcome, rows, the_line
 
 DONE = {"FINISHED"}
@@ -242,6 +243,22 @@ def test_a_boolean_sums_up():
     depsgraph = bpy.context.evaluated_depsgraph_get()
     found = command.done(boolean.Boolean.read(cube, [other], settings, depsgraph))
     assert the_line(found) == ["parts: 2 before, 2 after", "genus: 1 before, 1 after"]
+
+
+def test_the_volume_is_that_of_the_surface():
+    """Where faces coincide cells keep a film, which the surface has not."""
+    cubes = [bodies.cube(size=1.0), bodies.cube(size=1.0)]
+    for cube, side in zip(cubes, (4.0, 2.0), strict=True):
+        cube.data.transform(Matrix.Diagonal((side, side, 1.0, 1.0)))
+    choices = importlib.import_module(f"{PACKAGE}.voxels.choices")
+    boolean = importlib.import_module(f"{PACKAGE}.voxels.boolean")
+    command = importlib.import_module(f"{PACKAGE}.core.command")
+    settings = choices.BooleanSettings(depth=6, operation="difference")
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    found = command.done(boolean.Boolean.read(cubes[0], cubes[1:], settings, depsgraph))
+    told = float(str(found.summary).split("volume ")[1].split()[0])
+    assert told == pytest.approx(bodies.volume(cubes[0]), rel=1e-3)
+    assert told == pytest.approx(12, rel=0.005)
 
 
 def test_volumes_have_no_surface(tmp_path):

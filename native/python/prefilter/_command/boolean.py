@@ -100,9 +100,10 @@ class BooleanFile:
             raise NothingLeftError(NO_CELL)
         name = self._operands[0].name
         others = listed(one.name for one in self._operands[1:])
+        volume = measure_mesh(positions, triangles, threads=settings.threads).volume
         self._line = (
             f"{settings.operation.capitalize()} of '{name}' with {others} in {cells}³ cells: "
-            f"{amount(len(triangles), 'triangle')}, volume {tree.volume:.4g}"
+            f"{amount(len(triangles), 'triangle')}, volume {volume:.4g}"
         )
         made = [Part(name, positions, triangles, None)]
         self._staged = mesh_files.stage(self._target, made)

@@ -149,9 +149,10 @@ class VoxelFile:
         self._warnings += warnings
         self._notes += notes
         self._triangles += len(triangles)
+        volume = measure_mesh(positions, triangles, threads=settings.threads).volume
         self._lines.append(
             f"'{mesh.name}' in {grid.cells}³ cells of {grid.spacing:.4g}: "
-            f"{amount(len(triangles), 'triangle')}, volume {made.tree.volume:.4g}"
+            f"{amount(len(triangles), 'triangle')}, volume {volume:.4g}"
         )
         return Part(mesh.name, positions, triangles, None)
 
