@@ -12,7 +12,7 @@ from prefilter._command import reconstruct
 from prefilter._command.program import COMMANDS
 from prefilter._work.scans import STREAMED_TARGET, Streaming
 
-from ..bridge.files import scenes, staging
+from ..bridge.files import scenes
 from ..bridge.points import may_be_points
 from ..bridge.units import length
 from ..core import command, presets
@@ -71,7 +71,7 @@ def _reconstruct(options: argparse.Namespace) -> None:
         options.usage_error(f"--step: needs a {STREAMED_TARGET} file as TARGET")
     if options.step is not None and has_blend:
         options.usage_error("--step: not allowed for .blend files")
-    target = staging.check_output(options.target)
+    target = scenes.check_target(options.target)
     settings = reconstruct.settings_of(options, presets.host(RECONSTRUCT))
     if has_blend:
         _from_objects(options, target, settings)

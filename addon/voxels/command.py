@@ -15,7 +15,7 @@ from prefilter._command.program import COMMANDS
 from prefilter._command.voxelize import RESOLUTIONS
 from prefilter._work.up_to_date import KEY, MESHES
 
-from ..bridge.files import scenes, staging
+from ..bridge.files import scenes
 from ..bridge.new_meshes import is_solid
 from ..core import command, presets
 from ..core.flags import add_flags, given, tables
@@ -106,7 +106,7 @@ def _voxelize(options: argparse.Namespace) -> None:
 
 
 def _voxelize_one(options: argparse.Namespace, pair: Pair, *, is_volume: bool) -> None:
-    target = pair.checked_target()
+    target = scenes.check_target(pair.target)
     (objects,) = scenes.load([pair.source], _is_wanted, _WANTED)
     more = {"output": "volume", "filepath": str(target)} if is_volume else {}
     work = Voxelization.read(
@@ -133,7 +133,7 @@ def _boolean(options: argparse.Namespace) -> None:
     for path in options.files:
         command.check_ending(options, "FILE", path, scenes.SOURCES)
     command.check_ending(options, "--output", options.output, scenes.TARGETS)
-    target = staging.check_output(options.output)
+    target = scenes.check_target(options.output)
     groups = scenes.load(options.files, _is_wanted, _WANTED)
     if options.object:
         objects = [obj for group in groups for obj in group]

@@ -5,6 +5,7 @@
 import os
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import partial
 from glob import escape, glob
 from pathlib import Path
@@ -17,6 +18,41 @@ from ...core.outcome import reason
 from ...core.wording import listed
 from . import staging
 from .complete import check_whole
+
+
+@dataclass(frozen=True)
+class Exporter:
+    """An operator that writes files.
+
+    Attributes:
+        name: The operator.
+        selection: Its option to export what is selected, and nothing else.
+        options: More of its options.
+    """
+
+    name: str
+    selection: str
+    options: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def _operator(self) -> Any:
+        module, _, name = self.name.partition(".")
+        return getattr(getattr(bpy.ops, module), name)
+
+    @property
+    def is_available(self) -> bool:
+        """Whether this Blender has the operator: its add-on may be disabled."""
+        try:
+            self._operator.get_rna_type()
+        except KeyError:
+            return False
+        return True
+
+    def export(self, path: Path, *, is_selection: bool, **options: Any) -> None:
+        """Writes what is selected, or everything."""
+        self._operator(
+            filepath=str(path), **{self.selection: is_selection}, **self.options, **options
+        )
 
 
 def _import_usd(path: str) -> None:
@@ -37,18 +73,24 @@ IMPORTERS: dict[str, Callable[[str], Any]] = {
     ".usdc": _import_usd,
     ".usdz": _import_usd,
 }
-EXPORTERS: dict[str, Callable[[str], Any]] = {
-    ".obj": lambda path: bpy.ops.wm.obj_export(filepath=path, export_selected_objects=True),
-    ".ply": lambda path: bpy.ops.wm.ply_export(filepath=path, export_selected_objects=True),
-    ".stl": lambda path: bpy.ops.wm.stl_export(filepath=path, export_selected_objects=True),
-    ".glb": lambda path: bpy.ops.export_scene.gltf(
-        filepath=path, use_selection=True, export_format="GLB"
-    ),
-    ".gltf": lambda path: bpy.ops.export_scene.gltf(
-        filepath=path, use_selection=True, export_format="GLTF_SEPARATE"
-    ),
-    ".fbx": lambda path: bpy.ops.export_scene.fbx(filepath=path, use_selection=True),
+EXPORTERS: dict[str, Exporter] = {
+    ".obj": Exporter("wm.obj_export", "export_selected_objects"),
+    ".ply": Exporter("wm.ply_export", "export_selected_objects"),
+    ".stl": Exporter("wm.stl_export", "export_selected_objects"),
+    ".glb": Exporter("export_scene.gltf", "use_selection", {"export_format": "GLB"}),
+    ".gltf": Exporter("export_scene.gltf", "use_selection", {"export_format": "GLTF_SEPARATE"}),
+    ".fbx": Exporter("export_scene.fbx", "use_selection"),
 }
+_POSED = (".glb", ".gltf", ".fbx")
+"""Files that keep what moves objects."""
+_BASES = ("ARMATURE", "EMPTY")
+_OF_GLTF_SCENES = {
+    "export_cameras": True,
+    "export_lights": True,
+    "export_extras": True,
+    "export_all_influences": True,
+}
+"""What the exporter of glTF leaves out unless it is told."""
 
 
 SOURCES = (".blend", *IMPORTERS)
@@ -156,6 +198,22 @@ def as_one(name: str, objects: Sequence[bpy.types.Object]) -> bpy.types.Object:
     return made
 
 
+def check_target(path: str) -> Path:
+    """Returns the absolute path of a file that objects can be written to.
+
+    Raises:
+        OSError: It cannot be written, or this Blender has no exporter for it.
+    """
+    target = staging.check_output(path)
+    exporter = EXPORTERS.get(target.suffix.lower())
+    if exporter is not None and not exporter.is_available:
+        raise OSError(
+            f"file '{path}': this Blender has no exporter for {target.suffix.lower()} files; "
+            "enable its add-on"
+        )
+    return target
+
+
 def save(target: Path, names: Sequence[str], metadata: Mapping[str, str] | None = None) -> None:
     """Writes objects, or for a .blend file all there is, beside the target, and renames it.
 
@@ -167,15 +225,60 @@ def save(target: Path, names: Sequence[str], metadata: Mapping[str, str] | None 
     Raises:
         OSError: The file cannot be written.
     """
-    extension = target.suffix.lower()
+    _select(_with_bases(names) if target.suffix.lower() in _POSED else names)
+    _save(target, partial(_export, metadata or {}))
+
+
+def save_gltf(target: Path, names: Sequence[str] = ()) -> None:
+    """Writes a glTF file with cameras, lights, and custom properties.
+
+    Args:
+        target: The file.
+        names: Those of the objects. Without names, everything is written.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    _select(_with_bases(names))
+
+    def export(path: Path) -> None:
+        EXPORTERS[path.suffix.lower()].export(path, is_selection=bool(names), **_OF_GLTF_SCENES)
+        check_whole(path.parent, 0, 0)
+
+    _save(target, export)
+
+
+def _with_bases(names: Sequence[str]) -> list[str]:
+    """Returns the names of objects with those of the armatures and empties that move them."""
+    found: dict[bpy.types.Object, None] = {}
+    pending = [bpy.data.objects[name] for name in names]
+    while pending:
+        obj = pending.pop(0)
+        if obj in found:
+            continue
+        found[obj] = None
+        bases = [one.object for one in obj.modifiers if one.type == "ARMATURE"]
+        bases += [obj.parent] if obj.parent and obj.parent.type in _BASES else []
+        pending += [base for base in bases if base is not None and base not in found]
+    return [obj.name for obj in found]
+
+
+def _select(names: Sequence[str]) -> None:
+    """Selects objects, and nothing else, also those that users must not select."""
+    wanted = set(names)
     for obj in bpy.context.view_layer.objects:
-        obj.select_set(obj.name in names)
+        if obj.name in wanted:
+            obj.hide_select = False
+        obj.select_set(obj.name in wanted)
+
+
+def _save(target: Path, export: Callable[[Path], None]) -> None:
     staged: staging.StagedFile | staging.StagedFolder
     try:
-        if extension == ".blend":
+        if target.suffix.lower() == ".blend":
             staged = staging.stage_with(target, _write_blend)
         else:
-            staged = staging.stage_folder(target, partial(_export, metadata or {}))
+            staged = staging.stage_folder(target, export)
     except (RuntimeError, OSError) as error:
         raise OSError(f"file '{target}': cannot write it: {_last_line(error)}") from error
     try:
@@ -186,18 +289,24 @@ def save(target: Path, names: Sequence[str], metadata: Mapping[str, str] | None 
 
 def _export(metadata: Mapping[str, str], path: Path) -> None:
     """Writes the selected objects to a file in a folder of its own."""
-    EXPORTERS[path.suffix.lower()](str(path))
-    depsgraph = bpy.context.evaluated_depsgraph_get()
-    meshes = [obj.evaluated_get(depsgraph).data for obj in bpy.context.selected_objects]
-    counts = (
-        sum(len(mesh.vertices) for mesh in meshes),
-        sum(len(mesh.polygons) for mesh in meshes),
-    )
+    kind = path.suffix.lower()
+    EXPORTERS[kind].export(path, is_selection=True)
+    counts = _selected_counts() if kind == ".obj" else (0, 0)
     check_whole(path.parent, *counts)
     for key, text in metadata.items():
-        kind = path.suffix.lower().removeprefix(".")
-        path.write_bytes(with_note(kind, path.read_bytes(), key, text))
+        path.write_bytes(with_note(kind.removeprefix("."), path.read_bytes(), key, text))
         check_whole(path.parent, *counts)
+
+
+def _selected_counts() -> tuple[int, int]:
+    """Returns how many vertices and faces the selected meshes have, their instances too."""
+    vertices = faces = 0
+    for one in bpy.context.evaluated_depsgraph_get().object_instances:
+        base = one.parent if one.is_instance else one.object
+        if one.object.type == "MESH" and base.original.select_get():
+            vertices += len(one.object.data.vertices)
+            faces += len(one.object.data.polygons)
+    return vertices, faces
 
 
 def _last_line(error: RuntimeError | OSError) -> str:

@@ -6,10 +6,8 @@ import argparse
 import os
 from pathlib import Path
 
-import bpy
-
 from ...bridge import meshes
-from ...bridge.files import scenes, staging
+from ...bridge.files import scenes
 from ...core import command
 from ...core.flags import given
 from ...core.wording import counted, listed
@@ -35,18 +33,16 @@ def is_gltf(path: str) -> bool:
 def bake_gltf(options: argparse.Namespace, settings: Settings) -> None:
     """Exports the model, as Blender's exporter does with Prefilter Mipmaps."""
     _check(options)
-    target = staging.check_output(settings.filepath)
+    target = scenes.check_target(settings.filepath)
     (objects,) = scenes.load([options.file], meshes.may_show_image, WANTED)
     _check_sources(options, target)
-    names = [obj.name for obj in bpy.context.view_layer.objects]
-    if options.object:
-        names = [obj.name for obj in scenes.chosen(objects, options.object, WANTED)]
+    chosen_objects = scenes.chosen(objects, options.object, WANTED) if options.object else []
     shared = {"texture_format", "effort", "supercompression", "quality"}
     chosen = {key: value for key, value in given(options, Settings).items() if key in shared}
     fallback = given(options, GltfSettings)
     export = Export(settings, GltfSettings(use_mipmaps=True, **chosen, **fallback))
     with hooks.exporting(export):
-        scenes.save(target, names)
+        scenes.save_gltf(target, [obj.name for obj in chosen_objects])
     command.warn(export.warnings)
     for note in export.notes:
         command.say(note)
