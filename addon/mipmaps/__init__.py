@@ -5,6 +5,7 @@
 from ..core.keys import Key
 from ..core.registration import registration
 from . import choices, menus, operators, panels, properties, view
+from .gltf import panel as gltf_panel
 from .gltf import properties as gltf_properties
 
 MANUAL = {
@@ -29,4 +30,6 @@ KEYS = (
 )
 """What its operators have at first; see `keys.Keys`."""
 
-register, unregister = registration(properties, gltf_properties, view, operators, panels, menus)
+register, unregister = registration(
+    properties, gltf_properties, gltf_panel, view, operators, panels, menus
+)

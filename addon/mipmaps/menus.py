@@ -9,6 +9,7 @@ from ..core.menus import PREFILTER_MT_image, PREFILTER_MT_object
 from ..core.registration import entry, registration
 from ..core.translations import marked
 from .choices import NOT_OF_MODELS, ModelSettings, ResultSettings, Settings
+from .gltf.panel import offer_panels
 from .operators.bake_mipmaps import PREFILTER_OT_bake_mipmaps
 from .operators.bake_model import PREFILTER_OT_bake_model
 from .operators.export import PREFILTER_OT_export_mipmaps, PREFILTER_OT_export_model
@@ -72,6 +73,7 @@ def _draw_material_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> Non
 
 def _draw_export(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     del context
+    offer_panels()  # The exporter may have been enabled since.
     for operator, text in (
         (PREFILTER_OT_export_mipmaps, marked("Mipmaps (.ktx2/.dds/.exr/.tx/.tif/.png)")),
         (PREFILTER_OT_export_model, marked("Mipmaps of All Images")),

@@ -2,8 +2,9 @@
 
 """The textures of a glTF export: read as the file has them, fitted, and put into their places."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from copy import copy
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -35,12 +36,41 @@ _WRAPS: dict[Any, str] = {33071: "clamp", 33648: "clamp"}
 
 @dataclass
 class _Picture:
-    """An image of the file: all textures that have the same bytes."""
+    """An image of the file in one role: all textures with the same bytes that are filtered alike.
+
+    Attributes:
+        image: The exporter's.
+        data: Its file.
+        role: "color", "normal" or "data".
+        threshold: Of the alpha test; None for none.
+        wraps: Of both axes.
+        suffix: What tells it from the same image in other roles.
+        textures: The exporter's; by what they were copied from, or by themselves.
+        shown: What shows it, and how.
+    """
 
     image: Any
     data: bytes
-    textures: list[Any] = field(default_factory=list)
+    role: str
+    threshold: float | None
+    wraps: tuple[str, str]
+    suffix: str = ""
+    textures: dict[int, Any] = field(default_factory=dict)
     shown: list[tuple[Use, Part]] = field(default_factory=list)
+
+    @property
+    def name(self) -> str:
+        """What it is called in messages, and in the file."""
+        return f"{self.image.name or 'Image'}{self.suffix}"
+
+    def add(self, use: Use, part: Part, taken: dict[int, Any]) -> None:
+        """Takes a use, which gets a texture of its own where another role has taken its one."""
+        texture = use.texture
+        if id(texture) not in self.textures:
+            own = copy(texture) if id(texture) in taken else texture
+            self.textures[id(texture)] = self.textures[id(own)] = taken[id(own)] = own
+        use.info.index = self.textures[id(texture)]
+        self.shown.append((use, part))
 
 
 class Export:
@@ -106,16 +136,16 @@ class Export:
                 try:
                     made, bake = self._fitted(picture)
                 except FAILURES as error:
-                    text = f"texture '{picture.image.name}' stays as it is: {reason(error)}"
+                    text = f"texture '{picture.name}' stays as it is: {reason(error)}"
                     log.warning(f"Prefilter: {text}", popup=True)
-                    self.failed.append(picture.image.name)
+                    self.failed.append(picture.name)
                     self.warnings.append(text)
                     continue
                 for text in bake.warnings:
                     log.warning(f"Prefilter: {text}")
                 for text in bake.notes:
                     log.info(f"Prefilter: {text}")
-                self.baked.append(picture.image.name)
+                self.baked.append(picture.name)
                 self.warnings += bake.warnings
                 self.notes += bake.notes
                 self._replace(picture, made, export_settings)
@@ -123,30 +153,30 @@ class Export:
             manager.progress_end()
 
     def _pictures(self) -> list[_Picture]:
-        found: dict[bytes, _Picture] = {}
+        found: dict[Any, _Picture] = {}
+        taken: dict[int, Any] = {}
         for part in self._parts:
             for use in uses.uses(part.primitive):
                 image = _image(use.texture)
                 data = image and (image.buffer_view or image.uri)
                 if not hasattr(data, "data"):
                     continue
-                picture = found.setdefault(data.data, _Picture(image, data.data))
-                if not any(use.texture is known for known in picture.textures):
-                    picture.textures.append(use.texture)
-                picture.shown.append((use, part))
+                wraps = _wraps(use.texture.sampler)
+                key = (data.data, use.role, use.covers, use.threshold, wraps)
+                about = (image, data.data, use.role, use.threshold, wraps)
+                found.setdefault(key, _Picture(*about)).add(use, part, taken)
+        _name_by_role(found.values())
         return list(found.values())
 
     def _fitted(self, picture: _Picture) -> tuple[bytes, Bake]:
         """Returns a KTX 2 file, and the bake that made it."""
-        roles = {use.role for use, _ in picture.shown}
-        content: str = next(role for role in ("normal", "color", "data") if role in roles)
-        thresholds = [use.threshold for use, _ in picture.shown if use.threshold is not None]
+        content = picture.role
         with temporary_folder() as folder:
             texels = _read(picture, folder, is_data=content != "color")
-            if thresholds and content == "color" and texels.shape[2] == 4:
+            if picture.threshold is not None and content == "color" and texels.shape[2] == 4:
                 content = "cutout"
             texels = contents.as_content(texels, content)
-            settings = self._settings_of(picture, content, thresholds)
+            settings = self._settings_of(picture, content)
             surfaces = _surfaces(picture)
             if not any(surface.area for surface in surfaces.surfaces):
                 surfaces = meshes.ImageSurfaces()
@@ -161,8 +191,7 @@ class Export:
                 bake.discard()
             return target.read_bytes(), bake
 
-    def _settings_of(self, picture: _Picture, content: str, thresholds: list[float]) -> Settings:
-        sampler = picture.textures[0].sampler
+    def _settings_of(self, picture: _Picture, content: str) -> Settings:
         # Normals are no colors: what codebooks lose of them is seen as dents.
         is_coarse = prefilter.TEXEL_FORMATS[self._settings.texture_format].is_coarse
         return replace(
@@ -171,23 +200,34 @@ class Export:
             if is_coarse and content == "normal"
             else self._settings.texture_format,
             content=content,
-            threshold=thresholds[0] if thresholds else self._settings.threshold,
-            wrap=_WRAPS.get(getattr(sampler, "wrap_s", 0), "repeat"),
-            wrap_v=_WRAPS.get(getattr(sampler, "wrap_t", 0), "repeat"),
+            threshold=self._settings.threshold if picture.threshold is None else picture.threshold,
+            wrap=picture.wraps[0],
+            wrap_v=picture.wraps[1],
         )
 
     def _replace(self, picture: _Picture, made: bytes, export_settings: dict[str, Any]) -> None:
         from io_scene_gltf2.io.com.gltf2_io_extensions import Extension
 
         is_required = self._options.fallback == "none"
-        image = _ktx2_image(picture.image, made, export_settings)
-        for texture in picture.textures:
+        image = _ktx2_image(picture, made, export_settings)
+        for texture in {id(one): one for one in picture.textures.values()}.values():
             others = dict(texture.extensions or {})
             others.pop(_WEBP, None)
             extension = Extension(_EXTENSION, {"source": image}, is_required)
             texture.extensions = {**others, _EXTENSION: extension}
             if is_required:
                 texture.source = None
+
+
+def _name_by_role(pictures: Iterable[_Picture]) -> None:
+    """Tells pictures of one image apart by their roles, or by numbers where these are the same."""
+    by_data: dict[bytes, list[_Picture]] = {}
+    for picture in pictures:
+        by_data.setdefault(picture.data, []).append(picture)
+    for same in by_data.values():
+        for number, picture in enumerate(same if len(same) > 1 else []):
+            before = sum(other.role == picture.role for other in same[:number])
+            picture.suffix = f"_{picture.role}" + (f"_{before + 1}" if before else "")
 
 
 def _image(texture: Any) -> Any:
@@ -219,7 +259,7 @@ def _read(picture: _Picture, folder: Path, *, is_data: bool) -> images.Picture:
     path.write_bytes(picture.data)
     with _opened(path, is_data=is_data) as image:
         texels = images.read(image)
-    name = picture.image.name or "Image"
+    name = picture.name
     covers = any(use.covers for use, _ in picture.shown)
     return replace(texels, name=name, full_name=name, covers=covers)
 
@@ -240,16 +280,25 @@ def _surfaces(picture: _Picture) -> meshes.ImageSurfaces:
     return found
 
 
-def _ktx2_image(image: Any, made: bytes, export_settings: dict[str, Any]) -> Any:
+def _wraps(sampler: Any) -> tuple[str, str]:
+    """Returns how a texture goes on beyond its edges, along both axes."""
+    s, t = (_WRAPS.get(getattr(sampler, name, 0), "repeat") for name in ("wrap_s", "wrap_t"))
+    return s, t
+
+
+def _ktx2_image(picture: _Picture, made: bytes, export_settings: dict[str, Any]) -> Any:
     """Returns the exporter's image of a KTX 2 file: in the buffer, or a file by itself."""
+    image = picture.image
     held: dict[str, Any] = {"buffer_view": None, "uri": None}
     if image.buffer_view is not None:
         held["buffer_view"] = type(image.buffer_view)(made)
     else:
         kind = type("Ktx2Data", (type(image.uri),), {"file_extension": ".ktx2"})
-        held["uri"] = kind(made, _MIME_TYPE, image.uri.name)
+        held["uri"] = kind(made, _MIME_TYPE, f"{image.uri.name}{picture.suffix}")
         if hasattr(held["uri"], "set_adjusted_name"):
             from io_scene_gltf2.blender.exp.material.image import set_real_uri
 
             set_real_uri(held["uri"], export_settings)
-    return type(image)(extensions=None, extras=None, mime_type=_MIME_TYPE, name=image.name, **held)
+    return type(image)(
+        extensions=None, extras=None, mime_type=_MIME_TYPE, name=picture.name, **held
+    )

@@ -24,7 +24,7 @@ class Use:
     """A texture of a material.
 
     Attributes:
-        texture: The exporter's.
+        info: The exporter's reference to it, in the material.
         role: "color", "normal" or "data".
         name: What the material calls it, in lower case without "_".
         tex_coord: The set of texture coordinates.
@@ -33,13 +33,18 @@ class Use:
         threshold: Of the alpha test; None for none.
     """
 
-    texture: Any
+    info: Any
     role: str
     name: str
     tex_coord: int
     transform: Transform
     covers: bool
     threshold: float | None
+
+    @property
+    def texture(self) -> Any:
+        """The exporter's texture."""
+        return self.info.index
 
 
 def uses(primitive: Any) -> Iterator[Use]:
@@ -58,7 +63,7 @@ def _use(material: Any, name: str, info: Any) -> Use:
         factor = (material.pbr_metallic_roughness.base_color_factor or (1.0,))[-1]
         threshold = cutoff / factor if factor > 0.0 else None
     return Use(
-        info.index,
+        info,
         role,
         name,
         info.tex_coord or 0,

@@ -15,6 +15,7 @@ import pytest
 import scenes
 from command_line import assert_fails, run
 from conftest import PACKAGE
+from gltf_trees import read_tree
 
 sys.path.append(str(Path(__file__).resolve().parents[3] / "docs" / "pictures" / "windows"))
 
@@ -441,7 +442,7 @@ def test_cutouts_keep_their_coverage(tmp_path):
     assert found != uastc(path, [texels, *map(as_bytes, plain)], "srgb", alpha="straight")
 
 
-def test_color_and_occlusion_at_once_are_color(tmp_path):
+def test_color_and_occlusion_at_once_are_two_textures(tmp_path):
     pixels = scenes.noise(32, 32)
     cube = painted("Both", pixels)
     tree = cube.active_material.node_tree
@@ -456,11 +457,70 @@ def test_color_and_occlusion_at_once_are_color(tmp_path):
     export(tmp_path / "model.glb", export_format="GLB")
     file, buffer = read_glb(tmp_path / "model.glb")
     info = file["materials"][0]["occlusionTexture"]
-    levels = color_levels(pixels, surface_of(file, buffer))
-    expected = uastc(tmp_path / "both.ktx2", levels, "srgb")
-    assert ktx2_of(file, buffer, info) == expected
-    assert ktx2_of(file, buffer, base_color(file)) == expected
-    assert len(file["images"]) == 1
+    surface = surface_of(file, buffer)
+    colors = uastc(tmp_path / "color.ktx2", color_levels(pixels, surface), "srgb")
+    texels = as_bytes(pixels[..., :3])
+    made = prefilter.mipmaps(texels, [surface], footprint=1.0, wrap="repeat")
+    data = uastc(tmp_path / "data.ktx2", [texels, *made[1:]], "linear")
+    assert ktx2_of(file, buffer, base_color(file)) == colors
+    assert ktx2_of(file, buffer, info) == data
+    assert sorted(image["name"] for image in file["images"]) == ["Both_color", "Both_data"]
+
+
+@pytest.mark.parametrize("ending", [".glb", ".gltf"])
+def test_a_color_that_is_a_normal_map_too_is_two_textures(tmp_path, ending):
+    """Each is what an image of that role alone would be."""
+    pixels = scenes.noise(32, 32)
+    cube = painted("Both", pixels)
+    tree = cube.active_material.node_tree
+    texture = next(node for node in tree.nodes if node.type == "TEX_IMAGE")
+    node = tree.nodes.new("ShaderNodeNormalMap")
+    tree.links.new(texture.outputs["Color"], node.inputs["Color"])
+    tree.links.new(node.outputs["Normal"], principled(tree).inputs["Normal"])
+    path = tmp_path / f"model{ending}"
+    kind = {".glb": "GLB", ".gltf": "GLTF_SEPARATE"}[ending]
+    export(path, export_format=kind, fallback="picture")
+    tree_ = read_tree(path)
+    (material,) = tree_["materials"]
+    infos = [material["pbrMetallicRoughness"]["baseColorTexture"], material["normalTexture"]]
+    textures = [tree_["textures"][info["index"]] for info in infos]
+    sources = [one["extensions"]["KHR_texture_basisu"]["source"] for one in textures]
+    assert [tree_["images"][source]["name"] for source in sources] == ["Both_color", "Both_normal"]
+    assert all("source" in one for one in textures)
+    if ending == ".gltf":
+        names = [tree_["images"][source]["uri"] for source in sources]
+        assert names == ["Both_color.ktx2", "Both_normal.ktx2"]
+        found = [(tmp_path / name).read_bytes() for name in names]
+    else:
+        file, buffer = read_glb(path)
+        found = [ktx2_of(file, buffer, info) for info in infos]
+        surface = surface_of(file, buffer)
+        levels = color_levels(pixels, surface)
+        assert found[0] == uastc(tmp_path / "color.ktx2", levels, "srgb")
+    encodings = [prefilter.read_ktx2(io.BytesIO(data))[1] for data in found]
+    assert encodings[0] != encodings[1]
+
+
+def test_one_image_with_and_without_alpha_is_two_textures(tmp_path):
+    """Where alpha does not count, transparent texels have colors that are seen."""
+    pixels = scenes.noise(32, 32, alpha=True)
+    first = painted("Leaf", pixels)
+    second = scenes.cube(bpy.data.images["Leaf"])
+    for cube, covers in ((first, True), (second, False)):
+        tree = cube.active_material.node_tree
+        texture = next(node for node in tree.nodes if node.type == "TEX_IMAGE")
+        tree.links.new(texture.outputs["Color"], principled(tree).inputs["Base Color"])
+        if covers:
+            tree.links.new(texture.outputs["Alpha"], principled(tree).inputs["Alpha"])
+    export(tmp_path / "model.glb", export_format="GLB")
+    file, buffer = read_glb(tmp_path / "model.glb")
+    data = {
+        material.get("alphaMode", "OPAQUE"): ktx2_of(
+            file, buffer, material["pbrMetallicRoughness"]["baseColorTexture"]
+        )
+        for material in file["materials"]
+    }
+    assert data.pop("OPAQUE") != next(iter(data.values()))
 
 
 def test_the_fallback_of_a_jpeg_file_is_that_file(tmp_path):
