@@ -226,28 +226,9 @@ def _before(
     socket: bpy.types.NodeSocket, groups: Groups
 ) -> Iterator[tuple[bpy.types.Node, bpy.types.NodeSocket, Groups]]:
     """Yields the node and its output that a socket gets its value from, however far it is led."""
-    while True:
-        link = nodes.link_into(socket)
-        if link is None:
-            return
-        node, source = link.from_node, link.from_socket
-        following: bpy.types.NodeSocket | None
-        if node.mute:
-            # A texture that is muted shows nothing.
-            following = nodes.bypassed(node, source) if node.type != "TEX_IMAGE" else None
-        elif node.type == "REROUTE":
-            following = node.inputs[0]
-        elif node.type == "GROUP" and node.node_tree is not None:
-            following, groups = nodes.group_output(node, source.identifier), (*groups, node)
-        elif node.type == "GROUP_INPUT" and groups:
-            following = nodes.group_input(groups[-1], source.identifier)
-            groups = groups[:-1]
-        else:
-            yield node, source, groups
-            return
-        if following is None:
-            return
-        socket = following
+    source, node, around = nodes.origin(socket, groups)
+    if node is not None:
+        yield node, source, around
 
 
 def _sources(

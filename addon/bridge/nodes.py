@@ -46,6 +46,38 @@ def bypassed(node: bpy.types.Node, output: bpy.types.NodeSocket) -> bpy.types.No
     return next(found, None)
 
 
+def origin(
+    socket: bpy.types.NodeSocket, groups: Groups
+) -> tuple[bpy.types.NodeSocket, bpy.types.Node | None, Groups]:
+    """Returns where an input socket gets its value from, however far that is led.
+
+    Returns:
+        The output of a node, this node, and the groups around it; or an input that has a value of
+        its own, and None.
+    """
+    while True:
+        link = link_into(socket)
+        if link is None:
+            return socket, None, groups
+        node, source = link.from_node, link.from_socket
+        following: bpy.types.NodeSocket | None
+        if node.mute:
+            # A texture that is muted shows nothing.
+            following = bypassed(node, source) if node.type != "TEX_IMAGE" else None
+        elif node.type == "REROUTE":
+            following = node.inputs[0]
+        elif node.type == "GROUP" and node.node_tree is not None:
+            following, groups = group_output(node, source.identifier), (*groups, node)
+        elif node.type == "GROUP_INPUT" and groups:
+            following = group_input(groups[-1], source.identifier)
+            groups = groups[:-1]
+        else:
+            return source, node, groups
+        if following is None:
+            return socket, None, groups
+        socket = following
+
+
 def group_output(group: bpy.types.Node, identifier: str) -> bpy.types.NodeSocket | None:
     """Returns the socket inside a group that an output of it gets its value from."""
     for node in group.node_tree.nodes:

@@ -10,10 +10,14 @@ from pathlib import Path
 from typing import Any
 
 import bpy
+import numpy as np
 import prefilter
+from numpy.typing import NDArray
 from prefilter._border.claims import temporary_folder
+from prefilter._work.files import png
 from prefilter._work.mipmaps import contents, lookups
 from prefilter._work.mipmaps.outputs import Outputs
+from prefilter._work.picture import scene_linear
 
 from ...bridge import images, meshes
 from ...bridge.files.staging import commit_all
@@ -21,7 +25,7 @@ from ...core.outcome import FAILURES, reason
 from .. import source
 from ..bake import Bake
 from ..choices import TEXTURE_SPACE_FILTERS, Settings
-from . import geometry, uses
+from . import geometry, shader_nodes, uses
 from .choices import GltfSettings
 from .geometry import Part
 from .uses import Use
@@ -91,6 +95,7 @@ class Export:
         self.notes: list[str] = []
         self._options = options
         self._parts: list[Part] = []
+        self._colors: dict[str, NDArray[np.float32]] = {}
         self._settings = lookups.resolved(
             Settings(
                 filter=settings.filter,
@@ -124,6 +129,34 @@ class Export:
     def add_scene(self, scene: Any) -> None:
         """Copies the triangles of a scene."""
         self._parts += geometry.parts(scene)
+
+    def apply_nodes(self, image: Any, sockets: Any, export_settings: dict[str, Any]) -> None:
+        """Puts into a picture what nodes make of it on its way to a shader."""
+        data = image.buffer_view or image.uri
+        if not hasattr(data, "data"):
+            return
+        name, log = image.name or "Image", export_settings["log"]
+        try:
+            with temporary_folder() as folder:
+                path = folder / "picture"
+                path.write_bytes(data.data)
+                with _opened(path, is_data=True) as opened:
+                    texels = images.read(opened).stored
+            made, warnings = shader_nodes.changed_texels(texels, sockets, self._color_of)
+        except FAILURES as error:
+            made, warnings = None, [f"nodes are ignored: {reason(error)}"]
+        for text in warnings:
+            self.warnings.append(f"texture '{name}': {text}")
+            log.warning(f"Prefilter: {self.warnings[-1]}", popup=True)
+        if made is not None:
+            picture = png.encoded((made * 255 + 0.5).astype(np.uint8))
+            _replace_data(image, picture, "image/png", export_settings)
+
+    def _color_of(self, image: bpy.types.Image) -> NDArray[np.float32]:
+        """Returns an image as shaders get it; several inputs ask for the same one."""
+        if image.name_full not in self._colors:
+            self._colors[image.name_full] = scene_linear(images.read(image))
+        return self._colors[image.name_full]
 
     def replace_textures(self, export_settings: dict[str, Any]) -> None:
         """Fits all images; one that cannot be fitted stays a picture, and the user is told."""
@@ -288,17 +321,26 @@ def _wraps(sampler: Any) -> tuple[str, str]:
 
 def _ktx2_image(picture: _Picture, made: bytes, export_settings: dict[str, Any]) -> Any:
     """Returns the exporter's image of a KTX 2 file: in the buffer, or a file by itself."""
-    image = picture.image
-    held: dict[str, Any] = {"buffer_view": None, "uri": None}
-    if image.buffer_view is not None:
-        held["buffer_view"] = type(image.buffer_view)(made)
-    else:
-        kind = type("Ktx2Data", (type(image.uri),), {"file_extension": ".ktx2"})
-        held["uri"] = kind(made, _MIME_TYPE, f"{image.uri.name}{picture.suffix}")
-        if hasattr(held["uri"], "set_adjusted_name"):
-            from io_scene_gltf2.blender.exp.material.image import set_real_uri
+    image = copy(picture.image)
+    image.extensions = image.extras = None
+    image.name = picture.name
+    _replace_data(image, made, _MIME_TYPE, export_settings, picture.suffix)
+    return image
 
-            set_real_uri(held["uri"], export_settings)
-    return type(image)(
-        extensions=None, extras=None, mime_type=_MIME_TYPE, name=picture.name, **held
-    )
+
+def _replace_data(
+    image: Any, data: bytes, mime_type: str, export_settings: dict[str, Any], suffix: str = ""
+) -> None:
+    """Gives the exporter's image another file: in the buffer, or by itself."""
+    image.mime_type = mime_type
+    if image.buffer_view is not None:
+        image.buffer_view = type(image.buffer_view)(data)
+        return
+    kind = type(image.uri)
+    if mime_type == _MIME_TYPE:
+        kind = type("Ktx2Data", (kind,), {"file_extension": ".ktx2"})
+    image.uri = kind(data, mime_type, f"{image.uri.name}{suffix}")
+    if hasattr(image.uri, "set_adjusted_name"):
+        from io_scene_gltf2.blender.exp.material.image import set_real_uri
+
+        set_real_uri(image.uri, export_settings)

@@ -54,6 +54,16 @@ def glTF2_pre_export_callback(export_settings: dict[str, Any]) -> None:  # noqa:
 class glTF2ExportUserExtension:
     """Hooks of an export; the exporter finds the class by its name."""
 
+    def gather_image_hook(self, image: Any, *others: Any) -> None:
+        """Applies what nodes do between an image and the shader.
+
+        The last two arguments are the shader's inputs and the settings; since Blender 5.2 there is
+        one before these.
+        """
+        sockets, export_settings = others[-2:]
+        if _KEY in export_settings:
+            export_settings[_KEY].apply_nodes(image, sockets, export_settings)
+
     def gather_scene_hook(self, scene: Any, _: bpy.types.Scene, export_settings: Any) -> None:
         """Copies what the file shows of a scene, before the exporter compresses it."""
         if _KEY in export_settings:

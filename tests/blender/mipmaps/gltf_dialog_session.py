@@ -66,7 +66,11 @@ def pressed_in_browser(name: str, *, unfolds: bool = False) -> Iterator[None]:
         if unfolds:
             yield from clicked(browser, beside.x + 40, bottom + above)
         yield from scrolled_down(browser, x, beside.y + beside.height // 2)
-        for y in range(bottom, bottom + 64, 8) if unfolds else [bottom + above]:
+        places = [bottom + above]
+        if unfolds:  # It is below its title, or at the end where it was out of sight.
+            below = range(bottom + above, max(bottom, bottom + above - 64), -8)
+            places = [*below, *range(bottom, bottom + 64, 8)]
+        for y in places:
             yield from moved(browser, x, y)
             with bpy.context.temp_override(window=browser, area=area, region=beside):
                 under = bpy.context.property

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""What nodes make of an image that the glTF exporter writes as it is."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import bpy
+import numpy as np
+import prefilter
+from numpy.typing import NDArray
+
+from ...bridge import nodes
+from ...bridge.nodes import Groups
+from ...bridge.texel_functions import OtherNodeError, TexelFunction
+
+Floats = NDArray[np.float32]
+ColorOf = Callable[[bpy.types.Image], Floats]
+
+_CHANNELS = {"Roughness": 1, "Metallic": 2}
+"""Inputs of one number, by the channel of the picture that has it."""
+_ALPHA = "Alpha"
+
+
+def changed_texels(
+    texels: Floats, sockets: Sequence[Any], color_of: ColorOf
+) -> tuple[Floats | None, list[str]]:
+    """Applies what nodes do to an image on its way to the shader.
+
+    Args:
+        texels: (height, width, 3 or 4) of the picture that the exporter made.
+        sockets: The exporter's; the inputs that the picture is for.
+        color_of: Returns the values of an image as shaders get them.
+
+    Returns:
+        The texels with the changes, None where there are none; and warnings of nodes that are
+        ignored.
+    """
+    made: Floats | None = None
+    warnings: list[str] = []
+    for one in sockets:
+        socket = one.socket
+        groups = tuple(node for node in one.group_path if getattr(node, "type", "") == "GROUP")
+        if socket.name == _ALPHA:
+            continue
+        function = TexelFunction(color_of)
+        try:
+            values = _stored(function, *_before_factor(socket, groups))
+        except OtherNodeError as error:
+            warnings.append(_ignored(socket, error.node.name, "makes colors of its own"))
+            continue
+        if not function.changing or function.image is None:
+            continue
+        names = ", ".join(node.name for node in function.changing)
+        channels = _channels_of(socket)
+        if channels is None:
+            warnings.append(_ignored(socket, names, "cannot be applied to this input"))
+            continue
+        if values.shape[:2] not in (texels.shape[:2], (1, 1)):
+            warnings.append(_ignored(socket, names, "meets images of several sizes"))
+            continue
+        made = texels.copy() if made is None else made
+        made[..., channels] = values if values.ndim == 3 else values[..., None]
+    return made, warnings
+
+
+def _ignored(socket: bpy.types.NodeSocket, node: str, why: str) -> str:
+    return f"node '{node}' before '{socket.name}' is ignored: it {why}"
+
+
+def _channels_of(socket: bpy.types.NodeSocket) -> slice | None:
+    if socket.type == "VALUE":
+        channel = _CHANNELS.get(socket.name)
+        return None if channel is None else slice(channel, channel + 1)
+    return slice(0, 3)
+
+
+def _stored(function: TexelFunction, socket: bpy.types.NodeSocket, groups: Groups) -> Floats:
+    """Returns what an input gets, as pictures store it."""
+    values = function.values(socket, groups)
+    if socket.type != "RGBA" or _is_normal(socket):
+        return np.clip(values, 0, 1)
+    return np.clip(prefilter.to_srgb(np.ascontiguousarray(values)), 0, 1)
+
+
+def _is_normal(socket: bpy.types.NodeSocket) -> bool:
+    return socket.node.type == "NORMAL_MAP"
+
+
+def _before_factor(
+    socket: bpy.types.NodeSocket, groups: Groups
+) -> tuple[bpy.types.NodeSocket, Groups]:
+    """Returns the input whose values the picture is to have.
+
+    What the exporter writes as a factor is none of the picture: a multiplication with a constant
+    just before the shader. The input Color of a Normal Map node is that of normals.
+    """
+    _, node, around = nodes.origin(socket, groups)
+    if node is None:
+        return socket, groups
+    if node.type == "NORMAL_MAP":
+        return node.inputs["Color"], around
+    operands: list[bpy.types.NodeSocket] = []
+    if socket.type == "RGBA" and node.type == "MIX" and node.data_type == "RGBA":
+        names = ("A_Color", "B_Color") if node.blend_type == "MULTIPLY" else ()
+        operands = [one for one in node.inputs if one.identifier in names]
+    elif socket.type == "VALUE" and node.type == "MATH" and node.operation == "MULTIPLY":
+        operands = list(node.inputs[:2])
+    varying = [one for one in operands if not _is_constant(one, around)]
+    if len(operands) == 2 and len(varying) == 1:
+        return varying[0], around
+    return socket, groups
+
+
+def _is_constant(socket: bpy.types.NodeSocket, groups: Groups) -> bool:
+    _, node, _ = nodes.origin(socket, groups)
+    return node is None or node.type in ("RGB", "VALUE")
