@@ -5,7 +5,8 @@
 A page has marks, and what stands up to the end mark follows from the result that they name:
 
     <!-- result: NAME TABLE -->     a table of bench/results/NAME.json
-    <!-- commands: NAME -->         the commands that measure it, the date, and what it was run on
+    <!-- totals: NAME... TABLE -->  sums over the rows of such tables, by the word before the colon
+    <!-- commands: NAME... -->      the commands that measure it, the date, and what it was run on
     <!-- criteria: PAGE -->         what bench/results/verdicts.toml asks of a page's subject
     <!-- verdicts -->               its short list of what was found, each with its command
 
@@ -14,6 +15,7 @@ To keep the result of a program, give it `--json bench/results/NAME.json`, and r
 usage: python3 bench/pages.py
 """
 
+import collections
 import re
 import sys
 import tomllib
@@ -27,7 +29,8 @@ from bench import report  # noqa: E402
 DOCS = ROOT / "docs"
 RESULTS = ROOT / "bench" / "results"
 MARK = re.compile(
-    r"(<!-- (result|commands|criteria|verdicts)(?:: ([^>]*?))? -->\n).*?(<!-- end of \2 -->)",
+    r"(<!-- (result|totals|commands|criteria|verdicts)(?:: ([^>]*?))? -->\n)"
+    r".*?(<!-- end of \2 -->)",
     re.DOTALL,
 )
 
@@ -42,8 +45,15 @@ def rewritten(text: str) -> str:
 
     def made(found: re.Match[str]) -> str:
         kind, name = found[2], found[3] or ""
-        lines = {"result": table, "commands": commands, "criteria": criteria, "verdicts": verdicts}
-        return f"{found[1]}{lines[kind](*name.split(maxsplit=1))}\n{found[4]}"
+        lines = {
+            "result": table,
+            "totals": totals,
+            "commands": commands,
+            "criteria": criteria,
+            "verdicts": verdicts,
+        }
+        words = name.split() if kind in ("totals", "commands") else name.split(maxsplit=1)
+        return f"{found[1]}{lines[kind](*words)}\n{found[4]}"
 
     return MARK.sub(made, text)
 
@@ -56,19 +66,58 @@ def result(name: str) -> dict:
 def table(name: str, table_name: str) -> str:
     """Returns a table in Markdown; columns of numbers are aligned at the right."""
     found = result(name)["tables"][table_name]
-    rows = [[cell or "" for cell in row] for row in found["rows"]]
+    return _in_markdown(found["columns"], found["rows"])
+
+
+def totals(*names: str) -> str:
+    """Returns one table of the sums over tables of several results, which the last name says.
+
+    Rows are grouped by what stands before the colon of their first cells. Numbers are added up, and
+    so are those before each word of a text such as "9 old, 21 new"; "old" counts as "1 old".
+    """
+    *results, table_name = names
+    tables = [result(name)["tables"][table_name] for name in results]
+    groups: dict[str, list[list[str]]] = {}
+    for row in (row for one in tables for row in one["rows"]):
+        groups.setdefault(row[0].partition(":")[0], []).append(row)
+    columns = [tables[0]["columns"][0] + "s", "Number", *tables[0]["columns"][1:]]
+    rows = [
+        [
+            group,
+            str(len(members)),
+            *(_sum(column) for column in list(zip(*members, strict=True))[1:]),
+        ]
+        for group, members in groups.items()
+    ]
+    return _in_markdown(columns, rows)
+
+
+def _sum(cells: tuple[str, ...]) -> str:
+    words: collections.Counter[str] = collections.Counter()
+    for cell in cells:
+        for number, word in re.findall(r"(?:(-?[\d.]+) *)?([^\W\d]*)(?:, |$)", cell or ""):
+            if number or word:
+                words[word] += float(number or 1)
+    return ", ".join(f"{number:.0f} {word}".strip() for word, number in words.items())
+
+
+def _in_markdown(columns: list[str], rows: list[list[str]]) -> str:
+    rows = [[cell or "" for cell in row] for row in rows]
     ruler = [":---" if _is_text(column) else "---:" for column in zip(*rows, strict=True)]
-    return "\n".join(f"| {' | '.join(row)} |" for row in (found["columns"], ruler, *rows))
+    return "\n".join(f"| {' | '.join(row)} |" for row in (columns, ruler, *rows))
 
 
-def commands(name: str) -> str:
-    """Returns the commands of a result, and where and when it was measured."""
-    found = result(name)
-    lines = [f"    {line}" for line in found["command"]]
-    state = f", commit {found['commit']}" if found["commit"] else ""
-    words = [f"Recorded {found['date']}{state}.", f"Machine: {found['machine']}."]
-    words += [f"{note}." for note in found["notes"] if "earlier state" in note]
-    return "\n".join(["", *lines, "", f"*{' '.join(words)}*"])
+def commands(*names: str) -> str:
+    """Returns the commands of results, and where and when they were measured."""
+    lines, notes = [], []
+    for name in names:
+        found = result(name)
+        lines += [f"    {line}" for line in found["command"]]
+        state = f", commit {found['commit']}" if found["commit"] else ""
+        words = [f"Recorded {found['date']}{state}.", f"Machine: {found['machine']}."]
+        words += [f"{note}." for note in found["notes"] if "earlier state" in note]
+        notes.append(f"*{' '.join(words)}*")
+    return "\n".join(["", *dict.fromkeys(lines), "", *dict.fromkeys(notes)])
 
 
 def criteria(page: str) -> str:
