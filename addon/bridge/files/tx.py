@@ -22,7 +22,6 @@ from typing import Any
 
 import bpy
 import numpy as np
-from prefilter._work.files.tiff import NO_DATE, remove_dates
 from prefilter._work.up_to_date import IN_DESCRIPTION, KEY
 
 from .. import images, openimageio
@@ -303,8 +302,6 @@ def stage(
             raise OSError(f"cannot write '{temporary}': {openimageio.said(writer)}")
         # An OpenEXR file is finished when its writer goes.
         del writer
-        if not texture.is_float:
-            remove_dates(temporary)
         openimageio.check_whole(temporary, 1 + len(levels))
         os.utime(temporary, ns=(time, time))
 
@@ -353,8 +350,6 @@ def _first_spec(spec: Any, is_float: bool, made_of: str) -> Any:
     But no `oiio:SHA-1`, which OpenImageIO leaves out when it reads: it is of level 0 alone, and
     readers that go by it would take this file for Blender's.
     """
-    # Of Blender's making; without one, a file gets that of the writing.
-    spec.attribute("DateTime", NO_DATE)
     if is_float:
         spec.erase_attribute(KEY)
         if made_of:
@@ -381,7 +376,8 @@ def _level_spec(oiio: Any, first: Any, pixels: FloatArray) -> Any:
     height, width, channels = pixels.shape
     spec = oiio.ImageSpec(width, height, channels, first.format)
     spec.tile_width, spec.tile_height = first.tile_width, first.tile_height
-    for name in ("compression", "planarconfig"):
+    # Without a time of its own a level of a TIFF gets that of the writing, and files would differ.
+    for name in ("compression", "planarconfig", "DateTime"):
         value = first.getattribute(name)
         if value is not None:
             spec.attribute(name, value)

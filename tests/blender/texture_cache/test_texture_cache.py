@@ -4,6 +4,7 @@
 
 import json
 import os
+import re
 
 import bpy
 import cycles_scenes as cycles
@@ -51,6 +52,19 @@ def test_levels_are_removed_again(scene, tmp_path):
     assert not cycles.cache_files(tmp_path)
     generate()
     np.testing.assert_array_equal(cycles.level(cycles.cache_file(tmp_path), 3), *levels)
+
+
+@pytest.mark.parametrize("kind", ["uint8", "float"])
+def test_files_do_not_say_when_they_were_made(scene, tmp_path, kind):
+    name = "paint.exr" if kind == "float" else "paint.png"
+    image = cycles.write_picture(tmp_path / name, smooth(256, 256, 3), kind)
+    os.utime(tmp_path / name, (1.6e9, 1.6e9))
+    cycles.shown_on(image)
+    bake()
+    (path,) = cycles.cache_files(tmp_path)
+    date = re.compile(rb"\d{4}:\d\d:\d\d \d\d:\d\d:\d\d")
+    # Blender's: that of the image, in each level.
+    assert {found[:10] for found in date.findall(path.read_bytes())} == {b"2020:09:13"}
 
 
 def test_who_renders_with_another_engine_is_told(scene, tmp_path, capfd):
