@@ -53,6 +53,49 @@ def test_other_kinds_of_pictures(kind, options):
         np.testing.assert_allclose(made[10, x], color, atol=0.02)
 
 
+def shown(file, kind="png"):
+    """Returns what is drawn of a picture file over the whole drawing."""
+    address = f"data:image/{kind};base64,{base64.b64encode(file).decode()}"
+    rest = 'preserveAspectRatio="none" width="100" height="100"'
+    return whole(f'<image {rest} href="{address}"/>')
+
+
+@pytest.mark.parametrize("orientation", range(1, 9))
+def test_pictures_are_turned_as_exif_says(orientation):
+    pillow = pytest.importorskip("PIL.Image")
+    ops = pytest.importorskip("PIL.ImageOps")
+    image = pillow.fromarray(np.random.default_rng(1).integers(0, 256, (4, 2, 3), np.uint8))
+    block = pillow.Exif()
+    block[0x112] = orientation
+    file = io.BytesIO()
+    image.save(file, "png", exif=block)
+    upright = np.asarray(ops.exif_transpose(pillow.open(file)))
+    expected = png.encoded(np.ascontiguousarray(upright[::-1]))
+    np.testing.assert_array_equal(shown(file.getvalue()), shown(expected))
+
+
+def test_colors_of_pictures_are_converted():
+    texels = np.full((4, 4, 3), (150, 120, 90), np.uint8)
+    made = shown(png.encoded(texels, chunks=[(b"cICP", bytes([12, 13, 0, 1]))]))
+    light = prefilter.to_linear(texels[:1, :1] / np.float32(255))[0, 0]
+    # As SMPTE publishes it.
+    matrix = [[1.22494, -0.22494, 0.0], [-0.04206, 1.04206, 0.0], [-0.01964, -0.07864, 1.09828]]
+    expected = prefilter.to_srgb((np.array(matrix) @ light).astype(np.float32)[None, None])[0, 0]
+    middle = tuple(side // 2 for side in made.shape[:2])
+    np.testing.assert_allclose(made[middle][:3], expected, atol=0.6 / 255)
+
+
+def test_pictures_in_cmyk_are_left_out():
+    pillow = pytest.importorskip("PIL.Image")
+    file = io.BytesIO()
+    pillow.new("CMYK", (4, 4), (10, 20, 30, 40)).save(file, "jpeg")
+    address = f"data:image/jpeg;base64,{base64.b64encode(file.getvalue()).decode()}"
+    drawing = svg(f'<image width="50" height="30" href="{address}"/>')
+    made, (warning,) = prefilter.rasterize_svg(drawing, SIZE, SIZE)
+    assert not made.any()
+    assert "left out, as its colors are CMYK" in warning.effect
+
+
 def test_where_images_are():
     flat = np.full((2, 4, 4), 255, np.uint8)
     href = data_url(flat)

@@ -10,9 +10,8 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-import prefilter
-
 from .._native import powers
+from ..images.color import to_linear, to_srgb
 from . import space_names
 from .matrices import inner, inverse, product
 
@@ -160,7 +159,7 @@ class Space:
         if self.is_linear:
             return colors
         if self.curves == (SRGB_CURVE,):
-            return prefilter.to_linear(colors)
+            return to_linear(colors)
         return self._through(colors, [one.decode for one in self.curves])
 
     def encoded(self, light: FloatArray) -> FloatArray:
@@ -168,7 +167,7 @@ class Space:
         if self.is_linear:
             return light
         if self.curves == (SRGB_CURVE,):
-            return prefilter.to_srgb(light)
+            return to_srgb(light)
         return self._through(light, [one.encode for one in self.curves])
 
     def in_rec709(self, light: FloatArray) -> FloatArray:
@@ -205,6 +204,14 @@ def named(name: str) -> Space | None:
         number = curve_name.lstrip("Gagm")
         curve = Parametric(float(number) if curve_name[0] == "G" else int(number) / 10)
     return Space(name, (curve,), matrix_of(space_names.CHROMATICITIES[primaries]))
+
+
+def srgb_bytes(light: FloatArray) -> NDArray[np.uint8]:
+    """Returns linear Rec. 709, with straight alpha where there is one, as bytes in sRGB."""
+    rounded: NDArray[np.uint8] = np.rint(to_srgb(light).clip(0, 1) * np.float32(255)).astype(
+        np.uint8
+    )
+    return rounded
 
 
 SRGB = Space(space_names.SRGB, (SRGB_CURVE,))

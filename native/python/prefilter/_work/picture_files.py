@@ -15,6 +15,7 @@ from . import color_spaces, openimageio
 from .alpha import associated, unassociated
 from .color_spaces import Space
 from .files.embedded import embedded
+from .orientation import turned
 from .picture import Encoding, FloatArray, Picture, without_fourth
 from .picture_colors import orientation_of, space_of
 from .space_names import AUTO
@@ -134,17 +135,6 @@ def look(argument: str, path: str, *, is_data: bool) -> Look | None:
     return Look(is_usual and orientation_of(stated, found) == 1, is_gray)
 
 
-def turned(values: NDArray[Any], orientation: int) -> NDArray[Any]:
-    """Returns a picture upright: rows from the top, as they are stored with an orientation."""
-    if orientation in {5, 6, 7, 8}:
-        values = values.swapaxes(0, 1)
-    if orientation in {2, 3, 6, 7}:
-        values = values[:, ::-1]
-    if orientation in {3, 4, 7, 8}:
-        values = values[::-1]
-    return values
-
-
 def _read_in(
     space: Space | None,
     values: NDArray[Any],
@@ -206,10 +196,7 @@ def _share_outside(light: FloatArray, converted: FloatArray) -> float:
 
 def _srgb_bytes(light: FloatArray) -> NDArray[np.uint8]:
     """Returns light with associated alpha as bytes with straight alpha."""
-    straight = unassociated(light) if light.shape[2] == 4 else light
-    stored = prefilter.to_srgb(straight).clip(0, 1)
-    rounded: NDArray[np.uint8] = np.rint(stored * np.float32(255)).astype(np.uint8)
-    return rounded
+    return color_spaces.srgb_bytes(unassociated(light) if light.shape[2] == 4 else light)
 
 
 def _with_colors(values: NDArray[Any]) -> NDArray[Any]:

@@ -53,20 +53,27 @@ def embedded(path: Path) -> Embedded:
     """Returns what a PNG, WebP or JPEG file embeds; nothing for other files, and damaged ones."""
     try:
         with path.open("rb") as file:
-            start = file.read(12)
-            file.seek(0)
-            if start[:8] == png.SIGNATURE:
-                chunks = png.color_chunks(file)
-                return Embedded(chunks.get(b"eXIf", b""), _png_profile(chunks), chunks)
-            if start[:4] == b"RIFF" and start[8:] == b"WEBP":
-                found = dict(_riff(file))
-                return Embedded(
-                    found.get(b"EXIF", b"").removeprefix(_EXIF), found.get(b"ICCP", b"")
-                )
-            if start[:2] == b"\xff\xd8":
-                return Embedded(_jpeg_exif(file))
-    except (OSError, ValueError, struct.error):
-        pass  # Its reader says what is wrong.
+            return embedded_in(file)
+    except OSError:
+        return Embedded()  # Its reader says what is wrong.
+
+
+def embedded_in(file: BinaryIO) -> Embedded:
+    """Returns the same of a file that is open at its start."""
+    try:
+        start = file.read(12)
+        file.seek(0)
+        if start[:8] == png.SIGNATURE:
+            chunks = png.color_chunks(file)
+            return Embedded(chunks.get(b"eXIf", b""), _png_profile(chunks), chunks)
+        if start[:4] == b"RIFF" and start[8:] == b"WEBP":
+            found = dict(_riff(file))
+            exif = found.get(b"EXIF", b"").removeprefix(_EXIF)
+            return Embedded(exif, found.get(b"ICCP", b""))
+        if start[:2] == b"\xff\xd8":
+            return Embedded(_jpeg_exif(file))
+    except (ValueError, struct.error):
+        pass  # Likewise.
     return Embedded()
 
 

@@ -4,15 +4,22 @@
 
 import io
 from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from ..._border.claims import temporary_folder
 
+if TYPE_CHECKING:
+    from ..._work.openimageio import Stated
+
 Texels = npt.NDArray[np.uint8]
 
 MOST_TEXELS = 1 << 25
+_MODELS = frozenset({"CMYK", "LAB"})
+_GRAY_MODES = frozenset({"1", "L", "LA"})
+"""Of Pillow."""
 
 
 class PictureError(Exception):
@@ -34,31 +41,59 @@ def read_picture(data: bytes) -> Texels:
     try:
         pillow = import_module("PIL.Image")
     except ImportError:
-        return _by_openimageio(data)
+        texels, stated, is_gray = _by_openimageio(data)
+    else:
+        texels, stated, is_gray = _by_pillow(pillow, data)
+    return _upright_in_srgb(texels, data, stated, is_gray=is_gray)
+
+
+def _by_pillow(pillow: Any, data: bytes) -> "tuple[Texels, Stated, bool]":
+    from ..._work.openimageio import Stated
+
     try:
         with pillow.open(io.BytesIO(data), formats=("PNG", "JPEG", "GIF", "WEBP")) as file:
+            model = file.mode if file.mode in _MODELS else ""
+            icc = file.info.get("icc_profile") or b""
+            stated = Stated(file.format.lower(), model=model, icc=icc)
             # Pillow cuts 16 bits off where it should round them.
             if file.mode.startswith("I"):
                 gray = np.rint(np.asarray(file, np.float64) / 257.0).clip(0.0, 255.0)
-                return _as_rgba(gray.astype(np.uint8)[..., None])
-            return np.array(file.convert("RGBA"), np.uint8)
+                return _as_rgba(gray.astype(np.uint8)[..., None]), stated, True
+            return np.array(file.convert("RGBA"), np.uint8), stated, file.mode in _GRAY_MODES
     except (OSError, ValueError, SyntaxError, MemoryError) as error:
         raise PictureError(f"as it cannot be read: {error}") from None
 
 
-def _by_openimageio(data: bytes) -> Texels:
+def _by_openimageio(data: bytes) -> "tuple[Texels, Stated, bool]":
     from ..._work import openimageio
 
     try:
         with temporary_folder() as folder:
             path = folder / f"image{ending_of(data)}"
             path.write_bytes(data)
-            values = openimageio.read_pixels(path).values
+            values, _, stated = openimageio.read_pixels(path)
     except (OSError, ValueError, MemoryError) as error:
         raise PictureError(f"as it cannot be read: {error}") from None
     if values.dtype != np.uint8:
         values = np.rint(values / 257.0).clip(0.0, 255.0).astype(np.uint8)
-    return _as_rgba(values)
+    return _as_rgba(values), stated, values.shape[2] < 3
+
+
+def _upright_in_srgb(texels: Texels, data: bytes, stated: "Stated", *, is_gray: bool) -> Texels:
+    """Texels as a browser shows them: turned as EXIF says, in the colors that the file names."""
+    from ..._work import color_spaces, orientation, picture_colors
+    from ..._work.files.embedded import embedded_in
+
+    found = embedded_in(io.BytesIO(data))
+    try:
+        space = picture_colors.space_of(stated, found, is_integer=True, is_gray=is_gray)
+    except ValueError as error:
+        raise PictureError(f"as {str(error).partition(';')[0]}") from None
+    if space is not None and not space.is_srgb:
+        light = space.in_rec709(space.decoded(texels[..., :3].astype(np.float32) / np.float32(255)))
+        texels[..., :3] = color_spaces.srgb_bytes(light)
+    shown = orientation.turned(texels, picture_colors.orientation_of(stated, found))
+    return np.ascontiguousarray(shown)
 
 
 def _as_rgba(values: Texels) -> Texels:

@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Pictures that are stored turned or mirrored, as EXIF says."""
+
+from typing import Any
+
+from numpy.typing import NDArray
+
+
+def turned(values: NDArray[Any], orientation: int) -> NDArray[Any]:
+    """Returns a picture upright: rows from the top, as they are stored with an orientation."""
+    if orientation in {5, 6, 7, 8}:
+        values = values.swapaxes(0, 1)
+    if orientation in {2, 3, 6, 7}:
+        values = values[:, ::-1]
+    if orientation in {3, 4, 7, 8}:
+        values = values[::-1]
+    return values
