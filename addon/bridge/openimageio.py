@@ -18,7 +18,6 @@ from prefilter._work.openimageio import (
     find_by,
     module,
     said,
-    write_picture,
     write_texture,
 )
 
@@ -33,7 +32,6 @@ __all__ = (
     "contents",
     "module",
     "said",
-    "write_picture",
     "write_texture",
 )
 

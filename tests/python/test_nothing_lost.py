@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from command_files import write_picture
 from prefilter._border import staging
 from prefilter._work import openimageio
 
@@ -83,7 +84,7 @@ def test_pictures_that_are_cut_anywhere_are_found(tmp_path, ending):
     path = tmp_path / f"a{ending}"
     levels = [np.random.default_rng(i).random((64 >> i, 64 >> i, 3), np.float32) for i in range(7)]
     if ending == ".exr":
-        openimageio.write_picture(path, levels[0], "scene_linear")
+        write_picture(path, levels[0])
     else:
         shared = {"color_space": "scene_linear", "wrap_modes": "black,black", "has_alpha": False}
         openimageio.write_texture(path, levels, pixel_type="float", check=lambda: None, **shared)

@@ -12,7 +12,7 @@ import zlib
 import numpy as np
 import prefilter
 import pytest
-from command_files import fails, noise, run
+from command_files import fails, noise, run, write_picture
 
 oiio = pytest.importorskip("OpenImageIO", reason="scripts/decoders.txt is not installed")
 
@@ -376,6 +376,19 @@ def test_profiles_that_cannot_be_converted(tmp_path, capsys):
     more = ("--percent", "50", "--colorspace", "sRGB")
     assert run("resize", source, tmp_path / "out.png", *more) == 0
     assert b"iCCP" not in chunks_of(tmp_path / "out.png")
+
+
+@pytest.mark.parametrize("ending", ["ppm", "tga", "bmp", "dpx", "sgi", "hdr", "pfm", "tif", "webp"])
+def test_files_that_say_nothing(tmp_path, ending):
+    is_float = ending in {"hdr", "pfm"}
+    source = write_picture(
+        tmp_path / f"in.{ending}",
+        np.full((16, 16, 3), (150, 120, 90), np.uint8).astype(np.float32 if is_float else np.uint8),
+    )
+    assert run("resize", source, tmp_path / "out.exr", "--percent", "50") == 0
+    stored = np.array([150, 120, 90]) / (1 if is_float else 255)
+    made = light_of(tmp_path / "out.exr")[0]
+    assert np.abs(made / (stored if is_float else srgb_light(stored)) - 1).max() < 0.03
 
 
 def test_cmyk_is_refused(tmp_path, capsys):

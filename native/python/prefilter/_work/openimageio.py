@@ -6,7 +6,7 @@ import itertools
 import re
 import shutil
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
@@ -309,47 +309,6 @@ def _on_canvas(values: NDArray[Any], spec: Any) -> NDArray[Any]:
         part = values[low_y - top : high_y - top, low_x - left : high_x - left]
         canvas[low_y:high_y, low_x:high_x] = part
     return canvas
-
-
-def write_picture(
-    path: Path,
-    pixels: NDArray[Any],
-    color_space: str,
-    *,
-    pixel_type: str = "",
-    attributes: Mapping[str, str] | None = None,
-) -> None:
-    """Writes values as a picture file, just as they are.
-
-    A fourth channel is straight alpha of integers, and associated alpha of floats.
-
-    Args:
-        path: The file, whose ending says its kind; replaced where it exists.
-        pixels: (h, w, c) array of uint8, uint16 or float32, rows from the top.
-        color_space: What to say in `oiio:ColorSpace`.
-        pixel_type: "half" for 16-bit floats; the type of the array if empty.
-        attributes: More that the file is to say.
-
-    Raises:
-        OSError: The file cannot be written.
-    """
-    oiio = module()
-    height, width, channels = pixels.shape
-    spec = oiio.ImageSpec(width, height, channels, pixel_type or str(pixels.dtype))
-    spec.attribute("oiio:ColorSpace", color_space)
-    for key, value in (attributes or {}).items():
-        spec.attribute(key, value)
-    if pixels.dtype.kind == "u":
-        spec.attribute("oiio:UnassociatedAlpha", 1)
-    output = oiio.ImageOutput.create(str(path))
-    if output is None:
-        raise OSError(f"file '{path}': {said(oiio)}")
-    written = output.open(str(path), spec) and output.write_image(pixels)
-    message = said(output)
-    if not (output.close() and written):
-        raise OSError(f"file '{path}': cannot be written: {message or said(output)}")
-    del output  # An OpenEXR file is finished when its writer goes.
-    check_whole(path)
 
 
 def text_attribute(path: Path, name: str) -> str:

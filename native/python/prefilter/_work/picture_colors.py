@@ -18,6 +18,7 @@ _UNKNOWN = frozenset({"", "unknown"})
 # What readers say of files that say nothing.
 _TAKEN_FOR_GRANTED = {
     "openexr": frozenset({"Linear", "lin_rec709", "lin_srgb", "linear", "scene_linear"}),
+    "pnm": frozenset({"Rec709"}),
     "": frozenset({"sRGB", "srgb_rec709_scene", "srgb_rec709_display"}),
 }
 _WAY_OUT = "--colorspace says which color space to take it for"
