@@ -2,9 +2,12 @@
 
 """OpenEXR files of all levels, read back by OpenImageIO."""
 
+import io
+
 import numpy as np
 import prefilter
 import pytest
+from prefilter.textures import exr
 
 oiio = pytest.importorskip("OpenImageIO")
 
@@ -161,3 +164,26 @@ def test_progress_and_canceling(tmp_path):
         prefilter.write_exr(path, levels, progress=lambda done: done < 0.3)
     assert path.read_bytes() == b"before"
     assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize("size", [(1, 1), (63, 64), (65, 130), (200, 3)])
+@pytest.mark.parametrize("format", ["half", "float"])
+def test_pictures_of_one_level(tmp_path, size, format):
+    for channels in range(1, 5):
+        pixels = np.random.default_rng(1).random((*size, channels), np.float32)
+        path = tmp_path / f"{channels}.exr"
+        points = (0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329)
+        exr.write_exr_picture(path, pixels, format=format, chromaticities=points)
+        reader = oiio.ImageInput.open(str(path))
+        assert not reader.seek_subimage(0, 1)
+        reader.close()
+        buffer = oiio.ImageBuf(str(path))
+        expected = pixels.astype(np.float16) if format == "half" else pixels
+        found = buffer.get_pixels(oiio.FLOAT)
+        np.testing.assert_array_equal(found[::-1], expected.astype(np.float32))
+        assert np.allclose(buffer.spec().getattribute("chromaticities"), points)
+
+
+def test_chromaticities_that_are_none():
+    with pytest.raises(ValueError, match="chromaticities: found"):
+        prefilter.write_exr(io.BytesIO(), [np.ones((1, 1, 3))], chromaticities=[0.3, 0.3])

@@ -319,6 +319,37 @@ def test_icc_profiles(tmp_path, ending, curve):
     assert np.abs(buffer.get_pixels(oiio.FLOAT)[4, 4] * 255 - expected).max() < 1.6
 
 
+def test_hidden_colors_stay(tmp_path):
+    pixels = np.full((16, 16, 4), (150, 120, 90, 0), np.uint8)
+    pixels[::2, :, 3] = 255
+    # Display P3's green, where nothing shows it.
+    pixels[1, :, :3] = (0, 255, 0)
+    source = png_file(tmp_path / "in.png", pixels, (b"cICP", bytes([12, 13, 0, 1])))
+    assert run("mipmaps", source, "-o", tmp_path / "out.png") == 0
+    made = read_straight(tmp_path / "out.00.png")
+    light = (FROM_P3 @ srgb_light(np.array([150, 120, 90]) / 255)).clip(0, 1)
+    assert np.abs(srgb_light(made[3, 4, :3]) - light).max() < 1 / 200
+    assert (made[..., 3] * 255 == pixels[..., 3]).all()
+
+
+def read_straight(path):
+    """Returns the values of a file as they are stored, with straight alpha."""
+    config = oiio.ImageSpec()
+    config.attribute("oiio:UnassociatedAlpha", 1)
+    return oiio.ImageBuf(str(path), 0, 0, config).get_pixels(oiio.FLOAT)
+
+
+def test_gray_with_alpha_and_a_profile(tmp_path):
+    profile = icc_profile(None, [POWER], b"GRAY")
+    pixels = np.full((16, 16, 2), (100, 128), np.uint8)
+    source = with_profile(tmp_path / "in.png", pixels, profile)
+    assert run("resample", source, tmp_path / "out.png", "--scale", "0.5") == 0
+    made = read_straight(tmp_path / "out.png")
+    assert made.shape[2] == 2
+    assert np.abs(made[4, 4] * 255 - (100, 128)).max() < 0.01
+    assert b"iCCP" in chunks_of(tmp_path / "out.png")
+
+
 def test_light_is_averaged_in_the_curve_of_a_profile(tmp_path):
     profile = icc_profile(ADOBE_RGB, [POWER] * 3)
     pixels = np.zeros((16, 16, 3), np.uint8)

@@ -169,34 +169,34 @@ def _read_in(
             texels = values if is_straight else _straight_bytes(values)
             return replace(picture, texels=texels, encoding=Encoding.SPACE, space=space)
         return replace(picture, texels=_light(values, space, is_straight), space=space)
-    light = _light(values, space, is_straight)
+    # Bytes keep the colors that a straight alpha of 0 hides, as light would not.
+    stays_straight = is_byte and keeps_bytes
+    light = _light(values, space, is_straight, is_associated=not stays_straight)
     if not space.is_rec709:
         colors = space.in_rec709(np.ascontiguousarray(light[..., :3]))
-        outside = _share_outside(light, colors)
+        outside = _share_outside(light, colors, is_associated=not stays_straight)
         light[..., :3] = colors
         picture = replace(picture, outside=outside)
-    if is_byte and keeps_bytes:
-        return replace(picture, texels=_srgb_bytes(light))
+    if stays_straight:
+        return replace(picture, texels=color_spaces.srgb_bytes(light))
     return replace(picture, texels=light, is_float=True, encoding=Encoding.NONE)
 
 
-def _share_outside(light: FloatArray, converted: FloatArray) -> float:
-    """Returns the share of texels that were within [0, 1], and are no more.
+def _share_outside(light: FloatArray, converted: FloatArray, *, is_associated: bool) -> float:
+    """Returns the share of texels that were within [0, 1], and are no more; hidden ones are not.
 
     Args:
-        light: Colors of one space, and alpha by which they are multiplied.
+        light: Colors of one space, and alpha.
         converted: The same colors in another.
+        is_associated: Whether colors are multiplied by alpha.
     """
-    most: Any = light[..., 3:] if light.shape[2] == 4 else np.float32(1)
+    most: Any = np.float32(1)
+    if light.shape[2] == 4:
+        most = light[..., 3:] if is_associated else np.ceil(light[..., 3:])
     within = np.all((light[..., :3] >= 0) & (light[..., :3] <= most), axis=2)
     slack = most * _UNSEEN
     beyond = np.any((converted < -slack) | (converted > most + slack), axis=2)
     return float(np.mean(within & beyond))
-
-
-def _srgb_bytes(light: FloatArray) -> NDArray[np.uint8]:
-    """Returns light with associated alpha as bytes with straight alpha."""
-    return color_spaces.srgb_bytes(unassociated(light) if light.shape[2] == 4 else light)
 
 
 def _with_colors(values: NDArray[Any]) -> NDArray[Any]:
@@ -222,20 +222,22 @@ def _as_floats(values: NDArray[Any]) -> FloatArray:
     return floats
 
 
-def _light(values: NDArray[Any], space: Space, is_straight: bool) -> FloatArray:
-    """Returns values of a space as light of its primaries, with associated alpha."""
+def _light(
+    values: NDArray[Any], space: Space, is_straight: bool, *, is_associated: bool = True
+) -> FloatArray:
+    """Returns values of a space as light of its primaries, with associated or straight alpha."""
     floats = _as_floats(values)
     has_alpha = floats.shape[2] == 4
-    if space.is_linear:
-        return associated(floats) if has_alpha and is_straight else floats
+    if space.is_linear and has_alpha and is_straight != is_associated:
+        return floats
     if has_alpha and not is_straight:
         floats = unassociated(floats)
     if space is color_spaces.SRGB:
         floats = prefilter.to_linear(floats)
-    else:
+    elif not space.is_linear:
         floats = floats.copy()
         floats[..., :3] = space.decoded(np.ascontiguousarray(floats[..., :3]))
-    return associated(floats) if has_alpha else floats
+    return associated(floats) if has_alpha and is_associated else floats
 
 
 def _without_full_alpha(texels: NDArray[Any]) -> NDArray[Any]:
