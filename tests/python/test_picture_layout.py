@@ -7,6 +7,7 @@ import re
 import numpy as np
 import pytest
 from command_files import fails, noise, run, write_picture, write_quad
+from prefilter._command import program
 from prefilter._work import memory, openimageio
 
 oiio = pytest.importorskip("OpenImageIO", reason="scripts/decoders.txt is not installed")
@@ -227,3 +228,35 @@ def test_drawings_name_their_color_space(tmp_path):
     assert spec.getattribute("colorInteropID") == "lin_rec709_scene"
     stored = np.array([0xBC, 0x80, 0x40]) / 255
     assert np.abs(values[8, 8, :3] - ((stored + 0.055) / 1.055) ** 2.4).max() < 1 / 1024
+
+
+@pytest.mark.parametrize("ending", ["exr", "png"])
+def test_channels_that_are_not_read_are_named(tmp_path, capsys, ending):
+    spec = oiio.ImageSpec(8, 8, 5, "half")
+    spec.channelnames = ("R", "G", "B", "Z", "mask")
+    output = oiio.ImageOutput.create(str(tmp_path / "deep.exr"))
+    assert output.open(str(tmp_path / "deep.exr"), spec)
+    assert output.write_image(np.full((8, 8, 5), 0.25, np.float32))
+    output.close()
+    del output
+    target = tmp_path / f"small.{ending}"
+    arguments = ["resize", str(tmp_path / "deep.exr"), str(target), "--percent", "50"]
+    assert program.main(arguments) == 0
+    assert "'deep.exr' also has the channels 'Z', 'mask': not read" in capsys.readouterr().err
+    levels = ["mipmaps", str(tmp_path / "deep.exr"), "-o", str(tmp_path / "levels.exr")]
+    assert program.main(levels) == 0
+    assert "the channels 'Z', 'mask'" in capsys.readouterr().err
+
+
+def test_further_images_of_a_file_are_named(tmp_path, capsys):
+    pages, small, smaller = (str(tmp_path / name) for name in ("pages.tif", "1.png", "2.png"))
+    spec = oiio.ImageSpec(8, 8, 3, "uint8")
+    output = oiio.ImageOutput.create(pages)
+    for mode in ("Create", "AppendSubimage"):
+        assert output.open(pages, spec, mode)
+        assert output.write_image(np.full((8, 8, 3), 90, np.uint8))
+    output.close()
+    assert program.main(["resize", pages, small, "--percent", "50"]) == 0
+    assert "'pages.tif' also has further images: not read" in capsys.readouterr().err
+    assert program.main(["resize", small, smaller, "--percent", "50"]) == 0
+    assert "also has" not in capsys.readouterr().err

@@ -130,7 +130,7 @@ def read(
     threshold = settings.threshold if content == "cutout" else None
     if not _holds_all_colors(picture, target, settings.texture_format):
         color_arguments.check_range("TEXTURE", picture, target, options)
-    told = _of_orientation(picture)
+    told = [*picture.reading_warnings, *_of_orientation(picture)]
     told += engines.checked(
         picture,
         target,

@@ -63,6 +63,7 @@ def read_source(options: argparse.Namespace, host: Host, pair: Pair) -> tuple[Pi
         keeps_chunks=is_png,
         keeps_bytes=is_png,
     )
+    telling.warn(picture.reading_warnings)
     if is_png:
         color_arguments.check_range("INPUT", picture, target, options)
     return picture, target

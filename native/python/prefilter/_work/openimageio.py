@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from .._border.claims import temporary_folder
 from .files.tiff import NO_DATE, remove_dates
 from .memory import free_memory
+from .wording import listed
 
 FloatArray = NDArray[np.float32]
 
@@ -27,6 +28,8 @@ Check = Callable[[], None]
 """Called between the steps of long work; raises to end it."""
 
 _MOST_CHANNELS = 4
+_MOST_NAMES = 6
+"""Of channels that a warning lists."""
 _PIXELS_A_BAND = 1 << 20
 _PATH_SEPARATOR = ";"
 _PLACEHOLDER = "%"
@@ -73,11 +76,13 @@ class Pixels(NamedTuple):
         values: (h, w, c) array of uint8, uint16 or float32, rows from the top.
         is_straight: Whether colors are not multiplied by alpha.
         stated: What the file says of them.
+        left_out: What else the file holds, such as "the channels 'Z', 'mask'"; empty for nothing.
     """
 
     values: NDArray[Any]
     is_straight: bool
     stated: Stated
+    left_out: str = ""
 
 
 def module() -> ModuleType:
@@ -208,10 +213,23 @@ def read_pixels(path: Path) -> Pixels:
         if values is None or (_CUT_OFF in failure if stated.format == "jpeg" else failure):
             raise OSError(_unreadable(path, failure))
         is_straight = bool(spec.get_int_attribute("oiio:UnassociatedAlpha", 0))
+        left_out = _left_out(reader, spec, channels)
     finally:
         reader.close()
     values = np.asarray(values).reshape(spec.height, spec.width, spec.nchannels)[..., channels]
-    return Pixels(_on_canvas(values, spec), is_straight, stated)
+    return Pixels(_on_canvas(values, spec), is_straight, stated, left_out)
+
+
+def _left_out(reader: Any, spec: Any, channels: Sequence[int]) -> str:
+    """Returns what a file holds beside some channels of its first image, in words."""
+    found = []
+    names = [name for k, name in enumerate(spec.channelnames) if k not in channels]
+    if names:
+        shown = names if len(names) <= _MOST_NAMES else [*names[:_MOST_NAMES], "others"]
+        found.append(f"the channel{'s' if len(names) > 1 else ''} {listed(shown)}")
+    if reader.seek_subimage(1, 0):
+        found.append("further images")
+    return " and ".join(found)
 
 
 def read_stated(path: Path) -> tuple[Stated, int, bool]:

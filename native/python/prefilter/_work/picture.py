@@ -58,6 +58,7 @@ class Picture:
         outside: The share of texels whose colors are beyond the range of sRGB, although they are
             within that of their own color space.
         orientation: That of EXIF, where it was not heeded; 1 is upright.
+        left_out: What else its file holds, in words; empty for nothing.
     """
 
     name: str
@@ -76,6 +77,12 @@ class Picture:
     space: Space | None = None
     outside: float = 0.0
     orientation: int = 1
+    left_out: str = ""
+
+    @property
+    def reading_warnings(self) -> list[str]:
+        """Warnings of what its file holds, and was not read."""
+        return [f"'{self.name}' also has {self.left_out}: not read"] if self.left_out else []
 
     @property
     def shape(self) -> tuple[int, int, int]:

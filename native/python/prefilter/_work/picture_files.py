@@ -57,7 +57,7 @@ def read(
     try:
         if not Path(path).is_file():
             raise OSError(f"there is no file '{path}'")
-        values, is_straight, stated = openimageio.read_pixels(Path(path))
+        values, is_straight, stated, left_out = openimageio.read_pixels(Path(path))
         found = embedded(Path(path))
     except (ValueError, OSError, MemoryError) as error:
         raise type(error)(f"{argument}: {error}") from error
@@ -89,6 +89,7 @@ def read(
         full_name=str(Path(path).resolve()),
         texels=_without_full_alpha(picture.texels),
         orientation=1 if turns else orientation,
+        left_out=left_out,
     )
 
 

@@ -71,7 +71,7 @@ def _by_openimageio(data: bytes) -> "tuple[Texels, Stated, bool]":
         with temporary_folder() as folder:
             path = folder / f"image{ending_of(data)}"
             path.write_bytes(data)
-            values, _, stated = openimageio.read_pixels(path)
+            values, _, stated, _ = openimageio.read_pixels(path)
     except (OSError, ValueError, MemoryError) as error:
         raise PictureError(f"as it cannot be read: {error}") from None
     if values.dtype != np.uint8:
