@@ -90,6 +90,16 @@ def roles(material: bpy.types.Material) -> list[Role]:
     return list(found)
 
 
+def inputs_of(
+    material: bpy.types.Material, image: bpy.types.Image
+) -> Iterator[tuple[Role, bpy.types.NodeSocket, Groups]]:
+    """Yields the inputs that get values from an image, each once for what it takes; no masks."""
+    for socket, groups, label, use in _inputs(material):
+        for found, request in dict.fromkeys(_sources(socket, groups)):
+            if found == image and not request.is_factor:
+                yield Role(image, label, use, request.channel), socket, groups
+
+
 def roughness(material: bpy.types.Material) -> list[Roughness]:
     """Returns the shaders of a material whose roughness comes from images."""
     found: dict[Roughness, None] = {}

@@ -118,7 +118,7 @@ _OF_VECTORS = frozenset(
     {
         *("ADD", "SUBTRACT", "MULTIPLY", "DIVIDE", "MULTIPLY_ADD", "ABSOLUTE", "MINIMUM"),
         *("MAXIMUM", "FLOOR", "CEIL", "MODULO", "WRAP", "SNAP", "SINE", "COSINE", "TANGENT"),
-        *("POWER", "SIGN"),
+        *("POWER", "SIGN", "ROUND"),
     }
 )
 """Operations of vectors that are those of numbers, axis by axis."""

@@ -91,6 +91,36 @@ class TexelFunction:
         return texels[..., 3] if texels.shape[2] == 4 else np.ones(texels.shape[:2], np.float32)
 
 
+def before_factor(
+    socket: bpy.types.NodeSocket, groups: Groups
+) -> tuple[bpy.types.NodeSocket, Groups]:
+    """Returns the input whose values a texture for an engine is to have.
+
+    A multiplication with a constant just before the shader is a factor of the material there. The
+    input Color of a Normal Map node is that of normals.
+    """
+    _, node, around = nodes.origin(socket, groups)
+    if node is None:
+        return socket, groups
+    if node.type == "NORMAL_MAP":
+        return node.inputs["Color"], around
+    operands: list[bpy.types.NodeSocket] = []
+    if socket.type == "RGBA" and node.type == "MIX" and node.data_type == "RGBA":
+        names = ("A_Color", "B_Color") if node.blend_type == "MULTIPLY" else ()
+        operands = [one for one in node.inputs if one.identifier in names]
+    elif socket.type == "VALUE" and node.type == "MATH" and node.operation == "MULTIPLY":
+        operands = list(node.inputs[:2])
+    varying = [one for one in operands if not _is_constant(one, around)]
+    if len(operands) == 2 and len(varying) == 1:
+        return varying[0], around
+    return socket, groups
+
+
+def _is_constant(socket: bpy.types.NodeSocket, groups: Groups) -> bool:
+    _, node, _ = nodes.origin(socket, groups)
+    return node is None or node.type in ("RGB", "VALUE")
+
+
 def _constant(socket: bpy.types.NodeSocket) -> NDArray[np.float32]:
     """Returns the value that a socket without a link has, as an image of one texel."""
     value = np.array(getattr(socket, "default_value", 0.0), np.float32)

@@ -85,7 +85,10 @@ def name_of(image: bpy.types.Image) -> str:
 
 
 def paths(
-    pattern: Pattern, chosen: Sequence[bpy.types.Image], sources: Iterable[Path] = ()
+    pattern: Pattern,
+    chosen: Sequence[bpy.types.Image],
+    sources: Iterable[Path] = (),
+    parts: Sequence[str] = (),
 ) -> list[str]:
     """Returns the path for each image; of tiled images, see `udim.paths`.
 
@@ -96,13 +99,14 @@ def paths(
         pattern: Where files go.
         chosen: The images.
         sources: More files that must not be written, beside those of all images.
+        parts: Which part of an image each is, or empty; see `plan.Item`.
     """
     if not pattern.text:
         return [""] * len(chosen)
     taken = {one for path in (*sources, *source_files()) for one in _identities(path)}
     found: list[str] = []
-    for image in chosen:
-        name, number = name_of(image), 1
+    for image, part in zip(chosen, parts or [""] * len(chosen), strict=True):
+        name, number = f"{name_of(image)}_{part}" if part else name_of(image), 1
         while True:
             numbered = name if number == 1 else f"{name}_{number}"
             path = pattern.text.replace(PLACE, numbered)

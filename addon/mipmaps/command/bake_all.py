@@ -40,10 +40,12 @@ def bake_all(options: argparse.Namespace, settings: Settings) -> None:
         staging.check_writable(Path(path))
     named = scenes.chosen(objects, options.object, WANTED) if options.object else None
     view_layer, depsgraph = bpy.context.view_layer, bpy.context.evaluated_depsgraph_get()
-    planned = plan(view_layer, depsgraph, named, material=chosen.material)
-    images = [image_of(item.full_name) for item in planned.items]
-    paths = file_names.paths(pattern, images, [Path(path)])
-    files = {image.name_full: file for image, file in zip(images, paths, strict=True)}
+    is_for_files = bool(pattern.text) and not options.save
+    planned = plan(view_layer, depsgraph, named, material=chosen.material, by_role=is_for_files)
+    images = [image_of(item.key) for item in planned.items]
+    parts = [item.part for item in planned.items]
+    paths = file_names.paths(pattern, images, [Path(path)], parts)
+    files = {item.key: file for item, file in zip(planned.items, paths, strict=True)}
     settings = replace(settings, use_images=options.save, filepath="")
     if options.list:
         listing.say(options, planned, settings, files)

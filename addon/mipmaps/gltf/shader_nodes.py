@@ -2,7 +2,8 @@
 
 """What nodes make of an image that the glTF exporter writes as it is."""
 
-from collections.abc import Callable, Sequence
+import re
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import bpy
@@ -10,9 +11,9 @@ import numpy as np
 import prefilter
 from numpy.typing import NDArray
 
-from ...bridge import nodes
 from ...bridge.nodes import Groups
-from ...bridge.texel_functions import OtherNodeError, TexelFunction
+from ...bridge.texel_functions import OtherNodeError, TexelFunction, before_factor
+from ...core.wording import listed
 
 Floats = NDArray[np.float32]
 ColorOf = Callable[[bpy.types.Image], Floats]
@@ -20,6 +21,8 @@ ColorOf = Callable[[bpy.types.Image], Floats]
 _CHANNELS = {"Roughness": 1, "Metallic": 2}
 """Inputs of one number, by the channel of the picture that has it."""
 _ALPHA = "Alpha"
+_INLINED = re.compile(r"^\d+_")
+"""What the exporter of Blender 5 puts before names, in trees that it makes without groups."""
 
 
 def changed_texels(
@@ -45,27 +48,28 @@ def changed_texels(
             continue
         function = TexelFunction(color_of)
         try:
-            values = _stored(function, *_before_factor(socket, groups))
+            values = _stored(function, *before_factor(socket, groups))
         except OtherNodeError as error:
-            warnings.append(_ignored(socket, error.node.name, "makes colors of its own"))
+            warnings.append(_ignored(socket, [error.node], "makes colors of its own"))
             continue
         if not function.changing or function.image is None:
             continue
-        names = ", ".join(node.name for node in function.changing)
         channels = _channels_of(socket)
         if channels is None:
-            warnings.append(_ignored(socket, names, "cannot be applied to this input"))
+            warnings.append(_ignored(socket, function.changing, "cannot be applied to this input"))
             continue
         if values.shape[:2] not in (texels.shape[:2], (1, 1)):
-            warnings.append(_ignored(socket, names, "meets images of several sizes"))
+            warnings.append(_ignored(socket, function.changing, "meets images of several sizes"))
             continue
         made = texels.copy() if made is None else made
         made[..., channels] = values if values.ndim == 3 else values[..., None]
     return made, warnings
 
 
-def _ignored(socket: bpy.types.NodeSocket, node: str, why: str) -> str:
-    return f"node '{node}' before '{socket.name}' is ignored: it {why}"
+def _ignored(socket: bpy.types.NodeSocket, found: Iterable[bpy.types.Node], why: str) -> str:
+    is_inlined = bpy.app.version >= (5, 0, 0)
+    names = [_INLINED.sub("", node.name) if is_inlined else node.name for node in found]
+    return f"node {listed(names)} before '{socket.name}' is ignored: it {why}"
 
 
 def _channels_of(socket: bpy.types.NodeSocket) -> slice | None:
@@ -85,33 +89,3 @@ def _stored(function: TexelFunction, socket: bpy.types.NodeSocket, groups: Group
 
 def _is_normal(socket: bpy.types.NodeSocket) -> bool:
     return socket.node.type == "NORMAL_MAP"
-
-
-def _before_factor(
-    socket: bpy.types.NodeSocket, groups: Groups
-) -> tuple[bpy.types.NodeSocket, Groups]:
-    """Returns the input whose values the picture is to have.
-
-    What the exporter writes as a factor is none of the picture: a multiplication with a constant
-    just before the shader. The input Color of a Normal Map node is that of normals.
-    """
-    _, node, around = nodes.origin(socket, groups)
-    if node is None:
-        return socket, groups
-    if node.type == "NORMAL_MAP":
-        return node.inputs["Color"], around
-    operands: list[bpy.types.NodeSocket] = []
-    if socket.type == "RGBA" and node.type == "MIX" and node.data_type == "RGBA":
-        names = ("A_Color", "B_Color") if node.blend_type == "MULTIPLY" else ()
-        operands = [one for one in node.inputs if one.identifier in names]
-    elif socket.type == "VALUE" and node.type == "MATH" and node.operation == "MULTIPLY":
-        operands = list(node.inputs[:2])
-    varying = [one for one in operands if not _is_constant(one, around)]
-    if len(operands) == 2 and len(varying) == 1:
-        return varying[0], around
-    return socket, groups
-
-
-def _is_constant(socket: bpy.types.NodeSocket, groups: Groups) -> bool:
-    _, node, _ = nodes.origin(socket, groups)
-    return node is None or node.type in ("RGB", "VALUE")

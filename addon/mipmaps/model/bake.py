@@ -238,10 +238,10 @@ class ModelBake:
 
 def _notes(job: Job, made: Prepared) -> list[str]:
     """Returns what a user should know of the images of a job."""
-    notes = [(job.item, note) for note in (made.note, *job.item.notes) if note]
+    notes = [*made.notes, *((job.item.image, note) for note in job.item.notes)]
     if job.roughness is not None:
-        notes += [(job.roughness, note) for note in job.roughness.notes]
-    return [f"image '{one.image}' {note}" for one, note in notes]
+        notes += [(job.roughness.image, note) for note in job.roughness.notes]
+    return [f"image '{image}' {note}" for image, note in notes]
 
 
 def _make_folder(file: Path, made: list[Path]) -> None:

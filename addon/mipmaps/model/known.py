@@ -57,7 +57,7 @@ def images(context: bpy.types.Context, choice: str, material: str = "") -> list[
         return None
     chosen = chosen_objects(context, choice)
     wanted = None if chosen is None else {obj.name for obj in chosen}
-    names = {item.full_name: item.image for item in found.items}
+    names = {item.key: item.image for item in found.items}
     return [
         Known(item.image, item.content, names.get(item.normal_map, ""))
         for item in found.items

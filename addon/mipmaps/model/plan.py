@@ -14,6 +14,8 @@ from ...core.wording import listed
 Shown = Mapping[bpy.types.Object, Sequence[bpy.types.Material]]
 """Objects with the materials that they show."""
 
+_PART = "\0"
+"""What is between the full name of an image and the part of it; no name has it."""
 _CHANNEL = {"red": " (red)", "green": " (green)", "blue": " (blue)", "alpha": " (alpha)"}
 
 
@@ -30,12 +32,14 @@ class Item:
         threshold: Of the alpha test of a cut-out.
         tests_alpha: Whether that is a test of the alpha channel instead of the color.
         channels: The channels that shaders read: "all", "red", "green", "blue", "alpha".
-        normal_map: The full name of the normal map that it is the roughness of; empty for none.
+        normal_map: The key of the normal map that it is the roughness of; empty for none.
         roughness_channel: Where the roughness is, a key of `contents.CHANNELS`.
         is_alone: Whether its surfaces are not all of those that show the normal map, so that both
             cannot be baked at once.
         notes: What a user should know.
         materials: The names of the materials that show it.
+        part: Which of its roles this is, where others have an item of their own: "normal", or empty
+            for all others.
     """
 
     image: str
@@ -51,6 +55,12 @@ class Item:
     is_alone: bool = False
     notes: tuple[str, ...] = ()
     materials: frozenset[str] = frozenset()
+    part: str = ""
+
+    @property
+    def key(self) -> str:
+        """What tells it from all other items."""
+        return f"{self.full_name}{_PART}{self.part}" if self.part else self.full_name
 
 
 @dataclass(frozen=True)
@@ -60,8 +70,7 @@ class Job:
     Attributes:
         item: The image.
         roughness: The roughness image that is baked with this normal map; None for none.
-        normal_map: The full name of the normal map that is read for this roughness image; empty
-            for none.
+        normal_map: The key of the normal map that is read for this roughness image; empty for none.
     """
 
     item: Item
@@ -103,8 +112,8 @@ class Plan:
         return [
             Job(
                 item,
-                partners.get(item.full_name),
-                "" if item.full_name in partners else item.normal_map,
+                partners.get(item.key),
+                "" if item.key in partners else item.normal_map,
             )
             for item in self.items
             if partners.get(item.normal_map) is not item
@@ -129,6 +138,7 @@ def plan(
     chosen: Iterable[bpy.types.Object] | None = None,
     *,
     material: str = "",
+    by_role: bool = False,
 ) -> Plan:
     """Returns what there is to bake.
 
@@ -138,6 +148,7 @@ def plan(
         chosen: Whose images, and whose surfaces count; None for all visible objects. What an image
             is, all visible objects say.
         material: The name of the material whose images are baked; empty for all.
+        by_role: Whether an image that is a normal map and something else gets an item for each.
 
     Raises:
         ValueError: There is no such material.
@@ -163,11 +174,9 @@ def plan(
         if reason:
             left_out.append(LeftOut(image.name, reason))
         else:
-            items.append(_item(image, known))
-    by_name = {item.full_name: i for i, item in enumerate(items)}
+            items += _items(image, known, by_role=by_role)
     for rough, partner in partners.items():
-        if rough.name_full in by_name:
-            _pair(items, by_name, rough, partner, found)
+        _pair(items, rough, partner, found)
     for image in bpy.data.images:
         known = found.get(image, _Found())
         if material or known.objects or _is_internal(image):
@@ -188,12 +197,13 @@ def said_of(image: bpy.types.Image, shown_by: Iterable[bpy.types.Material]) -> I
     return _item(image, known)
 
 
-def image_of(full_name: str) -> bpy.types.Image:
-    """Returns the image of a full name.
+def image_of(key: str) -> bpy.types.Image:
+    """Returns the image of a full name, or of the key of an item.
 
     Raises:
         ValueError: It is gone.
     """
+    full_name = key.partition(_PART)[0]
     for image in bpy.data.images:
         if image.name_full == full_name:
             return image
@@ -258,6 +268,15 @@ def _is_internal(image: bpy.types.Image) -> bool:
         or level_images.is_level(image)
         or derived.source_of(image) is not None
     )
+
+
+def _items(image: bpy.types.Image, known: _Found, *, by_role: bool) -> list[Item]:
+    normal = {role: None for role in known.roles if role.use == "normal"}
+    others = {role: None for role in known.roles if role.use != "normal"}
+    if not (by_role and normal and others):
+        return [_item(image, known)]
+    first = _item(image, replace(known, roles=others))
+    return [first, replace(_item(image, replace(known, roles=normal)), part="normal")]
 
 
 def _item(image: bpy.types.Image, known: _Found) -> Item:
@@ -361,23 +380,34 @@ def _partner(
 
 def _pair(
     items: list[Item],
-    by_name: Mapping[str, int],
     rough: bpy.types.Image,
     partner: _Partner,
     found: Mapping[bpy.types.Image, _Found],
 ) -> None:
     """Notes in the items of a roughness image and its normal map that they belong together."""
-    index = by_name[rough.name_full]
+    index = _index(items, rough, is_normal=False)
+    if index is None:
+        return
     if partner.problem:
         items[index] = replace(items[index], notes=(*items[index].notes, partner.problem))
     normal_map = partner.normal_map
-    if normal_map is None or normal_map.name_full not in by_name:
+    if normal_map is None:
         return
-    if items[by_name[normal_map.name_full]].content != "normal" or items[index].content != "data":
+    other = _index(items, normal_map, is_normal=True)
+    if other is None:
+        return
+    if items[other].content != "normal" or items[index].content != "data":
         return
     items[index] = replace(
         items[index],
-        normal_map=normal_map.name_full,
+        normal_map=items[other].key,
         roughness_channel=partner.channel,
         is_alone=set(found[rough].shown_by) != set(found[normal_map].shown_by),
     )
+
+
+def _index(items: Sequence[Item], image: bpy.types.Image, *, is_normal: bool) -> int | None:
+    """Returns which item an image has as a normal map, or as something else; its only one if so."""
+    known = [i for i, item in enumerate(items) if item.full_name == image.name_full]
+    fitting = [i for i in known if (items[i].content == "normal") == is_normal]
+    return next(iter(fitting or known), None)

@@ -13,8 +13,8 @@ from ...bridge import images
 from ...bridge.images import Picture
 from ...core.wording import counted
 from ..choices import FILTERS, Settings
-from . import decisions
-from .plan import Item, Job, image_of
+from . import decisions, node_texels
+from .plan import Item, Job, image_of, said_of
 from .table import Row
 
 
@@ -62,7 +62,8 @@ class Prepared:
         texture_format: That of the file of the image.
         roughness_texture_format: That of the file of the roughness; empty for none.
         rows: What is said of each image that is baked.
-        note: Why the image is taken for something else than the nodes say; empty if it is not.
+        notes: Names of images with why one is taken for something else than the nodes say, and
+            what these do to it.
         pictures: What was read of images without tiles, by their full names.
     """
 
@@ -72,7 +73,7 @@ class Prepared:
     texture_format: str
     roughness_texture_format: str
     rows: list[Row]
-    note: str
+    notes: list[tuple[str, str]]
     pictures: dict[str, Picture]
 
     @property
@@ -83,7 +84,7 @@ class Prepared:
 
 def pair_of(job: Job) -> Pair:
     """Returns the images of a job."""
-    partner = job.roughness.full_name if job.roughness is not None else job.normal_map
+    partner = job.roughness.key if job.roughness is not None else job.normal_map
     other = image_of(partner) if partner else None
     return Pair(image_of(job.item.full_name), other, job.roughness is not None)
 
@@ -112,9 +113,10 @@ def prepared(job: Job, pair: Pair, settings: Settings, files: Mapping[str, str])
         settings: What to do with all images of the model.
         files: The path of each image, by its full name; empty for none.
     """
-    item, file = job.item, files[job.item.full_name]
+    item, file = job.item, files[job.item.key]
     read: dict[str, Picture] = {}
     picture = _first(pair.image, read)
+    picture, told = _with_nodes(item, pair.image, picture, read, settings)
     decision = decisions.decided(item, picture)
     picture = contents.as_content(picture, decision.content)
     chosen = _format(settings, item, picture, decision.content, file)
@@ -127,7 +129,8 @@ def prepared(job: Job, pair: Pair, settings: Settings, files: Mapping[str, str])
     )
     row = _row(item, pair.image, decision.content, own, picture, file, chosen)
     own = lookups.resolved(own)
-    made = Prepared(picture, file, own, chosen, "", [row], decision.note, read)
+    notes = [(item.image, text) for text in (decision.note, *told) if text]
+    made = Prepared(picture, file, own, chosen, "", [row], notes, read)
     return made if pair.rough is None else _with_roughness(made, job, pair, settings, files)
 
 
@@ -138,10 +141,18 @@ def _with_roughness(
     assert pair.rough is not None
     assert pair.normal_map is not None
     item = job.roughness or job.item
-    file = files[item.full_name]
-    picture = _first(pair.rough, made.pictures) if pair.is_normal_map else made.picture
+    file = files[item.key]
+    picture, notes = made.picture, made.notes
+    if pair.is_normal_map:
+        picture = _first(pair.rough, made.pictures)
+        picture, told = _with_nodes(item, pair.rough, picture, made.pictures, settings)
+        notes = [*notes, *((item.image, text) for text in told)]
+    else:
+        normals = _first(pair.normal_map, made.pictures)
+        said = said_of(pair.normal_map, [bpy.data.materials[name] for name in item.materials])
+        _with_nodes(said, pair.normal_map, normals, made.pictures, settings)
     chosen = _format(settings, item, picture, "data", file)
-    told = f"its levels compensate for detail lost in the levels of '{pair.normal_map.name}'"
+    compensates = f"its levels compensate for detail lost in the levels of '{pair.normal_map.name}'"
     row = made.rows[0]
     if pair.is_normal_map:
         rough_row = _row(item, pair.rough, "data", made.settings, picture, file, chosen)
@@ -149,10 +160,10 @@ def _with_roughness(
         sides = max(row.sides, rough_row.sides)
         rows = [
             replace(row, sides=sides),
-            replace(rough_row, sides=sides, remarks=(told,)),
+            replace(rough_row, sides=sides, remarks=(compensates,)),
         ]
     else:
-        rows = [replace(row, remarks=(told,))]
+        rows = [replace(row, remarks=(compensates,))]
     own = replace(
         made.settings,
         content="normal",
@@ -161,7 +172,24 @@ def _with_roughness(
         roughness_channel=item.roughness_channel,
         roughness_filepath=file,
     )
-    return replace(made, settings=own, roughness_texture_format=chosen, rows=rows)
+    return replace(made, settings=own, roughness_texture_format=chosen, rows=rows, notes=notes)
+
+
+def _with_nodes(
+    item: Item,
+    image: bpy.types.Image,
+    picture: Picture,
+    read: dict[str, Picture],
+    settings: Settings,
+) -> tuple[Picture, list[str]]:
+    """Applies nodes to a picture for a file, in `read` too, and returns what is said of it.
+
+    Level images stay before the nodes, and tiles are left as they are.
+    """
+    if settings.use_images or image.name_full not in read:
+        return picture, []
+    read[image.name_full], told = node_texels.with_nodes(item, image, picture)
+    return read[image.name_full], told
 
 
 def _row(

@@ -119,14 +119,18 @@ class PREFILTER_OT_bake_model(
             raise ValueError(Sentence(text, self.folder))
         chosen = chosen_objects(context, own.objects)
         planned = plan(
-            context.view_layer, context.evaluated_depsgraph_get(), chosen, material=own.material
+            context.view_layer,
+            context.evaluated_depsgraph_get(),
+            chosen,
+            material=own.material,
+            by_role=bool(folder),
         )
         if not planned.items:
             raise ValueError("\n".join(Results(planned.left_out).nothing()))
-        images = [image_of(item.full_name) for item in planned.items]
+        images = [image_of(item.key) for item in planned.items]
         pattern = file_names.Pattern.in_folder(folder, f".{own.file_format}")
         if not target_files.has_formats(pattern.text):
             shared = replace(shared, texture_format="auto")
-        paths = file_names.paths(pattern, images)
-        files = {image.name_full: file for image, file in zip(images, paths, strict=True)}
+        paths = file_names.paths(pattern, images, parts=[item.part for item in planned.items])
+        files = {item.key: file for item, file in zip(planned.items, paths, strict=True)}
         return ModelBake(planned, shared, files)

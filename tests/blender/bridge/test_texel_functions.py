@@ -110,7 +110,7 @@ def test_math(addon, chain, operation):
 def test_vector_math(addon, chain, operation):
     node = chain.add("VectorMath", operation=operation)
     chain.link(chain.color, node.inputs[0])
-    node.inputs[1].default_value = (0.5, 0.2, 1.5)
+    node.inputs[1].default_value = (0.5, 0.23, 1.5)
     node.inputs[2].default_value = (0.3, 0.0, 1.0)
     node.inputs[3].default_value = 0.7
     output = next(one for one in node.outputs if one.enabled)
