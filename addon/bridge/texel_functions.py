@@ -116,6 +116,16 @@ def before_factor(
     return socket, groups
 
 
+def partial_factor(socket: bpy.types.NodeSocket, groups: Groups) -> bpy.types.Node | None:
+    """Returns the multiplication that `before_factor` leaves out, if it is not of full strength."""
+    _, node, _around = nodes.origin(socket, groups)
+    if node is None or node.type != "MIX" or before_factor(socket, groups) == (socket, groups):
+        return None
+    strength = next(one for one in node.inputs if one.identifier == "Factor_Float")
+    is_full = nodes.link_into(strength) is None and strength.default_value == 1.0
+    return None if is_full else node
+
+
 def _is_constant(socket: bpy.types.NodeSocket, groups: Groups) -> bool:
     _, node, _ = nodes.origin(socket, groups)
     return node is None or node.type in ("RGB", "VALUE")

@@ -12,7 +12,7 @@ import prefilter
 from numpy.typing import NDArray
 
 from ...bridge.nodes import Groups
-from ...bridge.texel_functions import OtherNodeError, TexelFunction, before_factor
+from ...bridge.texel_functions import OtherNodeError, TexelFunction, before_factor, partial_factor
 from ...core.wording import listed
 
 Floats = NDArray[np.float32]
@@ -46,6 +46,9 @@ def changed_texels(
         groups = tuple(node for node in one.group_path if getattr(node, "type", "") == "GROUP")
         if socket.name == _ALPHA:
             continue
+        partial = partial_factor(socket, groups)
+        if partial is not None:
+            warnings.append(_ignored(socket, [partial], "is exported as if its factor were 1"))
         function = TexelFunction(color_of)
         try:
             values = _stored(function, *before_factor(socket, groups))
@@ -69,7 +72,7 @@ def changed_texels(
 def _ignored(socket: bpy.types.NodeSocket, found: Iterable[bpy.types.Node], why: str) -> str:
     is_inlined = bpy.app.version >= (5, 0, 0)
     names = [_INLINED.sub("", node.name) if is_inlined else node.name for node in found]
-    return f"node {listed(names)} before '{socket.name}' is ignored: it {why}"
+    return f"node {listed(names)} before '{socket.name}' is not applied as it is: it {why}"
 
 
 def _channels_of(socket: bpy.types.NodeSocket) -> slice | None:

@@ -52,6 +52,15 @@ def with_nodes(item: Item, image: bpy.types.Image, picture: Picture) -> tuple[Pi
     return _stored(picture, made), told
 
 
+def told_of_tiles(item: Item, image: bpy.types.Image) -> list[str]:
+    """Returns what is to be known of an image with tiles, to which nodes are not applied."""
+    inputs, told = _known(item, image)
+    names = dict.fromkeys(name for one in inputs for name in one.names)
+    if names:
+        told.append(f"is baked without what nodes do ({listed(names)}), as it has tiles")
+    return told
+
+
 @dataclass(frozen=True)
 class _Input:
     """An input that gets a function of an image.

@@ -186,8 +186,10 @@ def _with_nodes(
 
     Level images stay before the nodes, and tiles are left as they are.
     """
-    if settings.use_images or image.name_full not in read:
+    if settings.use_images:
         return picture, []
+    if image.name_full not in read:
+        return picture, node_texels.told_of_tiles(item, image)
     read[image.name_full], told = node_texels.with_nodes(item, image, picture)
     return read[image.name_full], told
 

@@ -74,6 +74,20 @@ def test_a_factor_alone_leaves_the_picture(painted):
     assert "baseColorFactor" in material["pbrMetallicRoughness"]
 
 
+def test_a_factor_that_is_mixed_in_partly_is_told(painted):
+    """Blender's exporter writes it in full."""
+
+    def build(tree, color):
+        output = multiplied(tree, color)
+        inputs = {one.identifier: one for one in output.node.inputs}
+        inputs["Factor_Float"].default_value = 0.5
+        return output
+
+    pixels, found, _, result = painted("Base Color", build, colorspace="sRGB")
+    close(found, pixels)
+    assert "it is exported as if its factor were 1" in result.stderr
+
+
 def test_gloss_becomes_roughness(painted):
     """The second channel has it in glTF files."""
 
@@ -91,4 +105,6 @@ def test_gloss_becomes_roughness(painted):
 def test_other_nodes_are_named(painted):
     pixels, found, _, result = painted("Base Color", noisy, colorspace="sRGB")
     close(found, pixels)
-    assert "node 'Stains' before 'Base Color' is ignored" in result.stdout + result.stderr
+    assert (
+        "node 'Stains' before 'Base Color' is not applied as it is" in result.stdout + result.stderr
+    )
