@@ -28,7 +28,7 @@ unset folder name
 source_options=("${linked_sources[@]/#/PREFILTER_}")
 source_options=("${source_options[@]/=/_SOURCE=}")
 # Each list has its own: checkouts may differ.
-wheels_dir=$cache_dir/wheels-$(sha256sum <"$source_dir/scripts/bundled.txt" | cut -c 1-12)
+wheels_dir=$cache_dir/wheels-$(cat "$source_dir"/scripts/bundled{,_modules}.txt | sha256sum | cut -c 1-12)
 log_dir=$cache_dir/logs
 
 caller_path=${PATH:-}
@@ -254,13 +254,21 @@ fetch_maven() {
   unlock "$cache_dir/.maven.lock"
 }
 
-# ensure_wheels: fetches what the package imports and the extension brings along: pure Python, as its authors publish it.
+# ensure_wheels: fetches what the package imports and the extension brings along, as its authors publish it: pure Python,
+# and in the folder modules what is compiled, for each platform and Python.
 ensure_wheels() {
   [[ ! -e $wheels_dir ]] || return 0
+  local platform python
   note "fetching the wheels of scripts/bundled.txt from PyPI"
   rm -rf "$wheels_dir.new"
   logged wheels.log /usr/bin/python3 -m pip download --disable-pip-version-check --no-deps --only-binary :all: \
     --require-hashes --dest "$wheels_dir.new" --requirement "$source_dir/scripts/bundled.txt"
+  for platform in manylinux2014_{x86_64,aarch64}/{311,313,314} {win_amd64,macosx_11_0_arm64}/{311,313}; do
+    python=${platform#*/}
+    logged wheels.log /usr/bin/python3 -m pip download --disable-pip-version-check --no-deps --only-binary :all: \
+      --require-hashes --platform "${platform%/*}" --implementation cp --python-version "$python" --abi "cp$python" \
+      --dest "$wheels_dir.new/modules" --requirement "$source_dir/scripts/bundled_modules.txt"
+  done
   mv "$wheels_dir.new" "$wheels_dir"
 }
 

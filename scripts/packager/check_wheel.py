@@ -6,7 +6,7 @@ import io
 import re
 import tempfile
 import zipfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from packager.licenses import missing_licenses
@@ -41,7 +41,8 @@ def wheel_faults(
             found.append("RECORD is missing, or does not name just its files")
         modules = [entry for entry in names if _COMPILED.search(entry)]
         if not name.startswith(f"{NAME}-"):
-            return found + bundled_faults(name, names, modules)
+            contents = {each: archive.read(each) for each in modules}
+            return found + bundled_faults(name, names, contents)
         if len(modules) != 1:
             return [*found, f"holds {len(modules)} modules, not one"]
         named = platform_of_wheel(name)
@@ -65,16 +66,48 @@ def wheel_faults(
     return found
 
 
-def bundled_faults(name: str, names: Sequence[str], modules: Sequence[str]) -> list[str]:
-    """Returns what is wrong with a wheel of others, by its name and those of its files."""
+def bundled_faults(name: str, names: Sequence[str], modules: Mapping[str, bytes]) -> list[str]:
+    """Returns what is wrong with a wheel of others, by its name, its files, and its modules."""
     found = []
-    if modules or not name.endswith("-py3-none-any.whl"):
-        found.append("is not of pure Python")
+    if name.endswith("-py3-none-any.whl"):
+        if modules:
+            found.append("is not of pure Python")
+    else:
+        found += foreign_module_faults(name, modules)
     if not any(
         re.search(r"\.dist-info/(licenses/)?(LICEN[CS]E|COPYING)", entry) for entry in names
     ):
         found.append("holds no license")
     return found
+
+
+def foreign_module_faults(name: str, modules: Mapping[str, bytes]) -> list[str]:
+    """Returns what keeps the one module of a wheel of others out of Blender's process."""
+    named = platform_of_wheel(name)
+    if named is None or len(modules) != 1:
+        return [f"holds {len(modules)} modules, for no platform or not just one"]
+    platform, lowest = named
+    ((path, contents),) = modules.items()
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / Path(path).name
+        file.write_bytes(contents)
+        try:
+            module = read_module(file)
+        except ValueError as error:
+            return [str(error)]
+    if (module.form, module.machine) != (platform.form, platform.machine):
+        return [f"is {module.form} for {module.machine}, not for {platform.name}"]
+    found = []
+    entry = f"PyInit_{Path(path).name.split('.')[0]}"
+    if module.exports != {entry}:
+        found.append(f"exports {sorted(module.exports)}, not just {entry}")
+    python = name.split("-")[2]
+    needed = sorted(
+        each for each in module.libraries if not platform.allows(each, python, is_of_others=True)
+    )
+    if needed:
+        found.append(f"needs {needed}")
+    return found + system_faults(module.lowest, lowest, platform.newest)
 
 
 def suffix_faults(path: str, python: str, platform: Platform) -> list[str]:

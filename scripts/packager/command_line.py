@@ -99,7 +99,8 @@ def run(options: argparse.Namespace) -> bool:
         fine = [check(path, newest, options.blender) for path in options.zips]
         return all(fine)
     bundled = sorted(options.wheels.glob("*.whl")) if options.wheels else []
-    parts = Parts(options.linked, bundled, options.blender)
+    modules = sorted(options.wheels.glob("modules/*.whl")) if options.wheels else []
+    parts = Parts(options.linked, bundled, modules, options.blender)
     if options.command == "release":
         for path in make_release(options.tags, options.zig, parts):
             print(path)

@@ -12,7 +12,7 @@ from pathlib import Path
 from packager import blender as blenders
 from packager import manual
 from packager.licenses import license_texts
-from packager.platforms import OFFICIAL_TAGS, PLATFORMS, here
+from packager.platforms import OFFICIAL_TAGS, PLATFORMS, here, platform_of_wheel
 from packager.project import (
     BUILD,
     NAME,
@@ -34,12 +34,24 @@ class Parts:
     Attributes:
         linked: Source folders of linked libraries.
         bundled: Wheels of others that go along as they are.
+        modules: Those that hold modules, for Pythons and platforms.
         blender: The command that starts Blender.
     """
 
     linked: Sequence[Path]
     bundled: Sequence[Path]
+    modules: Sequence[Path]
     blender: Sequence[str]
+
+    def modules_for(self, platforms: Iterable[str], tags: Iterable[str]) -> list[Path]:
+        """Returns the wheels of modules for some platforms and Pythons."""
+        pythons, names = set(tags), set(platforms)
+        found = []
+        for wheel in self.modules:
+            named = platform_of_wheel(wheel.name)
+            if named is not None and named[0].name in names and wheel.name.split("-")[2] in pythons:
+                found.append(wheel)
+        return found
 
 
 def built_package(tag: str) -> Path:
@@ -57,6 +69,7 @@ def fingerprint(tags: Sequence[str], parts: Parts) -> str:
     written = ("blender_manifest.toml", "pyproject.toml", "README.md", "docs/python.md")
     files = [SOURCE / name for name in written]
     files += [*license_texts(parts.linked, here()).values(), *parts.bundled, *manual.sources()]
+    files += parts.modules_for([here().name], tags)
     for folder in (Path(__file__).parent, SOURCE / "addon", *map(built_package, tags)):
         files += files_in(folder)
     whole = hashlib.sha256()
@@ -114,6 +127,7 @@ def make_extension(tags: Sequence[str], parts: Parts) -> Path:
         make_wheel(built_package(tag), tag, version, here(), licenses, folder) for tag in tags
     ]
     stage = BUILD / "extension-here"
+    wheels += parts.modules_for([here().name], tags)
     stage_extension(stage, [here().name], wheels, parts)
     made = target.with_suffix(".new.zip")
     where = ("--source-dir", str(stage), "--output-filepath", str(made))
@@ -152,14 +166,16 @@ def make_release(tags: Sequence[str], zig: Path, parts: Parts) -> list[Path]:
         for tag in OFFICIAL_TAGS:
             package = cross_package(name, tag)
             wheels.append(make_wheel(package, tag, version, platform, licenses, wheels_folder))
+    wheels += parts.modules_for(PLATFORMS, OFFICIAL_TAGS)
     stage = BUILD / "extension"
     stage_extension(stage, list(PLATFORMS), wheels, parts)
     target = empty_folder(BUILD / "extensions")
     where = ("--source-dir", str(stage), "--output-dir", str(target))
     blenders.run_blender(parts.blender, "extension", "build", "--split-platforms", *where)
     made = [target / f"{NAME}-{version}-{platform.replace('-', '_')}.zip" for platform in PLATFORMS]
-    for path in made:
-        check_contents(path, parts.bundled)
+    for path, own in zip(made, PLATFORMS, strict=True):
+        modules = parts.modules_for([own], OFFICIAL_TAGS)
+        check_contents(path, [*parts.bundled, *modules])
         blenders.validate(path, parts.blender)
     debian = target / f"{NAME}-{version}-debian_{here().name.replace('-', '_')}.zip"
     shutil.copy(make_extension(tags, parts), debian)

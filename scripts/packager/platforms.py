@@ -31,6 +31,7 @@ class Platform:
         suffix: Of a module's name, to be filled in with Python's version.
         libraries: Regular expression of the libraries that every such system has; `{python}` is
             Python's version, such as 311.
+        others: The same of those that modules of others may need, too.
         newest: The newest version of the system that a module may ask for.
     """
 
@@ -40,6 +41,7 @@ class Platform:
     wheel: str
     suffix: str
     libraries: str
+    others: str
     newest: Version
 
     def tag_for(self, lowest: Version) -> str:
@@ -58,9 +60,11 @@ class Platform:
         """Returns how the file of a module for a Python, such as cp311, ends."""
         return self.suffix.format(python.removeprefix("cp"))
 
-    def allows(self, library: str, python: str) -> bool:
+    def allows(self, library: str, python: str, *, is_of_others: bool = False) -> bool:
         """Whether a module for a Python, such as cp311, may need that library."""
         allowed = self.libraries.replace("{python}", python.removeprefix("cp"))
+        if is_of_others:
+            allowed = f"{allowed}|{self.others}"
         return re.fullmatch(allowed, library) is not None
 
 
@@ -73,6 +77,7 @@ def _platform(name: str, row: Mapping[str, str]) -> Platform:
         row["wheel"],
         row["suffix"],
         row["libraries"],
+        row["others"],
         (int(major), int(minor)),
     )
 
@@ -82,10 +87,11 @@ PLATFORMS = {name: _platform(name, row) for name, row in _TABLE.items() if isins
 
 def platform_of_wheel(name: str) -> tuple[Platform, Version] | None:
     """Returns the platform of a wheel's name, and the system that it is for; None for any other."""
-    last = name.removesuffix(".whl").split("-")[-1]
-    for each in PLATFORMS.values():
-        if lowest := each.system_of(last):
-            return each, lowest
+    # One wheel may have several names for its platform, with dots between them.
+    for last in name.removesuffix(".whl").split("-")[-1].split("."):
+        for each in PLATFORMS.values():
+            if lowest := each.system_of(last):
+                return each, lowest
     return None
 
 

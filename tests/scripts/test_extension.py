@@ -42,7 +42,7 @@ def test_a_release_fails_where_a_package_is_missing(
         for tag in extension.OFFICIAL_TAGS:
             if (platform, tag) != ("windows-x64", "cp313"):
                 extension.cross_package(platform, tag).mkdir(parents=True)
-    parts = extension.Parts([], [], ["false"])
+    parts = extension.Parts([], [], [], ["false"])
     with pytest.raises(PackagingError, match=r"^not built: windows-x64 cp313, Debian cp314$"):
         extension.make_release(["cp311", "cp313"], tmp_path, parts)
 

@@ -24,7 +24,8 @@ def missing_holders(lines: list[str]) -> list[str]:
     """What is linked in or brought along, and has no line."""
     linked = tomllib.loads((CHECKOUT / "scripts/sources.toml").read_text())
     names = [name.rpartition("-")[0] for name in linked]
-    bundled = re.findall(r"^(\w+)==", (CHECKOUT / "scripts/bundled.txt").read_text(), re.M)
+    lists = [CHECKOUT / "scripts" / name for name in ("bundled.txt", "bundled_modules.txt")]
+    bundled = re.findall(r"^(\w+)==", "".join(path.read_text() for path in lists), re.M)
     return [
         name
         for name in (*(NAMES.get(name, name) for name in names), *bundled, *COMPILERS)

@@ -13,7 +13,7 @@ from small_modules import SUFFIXES, compiled
 
 pytest.importorskip("lief")
 
-from packager.check_wheel import wheel_faults
+from packager.check_wheel import bundled_faults, wheel_faults
 from packager.licenses import missing_licenses
 from packager.platforms import PLATFORMS, glibc_here
 from packager.project import SOURCE, PackagingError
@@ -193,8 +193,26 @@ def test_faults_of_wheels_of_others_are_found() -> None:
     assert faults(pure, "css/__init__.py") == ["holds no license"]
     for module in ("css/fast.so", "css/fast.pyd", "css/.libs/libfast.so.2"):
         assert faults(pure, module, license_text) == ["is not of pure Python"]
+    several = "holds {} modules, for no platform or not just one".format
     linux = "css-1.0-cp311-cp311-manylinux_2_17_x86_64.whl"
-    assert faults(linux, "css/__init__.py", license_text) == ["is not of pure Python"]
+    assert faults(linux, "css/__init__.py", license_text) == [several(0)]
+    other = "css-1.0-cp311-cp311-freebsd_14_x86_64.whl"
+    assert faults(other, "css/fast.so", license_text) == [several(1)]
+
+
+def test_a_compiled_wheel_of_others_may_go_along(package: Path) -> None:
+    """One module that exports its entry point alone, for the platform of the wheel's name."""
+    contents = (package / MODULE).read_bytes()
+    names = ["fast/__init__.py", "fast-1.0.dist-info/licenses/LICENSE"]
+
+    def faults(platform: str, path: str = f"fast/{MODULE}") -> list[str]:
+        found = bundled_faults(f"fast-1.0-cp313-cp313-{platform}.whl", names, {path: contents})
+        return [each for each in found if "version" not in each]
+
+    linux = "manylinux_2_17_x86_64.manylinux2014_x86_64"
+    assert faults(linux) == []
+    assert faults(linux, "fast/fast.so") == ["exports ['PyInit__native'], not just PyInit_fast"]
+    assert faults("win_amd64") == ["is ELF for x86_64, not for windows-x64"]
 
 
 def test_the_wheels_to_bundle_are_those_that_the_package_needs() -> None:

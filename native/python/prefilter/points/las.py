@@ -1,28 +1,37 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Points of LAS and LAZ files, read by laspy."""
+"""Points of LAS files, and of LAZ files, whose chunks lazrs unpacks.
+
+See the LAS specification 1.4, R15, by the American Society for Photogrammetry and Remote Sensing.
+"""
 
 import functools
-import importlib
 import os
 import re
-import struct
 from collections.abc import Iterator
+from types import ModuleType
 from typing import Any, BinaryIO
 
 import numpy as np
+import numpy.typing as npt
 
 from .._border.input import open_file
+from .las_header import read_header
 from .laz_chunks import check_chunks
 from .reader import POINTS_AT_ONCE, PointChunk, damage_of, find_module
 
 _COLORS_LOOKED_AT = 1_000_000
 _COLORS = ("red", "green", "blue")
 _BYTES = ("classification", "return_number", "number_of_returns")
+_FIRST_LONG_FORMAT = 6
+"""From this format of points on, returns have four bits, and classes eight."""
+
+_Records = npt.NDArray[np.void]
+_Floats = npt.NDArray[np.float32]
 
 
 class LasReader:
-    """Reads a LAS file, or with one of laspy's backends a LAZ file, piece by piece.
+    """Reads a LAS file, or with lazrs a LAZ file, piece by piece.
 
     Attributes are intensity, classification, the numbers of returns, colors as bytes, and what
     extra dimensions there are; three of these named like normals (nx, NormalX, normal_x) are the
@@ -34,25 +43,22 @@ class LasReader:
 
     def __init__(self, path: str) -> None:
         self._path = path
-        self._laspy = find_module("laspy", path, "LAS and LAZ files", "laspy[lazrs]")
-        _check_header(path)
-        with self._opened() as file:
-            header = file.header
-            self.count: int | None = int(header.point_count)
-            names = set(header.point_format.dimension_names)
-            extra = list(header.point_format.extra_dimension_names)
-            room = max(os.path.getsize(path) - header.offset_to_point_data, 0)
-            least = 0 if header.are_points_compressed else header.point_format.size
-            if self.count * least > room:
-                raise ValueError(
-                    f"'{path}': too short for the {self.count} points in its header: {room} bytes "
-                    "follow it"
-                )
-            if header.are_points_compressed:
-                self._check_chunks(header)
-            scalars = [name for name in extra if header.point_format[name].num_elements == 1]
+        self._header = header = read_header(path)
+        self._lazrs: ModuleType | None = None
+        if header.is_compressed:
+            self._lazrs = find_module("lazrs", path, "LAZ files", "lazrs", "LAS")
+            with damage_of(path, "a LAZ file"):
+                check_chunks(path, header, self._lazrs)
+        self.count: int | None = header.count
+        room = max(os.path.getsize(path) - header.begin, 0)
+        if self.count * (0 if header.is_compressed else header.layout.itemsize) > room:
+            raise ValueError(
+                f"'{path}': too short for the {self.count} points in its header: {room} bytes "
+                "follow it"
+            )
+        scalars = [each.name for each in header.extra]
         self._normals = _normals_among(scalars)
-        self._has_colors = set(_COLORS) <= names
+        self._has_colors = set(_COLORS) <= set(header.layout.names or ())
         plain = [name for name in scalars if name not in self._normals]
         self._names = ["intensity", *plain]
         self.has_normals = bool(self._normals)
@@ -62,33 +68,20 @@ class LasReader:
             self.attributes += [(name, True) for name in _COLORS]
 
     def chunks(self, begin: int = 0, end: int | None = None) -> Iterator[PointChunk]:
-        found = begin
-        for points in self._pieces(begin, end):
-            found += len(points)
-            positions = _positions(points)
-            normals = _columns(points, self._normals) if self._normals else None
-            columns = [_columns(points, [*self._names, *_BYTES])]
+        for points in self._pieces(begin, self._header.count if end is None else end):
+            normals = self._columns(points, self._normals) if self._normals else None
+            columns = [self._columns(points, [*self._names, *_BYTES])]
             if self._has_colors:
-                columns.append(np.round(_columns(points, _COLORS) * self._color_scale))
-            yield positions, normals, None, None, np.concatenate(columns, axis=1)
-        if found != (self.count if end is None else end):
-            raise ValueError(
-                f"'{self._path}': ends after {found} of the {self.count} points in its header"
-            )
-
-    def _check_chunks(self, header: Any) -> None:
-        backends = self._laspy.LazBackend.detect_available()
-        if any(backend.name.startswith("Lazrs") for backend in backends):
-            with damage_of(self._path, "a LAZ file"):
-                check_chunks(self._path, header, importlib.import_module("lazrs"))
+                columns.append(np.round(self._columns(points, _COLORS) * self._color_scale))
+            yield self._positions(points), normals, None, None, np.concatenate(columns, axis=1)
 
     @functools.cached_property
     def _color_scale(self) -> np.float32:
         # Colors have 16 bits, of which some programs fill only the lower 8. Many that are not black
         # tell which. Of thousands of files, a task on a farm reads but one.
         colored = 0
-        for points in self._pieces():
-            colors = _columns(points, _COLORS)
+        for points in self._pieces(0, self._header.count):
+            colors = self._columns(points, _COLORS)
             if colors.max(initial=0) > 255:
                 return np.float32(255 / 65535)
             colored += int(np.count_nonzero(colors.any(axis=1)))
@@ -96,66 +89,62 @@ class LasReader:
                 break
         return np.float32(1)
 
-    def _opened(self) -> Any:
-        with damage_of(self._path, "a LAS file"):
-            return self._laspy.open(self._path)
+    def _pieces(self, begin: int, end: int) -> Iterator[_Records]:
+        """Yields the records of points from one to another."""
+        layout = self._header.layout
+        with open_file(self._path) as file:
+            packed = None
+            if self._lazrs is not None:
+                packed = self._unpacking(self._lazrs, file, begin)
+            else:
+                file.seek(self._header.begin + begin * layout.itemsize)
+            for first in range(begin, end, POINTS_AT_ONCE):
+                data = bytearray(min(POINTS_AT_ONCE, end - first) * layout.itemsize)
+                if packed is None:
+                    read = file.readinto(data)  # type: ignore[attr-defined]
+                    if read != len(data):
+                        raise ValueError(
+                            f"'{self._path}': ends after {first + read // layout.itemsize} of the "
+                            f"{self._header.count} points in its header"
+                        )
+                else:
+                    with damage_of(self._path, "a LAZ file"):
+                        packed.decompress_many(data)
+                yield np.frombuffer(data, layout)
 
-    def _pieces(self, begin: int = 0, end: int | None = None) -> Iterator[Any]:
-        with self._opened() as file:
+    def _unpacking(self, lazrs: ModuleType, file: BinaryIO, begin: int) -> Any:
+        """What unpacks points from one on."""
+        with damage_of(self._path, "a LAZ file"):
+            file.seek(self._header.begin)
+            packed = lazrs.LasZipDecompressor(file, self._header.packing)
             if begin > 0:
-                with damage_of(self._path, "a LAS file"):
-                    file.seek(begin)
-            while True:
-                some = POINTS_AT_ONCE if end is None else min(POINTS_AT_ONCE, end - begin)
-                with damage_of(self._path, "a LAS file"):
-                    points = file.read_points(some) if some > 0 else ()
-                if len(points) == 0:
-                    return
-                begin += len(points)
-                yield points
+                packed.seek(begin)
+            return packed
 
+    def _positions(self, points: _Records) -> npt.NDArray[np.float64]:
+        # Scales of a damaged header make what is not finite, which readers of positions find.
+        with np.errstate(all="ignore"):
+            steps = np.stack([points[axis] for axis in "xyz"], axis=1)
+            return steps * self._header.scales + self._header.offsets
 
-def _check_header(path: str) -> None:
-    """Refuses sizes that the file has no room for: laspy would go on for hours, or need them all.
+    def _columns(self, points: _Records, names: tuple[str, ...] | list[str]) -> _Floats:
+        with np.errstate(all="ignore"):
+            return np.stack([self._column(points, name) for name in names], axis=1)
 
-    See the public header block in the specification of LAS 1.4.
-    """
-    with open_file(path) as file:
-        size = file.seek(0, os.SEEK_END)
-        file.seek(0)
-        header = file.read(255)
-        end = _end_of_records(file, header, size)
-    if header[:4] != b"LASF" or len(header) < 227:
-        raise ValueError(f"'{path}' is not a LAS file: it begins with {header[:4]!r}")
-    begin, count = struct.unpack_from("<2I", header, 96)
-    if max(begin, count * 54, end) > size:
-        raise ValueError(f"'{path}': too short for the records that its header announces")
-
-
-def _end_of_records(file: BinaryIO, header: bytes, size: int) -> int:
-    """Where the extended records of LAS 1.4 end, or the first of them that the file cuts off."""
-    if len(header) < 247 or header[25] < 4:
-        return 0
-    begin, count = struct.unpack_from("<QI", header, 235)
-    end: int = begin if count else 0
-    for _ in range(count):
-        if end + 60 > size:
-            return end + 60
-        file.seek(end + 20)
-        end += 60 + struct.unpack("<Q", file.read(8))[0]
-    return end
-
-
-def _positions(points: Any) -> np.ndarray:
-    # Scales of a damaged header make what is not finite, which readers of positions find.
-    with np.errstate(all="ignore"):
-        return np.stack([points.x, points.y, points.z], axis=1).astype(np.float64)
-
-
-def _columns(points: Any, names: tuple[str, ...] | list[str]) -> np.ndarray:
-    # Extra dimensions may be scaled, and of double precision.
-    with np.errstate(all="ignore"):
-        return np.stack([np.asarray(points[name], np.float32) for name in names], axis=1)
+    def _column(self, points: _Records, name: str) -> _Floats:
+        bits = 4 if self._header.point_format >= _FIRST_LONG_FORMAT else 3
+        if name == "return_number":
+            return (points["returns"] & ((1 << bits) - 1)).astype(np.float32)
+        if name == "number_of_returns":
+            return (points["returns"] >> bits & ((1 << bits) - 1)).astype(np.float32)
+        if name == "classification" and self._header.point_format < _FIRST_LONG_FORMAT:
+            # The other bits are flags.
+            return (points["classification"] & 31).astype(np.float32)
+        for each in self._header.extra:
+            if each.name == name:
+                values = points[each.field].astype(np.float64) * each.scale + each.offset
+                return values.astype(np.float32)
+        return points[name].astype(np.float32)
 
 
 def _normals_among(names: list[str]) -> list[str]:

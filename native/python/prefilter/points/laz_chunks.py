@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from typing import Any, BinaryIO, NamedTuple
 
 from .._border.input import open_file
+from .las_header import LasHeader
 
 _VARIABLE_SIZE = 0xFFFFFFFF
 _MOST_POINTS = 1 << 22
@@ -31,30 +32,29 @@ class _Record(NamedTuple):
     layers: int
 
 
-def check_chunks(path: str, header: Any, backend: Any) -> None:
+def check_chunks(path: str, header: LasHeader, backend: Any) -> None:
     """Refuses a LAZ file whose chunks cannot be what its header and its tables say.
 
     Args:
         path: The file.
-        header: laspy's header of it.
+        header: What it says of its points.
         backend: The module lazrs.
 
     Raises:
         ValueError: It says what does not agree.
     """
-    found = [vlr for vlr in header.vlrs if type(vlr).__name__ == "LasZipVlr"]
-    if not found:
+    data = header.packing
+    if data is None:
         raise ValueError(f"'{path}': compressed, and the record that says how is missing")
-    data = found[0].record_data
     record = _record(path, data)
-    if record.point_size != header.point_format.size:
+    if record.point_size != header.layout.itemsize:
         raise ValueError(
             f"'{path}': its compressed points have {record.point_size} bytes, and those of its "
-            f"header {header.point_format.size}"
+            f"header {header.layout.itemsize}"
         )
-    if header.point_count == 0:
+    if header.count == 0:
         return
-    begin = header.offset_to_point_data
+    begin = header.begin
     with open_file(path) as file:
         table = _table_offset(path, file, begin)
         count = _chunk_count(path, file, table, begin, record.point_size)
@@ -62,7 +62,7 @@ def check_chunks(path: str, header: Any, backend: Any) -> None:
         chunks = backend.read_chunk_table(file, backend.LazVlr(data))
         if len(chunks) != count:
             raise ValueError(f"'{path}': has {len(chunks)} of the {count} chunks of its table")
-        _check_counts(path, chunks, record, int(header.point_count))
+        _check_counts(path, chunks, record, header.count)
         _check_sizes(path, file, chunks, record, begin + 8, table)
 
 

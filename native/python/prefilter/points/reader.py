@@ -4,7 +4,6 @@
 
 import contextlib
 import importlib
-import sys
 from collections.abc import Iterator
 from types import ModuleType
 from typing import Protocol, TypeAlias
@@ -54,8 +53,19 @@ class PointReader(Protocol):
         """Yields points, some at a time: all anew, or where it can seek, from one to another."""
 
 
-def find_module(name: str, path: str, files: str, package: str) -> ModuleType:
-    """Imports the module that reads some files. Raises ValueError where it cannot be imported."""
+def find_module(name: str, path: str, files: str, package: str, other: str) -> ModuleType:
+    """Imports the module that reads some files.
+
+    Args:
+        name: Of the module.
+        path: Of the file to read.
+        files: What files of its kind are called.
+        package: What pip installs it by.
+        other: A kind of files that needs no module.
+
+    Raises:
+        ValueError: It cannot be imported.
+    """
     # What cannot be opened is no fault of the module.
     with open_file(path):
         pass
@@ -63,8 +73,8 @@ def find_module(name: str, path: str, files: str, package: str) -> ModuleType:
         return importlib.import_module(name)
     except ImportError as error:
         raise ValueError(
-            f"'{path}': {files} need the Python module {name}, which {sys.executable} cannot "
-            f"import: {error}. Install the package {package}, or convert the file to PLY"
+            f"'{path}': {files} need the Python module {name}, which is missing: {error}. Install "
+            f"it by pip install {package}, or convert the file to {other}"
         ) from error
 
 
