@@ -133,6 +133,7 @@ class PointsImport:
                 told = prefilter.file_normals(path, found, progress=share(progress, 0.7, 1.0))
         except MemoryError as error:
             raise MemoryError(f"{error}; a lower value of Most Points keeps fewer") from error
+        self._warnings += found.warnings
         if found.stride > 1:
             text = "'{}': one of {} points was kept, as Most Points is {}"
             self._warnings.append(Sentence(text, path.name, found.stride, most))

@@ -178,7 +178,7 @@ class Reconstruction:
             self._notes.append(Sentence("normals were estimated for {}", listed(without)))
         carried = _carried(self._read)
         surface = reconstructed(self.scans(), self.settings, progress)
-        self._warnings.extend(oddities(surface.report))
+        self._warnings.extend(oddities(surface.report, self._place.origin.tolist()))
         self._notes.extend(directions(surface.report))
         self._notes.extend(openings(surface.report))
         self._surface = surface

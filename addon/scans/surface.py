@@ -146,6 +146,13 @@ def told(report: "prefilter.ReconstructionReport") -> str:
     return scans.told(report, length)
 
 
-def oddities(report: "prefilter.ReconstructionReport") -> list[str]:
-    """Returns what is odd about the points, as warnings, in the units of the scene."""
-    return scans.oddities(report, length)
+def oddities(
+    report: "prefilter.ReconstructionReport", origin: Sequence[float] = (0.0, 0.0, 0.0)
+) -> list[str]:
+    """Returns what is odd about the points, as warnings, in the units of the scene.
+
+    Args:
+        report: About the surface.
+        origin: Where the origin of the points' coordinates is.
+    """
+    return scans.oddities(report, length, origin)

@@ -19,6 +19,7 @@
 #include "prefilter/base/names.h"
 #include "prefilter/mesh/array_sink.h"
 #include "prefilter/mesh/ply_mesh_writer.h"
+#include "prefilter/reconstruct/phantoms.h"
 #include "prefilter/reconstruct/reconstruct.h"
 #include "prefilter/reconstruct/steps.h"
 #include "prefilter/scan/array_source.h"
@@ -53,6 +54,7 @@ void bind_reconstruct_options(py::module_& m) {
       .def_readwrite("smooth", &Options::smooth)
       .def_property("isovalue", nullptr, &set_isovalue)
       .def_readwrite("are_sides_known", &Options::are_sides_known)
+      .def_readwrite("check_normals", &Options::check_normals)
       .def_readwrite("fit", &Options::fit)
       .def_readwrite("watertight", &Options::watertight)
       .def_readwrite("trim", &Options::trim)
@@ -83,10 +85,41 @@ std::unique_ptr<ArraySource> array_points(const Rows& positions, const Rows& nor
                                        floats(attributes), std::move(carried), is_double);
 }
 
+py::list to_list(const std::vector<PhantomPlace>& phantoms) {
+  py::list result;
+  for (const PhantomPlace& each : phantoms) {
+    const auto& [x, y, z] = each.position;
+    result.append(py::make_tuple(py::make_tuple(x, y, z), each.points));
+  }
+  return result;
+}
+
+py::list bound_find_phantoms(const Array<double>& points, const py::object& callback, int threads) {
+  const Progress progress = to_progress(callback);
+  std::vector<PhantomPlace> found;
+  {
+    const py::gil_scoped_release unlocked;
+    // Normals do not count here.
+    ArraySource source(rows_of(points), rows_of(points), {}, {}, {}, true);
+    found = find_phantoms(&source, progress, threads);
+  }
+  return to_list(found);
+}
+
 py::dict to_dict(const ReconstructReport& report) {
   py::dict found;
   found["points"] = report.points;
-  found["dropped"] = report.dropped;
+  found["dropped"] = report.dropped.sum();
+  py::dict causes;
+  causes["not_finite"] = report.dropped.not_finite;
+  causes["huge"] = report.dropped.huge;
+  causes["weightless"] = report.dropped.weightless;
+  causes["normalless"] = report.dropped.normalless;
+  found["causes"] = causes;
+  found["phantoms"] = to_list(report.phantoms);
+  constexpr const char* kFaults[] = {"", "missing", "contradictory"};
+  found["normal_fault"] = kFaults[static_cast<std::size_t>(report.normal_fault)];
+  found["contradiction"] = report.contradiction;
   found["strays"] = report.strays;
   found["outliers"] = report.outliers;
   found["vertices"] = report.vertices;
@@ -169,7 +202,7 @@ py::dict bound_reconstruct_file(PointSource* source, const std::string& target,
     const std::unique_ptr<PlyMeshWriter> writer = mesh_writer(*source, target, options);
     options.progress = progress.part(0.0, 0.95);
     report = reconstruct(source, options, writer.get());
-    writer->finish(progress.part(0.95, 1.0));
+    if (report.normal_fault == NormalFault::kNone) writer->finish(progress.part(0.95, 1.0));
   }
   return to_dict(report);
 }
@@ -244,6 +277,8 @@ void bind_reconstruct(py::module_& m) {
            py::arg("source"), py::arg("is_up"), py::arg("viewpoints"), py::keep_alive<1, 2>());
   m.def("reconstruct", &bound_reconstruct, py::arg("source"), py::arg("options"),
         py::arg("progress"));
+  m.def("find_phantoms", &bound_find_phantoms, py::arg("points"), py::arg("progress"),
+        py::arg("threads"));
   m.def("trim", &bound_trim, py::arg("positions"), py::arg("triangles"), py::arg("attributes"),
         py::arg("distance"), py::arg("hole"), py::arg("island"), py::arg("progress"));
   m.def("reconstruct_file", &bound_reconstruct_file, py::arg("source"), py::arg("target"),

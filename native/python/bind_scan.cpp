@@ -14,10 +14,12 @@
 #include "convert.h"
 #include "instances.h"
 #include "prefilter/base/memory.h"
+#include "prefilter/normals/completed_normals.h"
 #include "prefilter/normals/directed_normals.h"
 #include "prefilter/normals/face_normals.h"
 #include "prefilter/normals/height_field.h"
 #include "prefilter/normals/normals.h"
+#include "prefilter/normals/origin_role.h"
 #include "prefilter/scan/chosen_points.h"
 #include "prefilter/scan/float_steps.h"
 #include "prefilter/scan/moved_points.h"
@@ -257,6 +259,28 @@ Array<double> bound_directed_normals(const Array<double>& points, const Array<do
   return to_array<double>(std::move(directed), {points.shape(0), 3});
 }
 
+Array<double> bound_completed_normals(const Array<double>& points, const Array<double>& normals,
+                                      int neighbours, const py::object& callback, int threads) {
+  const Progress progress = to_progress(callback);
+  std::vector<Vector3> completed;
+  {
+    const py::gil_scoped_release unlocked;
+    completed = completed_normals(rows_of(points), rows_of(normals), neighbours, progress, threads);
+  }
+  return to_array<double>(std::move(completed), {points.shape(0), 3});
+}
+
+std::string bound_origin_role(const Array<double>& points, const py::object& callback,
+                              int threads) {
+  const Progress progress = to_progress(callback);
+  const py::gil_scoped_release unlocked;
+  const OriginRole role = origin_role(rows_of(points), progress, threads);
+  for (const auto& each : kOriginRoles) {
+    if (each.value == role) return std::string(each.name);
+  }
+  return "";
+}
+
 Array<double> bound_mesh_normals(const py::array& points, const py::array& triangles,
                                  const py::object& callback) {
   const Progress progress = to_progress(callback);
@@ -314,6 +338,14 @@ void bind_scan(py::module_& m) {
                                }
                                return attributes;
                              })
+      .def_property_readonly("warnings",
+                             [](const PointSource& source) {
+                               py::list warnings;
+                               for (const std::string& each : source.warnings()) {
+                                 warnings.append(to_str(each));
+                               }
+                               return warnings;
+                             })
       .def_property_readonly("viewpoint", [](const PointSource& source) -> py::object {
         const std::optional<Vector3> viewpoint = source.viewpoint();
         if (!viewpoint) return py::none();
@@ -363,6 +395,10 @@ void bind_scan(py::module_& m) {
         py::arg("progress"));
   m.def("grid_normals", &bound_grid_normals, py::arg("points"), py::arg("grid"),
         py::arg("viewpoint"), py::arg("progress"));
+  m.def("completed_normals", &bound_completed_normals, py::arg("points"), py::arg("normals"),
+        py::arg("neighbours"), py::arg("progress"), py::arg("threads"));
+  m.def("origin_role", &bound_origin_role, py::arg("points"), py::arg("progress"),
+        py::arg("threads"));
   m.def("directed_normals", &bound_directed_normals, py::arg("points"), py::arg("normals"),
         py::arg("progress"), py::arg("threads"));
   m.def("estimate_normals", &bound_estimate_normals, py::arg("points"), py::arg("neighbours"),

@@ -270,7 +270,11 @@ def test_a_viewpoint_for_each_point():
     scan = prefilter.ScanPoints(points, mixed, viewpoint=2 * points)
     found = rebuilt(scan, direction="viewpoint")
     np.testing.assert_array_equal(found[0], expected[0])
-    assert rebuilt(scan)[2].directions == ("given",)
+    # Normals that contradict each other are turned to where their points were seen from.
+    found = rebuilt(scan)
+    assert found[2].is_reoriented
+    assert found[2].directions == ("viewpoint",)
+    np.testing.assert_array_equal(found[1], expected[1])
     # Without normals as well.
     bare = rebuilt(points, viewpoint=2 * points)
     assert bare[2].directions == ("viewpoint",)

@@ -49,7 +49,7 @@ OPTIONS = [
     (reconstruction.reconstruct_file, _native.ReconstructOptions, reconstruction.CHECKS),
 ]
 # Set by the functions themselves.
-INTERNAL = {"are_sides_known", "folder", "grid", "slices", "support"}
+INTERNAL = {"are_sides_known", "check_normals", "folder", "grid", "slices", "support"}
 
 
 def options_of(kind: type) -> set[str]:

@@ -90,10 +90,12 @@ def test_points_that_tell_nothing_are_counted() -> None:
     cloud = sphere(20_000)
     points, normals = cloud.points.copy(), cloud.normals.copy()
     points[0], points[1], points[2] = np.nan, np.inf, -np.inf
-    normals[3], normals[4] = np.nan, 0.0
+    weights = np.ones(20_000)
+    weights[3:5] = 0.0
     report = prefilter.ReconstructionReport()
-    found = prefilter.reconstruct(points, normals, depth=6, report=report)
+    found = prefilter.reconstruct(points, normals, weights=weights, depth=6, report=report)
     assert (report.points, report.dropped) == (20_000, 5)
+    assert report.causes == {"not_finite": 3, "huge": 0, "weightless": 2, "normalless": 0}
     expected = prefilter.reconstruct(points[5:], normals[5:], depth=6)
     np.testing.assert_array_equal(found[0], expected[0])
 

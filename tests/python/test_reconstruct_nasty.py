@@ -242,4 +242,6 @@ def test_normals_that_cancel_each_other_everywhere_are_an_error() -> None:
     points = np.concatenate([cloud.points, cloud.points])
     normals = np.concatenate([cloud.normals, -cloud.normals])
     with pytest.raises(ValueError, match="normals: they contradict each other everywhere"):
-        prefilter.reconstruct(points, normals, depth=3)
+        prefilter.reconstruct(points, normals, depth=3, direction="given")
+    positions, triangles = prefilter.reconstruct(points, normals, depth=5)
+    assert solids.mesh_volume(positions, triangles) == pytest.approx(4 / 3 * np.pi, rel=0.02)

@@ -290,3 +290,12 @@ def test_points_far_from_all_others(scans, tmp_path, capsys):
     words = ("reconstruct", *sources, tmp_path / "s.ply", *DEPTH, "--work", tmp_path / "w")
     assert run(*words, "--step", "measure") == 0
     assert "box" in fails(capsys, 1, *words, "--step", "count").lower()
+
+
+def test_points_at_one_place(scans, tmp_path, capsys):
+    contents = scans[0].read_bytes().replace(b"element vertex 9000", b"element vertex 9050")
+    source = tmp_path / "phantom.ply"
+    source.write_bytes(contents + 50 * np.array([5, *8 * [1]], "<f4").tobytes())
+    words = ("reconstruct", source, tmp_path / "s.ply", *DEPTH, "--work", tmp_path / "w")
+    text = fails(capsys, 1, *words, "--step", "measure")
+    assert "50 points are at one place, (5, 1, 1)" in text

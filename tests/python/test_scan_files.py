@@ -144,8 +144,6 @@ def vertices(form="ascii", properties=XYZ, rows=CORNERS):
         (vertices().replace(b"vertex 3", b"vertex 9000000000000000000"), "too short for the 90000"),
         (vertices("binary_big_endian").replace(b"vertex 3", b"vertex 4"), "too short for the 4 ro"),
         (vertices("binary_big_endian")[:-1], "too short for the 3 rows of 'vertex' in its header"),
-        (vertices("binary_big_endian").replace(b"vertex 3", b"vertex 2"), "more than the 2 rows"),
-        (vertices().replace(b"vertex 3", b"vertex 2"), "holds more than the 2 rows of 'vertex'"),
         (vertices().replace(b"vertex 3", b"vertex 4"), "line 10: vertex 4 of 4: the file ends"),
         (
             vertices().replace(b"0.25", b"a\033[31m"),
@@ -162,7 +160,6 @@ def vertices(form="ascii", properties=XYZ, rows=CORNERS):
         (vertices().replace(b"float z", b"list float int z"), "of a type of whole numbers"),
         (vertices().replace(b"element", b"elements"), "line 4: a property before any element"),
         (vertices().replace(b"element vertex 3\n", b""), "line 3: a property before any element"),
-        (vertices() + b"\n" * 10 + b"x", "holds more than the 3 rows"),
     ],
     ids=str,
 )
@@ -170,6 +167,26 @@ def test_damaged_ply_files(tmp_path, contents, message):
     path = write(tmp_path, "cloud.ply", contents)
     with pytest.raises(ValueError, match=f"^'{re.escape(str(path))}'.*{message}"):
         prefilter.read_points(path)
+
+
+@pytest.mark.parametrize(
+    ("contents", "count"),
+    [
+        (vertices("binary_big_endian").replace(b"vertex 3", b"vertex 2"), 2),
+        (vertices("binary_little_endian").replace(b"vertex 3", b"vertex 1"), 1),
+        (vertices().replace(b"vertex 3", b"vertex 2"), 2),
+        (vertices() + b"\n" * 10 + b"x", 3),
+    ],
+    ids=str,
+)
+def test_rows_beyond_those_of_the_header_are_not_read(tmp_path, contents, count):
+    path = write(tmp_path, "cloud.ply", contents)
+    points = prefilter.read_points(path)
+    expected = [(0.0, 0.5, 1.0), (1.0, 0.25, -2.0), (3.0, 4.0, 5.5)]
+    np.testing.assert_array_equal(points.positions, expected[:count])
+    text = f"'{path}': holds more than the {count} rows of 'vertex' in its header; the rest was"
+    assert len(points.warnings) == 1
+    assert points.warnings[0].startswith(text)
 
 
 def test_what_is_too_long_for_text(tmp_path):

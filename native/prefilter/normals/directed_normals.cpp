@@ -3,13 +3,13 @@
 #include "prefilter/normals/directed_normals.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>
 
 #include "prefilter/base/error.h"
 #include "prefilter/base/parallel.h"
+#include "prefilter/normals/local_plane.h"
 #include "prefilter/normals/orientation.h"
 #include "prefilter/spatial/nearest_neighbors.h"
 
@@ -18,12 +18,6 @@ namespace {
 
 constexpr std::int64_t kPointsPerTask = 256;
 constexpr std::size_t kLinks = 8;  // as many as estimate_normals has by default
-
-// Zero for what has no direction.
-Vector3 unit(const Vector3& normal) {
-  const double size = length(normal);
-  return size > 0.0 && std::isfinite(size) ? 1.0 / size * normal : Vector3{};
-}
 
 }  // namespace
 
@@ -41,7 +35,7 @@ std::vector<Vector3> directed_normals(std::span<const Vector3> points,
   if (positions.empty()) return result;
   std::vector<Vector3> at_places(positions.size());
   for (std::size_t i = points.size(); i-- > 0;) {
-    result[i] = unit(normals[i]);
+    result[i] = unit_or_zero(normals[i]);
     const std::uint32_t place = search.places()[i];
     if (place == NeighborSearch::kNowhere) {
       result[i] = {};

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "prefilter/base/pulse.h"
+#include "prefilter/normals/some_points.h"
 
 namespace prefilter {
 namespace {
@@ -60,19 +61,6 @@ Range range_along(std::span<const Vector3> points, std::size_t axis) {
   const std::size_t edge = points.size() / 100;
   const double low = at(edge);
   return {low, at(points.size() - 1 - edge) - low};
-}
-
-std::vector<Vector3> some_of(std::span<const Vector3> points) {
-  std::vector<Vector3> result;
-  const std::size_t step = (points.size() + kMostPoints - 1) / kMostPoints;
-  for (std::size_t i = 0; i < points.size(); i += std::max<std::size_t>(step, 1)) {
-    const Vector3& p = points[i];
-    if (std::abs(p[0]) + std::abs(p[1]) + std::abs(p[2]) <= kLargestCoordinate) result.push_back(p);
-  }
-  // Copies of a point say no more of the shape than one.
-  std::sort(result.begin(), result.end());
-  result.erase(std::unique(result.begin(), result.end()), result.end());
-  return result;
 }
 
 // Heights above the plane that fits points best, as z over x and y, in sides of the cell, from
@@ -173,7 +161,7 @@ CellFindings look_at_cells(std::span<const Vector3> points, const Range& x, cons
 }  // namespace
 
 bool is_height_field(std::span<const Vector3> all, const Progress& progress) {
-  const std::vector<Vector3> points = some_of(all);
+  const std::vector<Vector3> points = some_points(all, kMostPoints);
   if (points.size() < kLeastPoints) return false;
   const Range x = range_along(points, 0);
   const Range y = range_along(points, 1);

@@ -59,6 +59,31 @@ Vector3 least_across(const SymmetricMatrix& m, const Vector3& other) {
 
 }  // namespace
 
+Vector3 unit_or_zero(const Vector3& vector) {
+  const double size = length(vector);
+  return size > 0.0 && std::isfinite(size) ? 1.0 / size * vector : Vector3{};
+}
+
+SymmetricMatrix covariance(std::span<const Vector3> positions, std::uint32_t place,
+                           const Neighbors& near) {
+  const Vector3& own = positions[place];
+  const double reach = 2.0 * near.squares().back();
+  SymmetricMatrix result;
+  if (!(reach > 0.0)) return result;
+  Vector3 mean{};
+  double sum = 0.0;
+  for (std::size_t i = 0; i < near.places().size(); ++i) {
+    const Vector3 offset = positions[near.places()[i]] - own;
+    const double weight = 1.0 - near.squares()[i] / reach;
+    for (int a = 0; a < 3; ++a) mean[a] += weight * offset[a];
+    result.add_square(weight, offset);
+    sum += weight;
+  }
+  for (double& x : mean) x /= sum;
+  result.add_square(-sum, mean);
+  return result;
+}
+
 Vector3 least_eigenvector(const SymmetricMatrix& matrix) {
   const double largest = std::max({std::abs(matrix.xx), std::abs(matrix.xy), std::abs(matrix.xz),
                                    std::abs(matrix.yy), std::abs(matrix.yz), std::abs(matrix.zz)});

@@ -3,7 +3,11 @@
 // The plane that fits points best.
 #pragma once
 
+#include <cstdint>
+#include <span>
+
 #include "prefilter/base/geometry.h"
+#include "prefilter/spatial/nearest_neighbors.h"
 
 namespace prefilter {
 
@@ -25,6 +29,14 @@ struct SymmetricMatrix {
     zz += weight * v[2] * v[2];
   }
 };
+
+/// The vector, 1 long; zero for one that is zero or not finite.
+Vector3 unit_or_zero(const Vector3& vector);
+
+/// The covariance of the neighbors of a position, around their mean; near ones count up to twice as
+/// much as far ones.
+SymmetricMatrix covariance(std::span<const Vector3> positions, std::uint32_t place,
+                           const Neighbors& near);
 
 /// The eigenvector, 1 long, of the least eigenvalue of a finite matrix: of the covariance of
 /// points, the normal of the plane that fits them best. Where several do, one of them; zero for a

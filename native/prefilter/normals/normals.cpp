@@ -42,27 +42,6 @@ void check_arguments(std::span<const Vector3> points, int neighbours,
   check_points(viewpoints, "viewpoint: row", kLargestCoordinate);
 }
 
-// Covariance of the neighbors of a point, around their mean.
-SymmetricMatrix covariance(std::span<const Vector3> positions, std::uint32_t place,
-                           const Neighbors& near) {
-  const Vector3& own = positions[place];
-  const double reach = 2.0 * near.squares().back();
-  SymmetricMatrix result;
-  if (!(reach > 0.0)) return result;
-  Vector3 mean{};
-  double sum = 0.0;
-  for (std::size_t i = 0; i < near.places().size(); ++i) {
-    const Vector3 offset = positions[near.places()[i]] - own;
-    const double weight = 1.0 - near.squares()[i] / reach;
-    for (int a = 0; a < 3; ++a) mean[a] += weight * offset[a];
-    result.add_square(weight, offset);
-    sum += weight;
-  }
-  for (double& x : mean) x /= sum;
-  result.add_square(-sum, mean);
-  return result;
-}
-
 // What is estimated for each distinct position.
 struct LocalPlanes {
   std::vector<Vector3> normals;

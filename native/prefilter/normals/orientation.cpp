@@ -66,14 +66,6 @@ class SignedSets {
   std::vector<std::uint32_t> links_;
 };
 
-// How surely two near normals have the same direction, from -1 to 1: the mean of what holds on a
-// plane, where they are parallel, and on a circle through both, where they are mirror images (Xie
-// et al. 2003). Where these contradict each other, as across a thin sheet, it is near 0.
-double agreement(const Vector3& a, const Vector3& b, const Vector3& offset) {
-  const double square = dot(offset, offset);
-  return square > 0.0 ? dot(a, b) - dot(a, offset) * dot(b, offset) / square : 0.0;
-}
-
 std::vector<std::int16_t> agreements(const LinkedPoints& points, std::span<const Vector3> normals,
                                      const Progress& progress, int threads) {
   std::vector<std::int16_t> result(points.links.size());
@@ -353,6 +345,11 @@ std::vector<bool> sets_upside_down(const LinkedPoints& points, std::span<const V
 }
 
 }  // namespace
+
+double agreement(const Vector3& a, const Vector3& b, const Vector3& offset) {
+  const double square = dot(offset, offset);
+  return square > 0.0 ? dot(a, b) - dot(a, offset) * dot(b, offset) / square : 0.0;
+}
 
 void orient_normals(const LinkedPoints& points, NormalSide side, const Progress& progress,
                     int threads, std::vector<Vector3>* normals) {

@@ -14,6 +14,11 @@
 
 namespace prefilter {
 
+/// How surely two near normals have the same direction, from -1 to 1: the mean of what holds on a
+/// plane, where they are parallel, and on a circle through both, where they are mirror images (Xie
+/// et al. 2003). Where these contradict each other, as across a thin sheet, it is near 0.
+double agreement(const Vector3& a, const Vector3& b, const Vector3& offset);
+
 /// Points, and which of them are near each other.
 struct LinkedPoints {
   std::span<const Vector3> positions;  // no two the same; fewer than 2^31

@@ -9,6 +9,8 @@
 
 #include "prefilter/base/elementary.h"
 #include "prefilter/base/radix_sort.h"
+#include "prefilter/reconstruct/normal_probe.h"
+#include "prefilter/reconstruct/phantom_points.h"
 #include "prefilter/reconstruct/point_batches.h"
 
 namespace prefilter {
@@ -16,21 +18,30 @@ namespace {
 
 // Of which sums are finite.
 constexpr float kLargestWeight = 1e30F;
+// What scanners write for no return is about the largest number of single precision.
+constexpr double kHugeCoordinate = 1e30;
+// Huge points count if others are fewer than one of so many.
+constexpr std::size_t kHugePerOther = 100;
 
 float float_weight(const PointBatch& batch, std::size_t i) {
   return batch.weights.empty() ? 1.0F : batch.weights[i];
 }
 
+bool has_position(const PointBatch& batch, std::size_t i) {
+  const Vector3& p = batch.positions[i];
+  return std::abs(p[0]) + std::abs(p[1]) + std::abs(p[2]) <= kLargestCoordinate;
+}
+
+bool has_weight(const PointBatch& batch, std::size_t i) {
+  const float weight = float_weight(batch, i);
+  return weight > 0.0F && weight <= kLargestWeight;
+}
+
 // One over the length of the point's normal; 0 where the point does not count.
 float normal_scale(const PointBatch& batch, std::size_t i) {
-  const Vector3& p = batch.positions[i];
-  const float weight = float_weight(batch, i);
+  if (!has_position(batch, i) || !has_weight(batch, i)) return 0.0F;
   const auto& [x, y, z] = batch.normals[i];
   const float squared = x * x + y * y + z * z;
-  const double sum = std::abs(p[0]) + std::abs(p[1]) + std::abs(p[2]);
-  if (!(sum <= kLargestCoordinate) || !(weight > 0.0F) || !(weight <= kLargestWeight)) {
-    return 0.0F;
-  }
   if (squared > 1e-30F && squared < 1e30F) return 1.0F / std::sqrt(squared);
   const double length =
       elementary::hypot(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
@@ -41,6 +52,7 @@ struct Scratch {
   SampleCells run;
   std::size_t cloud = 0;
   PointOrder order;
+  std::vector<NormalProbe::NearPoint> near;
 };
 
 void add_point(const PointBatch& batch, std::size_t i, const SampleGrid& grid,
@@ -106,6 +118,15 @@ std::array<float, 3> weighted_normal(const PointBatch& batch, std::size_t i) {
   return scale > 0.0F ? std::array{scale * x, scale * y, scale * z} : std::array<float, 3>{};
 }
 
+void CloudExtent::settle_huge() {
+  if (part.points >= 3 && part.points >= huge.points / kHugePerOther) {
+    dropped.huge += huge.points;
+  } else {
+    part.include(huge);
+  }
+  huge = CloudPart();
+}
+
 bool does_count(const PointBatch& batch, std::size_t i) { return normal_scale(batch, i) > 0.0F; }
 
 double weight_of(const PointBatch& batch, std::size_t i) {
@@ -142,51 +163,84 @@ void CloudPart::include(const CloudPart& other) {
   }
 }
 
-CloudExtent measure_cloud(PointSource* source, const Progress& progress, int threads,
-                          ThinnedPoints* some) {
-  struct Found {
-    CloudExtent extent;
-    std::size_t cloud = 0;
-    std::vector<ThinnedPoints::Entry> entries;
-  };
+namespace {
+
+bool is_huge(const Vector3& p) {
+  return std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])}) >= kHugeCoordinate;
+}
+
+// What is found of a batch.
+struct MeasuredBatch {
   CloudExtent extent;
-  CloudPart own;  // of the cloud that is read
   std::size_t cloud = 0;
-  for_batches<Found>(
+  std::vector<ThinnedPoints::Entry> entries;
+  std::vector<ThinnedPoints::Entry> repeated;
+};
+
+void measure_point(const PointBatch& batch, std::size_t i, const ThinnedPoints* some,
+                   MeasuredBatch* found) {
+  const Vector3& position = batch.positions[i];
+  CloudExtent& extent = found->extent;
+  if (some != nullptr && does_count(batch, i)) {
+    const ThinnedPoints::Entry entry = ThinnedPoints::entry_of(position);
+    if (some->keeps(entry)) found->entries.push_back(entry);
+  }
+  if (!does_count(batch, i)) {
+    DroppedPoints& dropped = extent.dropped;
+    ++(!has_position(batch, i) ? dropped.not_finite
+       : is_huge(position)     ? dropped.huge
+       : has_weight(batch, i)  ? dropped.normalless
+                               : dropped.weightless);
+    return;
+  }
+  if (is_huge(position)) {
+    extent.huge.include(position, weight_of(batch, i));
+    return;
+  }
+  extent.part.include(position, weight_of(batch, i));
+  extent.steps.add(position);
+}
+
+}  // namespace
+
+CloudExtent measure_cloud(PointSource* source, const Progress& progress, int threads,
+                          ThinnedPoints* some, RepeatedPositions* repeated) {
+  CloudExtent extent;
+  CloudExtent own;  // of the cloud that is read
+  std::size_t cloud = 0;
+  const auto end_cloud = [&] {
+    extent.part.include(std::exchange(own.part, CloudPart()));
+    extent.huge.include(std::exchange(own.huge, CloudPart()));
+  };
+  for_batches<MeasuredBatch>(
       source, progress, threads,
-      [some](const PointBatch& batch, Found* found) {
-        found->extent = CloudExtent();
+      [&](const PointBatch& batch, MeasuredBatch* found) {
+        *found = MeasuredBatch();
         found->cloud = batch.cloud;
-        found->entries.clear();
         found->extent.points = batch.positions.size();
         for (std::size_t i = 0; i < batch.positions.size(); ++i) {
-          if (!does_count(batch, i)) {
-            ++found->extent.dropped;
-            continue;
-          }
-          found->extent.part.include(batch.positions[i], weight_of(batch, i));
-          found->extent.steps.add(batch.positions[i]);
-          if (some == nullptr) continue;
-          const ThinnedPoints::Entry entry = ThinnedPoints::entry_of(batch.positions[i]);
-          if (some->keeps(entry)) found->entries.push_back(entry);
+          measure_point(batch, i, some, found);
         }
+        if (repeated != nullptr) found->repeated = RepeatedPositions::of_batch(batch);
       },
-      [&](const Found& found) {
-        if (found.cloud != cloud) extent.part.include(std::exchange(own, CloudPart()));
+      [&](const MeasuredBatch& found) {
+        if (found.cloud != cloud) end_cloud();
         cloud = found.cloud;
-        own.include(found.extent.part);
+        own.part.include(found.extent.part);
+        own.huge.include(found.extent.huge);
         extent.steps.add(found.extent.steps);
         extent.points += found.extent.points;
-        extent.dropped += found.extent.dropped;
+        extent.dropped.add(found.extent.dropped);
         if (some != nullptr) some->add(found.entries);
+        if (repeated != nullptr) repeated->add(found.repeated, found.extent.points);
       });
-  extent.part.include(own);
+  end_cloud();
   if (some != nullptr) some->finish();
   return extent;
 }
 
 void gather_samples(PointSource* source, const SampleGrid& grid, const Progress& progress,
-                    int threads, SampleStore* store) {
+                    int threads, SampleStore* store, NormalProbe* probe) {
   const std::size_t attribute_count = source->attributes().size();
   std::size_t cloud = 0;
   for_batches<Scratch>(
@@ -194,11 +248,13 @@ void gather_samples(PointSource* source, const SampleGrid& grid, const Progress&
       [&](const PointBatch& batch, Scratch* scratch) {
         make_run(batch, grid, attribute_count, scratch);
         scratch->cloud = batch.cloud;
+        if (probe != nullptr) scratch->near = probe->look_at(batch);
       },
       [&](const Scratch& scratch) {
         if (scratch.cloud != cloud) store->end_cloud();
         cloud = scratch.cloud;
         store->add(scratch.run);
+        if (probe != nullptr) probe->add(scratch.near);
       });
   store->finish(threads);
 }

@@ -11,12 +11,16 @@
 #include "prefilter/base/geometry.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/reconstruct/carried_depth.h"
+#include "prefilter/reconstruct/reconstruct.h"
 #include "prefilter/reconstruct/sample_grid.h"
 #include "prefilter/reconstruct/sample_store.h"
 #include "prefilter/scan/float_steps.h"
 #include "prefilter/scan/point_source.h"
 
 namespace prefilter {
+
+class NormalProbe;
+class RepeatedPositions;
 
 /// Where points are.
 struct CloudPart {
@@ -32,22 +36,28 @@ struct CloudPart {
 
 /// What a first look at a cloud finds.
 struct CloudExtent {
-  CloudPart part;           // of the points that count
-  std::size_t points = 0;   // that there are
-  std::size_t dropped = 0;  // that are not finite, have no normal or a weight that is not positive
-  std::size_t strays = 0;   // that are far from all others
-  FloatSteps steps;         // of the points that count
+  CloudPart part;          // of the points that count
+  CloudPart huge;          // of those that would count, but have huge coordinates
+  std::size_t points = 0;  // that there are
+  DroppedPoints dropped;
+  std::size_t strays = 0;  // that are far from all others
+  FloatSteps steps;        // of the points that count
+
+  /// Decides whether points with huge coordinates count, once all points have been looked at.
+  void settle_huge();
 };
 
-/// Reads the source once. Where `some` is not null, it gets some of the points that count.
+/// Reads the source once. Where `some` is not null, it gets some of the points that count; and
+/// `repeated` the positions at which there may be many. The extent is not settled yet.
 CloudExtent measure_cloud(PointSource* source, const Progress& progress, int threads,
-                          ThinnedPoints* some = nullptr);
+                          ThinnedPoints* some = nullptr, RepeatedPositions* repeated = nullptr);
 
 /// Reads the source again, and puts all points that count into cells. The same to rounding for
 /// points in any order, and to the last bit for any number of threads. Clouds that are joined are
-/// summed up each by itself, so that machines may do that, and then one after the other.
+/// summed up each by itself, so that machines may do that, and then one after the other. Where
+/// `probe` is not null, it looks at all points on the way.
 void gather_samples(PointSource* source, const SampleGrid& grid, const Progress& progress,
-                    int threads, SampleStore* store);
+                    int threads, SampleStore* store, NormalProbe* probe = nullptr);
 
 /// Of a batch, the points that count, in the order of their cells: keys and, in the lowest
 /// kBatchBits bits, indices.

@@ -131,9 +131,9 @@ struct Guess {
 };
 
 // Whether there are samples in the neighbors of cells that are asked for in row-major order.
-class Neighbors {
+class CellNeighbors {
  public:
-  explicit Neighbors(const std::vector<CellKey>& keys) : keys_(keys) {}
+  explicit CellNeighbors(const std::vector<CellKey>& keys) : keys_(keys) {}
 
   bool has(std::size_t face, CellKey key) {
     std::size_t& cursor = cursors_[face];
@@ -159,7 +159,7 @@ struct CellRange {
 
 // Adds where the plane of a cell goes on in the cells next to it that have no samples.
 void add_leaving(const SampleCell& cell, const CellPolygon& polygon, const CellRange& range,
-                 Neighbors* neighbors, std::vector<Leaving>* leaving) {
+                 CellNeighbors* neighbors, std::vector<Leaving>* leaving) {
   const CellPosition at = cell_position(cell.key);
   for (int face = 0; face < 6; ++face) {
     const int axis = face / 2;
@@ -241,7 +241,7 @@ void add_patches(const PatchLevels& levels, int depth, int low, int high, const 
   const SampleLevel& level = *own;
   const Pieces pieces = {splits, flux};
   const std::vector<CellKey> keys = with_layers(below, level, above).keys;
-  Neighbors neighbors(keys);
+  CellNeighbors neighbors(keys);
   std::vector<Leaving> leaving;
   const CellRange range = {1 << depth, low, high};
   std::vector<CellKey> split;

@@ -48,7 +48,7 @@ void check_cloud(const CloudExtent& extent) {
   if (extent.part.points < 3) {
     throw_invalid(
         "points: " + std::to_string(extent.points) + ", of which " +
-        std::to_string(extent.dropped) +
+        std::to_string(extent.dropped.sum()) +
         " are not finite and at most 1e300, or have no normal or no weight; at least 3 are "
         "needed");
   }

@@ -11,12 +11,14 @@
 #include <vector>
 
 #include "prefilter/base/error.h"
+#include "prefilter/base/text.h"
 #include "prefilter/io/archive.h"
 #include "prefilter/reconstruct/cloud_grid.h"
 #include "prefilter/reconstruct/gather_samples.h"
 #include "prefilter/reconstruct/memory_plan.h"
 #include "prefilter/reconstruct/part_files.h"
 #include "prefilter/reconstruct/part_joiner.h"
+#include "prefilter/reconstruct/phantom_points.h"
 #include "prefilter/reconstruct/reconstruct_checks.h"
 #include "prefilter/reconstruct/sample_store.h"
 #include "prefilter/reconstruct/stray_points.h"
@@ -32,17 +34,22 @@ ArchiveMark mark_of(StepFile kind, const StepFiles& files) {
   return {kNames[static_cast<std::size_t>(kind)], files.work};
 }
 
-constexpr std::size_t kMeasuredNumbers = 16;
-constexpr std::size_t kMeasuredCounts = 12;
+constexpr std::size_t kMeasuredNumbers = 29;
+constexpr std::size_t kMeasuredCounts = 16;
 
 void write_extent(const CloudExtent& extent, ArchiveWriter* file) {
   const CloudPart& part = extent.part;
-  std::vector<double> numbers = {part.weight};
-  std::vector<std::uint64_t> counts = {part.points, extent.points, extent.dropped};
+  const CloudPart& huge = extent.huge;
+  const DroppedPoints& dropped = extent.dropped;
+  std::vector<double> numbers = {part.weight, huge.weight};
+  std::vector<std::uint64_t> counts = {part.points,       huge.points,        extent.points,
+                                       dropped.huge,      dropped.not_finite, dropped.weightless,
+                                       dropped.normalless};
   for (std::size_t a = 0; a < 3; ++a) {
     const FloatSteps::Axis& axis = extent.steps.axes()[a];
-    numbers.insert(numbers.end(), {part.box.low[a], part.box.high[a], part.mean[a], part.squares[a],
-                                   axis.largest});
+    numbers.insert(numbers.end(),
+                   {part.box.low[a], part.box.high[a], part.mean[a], part.squares[a], axis.largest,
+                    huge.box.low[a], huge.box.high[a], huge.mean[a], huge.squares[a]});
     counts.insert(counts.end(), {axis.count, axis.odd, axis.is_wide ? 1U : 0U});
   }
   file->put_all(numbers);
@@ -57,16 +64,22 @@ CloudExtent read_extent(ArchiveReader* file) {
   CloudExtent extent;
   std::array<FloatSteps::Axis, 3> axes;
   extent.part.weight = numbers[0];
+  extent.huge.weight = numbers[1];
   extent.part.points = counts[0];
-  extent.points = counts[1];
-  extent.dropped = counts[2];
+  extent.huge.points = counts[1];
+  extent.points = counts[2];
+  extent.dropped = {counts[4], counts[3], counts[5], counts[6]};
   for (std::size_t a = 0; a < 3; ++a) {
-    const double* const own = &numbers[1 + 5 * a];
-    extent.part.box.low[a] = own[0];
-    extent.part.box.high[a] = own[1];
-    extent.part.mean[a] = own[2];
-    extent.part.squares[a] = own[3];
-    axes[a] = {counts[3 + 3 * a], counts[4 + 3 * a], counts[5 + 3 * a] != 0, own[4]};
+    const double* const own = &numbers[2 + 9 * a];
+    const auto take = [&](std::size_t first, CloudPart* part) {
+      part->box.low[a] = own[first];
+      part->box.high[a] = own[first + 1];
+      part->mean[a] = own[first + 2];
+      part->squares[a] = own[first + 3];
+    };
+    take(0, &extent.part);
+    take(5, &extent.huge);
+    axes[a] = {counts[7 + 3 * a], counts[8 + 3 * a], counts[9 + 3 * a] != 0, own[4]};
   }
   extent.steps = FloatSteps(axes);
   return extent;
@@ -79,10 +92,12 @@ CloudExtent whole_extent(const StepFiles& files) {
     ArchiveReader file(path, mark_of(StepFile::kMeasure, files));
     const CloudExtent extent = read_extent(&file);
     whole.part.include(extent.part);
+    whole.huge.include(extent.huge);
     whole.steps.add(extent.steps);
     whole.points += extent.points;
-    whole.dropped += extent.dropped;
+    whole.dropped.add(extent.dropped);
   }
+  whole.settle_huge();
   check_cloud(whole);
   if (may_have_strays(whole)) {
     throw_invalid(
@@ -127,7 +142,19 @@ void measure_step(PointSource* share, std::size_t number, const StepFiles& files
   check_steps(options);
   const std::size_t points = share->count().value_or(PointOrder::kMostPoints);
   const CloudLoad load = load_of(points, share->attributes().size(), options);
-  const CloudExtent extent = measure_cloud(share, options.progress, batches_at_once(load, options));
+  const int width = batches_at_once(load, options);
+  RepeatedPositions repeated;
+  const CloudExtent extent =
+      measure_cloud(share, options.progress.part(0.0, 0.9), width, nullptr, &repeated);
+  const auto phantoms = find_phantoms(repeated, share, options.progress.part(0.9, 1.0), width);
+  if (!phantoms.empty()) {
+    const PhantomPlace& first = phantoms.front();
+    throw_invalid("box: none; " + std::to_string(first.points) + " points are at one place, (" +
+                  to_text(first.position[0]) + ", " + to_text(first.position[1]) + ", " +
+                  to_text(first.position[2]) +
+                  "), as scanners write for no return, which steps cannot leave out: give a box "
+                  "around the others, or remove these points");
+  }
   ArchiveWriter file(files.measures[number], mark_of(StepFile::kMeasure, files));
   write_extent(extent, &file);
   file.commit();
@@ -142,7 +169,9 @@ void count_step(PointSource* share, std::size_t number, const StepFiles& files,
   const CloudLoad load = load_of(extent.part.points, attributes, options);
   SampleStore store(grid.depth, slab_bits(grid.depth), attributes, options.memory_limit / 4,
                     options.folder);
-  gather_samples(share, grid, options.progress, batches_at_once(load, options), &store);
+  PointsWithin near(share, extent.part.box);
+  gather_samples(extent.dropped.huge > 0 ? &near : share, grid, options.progress,
+                 batches_at_once(load, options), &store);
   ArchiveWriter file(files.counts[number], mark_of(StepFile::kCounts, files));
   store.save(&file);
   file.commit();

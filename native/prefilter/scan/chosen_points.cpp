@@ -41,6 +41,14 @@ void keep(const std::vector<bool>& is_kept, std::size_t width, std::vector<T>* v
 
 }  // namespace
 
+void keep_points(const std::vector<bool>& is_kept, std::size_t attribute_count, PointBatch* batch) {
+  keep(is_kept, 1, &batch->positions);
+  keep(is_kept, 1, &batch->normals);
+  keep(is_kept, 1, &batch->weights);
+  keep(is_kept, 1, &batch->viewpoints);
+  keep(is_kept, attribute_count, &batch->attributes);
+}
+
 ChosenPoints::ChosenPoints(PointSource* source, const PointChoice& choice, const std::string& name)
     : ChangedPoints(source), choice_(choice) {
   if (choice_.classes) class_ = place_of(*source_, "classification", "classes", name);
@@ -81,11 +89,7 @@ bool ChosenPoints::read(std::size_t most, PointBatch* batch) {
   if (!source_->read(most, batch)) return false;
   std::vector<bool> is_kept(batch->positions.size());
   for (std::size_t i = 0; i < is_kept.size(); ++i) is_kept[i] = is_chosen(*batch, i);
-  keep(is_kept, 1, &batch->positions);
-  keep(is_kept, 1, &batch->normals);
-  keep(is_kept, 1, &batch->weights);
-  keep(is_kept, 1, &batch->viewpoints);
-  keep(is_kept, source_->attributes().size(), &batch->attributes);
+  keep_points(is_kept, source_->attributes().size(), batch);
   // Also where none is left, so that whoever reads can be told to stop.
   return true;
 }

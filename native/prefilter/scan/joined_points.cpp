@@ -99,6 +99,15 @@ bool JoinedPoints::is_double() const {
                      [](const PointSource* source) { return source->is_double(); });
 }
 
+std::vector<std::string> JoinedPoints::warnings() const {
+  std::vector<std::string> all;
+  for (const PointSource* source : sources_) {
+    const std::vector<std::string> own = source->warnings();
+    all.insert(all.end(), own.begin(), own.end());
+  }
+  return all;
+}
+
 void JoinedPoints::rewind() {
   current_ = first_;
   is_begun_ = false;

@@ -245,6 +245,11 @@ class PcdPoints final : public PointSource {
     return layout_.fields.attributes();
   }
   bool is_double() const override { return layout_.fields.is_double(); }
+  std::vector<std::string> warnings() const override {
+    if (!has_more_) return {};
+    return {text_.name() + ": holds more than the " + std::to_string(header_.points) +
+            " points in its header; the rest was not read"};
+  }
   std::optional<Vector3> viewpoint() const override {
     if (header_.viewpoint == Vector3{} && !header_.is_image) return std::nullopt;
     return header_.viewpoint;
@@ -278,7 +283,7 @@ class PcdPoints final : public PointSource {
     } else {
       read_columns(count, batch);
     }
-    if (done_ == header_.points) check_end();
+    if (done_ == header_.points) find_surplus();
     return count > 0;
   }
 
@@ -382,7 +387,7 @@ class PcdPoints final : public PointSource {
     }
   }
 
-  void check_end() {
+  void find_surplus() {
     if (columns_) return;
     while (true) {
       const auto rest = text_.bytes().peek(1);
@@ -391,8 +396,8 @@ class PcdPoints final : public PointSource {
       constexpr std::string_view kNothing(" \t\r\n\v\f\0", 7);
       const std::string_view more(reinterpret_cast<const char*>(rest.data()), rest.size());
       if (more.find_first_not_of(kNothing) != std::string_view::npos) {
-        throw_invalid(text_.name() + ": holds more than the " + std::to_string(header_.points) +
-                      " points in its header");
+        has_more_ = true;
+        return;
       }
       text_.bytes().skip(rest.size());
     }
@@ -403,6 +408,7 @@ class PcdPoints final : public PointSource {
   Layout layout_;
   TextPlace first_;
   std::optional<TemporaryFile> columns_;  // of a compressed file
+  bool has_more_ = false;                 // than the header says
   std::uint64_t begin_ = 0;
   std::uint64_t end_ = 0;
   std::uint64_t done_ = 0;

@@ -144,7 +144,7 @@ PlyMesh mesh_of(PlyFile file, const Progress& progress) {
       mesh.uvs.push_back({own[2 * k], own[2 * k + 1]});
     }
   }
-  file.check_end();
+  if (const std::string surplus = file.surplus(); !surplus.empty()) throw_invalid(surplus);
   if (all_have_texcoords) return mesh;
   mesh.uvs.clear();
   if (uvs.empty()) return mesh;

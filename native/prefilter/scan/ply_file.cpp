@@ -300,15 +300,15 @@ void PlyFile::skip_records(std::uint64_t count) {
   row_ += count;
 }
 
-void PlyFile::check_end() {
-  if (element_ + 1 < elements_.size() || rows_left() > 0) return;
+std::string PlyFile::surplus() {
+  if (element_ + 1 < elements_.size() || rows_left() > 0) return "";
   while (true) {
     const auto rest = text_.bytes().peek(1);
-    if (rest.empty()) return;
+    if (rest.empty()) return "";
     const std::string_view more(reinterpret_cast<const char*>(rest.data()), rest.size());
     if (more.find_first_not_of(" \t\r\n\v\f") != std::string_view::npos) {
-      throw_invalid(name() + ": holds more than the " + std::to_string(elements_[element_].count) +
-                    " rows of " + in_quotes(elements_[element_].name) + " in its header");
+      return name() + ": holds more than the " + std::to_string(elements_[element_].count) +
+             " rows of " + in_quotes(elements_[element_].name) + " in its header";
     }
     text_.bytes().skip(rest.size());
   }

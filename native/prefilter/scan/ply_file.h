@@ -65,8 +65,8 @@ class PlyFile {
   void skip_records(std::uint64_t count);
   /// Rows of this element that are left.
   std::uint64_t rows_left() const { return elements_[element_].count - row_; }
-  /// Throws where anything follows the rows of the last element.
-  void check_end();
+  /// What to say where anything follows the rows of the last element; empty where nothing does.
+  std::string surplus();
   /// Throws an Error about the row that was read last.
   [[noreturn]] void throw_here(const std::string& what) const;
 

@@ -31,6 +31,12 @@ PointFields fields_of(const PlyElement& element, const std::string& name) {
   return {fields, name};
 }
 
+// Says of a file that holds more than its header says what was done with that.
+std::vector<std::string> warnings_of(const std::string& surplus) {
+  if (surplus.empty()) return {};
+  return {surplus + "; the rest was not read"};
+}
+
 class PlyPoints final : public PointSource {
  public:
   explicit PlyPoints(ByteReader bytes)
@@ -47,6 +53,7 @@ class PlyPoints final : public PointSource {
   bool has_normals() const override { return fields_.has_normals(); }
   const std::vector<PointAttribute>& attributes() const override { return fields_.attributes(); }
   bool is_double() const override { return fields_.is_double(); }
+  std::vector<std::string> warnings() const override { return warnings_of(surplus_); }
 
   std::optional<std::size_t> rows() const override {
     return has_records_ ? std::optional(size()) : std::nullopt;
@@ -79,7 +86,7 @@ class PlyPoints final : public PointSource {
         ++point;
       }
     }
-    if (file_.rows_left() == 0) file_.check_end();
+    if (file_.rows_left() == 0) surplus_ = file_.surplus();
     return count > 0;
   }
 
@@ -90,6 +97,7 @@ class PlyPoints final : public PointSource {
   std::size_t element_;
   PointFields fields_;
   bool has_records_;
+  std::string surplus_;
   std::size_t begin_ = 0;
   std::size_t end_;
 };

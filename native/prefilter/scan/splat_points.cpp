@@ -118,6 +118,7 @@ class SplatPoints final : public PointSource {
   bool are_normals_directed() const override { return false; }
   const std::vector<PointAttribute>& attributes() const override { return attributes_; }
   std::optional<Vector3> viewpoint() const override { return source_->viewpoint(); }
+  std::vector<std::string> warnings() const override { return source_->warnings(); }
   bool is_double() const override { return source_->is_double(); }
   std::optional<std::size_t> rows() const override { return source_->rows(); }
   void choose_rows(std::size_t begin, std::size_t end) override {

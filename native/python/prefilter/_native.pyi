@@ -3,7 +3,7 @@
 """The native module. The package around it checks and converts arguments; call that."""
 
 from collections.abc import Sequence
-from typing import Final, overload
+from typing import Any, Final, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -251,6 +251,8 @@ class PointSource:
     def is_double(self) -> bool: ...
     @property
     def attributes(self) -> list[tuple[str, bool]]: ...
+    @property
+    def warnings(self) -> list[str]: ...
     @property
     def viewpoint(self) -> tuple[float, float, float] | None: ...
 
@@ -674,6 +676,16 @@ def estimate_normals(
     progress: ProgressCallback | None,
     threads: int,
 ) -> npt.NDArray[np.float64]: ...
+def completed_normals(
+    points: npt.NDArray[np.float64],
+    normals: npt.NDArray[np.float64],
+    neighbours: int,
+    progress: ProgressCallback | None,
+    threads: int,
+) -> npt.NDArray[np.float64]: ...
+def origin_role(
+    points: npt.NDArray[np.float64], progress: ProgressCallback | None, threads: int
+) -> str: ...
 def float_step(points: npt.NDArray[np.float64]) -> float: ...
 def is_height_field(points: npt.NDArray[np.float64], progress: ProgressCallback | None) -> bool: ...
 
@@ -824,6 +836,7 @@ class ReconstructOptions:
     smooth: bool
     isovalue: float | str
     are_sides_known: bool
+    check_normals: bool
     fit: bool
     watertight: bool
     trim: float | None
@@ -861,8 +874,11 @@ def reconstruct(
     npt.NDArray[np.float64],
     npt.NDArray[np.int32],
     npt.NDArray[np.float32],
-    dict[str, float],
+    dict[str, Any],
 ]: ...
+def find_phantoms(
+    points: npt.NDArray[np.float64], progress: ProgressCallback | None, threads: int
+) -> list[tuple[tuple[float, float, float], int]]: ...
 def trim(
     positions: npt.NDArray[np.float64],
     triangles: npt.NDArray[np.int32],
@@ -875,14 +891,14 @@ def trim(
     npt.NDArray[np.float64],
     npt.NDArray[np.int32],
     npt.NDArray[np.float32],
-    dict[str, float],
+    dict[str, Any],
 ]: ...
 def reconstruct_file(
     source: PointSource,
     target: bytes,
     options: ReconstructOptions,
     progress: ProgressCallback | None,
-) -> dict[str, float]: ...
+) -> dict[str, Any]: ...
 
 class StepFiles:
     def __init__(
@@ -908,7 +924,7 @@ def join_steps(
     target: bytes,
     options: ReconstructOptions,
     progress: ProgressCallback | None,
-) -> dict[str, float]: ...
+) -> dict[str, Any]: ...
 
 class RasterOptions:
     def __init__(self) -> None: ...

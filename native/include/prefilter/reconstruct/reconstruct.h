@@ -14,6 +14,7 @@
 #include "prefilter/base/point_attribute.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/mesh/mesh_sink.h"
+#include "prefilter/reconstruct/phantoms.h"
 #include "prefilter/reconstruct/trim_surface.h"
 #include "prefilter/scan/point_source.h"
 
@@ -48,6 +49,8 @@ struct ReconstructOptions {
   // point into what they enclose, as in a room, do so then, and so do those of the mesh. Otherwise
   // most of them are taken to point outward.
   bool are_sides_known = false;
+  // Find out whether normals are missing or contradict each other, and make no mesh then.
+  bool check_normals = false;
   bool fit = true;  // move vertices onto the surface of the points around them
   // The surface is closed. Else it ends where points do, as TrimOptions say: what lies far from
   // them, measured by how far they are from one another, is cut.
@@ -67,12 +70,41 @@ struct ReconstructOptions {
   Progress progress;
 };
 
+/// Points that were left out as they tell nothing, each by the first cause that holds.
+struct DroppedPoints {
+  std::size_t not_finite = 0;  // a coordinate that is no number, or beyond 1e300
+  std::size_t huge = 0;        // beyond 1e30, as most others are not
+  std::size_t weightless = 0;  // a weight that is not in (0, 1e30]
+  std::size_t normalless = 0;  // a normal without a direction
+
+  std::size_t sum() const { return not_finite + huge + weightless + normalless; }
+  void add(const DroppedPoints& other) {
+    not_finite += other.not_finite;
+    huge += other.huge;
+    weightless += other.weightless;
+    normalless += other.normalless;
+  }
+};
+
+/// What is wrong with the normals of a cloud, so that it has no surface yet.
+enum class NormalFault {
+  kNone,
+  kMissing,        // some have no direction
+  kContradictory,  // those of near points are opposed, over most of the surface
+};
+
 struct ReconstructReport {
   std::size_t points = 0;
-  // Not finite or above 1e300, without a normal, or of a weight that is not in (0, 1e30].
-  std::size_t dropped = 0;
+  DroppedPoints dropped;
+  // Where points were left out that stand for nothing that was seen; none of them is in `dropped`.
+  std::vector<PhantomPlace> phantoms;
   std::size_t strays = 0;  // left out as they are twice as far from the middle as all others
-  double outliers = 0.0;   // the weight of those left out as outliers, of that of all
+  // With `check_normals`; where there is a fault, nothing else was found, and there is no mesh.
+  NormalFault normal_fault = NormalFault::kNone;
+  // Of the neighbors of points, the share whose normals are opposed to the points' without being
+  // on the other side of a thin part.
+  double contradiction = 0.0;
+  double outliers = 0.0;  // the weight of those left out as outliers, of that of all
   std::size_t vertices = 0;
   std::size_t triangles = 0;
   bool is_flipped = false;  // normals point inward, most of them: taken as the opposite

@@ -33,6 +33,7 @@ class JoinedPoints final : public PointSource {
   bool has_normals() const override { return sources_.front()->has_normals(); }
   const std::vector<PointAttribute>& attributes() const override { return attributes_; }
   bool is_double() const override;
+  std::vector<std::string> warnings() const override;
   void rewind() override;
   bool read(std::size_t most, PointBatch* batch) override;
   /// Shares of all sources, one at least of each.

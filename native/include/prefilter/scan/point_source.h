@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "prefilter/base/geometry.h"
@@ -37,6 +38,9 @@ struct PointBatch {
   }
 };
 
+/// Keeps the points of a batch that `is_kept` says, each with so many attributes.
+void keep_points(const std::vector<bool>& is_kept, std::size_t attribute_count, PointBatch* batch);
+
 /// Points in an order that does not change, read from the first to the last as often as is needed.
 class PointSource {
  public:
@@ -54,6 +58,8 @@ class PointSource {
   virtual std::optional<Vector3> viewpoint() const { return std::nullopt; }
   /// Whether positions need more than float precision (a file of doubles).
   virtual bool is_double() const { return false; }
+  /// What is odd about the file, as far as it has been read; each names the file.
+  virtual std::vector<std::string> warnings() const { return {}; }
   /// How many rows points come from, where some of these can be read without those before them;
   /// none where not. Rows that were not chosen count, too.
   virtual std::optional<std::size_t> rows() const { return std::nullopt; }
@@ -82,6 +88,7 @@ class ChangedPoints : public PointSource {
   const std::vector<PointAttribute>& attributes() const override { return source_->attributes(); }
   std::optional<Vector3> viewpoint() const override { return source_->viewpoint(); }
   bool is_double() const override { return source_->is_double(); }
+  std::vector<std::string> warnings() const override { return source_->warnings(); }
   std::optional<std::size_t> rows() const override { return source_->rows(); }
   void choose_rows(std::size_t begin, std::size_t end) override {
     source_->choose_rows(begin, end);

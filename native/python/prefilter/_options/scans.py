@@ -35,8 +35,8 @@ ISOVALUES = {
 DIRECTIONS = {
     "auto": Choice(
         "Automatic",
-        "As Given where points have normals, Viewpoint where the scanner's position is known, Up "
-        "for .las and .laz files and for heights such as a terrain, else Outward",
+        "As Given where points have normals, Viewpoint where the scanner's position is known or is "
+        "the origin, Up for .las and .laz files and for heights such as a terrain, else Outward",
     ),
     "up": Choice("Up", "Toward the sky, as for a terrain scanned from the air"),
     "viewpoint": Choice(

@@ -33,6 +33,14 @@ _DIRECTIONS = {
     "viewpoint": Sentence("normals point to the scanner"),
     "outward": Sentence("normals point outward"),
 }
+_DROPPED = {
+    "not_finite": Sentence("left out, because they have no finite position: {}"),
+    "huge": Sentence("left out, because their coordinates are 1e30 or more, unlike others: {}"),
+    "weightless": Sentence("left out, because they have no weight: {}"),
+    "normalless": Sentence("left out, because they have no normal: {}"),
+}
+_MOST_PLACES = 3
+"""So many positions of phantoms are named."""
 _LAST_CLASS = 255
 _FEW = 1e-3
 """The share of outliers that every scan may have."""
@@ -194,18 +202,55 @@ def merged(length: str) -> str:
     )
 
 
-def oddities(report: "prefilter.ReconstructionReport", length: Callable[[float], str]) -> list[str]:
+def _phantoms(report: "prefilter.ReconstructionReport", origin: Sequence[float]) -> Iterator[str]:
+    """Yields which points were left out as they are at one place."""
+    for position, count in report.phantoms[:_MOST_PLACES]:
+        place = ", ".join(f"{x + o + 0.0:.6g}" for x, o in zip(position, origin, strict=True))
+        text = (
+            "left out, because they are all at one place, ({}), as scanners write where they saw "
+            "nothing: {}"
+        )
+        yield Sentence(text, place, amount(count, "point"))
+    if more := report.phantoms[_MOST_PLACES:]:
+        points = amount(sum(count for _, count in more), "point")
+        text = "left out, because they are at {} more such places: {}"
+        yield Sentence(text, len(more), points)
+
+
+def _contradiction(report: "prefilter.ReconstructionReport") -> Iterator[str]:
+    """Yields what became of given normals that contradict each other."""
+    if report.is_contradictory:
+        share = f"{100.0 * report.contradiction:.2g} %"
+        if report.is_reoriented:
+            text = (
+                "given normals contradict those of near points ({} of them), and were turned to "
+                "agree; check which way the surface faces"
+            )
+        else:
+            text = (
+                "given normals contradict those of near points ({} of them), and were kept; the "
+                "setting Normals, Outward turns them"
+            )
+        yield Sentence(text, share)
+
+
+def oddities(
+    report: "prefilter.ReconstructionReport",
+    length: Callable[[float], str],
+    origin: Sequence[float] = (0.0, 0.0, 0.0),
+) -> list[str]:
     """Returns what is odd about the points, as warnings.
 
     Args:
         report: About the surface.
         length: Returns a length in words.
+        origin: Where the origin of the points' coordinates is.
     """
-    found: list[str] = []
-    if report.dropped:
-        dropped = amount(report.dropped, "point")
-        text = "left out, because they have no normal, no finite position or no weight: {}"
-        found.append(Sentence(text, dropped))
+    found: list[str] = [*report.warnings, *_phantoms(report, origin)]
+    for cause, dropped in _DROPPED.items():
+        if count := report.causes.get(cause, 0):
+            found.append(Sentence(dropped, amount(count, "point")))
+    found += _contradiction(report)
     if report.strays:
         strays = amount(report.strays, "point")
         found.append(Sentence("left out, because they are far from all others: {}", strays))
@@ -232,7 +277,25 @@ def oddities(report: "prefilter.ReconstructionReport", length: Callable[[float],
 
 def directions(report: "prefilter.ReconstructionReport") -> list[str]:
     """Returns where normals point, as notes."""
-    return [_DIRECTIONS[direction] for direction in report.directions]
+    found: list[str] = [_DIRECTIONS[direction] for direction in report.directions]
+    if report.estimated:
+        text = "normals that are zero or no numbers were estimated: those of {}"
+        found.append(Sentence(text, amount(report.estimated, "point")))
+    if report.origin == "scanner":
+        found.append(
+            Sentence(
+                "the origin was taken for the scanner's position, as rays from there meet the "
+                "surface once; if that is wrong, set Normals to Outward or Up"
+            )
+        )
+    elif report.origin == "either":
+        found.append(
+            Sentence(
+                "the points are around the origin, and were taken for an object that is seen from "
+                "outside; for a room that is seen from the origin, set Normals to Viewpoint"
+            )
+        )
+    return found
 
 
 def openings(report: "prefilter.ReconstructionReport") -> list[str]:

@@ -4,14 +4,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, TypeAlias, cast
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from .. import _native
 from .._border.arguments import ProgressCallback, as_progress, progress_part
-from .normals import as_viewpoints, estimate_normals, side_of
+from .normals import as_viewpoints, estimate_normals
 from .scan import ScanPoints
 
 Prepared: TypeAlias = tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]
@@ -104,11 +104,7 @@ class SurfaceRounds:
                 apart.append(k)
         if apart:
             rows = np.concatenate([moved[k][0] for k in apart])
-            side = side_of(rows, progress_part(progress, 0.0, 0.1))
-            rest = progress_part(progress, 0.1, 1.0)
-            together = estimate_normals(
-                rows, direction=cast("Any", side), progress=rest, threads=self.threads
-            )
+            together = estimate_normals(rows, progress=progress, threads=self.threads)
             ends = np.cumsum([len(moved[k][0]) for k in apart])[:-1]
             toward |= dict(zip(apart, np.split(together, ends), strict=True))
         sides = []

@@ -20,6 +20,7 @@ from .._border.arrays import as_floats, as_threads
 from .._border.names import Against
 from .alignment import Prepared, ScanAlignment, SurfaceRounds
 from .normals import estimate_normals
+from .repairs import has_enough
 from .scan import ScanPoints
 
 SUBSAMPLING = _native.SUBSAMPLING
@@ -118,7 +119,7 @@ def align_scans(
     count.
 
     Args:
-        scans: Two or more. Normals are estimated where a scan has none.
+        scans: Two or more. Normals are estimated where a scan has none, or hardly any.
         against: "scans": that is all. "surface": then a surface of all that overlap is made, each
             is moved onto that by itself, and the same once more. That averages the noise of all.
         reach: How far what belongs together may be apart. None: a 20th of the diagonal of the box
@@ -154,7 +155,7 @@ def align_scans(
 
 def _with_normals(scan: ScanPoints, progress: ProgressCallback | None, threads: int) -> Prepared:
     positions = as_floats("positions", scan.positions, ("points", 3), np.float64)
-    if scan.normals is not None:
+    if scan.normals is not None and (len(positions) == 0 or has_enough(scan.normals)):
         return positions, as_floats("normals", scan.normals, ("points", 3), np.float64)
     if len(positions) == 0:
         return positions, np.empty((0, 3))

@@ -10,7 +10,8 @@ import numpy.typing as npt
 
 from .. import _native
 from .._border.arguments import ProgressCallback, as_one_of, progress_part
-from .normals import as_viewpoints, estimate_normals, side_of
+from .._border.arrays import as_threads
+from .normals import as_viewpoints, estimate_normals, seen_points, side_of
 
 Viewpoints: TypeAlias = npt.NDArray[np.float64]
 
@@ -45,8 +46,9 @@ class Wanted:
         has_viewpoint: bool,
         is_from_above: bool,
         progress: ProgressCallback | None,
-    ) -> str:
-        """The direction of normals that are to be estimated.
+        threads: int,
+    ) -> tuple[str, str]:
+        """The direction of normals that are to be estimated, and what the origin is; see `side_of`.
 
         Raises:
             ValueError: The user asks for them as given.
@@ -58,10 +60,14 @@ class Wanted:
                 "or points with normals"
             )
         if self.direction != AUTO:
-            return self.direction
+            return self.direction, "none"
         if has_viewpoint:
-            return VIEWPOINT
-        return UP if is_from_above else side_of(np.asarray(rows, np.float64), progress)
+            return VIEWPOINT, "none"
+        if is_from_above:
+            return UP, "none"
+        used = as_threads(threads)
+        seen = seen_points(np.asarray(rows, np.float64), progress_part(progress, 0.0, 0.3), used)
+        return side_of(seen, progress_part(progress, 0.3, 1.0), used)
 
 
 def as_wanted(direction: str, viewpoint: npt.ArrayLike | None) -> Wanted:

@@ -10,6 +10,10 @@ from .._border.arguments import ProgressCallback, as_int, as_name, as_progress, 
 from .._border.arrays import as_array, as_floats, as_indices, as_threads
 from .._border.names import Upward
 
+_HUGE = 1e30
+_HUGE_PER_OTHER = 100
+"""As in native/prefilter/reconstruct/gather_samples.cpp."""
+
 
 def estimate_normals(
     points: npt.ArrayLike,
@@ -32,14 +36,19 @@ def estimate_normals(
         direction: "outward": normals agree with those around them, and those of each connected part
             point outward as a whole, as those of a closed surface do. "up": they point to where z
             is larger; those that are nearly level, as of walls, agree with those around them.
-            "auto": up where the points are a height field, as of a terrain: where few of them have
-            another sheet of the surface above or below them, or are on a wall. Else outward.
+            "auto": to the origin where the points were seen from there, as from a camera or in a
+            room: where rays from it meet their surface once, and they are spread over directions as
+            a scanner spreads them. Else up where the points are a height field, as of a terrain:
+            where few of them have another sheet of the surface above or below them, or are on a
+            wall. Else outward.
         progress: Called with the fraction done; returning False stops the work.
         threads: 0 means all processors. The result does not depend on it.
 
     Returns:
-        (points, 3) float64, 1 long. They are zero for points that hold a value that is not finite
-        or above 1e150, and for all where fewer than three points are left or all coincide.
+        (points, 3) float64, 1 long. They are zero for points that stand for nothing that was seen:
+        that hold a value that is not finite, above 1e150, or from 1e30 where that of most others is
+        not, and many points at one position, such as 0, 0, 0; and for all where fewer than three
+        points are left or all coincide.
 
     Raises:
         ValueError: A shape or type is wrong, there are no points, `neighbours` is out of range, or
@@ -49,22 +58,57 @@ def estimate_normals(
     rows = as_floats("points", points, ("points", 3), np.float64)
     viewpoints = as_viewpoints(viewpoint)
     side = as_name("direction", direction)
+    used = as_threads(threads)
+    rows = seen_points(rows, progress_part(progress, 0.0, 0.05), used)
     if side == "auto":
-        side = "outward" if len(viewpoints) else side_of(rows, progress_part(progress, 0.0, 0.05))
-        progress = progress_part(progress, 0.05, 1.0)
+        side = "outward"
+        if len(viewpoints) == 0:
+            side, _ = side_of(rows, progress_part(progress, 0.05, 0.1), used)
+    if side == "viewpoint":
+        side, viewpoints = "outward", np.zeros((1, 3))
+    progress = progress_part(progress, 0.1, 1.0)
     return _native.estimate_normals(
         rows,
         as_int("neighbours", neighbours, "a whole number from 3 to 1000 is needed"),
         viewpoints,
         side,
         as_progress(progress),
-        as_threads(threads),
+        used,
     )
 
 
-def side_of(points: npt.NDArray[np.float64], progress: ProgressCallback | None) -> str:
-    """Where the normals of points point of which nothing else is known: "up" or "outward"."""
-    return "up" if _native.is_height_field(points, as_progress(progress)) else "outward"
+def side_of(
+    points: npt.NDArray[np.float64], progress: ProgressCallback | None, threads: int
+) -> tuple[str, str]:
+    """The direction of normals of points of which nothing else is known.
+
+    Returns:
+        "viewpoint", for the origin, "up" or "outward"; and what the origin is to the points:
+        "scanner", "either", for a scanner in a room or the middle of an object, or "none".
+    """
+    origin = _native.origin_role(points, as_progress(progress_part(progress, 0.0, 0.7)), threads)
+    if origin == "scanner":
+        return "viewpoint", origin
+    rest = as_progress(progress_part(progress, 0.7, 1.0))
+    return "up" if _native.is_height_field(points, rest) else "outward", origin
+
+
+def seen_points(
+    points: npt.NDArray[np.float64], progress: ProgressCallback | None, threads: int
+) -> npt.NDArray[np.float64]:
+    """The points, with NaN in place of those that stand for nothing that was seen.
+
+    These are huge coordinates, where most are not, and many points at one position.
+    """
+    finite = np.isfinite(points).all(axis=1)
+    huge = finite & (np.abs(points) >= _HUGE).any(axis=1)
+    others = np.count_nonzero(finite & ~huge)
+    unseen = np.zeros(len(points), bool)
+    if np.count_nonzero(huge) <= _HUGE_PER_OTHER * others:
+        unseen |= huge
+    for position, _ in _native.find_phantoms(points, as_progress(progress), threads):
+        unseen |= np.asarray((points == np.array(position)).all(axis=1))
+    return np.where(unseen[:, None], np.nan, points) if unseen.any() else points
 
 
 def mesh_normals(

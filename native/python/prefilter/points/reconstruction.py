@@ -3,8 +3,8 @@
 """Scans: oriented points to surfaces."""
 
 import os
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, Literal, TypeAlias, TypedDict, Unpack, cast, overload
 
@@ -29,7 +29,8 @@ from .._border.staging import as_target
 from .alignment import ScanAlignment
 from .choice import Classes, as_choice
 from .clouds import AGAINST, SCANS
-from .directions import as_wanted
+from .directions import AUTO, OUTWARD, Wanted, as_wanted
+from .repairs import CONTRADICTORY, run_until_sound
 from .scan import AttributeArray
 from .sources import Cloud, Source, array_cloud, joined_cloud, sources_in
 
@@ -56,7 +57,13 @@ class ReconstructionReport:
 
     Attributes:
         points: That there were.
-        dropped: Of these, how many were left out: not finite, without a normal, or of no weight.
+        dropped: Of these, how many were left out, as they tell nothing.
+        causes: The same by the first cause that holds: "not_finite", coordinates that are no
+            numbers or beyond 1e300; "huge", coordinates from 1e30 on where those of most are not;
+            "weightless", of no weight; "normalless", without a normal, where it was not estimated.
+        phantoms: Positions, each with the number of its points, that were left out too: many more
+            points are at exactly one position than at those around it, as where a scanner writes
+            0, 0, 0 for no return.
         strays: How many of the others were left out, because they are at least about twice as far
             from the middle as the rest, and more than six standard deviations: one point in 100 000
             at most, and of 1000 or more up to 3.
@@ -64,6 +71,18 @@ class ReconstructionReport:
             than most: from 0 to 1.
         vertices: Of the mesh.
         triangles: Of the mesh.
+        estimated: How many given normals have no direction, and were estimated.
+        contradiction: Of pairs of near points with given normals, the share whose normals are
+            opposed without being on the two sides of a thin part: 0 to 1, about 1/2 where normals
+            are reversed by chance.
+        is_contradictory: That is over a fifth.
+        is_reoriented: Given normals were turned for that: as those that are estimated point, along
+            the given ones' lines where these agree with the points.
+        origin: What the origin is to the points, where normals were estimated and nothing else said
+            where they point: "scanner": they were seen from there, and normals point there;
+            "either": a scanner in a room or the middle of an object, of which the latter was taken;
+            "none".
+        warnings: What is odd about the files; each names one.
         directions: Where normals point, each once, in the order of the sources: "given": as points
             have them; "up", "viewpoint", "outward": see `reconstruct`.
         is_flipped: Most normals pointed inward, and were to point outward; the opposite ones were
@@ -85,10 +104,18 @@ class ReconstructionReport:
 
     points: int = 0
     dropped: int = 0
+    causes: dict[str, int] = field(default_factory=dict)
+    phantoms: tuple[tuple[tuple[float, float, float], int], ...] = ()
     strays: int = 0
     outliers: float = 0.0
     vertices: int = 0
     triangles: int = 0
+    estimated: int = 0
+    contradiction: float = 0.0
+    is_contradictory: bool = False
+    is_reoriented: bool = False
+    origin: str = "none"
+    warnings: tuple[str, ...] = ()
     directions: tuple[str, ...] = ()
     is_flipped: bool = False
     is_room: bool = False
@@ -222,14 +249,16 @@ def reconstruct(
 
     The surface is where a function that is 1 inside and 0 outside takes an iso-value; its wavelet
     coefficients are sums over the points (equation 4.2). Points that are not finite (or are beyond
-    1e300), have no normal or no weight are left out and counted. Points on a plane or a line bound
-    nothing: a closed mesh may be a sheet without volume, whose triangles may have no area.
+    1e300), or have no weight, are left out and counted, as are many at one position; see
+    `ReconstructionReport`. Points on a plane or a line bound nothing: a closed mesh may be a sheet
+    without volume, whose triangles may have no area.
 
     Args:
         points: (points, 3). Or a file that `read_points` reads, or `ScanPoints`, or a list of
             these, which are put together as one cloud: see `reconstruct_file`.
         normals: (points, 3), of any length: to where there is nothing. None: estimated, or those of
-            files and scans.
+            files and scans. Those that are zero or no numbers are estimated; where they contradict
+            each other over most of the surface, they are turned, unless `direction` says otherwise.
         depth: 1 to 12: the longest side of the cloud is 2^depth cells long, less a margin. None:
             the greatest at which half of the surface has a point for each face of a cell, or more.
         cell_size: In place of a depth: the least one at which cells have no longer sides.
@@ -254,7 +283,8 @@ def reconstruct(
             to where z is larger. "viewpoint": to where the scanner stood, as `viewpoint` or the
             file says, or else to the origin. "outward": as those of a closed surface: those that
             are estimated agree with those around them, and all are reversed if most point inward.
-            "auto": as given where points have normals; else to the viewpoint where that is known;
+            "auto": as given where points have normals; else to the viewpoint where that is known,
+            or to the origin where that is what the points were seen from (see `estimate_normals`);
             else up for .las and .laz files, and for height fields (see `estimate_normals`); else
             outward. A scanner's grid in a PLY file faces the scanner.
         viewpoint: Where the scanner stood, (3,); or one place for each point, (points, 3), or for
@@ -307,16 +337,20 @@ def reconstruct(
             raise ValueError(
                 "classes, returns, box, align: given beside arrays; they are for files and scans"
             )
-        cloud = array_cloud(
-            cast("npt.ArrayLike", points), normals, weights, attributes, wanted, progress, threads
-        )
     else:
         _check_sources(normals, weights, attributes)
-        cloud = joined_cloud(sources, wanted, progress, threads, choice, against)
-    options.are_sides_known = cloud.are_sides_known
-    positions, triangles, carried, found = _native.reconstruct(
-        cloud.points, options, as_progress(cloud.rest(progress))
-    )
+
+    def build(faults: frozenset[str], told: ProgressCallback | None) -> Cloud:
+        if sources is not None:
+            return joined_cloud(sources, wanted, told, threads, choice, against, faults=faults)
+        rows = cast("npt.ArrayLike", points)
+        return array_cloud(rows, normals, weights, attributes, wanted, told, threads, faults)
+
+    def make(cloud: Cloud, told: ProgressCallback | None) -> tuple[Any, dict[str, Any]]:
+        *mesh, found = _native.reconstruct(cloud.points, options, as_progress(told))
+        return mesh, found
+
+    (positions, triangles, carried), found, cloud = _made(build, make, wanted, options, progress)
     fill_in(report, found, cloud)
     told: Support = {}
     if options.support:
@@ -361,7 +395,8 @@ def reconstruct_file(
 
     Args:
         source: A file that `read_points` reads, or `ScanPoints`, or a list of these. The points of
-            those that have no normals are read into memory; a scanner's grid or faces in a PLY file
+            those that have no normals are read into memory, and all points where given normals are
+            missing in part or contradict each other; a scanner's grid or faces in a PLY file
             tell the normals, or else they are estimated: of scans that were seen from a known place
             each by itself, of all others together.
         target: A .ply file: binary, in double precision where a source is. Temporary files are
@@ -403,14 +438,47 @@ def reconstruct_file(
     sources = sources_in(source) or [cast("Source", source)]
     choice = as_choice(classes, returns, box)
     against = _as_against(align)
-    cloud = joined_cloud(sources, wanted, progress, threads, choice, against)
-    options.are_sides_known = cloud.are_sides_known
     report = ReconstructionReport()
-    rest = as_progress(cloud.rest(progress))
     recover(place.parent)
-    found = _native.reconstruct_file(cloud.points, os.fsencode(place), options, rest)
+
+    def build(faults: frozenset[str], told: ProgressCallback | None) -> Cloud:
+        return joined_cloud(sources, wanted, told, threads, choice, against, faults=faults)
+
+    def make(cloud: Cloud, told: ProgressCallback | None) -> tuple[None, dict[str, Any]]:
+        target_name = os.fsencode(place)
+        found = _native.reconstruct_file(cloud.points, target_name, options, as_progress(told))
+        return None, found
+
+    _, found, cloud = _made(build, make, wanted, options, progress)
     fill_in(report, found, cloud)
     return report
+
+
+def _made(
+    build: Callable[[frozenset[str], ProgressCallback | None], Cloud],
+    make: Callable[[Cloud, ProgressCallback | None], tuple[Any, dict[str, Any]]],
+    wanted: Wanted,
+    options: _native.ReconstructOptions,
+    progress: ProgressCallback | None,
+) -> tuple[Any, dict[str, Any], Cloud]:
+    """Builds a cloud and makes its surface; both again where given normals have faults."""
+
+    contradiction = 0.0
+
+    def run(
+        faults: frozenset[str], is_checked: bool, told: ProgressCallback | None
+    ) -> tuple[tuple[Any, dict[str, Any], Cloud], dict[str, Any]]:
+        is_kept = wanted.direction not in (AUTO, OUTWARD)
+        cloud = build(faults - {CONTRADICTORY} if is_kept else faults, told)
+        options.are_sides_known = cloud.are_sides_known
+        options.check_normals = is_checked and cloud.has_given
+        mesh, found = make(cloud, cloud.rest(told))
+        nonlocal contradiction
+        found["contradiction"] = contradiction = max(contradiction, found["contradiction"])
+        found["is_contradictory"] = CONTRADICTORY in faults
+        return (mesh, found, cloud), found
+
+    return run_until_sound(run, progress)
 
 
 def _as_against(align: bool | str) -> str | None:
@@ -494,5 +562,11 @@ def fill_in(report: ReconstructionReport | None, found: Mapping[str, object], cl
         return
     report.directions = cloud.directions
     report.alignment = cloud.alignment
+    report.origin = cloud.origin
+    report.estimated = cloud.estimated
+    report.is_reoriented = cloud.is_reoriented
     for name, value in found.items():
-        setattr(report, name, value)
+        if name != "normal_fault":
+            setattr(report, name, value)
+    report.phantoms = tuple(report.phantoms)
+    report.warnings = tuple(dict.fromkeys((*cloud.warnings, *cloud.points.warnings)))

@@ -29,6 +29,7 @@ class ScanPoints:
             say.
         stride: Of how many points of the file, in their order, one is here.
         is_from_above: A scanner looked down at them, as at those of .las and .laz files.
+        warnings: What is odd about the file; each names it.
     """
 
     positions: npt.NDArray[np.float64]
@@ -38,6 +39,7 @@ class ScanPoints:
     viewpoint: npt.NDArray[np.float64] | None = None
     stride: int = 1
     is_from_above: bool = False
+    warnings: tuple[str, ...] = ()
 
     @property
     def colors(self) -> AttributeArray | None:

@@ -53,9 +53,9 @@ def read_points(
     .obj: vertices, with the file's normals where there are as many, and with colors behind x y z.
     .ptx: scans one after the other, with intensities and perhaps colors, placed by their matrices;
     the viewpoint of each point is that of its scan.
-    .las, .laz: need the Python package laspy; .laz also lazrs or laszip.
-    .e57: needs the Python package pye57. All scans are read, in the file's coordinates; the places
-    of their poses are the viewpoint.
+    .laz: needs the Python package lazrs, which the extension for Blender brings along.
+    .e57: all scans are read, in the file's coordinates. The places of their poses are the
+    viewpoint, and without a pose the origin of a scan that still is a scanner's grid.
 
     Colors are bytes, also of files that have 16 bits. What a class and returns are called is told
     by their names in any spelling: "classification", "return_number" and "number_of_returns".
@@ -100,7 +100,16 @@ def read_points(
     if viewpoint is None and source.viewpoint is not None:
         viewpoint = np.array(source.viewpoint)
     above = is_from_above(path)
-    return ScanPoints(positions, normals, weights, attributes, viewpoint, stride, above)
+    return ScanPoints(
+        positions,
+        normals,
+        weights,
+        attributes,
+        viewpoint,
+        stride,
+        above,
+        tuple(dict.fromkeys(source.warnings)),
+    )
 
 
 def is_from_above(path: str | os.PathLike[str]) -> bool:

@@ -12,12 +12,30 @@ import numpy.typing as npt
 
 from .. import _native
 from .._border.arguments import ProgressCallback, progress_part
-from .._border.arrays import as_array, as_floats
+from .._border.arrays import as_array, as_floats, as_threads
 from .alignment import ScanAlignment
 from .choice import Choice
 from .clouds import align_scans
-from .directions import OUTWARD, UP, VIEWPOINT, Viewpoints, Wanted, estimated, parts, turned
-from .normals import as_viewpoints, grid_normals, mesh_normals
+from .directions import (
+    GIVEN,
+    OUTWARD,
+    UP,
+    VIEWPOINT,
+    Viewpoints,
+    Wanted,
+    estimated,
+    parts,
+    turned,
+)
+from .normals import as_viewpoints, grid_normals, mesh_normals, seen_points
+from .repairs import (
+    CONTRADICTORY,
+    MISSING,
+    completed,
+    has_enough,
+    lacking,
+    reoriented,
+)
 from .scan import ScanPoints
 from .scan_files import (
     is_from_above,
@@ -49,12 +67,22 @@ class Cloud:
         directions: Of normals: each once, in the order of the sources.
         is_read: Points had to be read into memory, or normals estimated, which is half of the work.
         alignment: How scans were moved onto each other; None where they were not.
+        has_given: Some of the normals were given.
+        origin: What the origin is to points whose normals were estimated; see `side_of`.
+        estimated: How many normals were estimated, as the given ones have no direction.
+        is_reoriented: Given normals were turned, as they contradicted each other.
+        warnings: What is odd about files that have been read; the points know it of the others.
     """
 
     points: _native.PointSource
     directions: tuple[str, ...]
     is_read: bool = False
     alignment: ScanAlignment | None = None
+    has_given: bool = False
+    origin: str = "none"
+    estimated: int = 0
+    is_reoriented: bool = False
+    warnings: tuple[str, ...] = ()
 
     @property
     def are_sides_known(self) -> bool:
@@ -87,19 +115,28 @@ def array_cloud(
     wanted: Wanted,
     progress: ProgressCallback | None,
     threads: int,
+    faults: frozenset[str] = frozenset(),
 ) -> Cloud:
-    """Points from arrays. Raises ValueError for a shape, type or value that is wrong."""
+    """Points from arrays, of whose normals faults are known.
+
+    Raises ValueError for a shape, type or value that is wrong.
+    """
     rows = _as_rows("points", points)
-    given: npt.NDArray[np.floating]
-    if normals is None:
-        first, rest = parts(progress_part(progress, 0.0, 0.5))
-        direction = wanted.of_missing(rows, False, False, first)
-        given = estimated(rows, direction, wanted.viewpoints, rest, threads)
-    else:
-        given = _as_rows("normals", normals)
-        direction = wanted.of_given()
-    if len(given) != len(rows):
-        raise ValueError(f"normals: {len(given)} rows; {len(rows)} are needed, one for each point")
+    own = None if normals is None else _as_rows("normals", normals)
+    if own is not None and len(own) != len(rows):
+        raise ValueError(f"normals: {len(own)} rows; {len(rows)} are needed, one for each point")
+    scan = _Scan(
+        None, None, ScanPoints(cast("Any", rows), own), faults=None if own is None else faults
+    )
+    scan.seen_from = wanted.viewpoints if len(wanted.viewpoints) else None
+    half = progress_part(progress, 0.0, 0.5)
+    if own is not None:
+        scan.direction = wanted.of_given()
+        _repair(scan, wanted, half, threads)
+    if not scan.has_normals:
+        _estimate([scan], wanted, half, threads)
+    assert scan.read is not None
+    given = cast("npt.NDArray[np.floating]", scan.read.normals)
     values = None
     if attributes is not None:
         values = as_floats("attributes", attributes, (len(rows), "n"), np.float32)
@@ -111,9 +148,17 @@ def array_cloud(
     names = [] if values is None else [("", False)] * values.shape[1]
     points_of: _native.PointSource
     points_of = _native.ArrayPoints(rows, given, counts, values, names, False)
-    if normals is not None:
-        points_of = turned(points_of, direction, wanted.viewpoints)
-    return Cloud(points_of, (direction,), is_read=normals is None)
+    if scan.is_to_be_turned:
+        points_of = turned(points_of, scan.direction, wanted.viewpoints)
+    return Cloud(
+        points_of,
+        (scan.direction,),
+        is_read=own is None or bool(faults),
+        has_given=own is not None,
+        origin=scan.origin,
+        estimated=scan.estimated,
+        is_reoriented=scan.axes is not None,
+    )
 
 
 def joined_cloud(
@@ -125,12 +170,14 @@ def joined_cloud(
     align: str | None = None,
     *,
     must_have_normals: bool = False,
+    faults: frozenset[str] = frozenset(),
 ) -> Cloud:
     """Several sources as one, with normals, of which only some points may be chosen.
 
     What has normals is read piece by piece, when the surface is made. All else is read into memory
     here: in a PLY file a scanner's grid or faces tell the normals, others are estimated, those seen
-    from one place by themselves, and those seen from nobody knows where together.
+    from one place by themselves, and those seen from nobody knows where together. So is what has
+    normals of which faults are known.
 
     Raises:
         ValueError: A source has no normals, and must have them.
@@ -138,17 +185,20 @@ def joined_cloud(
     # Nothing is told of unpacking, which may be stopped.
     scans = [_opened(source, choice, progress_part(progress, 0.0, 0.0)) for source in sources]
     _place_scanners(scans, wanted.viewpoints)
-    missing = [scan for scan in scans if not scan.has_normals]
+    given = [scan for scan in scans if scan.has_normals]
+    for scan in given:
+        scan.faults = faults
+    missing = [scan for scan in scans if not scan.has_normals or scan.faults]
     if missing and must_have_normals:
         raise ValueError(
             f"'{missing[0].path}' has no normals that are known to point outward; steps need them"
         )
     progress = progress_part(progress, 0.0, 0.5)
-    for scan in scans:
-        if scan.has_normals:
-            scan.direction = wanted.of_given()
+    for scan in given:
+        scan.direction = wanted.of_given()
     for k, scan in enumerate(missing):
-        _look_up_normals(scan, wanted, _step(progress_part(progress, 0.0, 0.6), k, len(missing)))
+        own = _step(progress_part(progress, 0.0, 0.6), k, len(missing))
+        _look_up_normals(scan, wanted, own, threads)
     groups = _estimated_together([scan for scan in missing if not scan.has_normals])
     for k, group in enumerate(groups):
         _estimate(group, wanted, _step(progress_part(progress, 0.6, 0.9), k, len(groups)), threads)
@@ -169,6 +219,11 @@ def joined_cloud(
         tuple(dict.fromkeys(scan.direction for scan in scans)),
         is_read=bool(missing) or alignment is not None,
         alignment=alignment,
+        has_given=bool(given),
+        origin=next((scan.origin for scan in scans if scan.origin != "none"), "none"),
+        estimated=sum(scan.estimated for scan in scans),
+        is_reoriented=any(scan.axes is not None for scan in scans),
+        warnings=tuple(line for scan in scans if scan.read for line in scan.read.warnings),
     )
 
 
@@ -185,6 +240,10 @@ class _Scan:
         seen_from: Where the user says that the scanner stood; see `Wanted`.
         direction: Of its normals, once that is known.
         is_to_be_turned: Its normals may have another one yet.
+        faults: That its given normals are known to have; None where it has no given ones.
+        axes: Given normals that contradict each other; None for others.
+        origin: What the origin is to it; see `side_of`.
+        estimated: How many normals were estimated, as the given ones have no direction.
     """
 
     path: str | os.PathLike[str] | None
@@ -195,6 +254,10 @@ class _Scan:
     seen_from: Viewpoints | None = None
     direction: str = ""
     is_to_be_turned: bool = True
+    faults: frozenset[str] | None = None
+    axes: npt.NDArray[np.floating] | None = None
+    origin: str = "none"
+    estimated: int = 0
 
     @property
     def has_normals(self) -> bool:
@@ -286,14 +349,24 @@ def _estimated_together(scans: Sequence[_Scan]) -> list[list[_Scan]]:
     return groups
 
 
-def _look_up_normals(scan: _Scan, wanted: Wanted, progress: ProgressCallback | None) -> None:
-    """Reads a file that has no normals, and what else in it may tell them."""
+def _look_up_normals(
+    scan: _Scan, wanted: Wanted, progress: ProgressCallback | None, threads: int
+) -> None:
+    """Reads a file that has no normals, or faulty ones, and what else in it may tell them."""
     if scan.path is None:
+        _repair(scan, wanted, progress, threads)
         return
     # Grids and faces name points of the whole file.
     read = read_points(scan.path, progress=progress_part(progress, 0.0, 0.3))
     if scan.seen_from is not None:
         read = replace(read, viewpoint=scan.seen_from[0])
+    if scan.faults:
+        scan.read = read
+        _repair(scan, wanted, progress_part(progress, 0.3, 0.6), threads)
+        if scan.read.normals is not None:
+            scan.read = scan.read if scan.choice is None else scan.choice.of_scan(scan.read)
+            return
+        read = scan.read
     seen = told = None
     if read.normals is None:
         seen = _grid_normals(scan.path, read, progress_part(progress, 0.3, 0.6))
@@ -305,7 +378,57 @@ def _look_up_normals(scan: _Scan, wanted: Wanted, progress: ProgressCallback | N
         # A scanner sees outsides. Faces, and splats, may be inside out.
         scan.direction = wanted.told(VIEWPOINT if seen is not None else OUTWARD)
         scan.is_to_be_turned = seen is None or scan.direction != VIEWPOINT
+        scan.axes = None
+    if scan.choice is not None:
+        # Normals of the whole file are chosen with its points.
+        axes = None if scan.axes is None else scan.choice.of_scan(replace(read, normals=scan.axes))
+        scan.axes = None if axes is None else axes.normals
     scan.read = read if scan.choice is None else scan.choice.of_scan(read)
+
+
+def _repair(scan: _Scan, wanted: Wanted, progress: ProgressCallback | None, threads: int) -> None:
+    """Completes given normals in memory, or takes those away that are to be estimated."""
+    read = scan.read
+    if not scan.faults or read is None or read.normals is None:
+        return
+    given = read.normals
+    if MISSING in scan.faults:
+        lacks = lacking(given)
+        scan.estimated = int(np.count_nonzero(lacks))
+        if not has_enough(given):
+            if wanted.direction == GIVEN:
+                raise ValueError(
+                    "direction: 'given', but normals are zero or no numbers; use another direction"
+                )
+            scan.read = replace(read, normals=None)
+            return
+        if lacks.any():
+            given = _completed(read.positions, given, wanted, progress, threads)
+    if CONTRADICTORY in scan.faults:
+        scan.axes = given
+        scan.read = replace(read, normals=None)
+    else:
+        scan.read = replace(read, normals=given)
+
+
+def _completed(
+    positions: npt.NDArray[np.floating],
+    given: npt.NDArray[np.floating],
+    wanted: Wanted,
+    progress: ProgressCallback | None,
+    threads: int,
+) -> npt.NDArray[np.float64]:
+    """Given normals, and those that follow from them; or, in parts without any, estimated ones."""
+    seen = seen_points(np.asarray(positions, np.float64), None, as_threads(threads))
+    found = completed(seen, given, progress_part(progress, 0.0, 0.8), threads)
+    left = lacking(found) & np.isfinite(seen).all(axis=1)
+    if left.any():
+        rest = progress_part(progress, 0.8, 1.0)
+        side = OUTWARD if wanted.direction == GIVEN else wanted.direction
+        places = wanted.viewpoints
+        places = places[left] if len(places) == len(left) > 1 else places
+        found[left] = estimated(seen[left], side, places, rest, threads)
+    return found
 
 
 def _estimate(
@@ -316,12 +439,16 @@ def _estimate(
     rows = np.concatenate([read.positions for read in scans])
     viewpoints = group[0].viewpoints
     first, rest = parts(progress)
-    direction = wanted.of_missing(rows, bool(len(viewpoints)), group[0].is_from_above, first)
+    direction, origin = wanted.of_missing(
+        rows, bool(len(viewpoints)), group[0].is_from_above, first, threads
+    )
     normals = estimated(rows, direction, viewpoints, rest, threads)
     ends = np.cumsum([len(read.positions) for read in scans])[:-1]
     for scan, read, own in zip(group, scans, np.split(normals, ends), strict=True):
-        scan.read = replace(read, normals=own)
+        found = own if scan.axes is None else reoriented(scan.axes, own)
+        scan.read = replace(read, normals=found)
         scan.direction = direction
+        scan.origin = origin
         scan.is_to_be_turned = False
 
 
