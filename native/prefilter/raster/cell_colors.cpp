@@ -2,7 +2,7 @@
 
 #include "prefilter/raster/cell_colors.h"
 
-#include <algorithm>
+#include "prefilter/raster/paint_bounds.h"
 
 namespace prefilter {
 namespace {
@@ -14,20 +14,19 @@ constexpr double kLeastPassing = RowLayers::kLeastPassing;
 
 CellColors::CellColors(const LayerStack& stack, const CellFilter& filter,
                        const ChannelValues& background, int channels)
-    : stack_(stack), filter_(filter), background_(background), channels_(channels) {
-  if (!stack.is_constant) return;
+    : stack_(stack),
+      filter_(filter),
+      background_(background),
+      channels_(channels),
+      pixels_per_cell_(1.0 / filter.cells_per_pixel) {
   for (const StackLayer& layer : stack.layers) {
-    const ChannelValues& color = layer.paint->constant;
-    veils_.push_back({color, 1.0 - opacity(color)});
-  }
-}
-
-void CellColors::append_color(const Paint& paint, std::vector<ChannelValues>* colors) const {
-  const double scale = 1.0 / filter_.cells_per_pixel;
-  for (std::size_t i = 0; i < kColorNodes; ++i) {
-    colors->push_back(paint.kind == Paint::Kind::kConstant
-                          ? paint.constant
-                          : paint.at(center_ + scale * color_node(i)));
+    if (stack.is_constant) {
+      const ChannelValues& color = layer.paint->constant;
+      veils_.push_back({color, 1.0 - opacity(color)});
+    } else {
+      most_passing_.push_back(prefilter::most_passing(*layer.paint, channels));
+      round_.push_back(RoundGradient::of(*layer.paint, 1.0));
+    }
   }
 }
 
@@ -47,34 +46,36 @@ bool CellColors::append_constant_full(std::uint32_t end, std::uint32_t behind,
 
 // What is full below `end`, and over `behind`. Returns whether something passes.
 bool CellColors::append_full(std::uint32_t end, std::uint32_t behind, const LayerSet& full) {
+  ++looked_;
   if (stack_.is_constant) return append_constant_full(end, behind, full);
-  const std::size_t first = full_.size();
-  full_.resize(first + nodes());
-  double most_passing = 1.0;
-  for (std::uint32_t layer = full.highest_below(end);
-       layer != LayerSet::kNone && (behind == LayerSet::kNone || layer > behind);
-       layer = full.highest_below(layer)) {
-    behind_.clear();
-    append_color(*stack_.layers[layer].paint, &behind_);
-    most_passing = 0.0;
-    for (std::size_t i = 0; i < nodes(); ++i) {
-      Veil& veil = full_[first + i];
-      veil.put_behind(behind_[i], opacity(behind_[i]), channels_);
-      most_passing = std::max(most_passing, veil.passing);
-    }
-    if (most_passing < kLeastPassing) return false;
+  full.each_between(end, behind, [&](std::uint32_t layer) {
+    seen_layers_.push_back({layer, SeenLayer::kFull});
+    passing_ *= most_passing_[layer];
+    return passing_ >= kLeastPassing;
+  });
+  return passing_ >= kLeastPassing;
+}
+
+void CellColors::append_layer(std::uint32_t layer) {
+  if (stack_.is_constant) {
+    colors_.push_back(veils_[layer].color);
+  } else if (!stack_.layers[layer].is_cutter) {
+    seen_layers_.push_back({layer, static_cast<std::uint32_t>(seen_)});
   }
-  return true;
+  ++seen_;
 }
 
 void CellColors::begin_cell(int column, int row, std::span<const CellLayer> layers,
                             const LayerSet& full) {
-  center_ = {filter_.to_pixel(column + 0.5), filter_.to_pixel(row + 0.5)};
+  move_to(column, row);
   full_.clear();
   colors_.clear();
+  seen_layers_.clear();
+  passing_ = 1.0;
   layers_ = layers;
   all_full_ = &full;
   looked_below_ = static_cast<std::uint32_t>(stack_.layers.size());
+  looked_ = 0;
   seen_ = 0;
   is_at_end_ = false;
   look_at(0);
@@ -82,17 +83,8 @@ void CellColors::begin_cell(int column, int row, std::span<const CellLayer> laye
 
 std::size_t CellColors::look_at(std::size_t count) {
   while (!is_at_end_) {
-    const std::size_t next = full_.size() / nodes();
-    if (next > count) break;
-    if (next > 0) {
-      const std::uint32_t layer = layers_[seen_].layer;
-      if (stack_.is_constant) {
-        colors_.push_back(veils_[layer].color);
-      } else {
-        append_color(*stack_.layers[layer].paint, &colors_);
-      }
-      ++seen_;
-    }
+    if (looked_ > count) break;
+    if (looked_ > 0) append_layer(layers_[seen_].layer);
     const bool is_last = seen_ == layers_.size();
     const std::uint32_t behind = is_last ? LayerSet::kNone : layers_[seen_].layer;
     is_at_end_ = !append_full(looked_below_, behind, *all_full_) || is_last;
@@ -102,31 +94,36 @@ std::size_t CellColors::look_at(std::size_t count) {
 }
 
 void CellColors::compose(std::uint64_t present, ChannelValues* out) const {
-  for (std::size_t i = 0; i < nodes(); ++i) {
-    Veil veil;
-    for (std::size_t layer = 0; layer <= seen_; ++layer) {
-      const Veil& next = full_[layer * nodes() + i];
-      veil.put_behind(next.color, 1.0 - next.passing, channels_);
-      if (layer < seen_ && (present >> layer & 1) != 0) {
-        const ChannelValues& color = colors_[layer * nodes() + i];
-        veil.put_behind(color, opacity(color), channels_);
-      }
+  Veil veil;
+  for (std::size_t layer = 0; layer <= seen_; ++layer) {
+    const Veil& next = full_[layer];
+    veil.put_behind(next.color, 1.0 - next.passing, channels_);
+    if (layer < seen_ && (present >> layer & 1) != 0) {
+      const ChannelValues& color = colors_[layer];
+      veil.put_behind(color, opacity(color), channels_);
     }
-    out[i] = veil.color;
-    for (int c = 0; c < channels_; ++c) out[i][c] -= (1.0 - veil.passing) * background_[c];
   }
+  *out = veil.color;
+  for (int c = 0; c < channels_; ++c) (*out)[c] -= (1.0 - veil.passing) * background_[c];
 }
 
-void CellColors::powers(std::span<const ChannelValues> at_nodes,
-                        std::array<ColorPowers, kMaxChannels>* out) const {
-  for (int c = 0; c < channels_; ++c) (*out)[c] = {};
-  if (at_nodes.size() == 1) {
-    for (int c = 0; c < channels_; ++c) (*out)[c][0] = at_nodes[0][c];
-    return;
+ChannelValues CellColors::color_at(std::uint32_t layer, const Point2& point) const {
+  const Paint& paint = *stack_.layers[layer].paint;
+  if (paint.kind == Paint::Kind::kConstant) return paint.constant;
+  const Point2 place = center_ + pixels_per_cell_ * point;
+  return round_[layer] ? round_[layer]->at(place) : paint.at(place);
+}
+
+ChannelValues CellColors::compose_at(std::uint64_t present, const Point2& point) const {
+  Veil veil;
+  for (const SeenLayer& seen : seen_layers_) {
+    if (seen.place != SeenLayer::kFull && (present >> seen.place & 1) == 0) continue;
+    const ChannelValues color = color_at(seen.layer, point);
+    veil.put_behind(color, opacity(color), channels_);
+    if (veil.passing < kLeastPassing) break;
   }
-  for (std::size_t i = 0; i < kColorNodes; ++i) {
-    add_color_node(i, at_nodes[i], channels_, out);
-  }
+  for (int c = 0; c < channels_; ++c) veil.color[c] -= (1.0 - veil.passing) * background_[c];
+  return veil.color;
 }
 
 }  // namespace prefilter

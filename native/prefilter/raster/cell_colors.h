@@ -4,10 +4,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
-#include "prefilter/raster/local_color.h"
+#include "prefilter/raster/cell_filter.h"
+#include "prefilter/raster/round_gradient.h"
 #include "prefilter/raster/row_layers.h"
 
 namespace prefilter {
@@ -24,60 +26,81 @@ struct Veil {
   }
 };
 
-/// Colors are told at the nodes of a cell: one, or those by which a polynomial of degree 2 is told.
+/// A stack whose colors are all constant has one color for each set of layers; any other has a
+/// color at each point.
 class CellColors {
  public:
+  /// A layer of a cell that may be seen.
+  struct SeenLayer {
+    /// For a layer that fills the cell.
+    static constexpr std::uint32_t kFull = UINT32_MAX;
+
+    std::uint32_t layer = 0;
+    std::uint32_t place = kFull;  // among the layers of the cell
+  };
+
   CellColors(const LayerStack& stack, const CellFilter& filter, const ChannelValues& background,
              int channels);
 
-  std::size_t nodes() const { return stack_.is_constant ? 1 : kColorNodes; }
+  bool is_constant() const { return stack_.is_constant; }
   int channels() const { return channels_; }
   const ChannelValues& background() const { return background_; }
 
   /// For a cell with these layers, from the highest, over and between those that are `full`. They
   /// must not change until the next cell.
   void begin_cell(int column, int row, std::span<const CellLayer> layers, const LayerSet& full);
+  /// To another cell with the same layers.
+  void move_to(int column, int row) {
+    center_ = {filter_.to_pixel(column + 0.5), filter_.to_pixel(row + 0.5)};
+  }
   /// Looks at so many layers of the cell, from the highest, and returns how many of them are seen
   /// where they are.
   std::size_t look_at(std::size_t count);
-  /// What is full over layer i of those that are seen and below the one before it, at the nodes;
-  /// behind all of them for the last one of these.
-  std::span<const Veil> over(std::size_t i) const {
-    return std::span(full_).subspan(i * nodes(), nodes());
-  }
-  /// The color of layer i at the nodes.
-  std::span<const ChannelValues> color(std::size_t i) const {
-    return std::span(colors_).subspan(i * nodes(), nodes());
-  }
   double opacity(const ChannelValues& value) const {
     return channels_ == kMaxChannels ? value[kMaxChannels - 1] : 1.0;
   }
-  /// Writes to `out`, a value a node, what shows less the background where bit i of `present` tells
-  /// whether layer i is there, of up to 64.
+
+  /// Of constant colors: what is full over layer i of those that are seen and below the one before
+  /// it; behind all of them for the last one of these.
+  const Veil& over(std::size_t i) const { return full_[i]; }
+  /// Of constant colors: the color of layer i.
+  const ChannelValues& color(std::size_t i) const { return colors_[i]; }
+  /// Of constant colors: writes to `out` what shows less the background where bit i of `present`
+  /// tells whether layer i is there, of up to 64.
   void compose(std::uint64_t present, ChannelValues* out) const;
-  /// The color between the nodes.
-  void powers(std::span<const ChannelValues> at_nodes,
-              std::array<ColorPowers, kMaxChannels>* out) const;
+
+  /// Of other colors: all layers that were looked at, from the highest.
+  std::span<const SeenLayer> seen_layers() const { return seen_layers_; }
+  /// The value of a layer at a point, from the cell's center in cells.
+  ChannelValues color_at(std::uint32_t layer, const Point2& point) const;
+  /// As compose(), at a point.
+  ChannelValues compose_at(std::uint64_t present, const Point2& point) const;
 
  private:
-  void append_color(const Paint& paint, std::vector<ChannelValues>* colors) const;
   bool append_full(std::uint32_t end, std::uint32_t behind, const LayerSet& full);
   bool append_constant_full(std::uint32_t end, std::uint32_t behind, const LayerSet& full);
+  void append_layer(std::uint32_t layer);
 
   const LayerStack& stack_;
   const CellFilter& filter_;
   ChannelValues background_;
   int channels_;
+  double pixels_per_cell_;
   std::vector<Veil> veils_;  // the layers, where all are constant
+  // Else what each lets pass at most, and faster ways to its values.
+  std::vector<double> most_passing_;
+  std::vector<std::optional<RoundGradient>> round_;
   Point2 center_;
   std::span<const CellLayer> layers_;
   const LayerSet* all_full_ = nullptr;
   std::uint32_t looked_below_ = 0;
+  std::size_t looked_ = 0;  // how often at what is full
   std::size_t seen_ = 0;
   bool is_at_end_ = false;
   std::vector<Veil> full_;
   std::vector<ChannelValues> colors_;
-  std::vector<ChannelValues> behind_;
+  std::vector<SeenLayer> seen_layers_;
+  double passing_ = 1.0;  // at most, through seen_layers_ that are full
 };
 
 }  // namespace prefilter

@@ -20,9 +20,9 @@ CellPixels::CellPixels(const CellFilter& filter, int width)
   };
   for (int oy = 0; oy < filter.taps; ++oy) {
     for (int ox = 0; ox < filter.taps; ++ox) {
-      ColorPowers full{};
+      LinearPowers full{};
       for (std::size_t k = 0; k < full.size(); ++k) {
-        const auto [m, n] = kColorExponents[k];
+        const auto [m, n] = kLinearExponents[k];
         if (filter.is_separable) {
           full[k] = along(ox, m) * along(oy, n);
           continue;
@@ -85,9 +85,9 @@ void CellPixels::add(int column, int row, int channel, std::span<const double> m
   });
 }
 
-void CellPixels::add_full(int column, int row, double share, std::span<const ColorPowers> color) {
+void CellPixels::add_full(int column, int row, double share, std::span<const LinearPowers> color) {
   for_pixels_over(column, row, [&](double* values, int ox, int oy) {
-    const ColorPowers& full = full_[oy * filter_.taps + ox];
+    const LinearPowers& full = full_[oy * filter_.taps + ox];
     for (std::size_t c = 0; c < color.size(); ++c) {
       double sum = 0.0;
       for (std::size_t k = 0; k < full.size(); ++k) sum += full[k] * color[c][k];

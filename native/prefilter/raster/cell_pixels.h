@@ -26,7 +26,7 @@ class CellPixels {
   /// The integrals over a cell of a channel's value times x^a y^b, at [a * (degree + 1) + b].
   void add(int column, int row, int channel, std::span<const double> moments);
   /// A cell of which a share has the same color all over.
-  void add_full(int column, int row, double share, std::span<const ColorPowers> color);
+  void add_full(int column, int row, double share, std::span<const LinearPowers> color);
   /// The same of a filter of one cell a pixel: calls use(begin, end, values) for the cells that
   /// are in the image, with the values of the first one on.
   template <typename Use>
@@ -44,7 +44,7 @@ class CellPixels {
   int first_row_ = 0;
   int end_row_ = 0;
   BandValues* values_ = nullptr;
-  std::vector<ColorPowers> full_;  // of taps (oy, ox): the integrals of the color's powers
+  std::vector<LinearPowers> full_;  // of taps (oy, ox): the integrals of the color's powers
 };
 
 template <typename Use>

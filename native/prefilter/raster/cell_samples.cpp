@@ -218,24 +218,22 @@ void CellSamples::put_constant_behind(const SampleRows& filled, const ChannelVal
   for (int c = 0; c < channels_; ++c) sums_[c] += passing_all_ * sum * color[c];
 }
 
-void CellSamples::put_powers_behind(const std::array<ColorPowers, kMaxChannels>& color,
-                                    const ColorPowers& opacity) {
-  const auto at = [](const ColorPowers& p, float u, float v) {
-    const auto of = [&p](int k) { return static_cast<float>(p[k]); };
-    return of(0) + u * (of(1) + u * of(3) + v * of(4)) + v * (of(2) + v * of(5));
-  };
+// Puts a layer whose color varies behind what is there, sample by sample.
+void CellSamples::put_varying_behind(const SampleRows& filled, std::uint32_t layer,
+                                     const CellColors& colors) {
+  take_blocks(filled);
   double taken = 0.0;
   for (int block = 0; block < kBlocks; ++block) {
     if (filled_blocks_[block] == 0) continue;
     take_behind(block);
-    for (std::uint64_t filled = filled_blocks_[block]; filled != 0; filled &= filled - 1) {
-      const int sample = std::countr_zero(filled);
+    for (std::uint64_t bits = filled_blocks_[block]; bits != 0; bits &= bits - 1) {
+      const int sample = std::countr_zero(bits);
       const int i = block * kBlockCount + sample;
-      const Point2 point = place_of(block, sample);
-      const auto u = static_cast<float>(point.x);
-      const auto v = static_cast<float>(point.y);
-      for (int c = 0; c < channels_; ++c) values_[c][i] += passing_[i] * at(color[c], u, v);
-      const float share = passing_[i] * std::clamp(at(opacity, u, v), 0.0F, 1.0F);
+      const ChannelValues color = colors.color_at(layer, place_of(block, sample));
+      for (int c = 0; c < channels_; ++c) {
+        values_[c][i] += passing_[i] * static_cast<float>(color[c]);
+      }
+      const float share = passing_[i] * static_cast<float>(colors.opacity(color));
       passing_[i] -= share;
       block_left_[block] -= share;
       taken += static_cast<double>(share);
@@ -244,41 +242,16 @@ void CellSamples::put_powers_behind(const std::array<ColorPowers, kMaxChannels>&
   left_ -= taken;
 }
 
-// What opacity holds is the same in all channels.
-void CellSamples::put_nodes_behind(const SampleRows& filled, std::span<const ChannelValues> color,
-                                   std::span<const ChannelValues> opacity,
-                                   const CellColors& colors) {
-  std::array<ColorPowers, kMaxChannels> color_powers;
-  std::array<ColorPowers, kMaxChannels> opacity_powers;
-  colors.powers(color, &color_powers);
-  colors.powers(opacity, &opacity_powers);
-  take_blocks(filled);
-  put_powers_behind(color_powers, opacity_powers[0]);
-}
-
-void CellSamples::put_full_behind(std::span<const Veil> veils, const CellColors& colors) {
-  if (std::all_of(veils.begin(), veils.end(), [](const Veil& v) { return v.passing == 1.0; })) {
-    return;
-  }
+void CellSamples::put_full_behind(const Veil& veil) {
+  if (veil.passing == 1.0) return;
   if (!keeps_places_) {
-    const Veil& veil = veils.front();
     for (int c = 0; c < channels_; ++c) sums_[c] += passing_all_ * left_ * veil.color[c];
     passing_all_ *= veil.passing;
     return;
   }
   SampleRows all;
   all.fill(kAll);
-  if (veils.size() == 1) {
-    put_constant_behind(all, veils[0].color, 1.0 - veils[0].passing);
-    return;
-  }
-  std::vector<ChannelValues> values;
-  std::vector<ChannelValues> opacities;
-  for (const Veil& veil : veils) {
-    values.push_back(veil.color);
-    opacities.push_back({1.0 - veil.passing});
-  }
-  put_nodes_behind(all, values, opacities, colors);
+  put_constant_behind(all, veil.color, 1.0 - veil.passing);
 }
 
 bool CellSamples::are_equal(const CellLayer& a, const CellLayer& b) const {
@@ -292,22 +265,14 @@ bool CellSamples::are_equal(const CellLayer& a, const CellLayer& b) const {
 std::size_t CellSamples::put_layer_behind(std::size_t i, std::span<const CellLayer> layers,
                                           CellColors* colors) {
   const SampleRows& filled = bits_.fill(layers[i], center_);
-  if (colors->nodes() > 1) {
-    std::vector<ChannelValues> opacities;
-    for (const ChannelValues& value : colors->color(i)) {
-      opacities.push_back({colors->opacity(value)});
-    }
-    put_nodes_behind(filled, colors->color(i), opacities, *colors);
-    return i;
-  }
   Veil veil;
   const auto put = [&](const ChannelValues& color) {
     veil.put_behind(color, colors->opacity(color), channels_);
   };
-  put(colors->color(i)[0]);
-  while (colors->look_at(i + 2) > i + 1 && colors->over(i + 1)[0].passing == 1.0 &&
+  put(colors->color(i));
+  while (colors->look_at(i + 2) > i + 1 && colors->over(i + 1).passing == 1.0 &&
          are_equal(layers[i], layers[i + 1])) {
-    put(colors->color(++i)[0]);
+    put(colors->color(++i));
   }
   put_constant_behind(filled, veil.color, 1.0 - veil.passing);
   return i;
@@ -333,13 +298,36 @@ void CellSamples::compose(int column, int row, std::span<const CellLayer> layers
                           CellColors* colors) {
   center_ = {column + 0.5, row + 0.5};
   begin();
+  if (colors->is_constant()) {
+    compose_constant(layers, colors);
+  } else {
+    compose_varying(layers, colors);
+  }
+  take_background(colors->background());
+}
+
+void CellSamples::compose_constant(std::span<const CellLayer> layers, CellColors* colors) {
   for (std::size_t i = 0; passing_all_ * left_ > kLeastLeft; ++i) {
     const bool is_seen = colors->look_at(i + 1) > i;
-    put_full_behind(colors->over(i), *colors);
+    put_full_behind(colors->over(i));
     if (!is_seen || passing_all_ * left_ <= kLeastLeft) break;
     i = put_layer_behind(i, layers, colors);
   }
-  take_background(colors->background());
+}
+
+void CellSamples::compose_varying(std::span<const CellLayer> layers, CellColors* colors) {
+  SampleRows all;
+  all.fill(kAll);
+  std::size_t next = 0;
+  for (std::size_t i = 0; left_ > kLeastLeft; ++i) {
+    const bool is_seen = colors->look_at(i + 1) > i;
+    for (; next < colors->seen_layers().size() && left_ > kLeastLeft; ++next) {
+      const auto [layer, place] = colors->seen_layers()[next];
+      const bool is_full = place == CellColors::SeenLayer::kFull;
+      put_varying_behind(is_full ? all : bits_.fill(layers[place], center_), layer, *colors);
+    }
+    if (!is_seen) break;
+  }
 }
 
 // Of values that are the same all over what is around a sample, so that of a cell of one color the

@@ -52,14 +52,13 @@ class CellSamples {
   float take_part(int block, const ChannelValues& color, float opaque);
   void take_behind(int block);
   void put_constant_behind(const SampleRows& filled, const ChannelValues& color, double opacity);
-  void put_powers_behind(const std::array<ColorPowers, kMaxChannels>& color,
-                         const ColorPowers& opacity);
-  void put_nodes_behind(const SampleRows& filled, std::span<const ChannelValues> color,
-                        std::span<const ChannelValues> opacity, const CellColors& colors);
-  void put_full_behind(std::span<const Veil> veils, const CellColors& colors);
+  void put_varying_behind(const SampleRows& filled, std::uint32_t layer, const CellColors& colors);
+  void put_full_behind(const Veil& veil);
   bool are_equal(const CellLayer& a, const CellLayer& b) const;
   std::size_t put_layer_behind(std::size_t i, std::span<const CellLayer> layers,
                                CellColors* colors);
+  void compose_constant(std::span<const CellLayer> layers, CellColors* colors);
+  void compose_varying(std::span<const CellLayer> layers, CellColors* colors);
   void take_background(const ChannelValues& background);
 
   const StackArcs& stack_arcs_;

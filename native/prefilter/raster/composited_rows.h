@@ -5,22 +5,25 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "prefilter/raster/band_values.h"
 #include "prefilter/raster/box_coverage.h"
 #include "prefilter/raster/layer_stack.h"
 #include "prefilter/raster/open_columns.h"
+#include "prefilter/raster/paint_means.h"
 
 namespace prefilter {
 
 /// Under the box filter a pixel that one layer covers in part, and all others wholly or not at all,
 /// is a mean of two colors. Where outlines of several layers meet in a pixel, or one that may wind
-/// more than once passes it, it is marked, for others to find what shows there. An opaque layer
-/// that covers a pixel takes the mark away.
+/// more than once passes it, it is marked, for others to find what shows there; so is one where a
+/// color that varies meets an outline, a kink or a jump of its own, or steep colors below it. An
+/// opaque layer that covers a pixel takes the mark away.
 class CompositedRows {
  public:
-  /// Of a stack of constant colors, which must outlive it.
+  /// Of a stack, which must outlive it.
   CompositedRows(const LayerStack& stack, int width, int channels);
 
   /// Puts the layers over what `values`, those of the pixel rows [first_row, end_row), hold; pixels
@@ -37,10 +40,13 @@ class CompositedRows {
   static constexpr int kBlock = 16;
   static constexpr unsigned kAll = (1U << kBlock) - 1;
 
-  /// Bits of the pixels of a block that some layer covers in part, and of those with a mark.
+  /// Bits of the pixels of a block that some layer covers in part, of those with a mark, of those
+  /// with colors that vary, and of those that the cutter of the layer in hand passes.
   struct BlockBits {
     std::uint16_t in_part = 0;
     std::uint16_t marked = 0;
+    std::uint16_t steep = 0;
+    std::uint16_t cut = 0;
   };
   /// A layer's color, ready to be put over others.
   struct Coat {
@@ -48,6 +54,11 @@ class CompositedRows {
     double opacity = 1.0;
     bool winds_once = true;
     FillRule fill_rule = FillRule::kNonzero;
+    /// Of a color that varies.
+    const PaintMeans* means = nullptr;
+    bool is_steep = false;        // so that it counts which part of a pixel is covered
+    bool is_veil = false;         // so that it counts where in a pixel it is how opaque
+    bool marks_steep = false;     // also of what it covers all over
   };
 
   BlockBits* bits(int row) {
@@ -56,6 +67,11 @@ class CompositedRows {
   const BlockBits* bits(int row) const {
     return bits_.data() + static_cast<std::size_t>(row - first_row_) * blocks_;
   }
+  Coat coat_of(const StackLayer& layer, double steepest_below);
+  void put_layer_of_channels(const Coat& coat, BandValues* values);
+  void add_cutter(const EdgeList& edges);
+  void forget_cutter();
+  static void cover(const Coat& coat, unsigned any, unsigned full, BlockBits* bits);
   template <int kChannels>
   void put_layer(const Coat& coat, BandValues* values);
   template <int kChannels>
@@ -86,6 +102,9 @@ class CompositedRows {
   BoxCoverage coverage_;
   std::vector<BlockBits> bits_;
   std::vector<std::uint8_t> has_marks_;
+  bool has_cutter_ = false;
+  std::optional<PaintMeans> means_;  // of the layer in hand
+  std::vector<double> run_;
 };
 
 }  // namespace prefilter

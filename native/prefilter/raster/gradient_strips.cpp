@@ -6,13 +6,14 @@
 #include <cmath>
 
 #include "prefilter/raster/half_plane.h"
+#include "prefilter/raster/paint_bounds.h"
 
 namespace prefilter {
 namespace {
 
-// More periods across a shape than this are finer than what any image shows of them: the shape has
-// their mean instead.
-constexpr double kMostPeriods = 2048.0;
+// A strip narrower than this, in pixels, has one color: with a slope of the inverse of its width,
+// what moments are rounded by would show.
+constexpr double kNarrowestStrip = 1.0 / 4096.0;
 
 // The offset as a linear function of the shape's coordinates.
 LinearFunction offset_function(const Paint& paint) {
@@ -38,6 +39,11 @@ Paint constant_paint(const Paint& paint, const ChannelValues& value) {
 Paint linear_paint(const Paint& paint, const LinearFunction& offset, double low, double high,
                    const ChannelValues& before, const ChannelValues& after) {
   if (before == after) return constant_paint(paint, before);
+  if (high - low < kNarrowestStrip * length(offset.slope)) {
+    ChannelValues mean;
+    for (std::size_t c = 0; c < mean.size(); ++c) mean[c] = 0.5 * (before[c] + after[c]);
+    return constant_paint(paint, mean);
+  }
   Paint out;
   out.kind = Paint::Kind::kLinear;
   out.channels = paint.channels;
@@ -90,6 +96,7 @@ std::vector<GradientStrip> gradient_strips(const Outline& outline, const Paint& 
     add(stops.back().offset, HUGE_VAL, constant_paint(paint, stops.back().value));
     return strips;
   }
+  // Beyond, the shape has the mean of a period.
   if (!(most - least <= kMostPeriods)) {
     strips.push_back({outline, constant_paint(paint, mean_of(stops))});
     return strips;

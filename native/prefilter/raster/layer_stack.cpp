@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "prefilter/raster/gradient_cutter.h"
 #include "prefilter/raster/gradient_strips.h"
 
 namespace prefilter {
@@ -15,9 +16,17 @@ void add_layer(const Outline& outline, const StackShape& shape, const Paint& pai
   if (outline.empty()) return;
   // Of what winds once both rules say the same, and that of odd numbers takes less.
   const FillRule rule = shape.winds_once ? FillRule::kEvenOdd : shape.fill_rule;
-  stack->layers.push_back({{}, rule, &paint, shape.winds_once});
+  stack->layers.push_back({{}, rule, &paint, shape.winds_once, false});
   stack->layers.back().edges.add(outline);
   stack->is_constant = stack->is_constant && paint.kind == Paint::Kind::kConstant;
+}
+
+void add_cutter(const Outline& outline, const Paint& paint, LayerStack* stack) {
+  Outline cutter = gradient_cutter(paint, control_box(outline));
+  if (cutter.empty()) return;
+  stack->outlines.push_back(std::move(cutter));
+  stack->layers.push_back({{}, FillRule::kEvenOdd, &paint, false, true});
+  stack->layers.back().edges.add(stack->outlines.back());
 }
 
 }  // namespace
@@ -27,6 +36,8 @@ LayerStack stack_of(std::span<const StackShape> shapes) {
   for (const StackShape& shape : shapes) {
     if (shape.paint->kind != Paint::Kind::kLinearStops) {
       add_layer(*shape.outline, shape, *shape.paint, &stack);
+      // Over the layer, which may hide what is below it.
+      if (!shape.outline->empty()) add_cutter(*shape.outline, *shape.paint, &stack);
       continue;
     }
     for (GradientStrip& strip : gradient_strips(*shape.outline, *shape.paint)) {

@@ -20,6 +20,8 @@ struct StackLayer {
   FillRule fill_rule = FillRule::kNonzero;
   const Paint* paint = nullptr;  // of any kind but kLinearStops
   bool winds_once = false;       // whether that is known
+  /// Shows nothing: its outline is where the color of the layer before has a kink or a jump.
+  bool is_cutter = false;
 };
 
 struct LayerStack {

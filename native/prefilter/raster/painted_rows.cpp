@@ -20,16 +20,11 @@ void PaintedRows<N>::add_cell(int column, int row, const Moments& moments,
                               const LocalColor& color) {
   if (is_box_) {
     pixels_.add_row(column, column + 1, row, [&](int, int, double* out) {
-      ColorPowers in_cell{};
-      for (std::size_t k = 0; k < in_cell.size(); ++k) {
-        const auto [m, n] = kColorExponents[k];
-        if (m + n <= N) in_cell[k] = moments[m][n];
-      }
-      color.add_integral(column, row, in_cell, out);
+      color.add_integral(column, row, {moments[0][0], moments[1][0], moments[0][1]}, out);
     });
     return;
   }
-  std::array<ColorPowers, kMaxChannels> powers;
+  std::array<LinearPowers, kMaxChannels> powers;
   color.powers(column, row, &powers);
   const int count = filter_.degree + 1;
   const int channels = color.channels();
@@ -37,8 +32,7 @@ void PaintedRows<N>::add_cell(int column, int row, const Moments& moments,
     // The moments of the color: of the color's powers and the filter's together.
     std::array<double, (N + 1) * (N + 1)> colored{};
     for (std::size_t k = 0; k < powers[c].size(); ++k) {
-      const auto [m, n] = kColorExponents[k];
-      if (m + n > color.degree()) continue;
+      const auto [m, n] = kLinearExponents[k];
       for (int a = 0; a < count; ++a) {
         for (int b = 0; b < count; ++b) {
           colored[a * count + b] += powers[c][k] * moments[a + m][b + n];
@@ -58,7 +52,7 @@ void PaintedRows<N>::add_full_cells(int begin, int end, int row, double share,
     });
     return;
   }
-  std::array<ColorPowers, kMaxChannels> powers;
+  std::array<LinearPowers, kMaxChannels> powers;
   const auto channels = static_cast<std::size_t>(color.channels());
   for (int column = begin; column < end; ++column) {
     color.powers(column, row, &powers);
@@ -120,8 +114,6 @@ template class PaintedRows<1>;
 template class PaintedRows<2>;
 template class PaintedRows<3>;
 template class PaintedRows<4>;
-template class PaintedRows<5>;
 template class PaintedRows<8>;
-template class PaintedRows<9>;
 
 }  // namespace prefilter

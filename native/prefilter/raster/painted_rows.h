@@ -42,8 +42,6 @@ extern template class PaintedRows<1>;
 extern template class PaintedRows<2>;
 extern template class PaintedRows<3>;
 extern template class PaintedRows<4>;
-extern template class PaintedRows<5>;
 extern template class PaintedRows<8>;
-extern template class PaintedRows<9>;
 
 }  // namespace prefilter

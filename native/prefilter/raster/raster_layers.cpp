@@ -12,6 +12,7 @@
 #include "prefilter/outline/visible_pieces.h"
 #include "prefilter/raster/box_coverage.h"
 #include "prefilter/raster/gradient_strips.h"
+#include "prefilter/raster/paint_bounds.h"
 #include "prefilter/raster/shape_groups.h"
 
 namespace prefilter {
@@ -47,23 +48,11 @@ bool is_left_open(const Outline& outline) {
   return false;
 }
 
-// A gradient between two circles, neither of which holds the other, is nothing outside of a cone.
-bool is_cone(const Paint& paint) {
-  if (paint.kind != Paint::Kind::kRadialStops) return false;
-  const Point2 axis = paint.end - paint.start;
-  const double growth = paint.end_radius - paint.start_radius;
-  return dot(axis, axis) >= growth * growth;
-}
-
-bool is_opaque(const Paint& paint) {
-  if (!has_alpha(paint)) return true;
-  if (is_cone(paint)) return false;
-  if (!paint.stops.empty()) {
-    return std::all_of(paint.stops.begin(), paint.stops.end(),
-                       [](const GradientStop& stop) { return stop.value[kAlpha] >= 1.0; });
-  }
-  return paint.constant[kAlpha] >= 1.0 && paint.along_x[kAlpha] == 0.0 &&
-         paint.along_y[kAlpha] == 0.0;
+// Whether what shows of a shape under others of which the colors are constant, or that are opaque,
+// is told by moments: a color that is constant or, between stops, linear.
+bool has_moments(const Paint& paint) {
+  if (paint.kind == Paint::Kind::kConstant) return true;
+  return paint.kind == Paint::Kind::kLinearStops && most_passing(paint, paint.channels) == 0.0;
 }
 
 Paint scaled(Paint paint, double factor) {
@@ -81,26 +70,6 @@ class LayerMaker {
  public:
   LayerMaker(RasterMethod method, RasterLayers* out) : method_(method), out_(out) {}
 
-  // An outline that is kept elsewhere, under paints that let 1 - alpha pass.
-  void add_veiled(const Outline& outline, const Paint& paint, const std::vector<Paint>& veils) {
-    double passing = 1.0;
-    std::vector<Paint> varying;
-    for (const Paint& veil : veils) {
-      if (veil.kind == Paint::Kind::kConstant) {
-        passing *= 1.0 - veil.constant[kAlpha];
-      } else {
-        varying.push_back(veil);
-      }
-    }
-    if (varying.empty()) {
-      add(outline, scaled(paint, passing));
-    } else if (!outline.empty()) {
-      out_->layers.push_back({{}, scaled(paint, passing), std::move(varying)});
-      out_->layers.back().edges.add(outline);
-      together_ = 0;
-    }
-  }
-
   void add(const Outline& outline, const Paint& paint) {
     if (outline.empty()) return;
     if (paint.kind == Paint::Kind::kLinearStops) {
@@ -114,7 +83,7 @@ class LayerMaker {
                        (together_ < kMostShapesTogether || method_ == RasterMethod::kWavelet) &&
                        out_->layers.back().paint.constant == paint.constant;
     if (!joins) {
-      out_->layers.push_back({{}, paint, {}});
+      out_->layers.push_back({{}, paint});
       together_ = 0;
     }
     together_ = is_constant ? together_ + 1 : 0;
@@ -204,22 +173,26 @@ class LayerFinder {
           continue;
         }
         for (VisiblePiece& piece : *group.pieces) {
-          std::vector<Paint> veils;
+          double passing = 1.0;
           for (const std::uint32_t veil : piece.veils) {
-            veils.push_back(shapes_[group.shapes[veil]].paint);
+            passing *= 1.0 - shapes_[group.shapes[veil]].paint.constant[kAlpha];
           }
-          maker.add_veiled(maker.keep(std::move(piece.outline)), paints[group.shapes[piece.layer]],
-                           veils);
+          maker.add(maker.keep(std::move(piece.outline)),
+                    scaled(paints[group.shapes[piece.layer]], passing));
         }
         continue;
       }
       for (const std::uint32_t i : group.shapes) {
         Single& single = singles_[i];
-        if (single.is_clear) {
+        const bool is_radial = shapes_[i].paint.kind == Paint::Kind::kRadialStops;
+        if (is_radial && options_.overlap == Overlap::kCover && may_composite_) {
+          composited.push_back(i);
+        } else if (single.is_clear && !is_radial) {
           maker.add(single.changed ? maker.keep(*std::move(single.changed)) : shapes_[i].outline,
                     paints[i]);
         } else if (options_.overlap == Overlap::kAdd) {
-          out->stacks.push_back(stack_of(shapes_.subspan(i, 1)));
+          std::vector<std::uint32_t> numbers = {i};
+          add_stack(&numbers, &maker, out);
         } else {
           stacked.push_back(i);
         }
@@ -247,8 +220,8 @@ class LayerFinder {
     out->stacks.push_back(stack_of(shapes));
   }
 
-  // Whether shapes of constant colors may be put over each other pixel by pixel: those that cover
-  // the image very often take less in other ways.
+  // Whether shapes may be put over each other pixel by pixel: those that cover the image very often
+  // take less in other ways.
   bool may_composite(std::span<const Box2> boxes) const {
     if (options_.method != RasterMethod::kScanline || options_.filter != "box") return false;
     if (std::max(options_.width, options_.height) > kMostBoxPixels) return false;
@@ -298,14 +271,17 @@ class LayerFinder {
       group->is_covered = count > 1 && !are_beside(group->shapes);
     }
     if (!group->is_covered) return;
-    group->is_composited =
-        may_composite_ && std::all_of(group->shapes.begin(), group->shapes.end(), [&](auto i) {
-          return shapes_[i].paint.kind == Paint::Kind::kConstant;
-        });
+    group->is_composited = may_composite_;
     if (group->is_composited) return;
+    if (!std::all_of(group->shapes.begin(), group->shapes.end(),
+                     [&](auto i) { return has_moments(shapes_[i].paint); })) {
+      return;
+    }
     std::vector<CoveringLayer> layers;
     for (const std::uint32_t i : group->shapes) {
-      layers.push_back({&shapes_[i].outline, shapes_[i].fill_rule, is_opaque(shapes_[i].paint)});
+      const Paint& paint = shapes_[i].paint;
+      layers.push_back({&shapes_[i].outline, shapes_[i].fill_rule,
+                        most_passing(paint, paint.channels) == 0.0});
     }
     group->pieces =
         visible_pieces(layers, ArrangementEffort::kBounded, threads, progress.part(0.1, 1.0));

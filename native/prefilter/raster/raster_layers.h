@@ -18,12 +18,11 @@ namespace prefilter {
 /// then cancels.
 struct RasterLayer {
   EdgeList edges;
-  Paint paint;               // of any kind but kLinearStops, where there are no veils
-  std::vector<Paint> veils;  // over it, of which each lets 1 - alpha pass
+  Paint paint;  // constant or linear
 };
 
 inline bool is_constant(const RasterLayer& layer) {
-  return layer.paint.kind == Paint::Kind::kConstant && layer.veils.empty();
+  return layer.paint.kind == Paint::Kind::kConstant;
 }
 
 struct RasterLayers {

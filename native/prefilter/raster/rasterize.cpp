@@ -102,7 +102,7 @@ struct Covered {
   int first_row = -1;  // of the band that it is ready for
 };
 
-// For shapes of which the color changes.
+// For shapes of which the color is linear.
 template <int M>
 struct Painted {
   Painted(const CellFilter& filter, int width) : rows(filter, width) {}
@@ -125,28 +125,18 @@ class BandMaker {
     values_.reset(pixels_.width, end_row - first_row, job_.channels, job_.background);
     // First, as it goes over what is there.
     for (const LayerStack& stack : job_.stacks) {
-      if (stack.is_composited) add_composited(stack);
+      if (stack.is_composited && is_in_band(stack)) add_composited(stack);
     }
     for (const RasterLayer& layer : job_.layers) {
-      if (filter_.to_cell(layer.edges.high()) < filter_.first_cell(first_row)) continue;
-      if (filter_.to_cell(layer.edges.low()) > filter_.first_cell(end_row - 1) + filter_.taps) {
-        continue;
-      }
+      if (!is_in_band(layer.edges)) continue;
       if (is_constant(layer)) {
         add_constant(layer);
-      } else if (LocalColor(layer, filter_).degree() == 1) {
-        add_painted(layer, &linear_);
       } else {
-        add_painted(layer, &curved_);
+        add_painted(layer);
       }
     }
     for (const LayerStack& stack : job_.stacks) {
-      if (stack.is_composited) continue;
-      if (stack.is_constant) {
-        add_stack<N>(stack);
-      } else {
-        add_stack<N + 2>(stack);
-      }
+      if (!stack.is_composited && is_in_band(stack)) add_stack(stack);
     }
     for (int row = first_row; row < end_row; ++row) {
       if (pixels_.bytes != nullptr) {
@@ -229,23 +219,31 @@ class BandMaker {
     rows.add_marked(first_row_, end_row_, composited, &values_);
   }
 
-  template <int M>
+  // Whether a layer may have a share in the band.
+  bool is_in_band(const EdgeList& edges) const {
+    return filter_.to_cell(edges.high()) >= filter_.first_cell(first_row_) &&
+           filter_.to_cell(edges.low()) <= filter_.first_cell(end_row_ - 1) + filter_.taps;
+  }
+  bool is_in_band(const LayerStack& stack) const {
+    return std::any_of(stack.layers.begin(), stack.layers.end(),
+                       [&](const StackLayer& layer) { return is_in_band(layer.edges); });
+  }
+
   void add_stack(const LayerStack& stack) {
-    StackRows<M> rows(stack, filter_, job_.background, job_.channels, pixels_.width,
+    StackRows<N> rows(stack, filter_, job_.background, job_.channels, pixels_.width,
                       pixels_.height);
     rows.add_values(first_row_, end_row_, &values_);
   }
 
-  template <int M>
-  void add_painted(const RasterLayer& layer, std::unique_ptr<Painted<M>>* painted) {
-    if (*painted == nullptr) *painted = std::make_unique<Painted<M>>(filter_, pixels_.width);
-    auto& [cells, rows, first_row] = **painted;
+  void add_painted(const RasterLayer& layer) {
+    if (painted_ == nullptr) painted_ = std::make_unique<Painted<N + 1>>(filter_, pixels_.width);
+    auto& [cells, rows, first_row] = *painted_;
     if (first_row != first_row_) {
       first_row = first_row_;
       cells.begin_band(filter_, pixels_.width, first_row_, end_row_);
     }
     add_edges(layer, &cells);
-    rows.add_values(cells, LocalColor(layer, filter_), first_row_, end_row_, &values_);
+    rows.add_values(cells, LocalColor(layer.paint, filter_), first_row_, end_row_, &values_);
     cells.clear();
   }
 
@@ -255,8 +253,7 @@ class BandMaker {
   int first_row_ = 0;
   int end_row_ = 0;
   std::unique_ptr<Covered<N>> covered_;
-  std::unique_ptr<Painted<N + 1>> linear_;
-  std::unique_ptr<Painted<N + 2>> curved_;
+  std::unique_ptr<Painted<N + 1>> painted_;
   std::unique_ptr<BoxCoverage> box_;
   BandValues values_;
 };

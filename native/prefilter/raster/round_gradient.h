@@ -7,7 +7,6 @@
 #include <optional>
 #include <vector>
 
-#include "prefilter/raster/color_nodes.h"
 #include "prefilter/raster/paint.h"
 
 namespace prefilter {
@@ -22,12 +21,6 @@ class RoundGradient {
 
   /// The value at a point in pixels.
   ChannelValues at(const Point2& point) const;
-  /// The powers of each channel, around a point in pixels; false where the color is not that
-  /// smooth.
-  bool powers(const Point2& center, std::array<ColorPowers, kMaxChannels>* out) const;
-  /// The same by what the color is at the nodes; false where it jumps, or more than two stretches
-  /// meet there.
-  bool node_powers(const Point2& center, std::array<ColorPowers, kMaxChannels>* out) const;
   /// Adds the means over cells along a row, the first one around a point, times a share to `out`,
   /// for as long as the color is that smooth; returns over how many of `count`.
   int add_means(const Point2& center, int count, double share, double* out) const;
@@ -44,7 +37,6 @@ class RoundGradient {
   void add_stretch(double low, double high, const ChannelValues& before,
                    const ChannelValues& after);
   const Stretch* find(double radius) const;
-  void find_node_offsets(const Point2& center, std::array<double, kColorNodes>* offsets) const;
   Point2 place_of(const Point2& point) const {
     return origin_ + point.x * along_x_ + point.y * along_y_;
   }

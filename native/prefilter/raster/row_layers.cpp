@@ -6,6 +6,7 @@
 
 #include "prefilter/base/elementary.h"
 #include "prefilter/outline/fill_rule.h"
+#include "prefilter/raster/paint_bounds.h"
 
 namespace prefilter {
 namespace {
@@ -17,28 +18,6 @@ constexpr double kLeastSampledDepth = -6.94;
 
 // After so many layers that fill cells it is looked what they hide, all at once.
 constexpr int kLayersTogether = 16;
-
-// How much passes through a paint at most.
-double most_passing(const Paint& paint, int channels) {
-  if (channels < kMaxChannels) return 0.0;
-  double least = 1.0;
-  switch (paint.kind) {
-    case Paint::Kind::kConstant:
-      least = paint.constant[kMaxChannels - 1];
-      break;
-    case Paint::Kind::kLinear:
-      least = paint.along_x[kMaxChannels - 1] == 0.0 && paint.along_y[kMaxChannels - 1] == 0.0
-                  ? paint.constant[kMaxChannels - 1]
-                  : 0.0;
-      break;
-    default:
-      for (const GradientStop& stop : paint.stops) {
-        least = std::min(least, stop.value[kMaxChannels - 1]);
-      }
-      break;
-  }
-  return 1.0 - std::clamp(least, 0.0, 1.0);
-}
 
 // The numbers of things by columns: of those in column c, the first is at [c].
 template <typename T>
@@ -58,7 +37,9 @@ void sort_by_columns(const std::vector<T>& things, int columns, std::vector<std:
 RowLayers::RowLayers(const LayerStack& stack, int channels) : full_(stack.layers.size()) {
   for (const StackLayer& layer : stack.layers) {
     rules_.push_back(layer.fill_rule);
-    depths_.push_back(elementary::log(most_passing(*layer.paint, channels)));
+    are_cutters_.push_back(layer.is_cutter);
+    depths_.push_back(layer.is_cutter ? 0.0
+                                      : elementary::log(most_passing(*layer.paint, channels)));
   }
 }
 
@@ -146,6 +127,7 @@ void RowLayers::add_cell(std::uint32_t layer, int column, std::size_t first_arc,
 }
 
 void RowLayers::add_full(std::uint32_t layer, int begin, int end) {
+  if (are_cutters_[layer]) return;
   begin = open_.next(begin, end);
   if (begin >= end) return;
   if (full_end_ == begin) {

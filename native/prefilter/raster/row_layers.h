@@ -90,6 +90,7 @@ class RowLayers {
 
   std::vector<double> depths_;  // of each layer: what passes is e to less than the power of this
   std::vector<FillRule> rules_;
+  std::vector<bool> are_cutters_;
   int columns_ = 0;
   OpenColumns open_;
   std::vector<double> depth_steps_;  // of the layers so far, from column to column

@@ -34,10 +34,11 @@ bool is_before(const StackArc& a, const StackArc& b) { return a.column < b.colum
 }  // namespace
 
 void StackArcs::begin_band(const LayerStack& stack, const CellFilter& filter, int width,
-                           int first_row, int end_row, const CompositedRows* marks) {
-  has_parabolas_ = marks != nullptr;
+                           int first_row, int end_row, bool has_parabolas,
+                           const CompositedRows* marks) {
+  has_parabolas_ = has_parabolas;
   const IsSeen is_seen = [&](const Point2& begin, const Point2& end) {
-    return marks != nullptr && marks->has_marks_within(begin, end);
+    return has_parabolas && (marks == nullptr || marks->has_marks_within(begin, end));
   };
   window_ = {filter.first_cell(0), filter.first_cell(width - 1) + filter.taps,
              filter.first_cell(first_row), filter.first_cell(end_row - 1) + filter.taps};

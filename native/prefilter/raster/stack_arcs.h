@@ -28,7 +28,7 @@ struct StackArc {
   std::int32_t column = 0;      // from the window's first
   std::int32_t winding = 1;     // what the number to its right is higher by than that to its left
   std::uint32_t curve = kLine;  // one of StackArcs::curve()
-  double bend = 0.0;            // as that of a Parabola, with marks
+  double bend = 0.0;            // as that of a Parabola, where curves are told by these
 };
 
 /// Where on a curve an arc is.
@@ -50,10 +50,10 @@ class StackArcs {
     int end_column = 0;
   };
 
-  /// With marks, for the box filter, only columns that have one will be open, and curves are told
-  /// by parabolas.
+  /// With marks, for the box filter, only columns that have one will be open. `has_parabolas` says
+  /// whether curves are told by parabolas.
   void begin_band(const LayerStack& stack, const CellFilter& filter, int width, int first_row,
-                  int end_row, const CompositedRows* marks = nullptr);
+                  int end_row, bool has_parabolas = false, const CompositedRows* marks = nullptr);
   const GridWindow& window() const { return window_; }
 
   void begin_row(int row);
@@ -81,7 +81,7 @@ class StackArcs {
     double t = 0.0;  // along the piece
     Point2 point;
   };
-  // Of a piece; with marks it has several, else one that is its chord.
+  // Of a piece; told by parabolas it has several, else one that is its chord.
   struct Part {
     Parabola parabola;
     std::uint32_t piece = 0;

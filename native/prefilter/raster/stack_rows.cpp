@@ -40,14 +40,14 @@ StackRows<N>::StackRows(const LayerStack& stack, const CellFilter& filter,
       layers_(stack, channels),
       colors_(stack, filter, background, channels),
       sweep_(arcs_),
-      samples_(arcs_, channels, N > 0),
+      quadrature_(N),
       pixels_(filter, width) {}
 
 // Says up to how many arcs cells are swept.
 template <int N>
 void StackRows<N>::plan_row() {
   std::array<std::size_t, kMostArcsForAreas + 1> cells{};  // by arcs
-  const std::size_t most = finds_areas_ ? kMostArcsForAreas : kMostArcs;
+  const std::size_t most = has_parabolas_ ? kMostArcsForAreas : kMostArcs;
   const int columns = arcs_.window().end_column - arcs_.window().first_column;
   for (int column = 0; column < columns; ++column) {
     if (layers_.layer_count(column) == 0) continue;
@@ -56,7 +56,7 @@ void StackRows<N>::plan_row() {
   }
   std::size_t steps = 0;
   for (most_arcs_ = 0; most_arcs_ < most; ++most_arcs_) {
-    steps += cells[most_arcs_ + 1] * steps_of(most_arcs_ + 1, finds_areas_);
+    steps += cells[most_arcs_ + 1] * steps_of(most_arcs_ + 1, has_parabolas_);
     if (steps > sweep_steps_) break;
   }
 }
@@ -64,8 +64,8 @@ void StackRows<N>::plan_row() {
 template <int N>
 void StackRows<N>::add_values(int first_row, int end_row, BandValues* values) {
   pixels_.begin(first_row, end_row, values);
-  arcs_.begin_band(stack_, filter_, width_, first_row, end_row);
-  finds_areas_ = false;
+  has_parabolas_ = !stack_.is_constant;
+  arcs_.begin_band(stack_, filter_, width_, first_row, end_row, has_parabolas_);
   const GridWindow& window = arcs_.window();
   for (int row = window.first_row; row < window.end_row; ++row) {
     wanted_.reset(window.end_column - window.first_column);
@@ -77,8 +77,8 @@ template <int N>
 void StackRows<N>::add_marked(int first_row, int end_row, const CompositedRows& marks,
                               BandValues* values) {
   pixels_.begin(first_row, end_row, values);
-  arcs_.begin_band(stack_, filter_, width_, first_row, end_row, &marks);
-  finds_areas_ = true;
+  has_parabolas_ = true;
+  arcs_.begin_band(stack_, filter_, width_, first_row, end_row, has_parabolas_, &marks);
   for (int row = first_row; row < end_row; ++row) {
     if (!marks.has_marks(row)) continue;
     marks.marked_columns(row, &wanted_);
@@ -123,21 +123,47 @@ void StackRows<N>::add_run(int begin, int end, int row) {
       LayerSet::kNone) {
     return;
   }
-  step_.resize(colors_.nodes());
-  if (stack_.is_constant) {
-    colors_.begin_cell(begin, row, {}, layers_.full());
-    colors_.compose(0, step_.data());
-    pixels_.add_constant(begin, end, row, {step_[0].data(), static_cast<std::size_t>(channels_)});
+  colors_.begin_cell(begin, row, {}, layers_.full());
+  if (!stack_.is_constant) {
+    add_varying_run(begin, end, row);
     return;
   }
-  std::array<ColorPowers, kMaxChannels> powers;
-  for (int column = begin; column < end; ++column) {
-    colors_.begin_cell(column, row, {}, layers_.full());
-    colors_.compose(0, step_.data());
-    colors_.powers(step_, &powers);
-    pixels_.add_full(column, row, 1.0,
-                     std::span(powers).first(static_cast<std::size_t>(channels_)));
+  ChannelValues color;
+  colors_.compose(0, &color);
+  pixels_.add_constant(begin, end, row, {color.data(), static_cast<std::size_t>(channels_)});
+}
+
+template <int N>
+void StackRows<N>::add_varying_run(int begin, int end, int row) {
+  const auto seen = colors_.seen_layers();
+  if (N == 0 && seen.size() == 1) {
+    add_means(*stack_.layers[seen[0].layer].paint, begin, end, row);
+    return;
   }
+  for (int column = begin; column < end; ++column) {
+    colors_.move_to(column, row);
+    quadrature_.find_full(colors_);
+    for (int c = 0; c < channels_; ++c) pixels_.add(column, row, c, quadrature_.sums(c));
+  }
+}
+
+// One layer under the box filter.
+template <int N>
+void StackRows<N>::add_means(const Paint& paint, int begin, int end, int row) {
+  if (means_ == nullptr || means_of_ != &paint) {
+    means_ = std::make_unique<PaintMeans>(paint);
+    means_of_ = &paint;
+  }
+  pixels_.add_row(begin, end, row, [&](int first, int last, double* out) {
+    run_.resize(static_cast<std::size_t>(last - first) * channels_);
+    means_->find(first, last, row, run_.data());
+    for (std::size_t i = 0; i < run_.size(); i += channels_) {
+      const double opaque = channels_ == kMaxChannels ? run_[i + kMaxChannels - 1] : 1.0;
+      for (int c = 0; c < channels_; ++c) {
+        *out++ += run_[i + c] - opaque * colors_.background()[c];
+      }
+    }
+  });
 }
 
 template <int N>
@@ -149,7 +175,14 @@ void StackRows<N>::add_cell(int column, int row) {
   for (const CellLayer& layer : seen) arcs += layer.arcs.size();
   const std::size_t most_work = 16 * steps_of(arcs, false) + 256;
   if (arcs <= most_arcs_ && seen.size() <= CellSweep::kMostLayers) {
-    if (finds_areas_) {
+    if (!stack_.is_constant) {
+      if (quadrature_.find(seen, colors_, most_work)) {
+        ++work_.swept_cells;
+        work_.swept_steps += quadrature_.work();
+        for (int c = 0; c < channels_; ++c) pixels_.add(column, row, c, quadrature_.sums(c));
+        return;
+      }
+    } else if (has_parabolas_) {
       if (areas_.find(seen, colors_, most_work)) {
         ++work_.swept_cells;
         work_.swept_steps += areas_.work();
@@ -171,11 +204,14 @@ void StackRows<N>::add_cell(int column, int row) {
 
 template <int N>
 void StackRows<N>::add_sampled(int column, int row) {
-  samples_.compose(column, row, layers_.layers(), &colors_);
+  if (samples_ == nullptr) {
+    samples_ = std::make_unique<CellSamples>(arcs_, channels_, N > 0 || !stack_.is_constant);
+  }
+  samples_->compose(column, row, layers_.layers(), &colors_);
   const int degree = filter_.degree;
   for (int c = 0; c < channels_; ++c) {
     sums_[c].resize(static_cast<std::size_t>(degree + 1) * (degree + 1));
-    samples_.moments(c, degree, sums_[c].data());
+    samples_->moments(c, degree, sums_[c].data());
     pixels_.add(column, row, c, sums_[c]);
   }
 }
@@ -213,7 +249,7 @@ void StackRows<N>::integrate(const SweptPart& part, int column, int row, std::in
 
 // Adds what lies right of arcs, times the color that is there more than to their left.
 template <int N>
-void StackRows<N>::add_place(const ArcMoments<N>& moments, std::span<const ChannelValues> step) {
+void StackRows<N>::add_place(const ArcMoments<N>& moments, const ChannelValues& step) {
   std::array<std::array<double, N + 1>, N + 1> powers;
   for (int a = 0; a <= N; ++a) {
     auto& line = powers[a];
@@ -222,56 +258,39 @@ void StackRows<N>::add_place(const ArcMoments<N>& moments, std::span<const Chann
     }
     for (int b = 1; b <= N; ++b) line[b] += mean_power(b) * line[0];
   }
-  const int degree = filter_.degree;
-  std::array<ColorPowers, kMaxChannels> colors;
-  colors_.powers(step, &colors);
-  const std::size_t terms = stack_.is_constant ? 1 : kColorExponents.size();
   for (int c = 0; c < channels_; ++c) {
-    for (std::size_t k = 0; k < terms; ++k) {
-      const auto [m, n] = kColorExponents[k];
-      for (int a = 0; a <= degree; ++a) {
-        for (int b = 0; b <= degree; ++b) {
-          sums_[c][a * (degree + 1) + b] += colors[c][k] * powers[a + m][b + n];
-        }
-      }
+    for (int a = 0; a <= N; ++a) {
+      for (int b = 0; b <= N; ++b) sums_[c][a * (N + 1) + b] += step[c] * powers[a][b];
     }
   }
 }
 
 template <int N>
 void StackRows<N>::add_swept(int column, int row) {
-  const std::size_t nodes = colors_.nodes();
   const std::size_t states = sweep_.state_count();
-  state_colors_.assign(states * nodes, {});
+  state_colors_.assign(states, {});
   for (std::uint32_t state = 1; state < states; ++state) {
-    colors_.compose(sweep_.present_in(state), state_colors_.data() + state * nodes);
+    colors_.compose(sweep_.present_in(state), &state_colors_[state]);
   }
-  const auto color_of = [&](std::uint64_t state) {
-    return std::span<const ChannelValues>(state_colors_).subspan(state * nodes, nodes);
-  };
   places_.clear();
   moments_.clear();
   for (const SweptPart& part : sweep_.parts()) {
-    if (std::ranges::equal(color_of(part.left), color_of(part.right))) continue;
+    if (state_colors_[part.left] == state_colors_[part.right]) continue;
     const std::uint32_t place =
         places_.number_of(static_cast<std::uint64_t>(part.left) << 32 | part.right);
     if (place == moments_.size()) moments_.emplace_back();
     integrate(part, column, row, static_cast<std::int32_t>(place));
   }
   batch_.flush(&moments_);
-  const int degree = filter_.degree;
   for (int c = 0; c < channels_; ++c) {
-    sums_[c].assign(static_cast<std::size_t>(degree + 1) * (degree + 1), 0.0);
+    sums_[c].assign(static_cast<std::size_t>(N + 1) * (N + 1), 0.0);
   }
-  step_.resize(nodes);
   for (std::size_t place = 0; place < moments_.size(); ++place) {
     const std::uint64_t key = places_.keys()[place];
-    const auto before = color_of(key >> 32);
-    const auto after = color_of(key & UINT32_MAX);
-    for (std::size_t i = 0; i < nodes; ++i) {
-      for (int c = 0; c < channels_; ++c) step_[i][c] = after[i][c] - before[i][c];
-    }
-    add_place(moments_[place], step_);
+    const ChannelValues& before = state_colors_[key >> 32];
+    ChannelValues step = state_colors_[key & UINT32_MAX];
+    for (int c = 0; c < channels_; ++c) step[c] -= before[c];
+    add_place(moments_[place], step);
   }
   for (int c = 0; c < channels_; ++c) pixels_.add(column, row, c, sums_[c]);
 }
@@ -280,9 +299,6 @@ template class StackRows<0>;
 template class StackRows<1>;
 template class StackRows<2>;
 template class StackRows<3>;
-template class StackRows<4>;
-template class StackRows<5>;
 template class StackRows<7>;
-template class StackRows<9>;
 
 }  // namespace prefilter

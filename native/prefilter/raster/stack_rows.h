@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "prefilter/moments/arc_moments.h"
@@ -11,10 +12,12 @@
 #include "prefilter/raster/cell_areas.h"
 #include "prefilter/raster/cell_colors.h"
 #include "prefilter/raster/cell_pixels.h"
+#include "prefilter/raster/cell_quadrature.h"
 #include "prefilter/raster/cell_samples.h"
 #include "prefilter/raster/cell_sweep.h"
 #include "prefilter/raster/composited_rows.h"
 #include "prefilter/raster/layer_stack.h"
+#include "prefilter/raster/paint_means.h"
 #include "prefilter/raster/row_layers.h"
 #include "prefilter/raster/stack_arcs.h"
 
@@ -27,7 +30,7 @@ struct StackWork {
   std::size_t sampled_cells = 0;
 };
 
-/// N is the filter's degree and that of the colors together: 2 where these are not constant.
+/// N is the filter's degree.
 ///
 /// Cells are swept, which is exact, as far as their number of arcs lets a row of an image be made
 /// within a number of steps; those with more arcs are sampled. Which they are depends on the row
@@ -45,7 +48,7 @@ class StackRows {
   /// Adds to `values`, those of the pixel rows [first_row, end_row), what the stack shows less the
   /// background.
   void add_values(int first_row, int end_row, BandValues* values);
-  /// The same of the box filter and constant colors, for the pixels that are marked alone.
+  /// The same of the box filter, for the pixels that are marked alone.
   void add_marked(int first_row, int end_row, const CompositedRows& marks, BandValues* values);
   const StackWork& work() const { return work_; }
 
@@ -53,18 +56,20 @@ class StackRows {
   void add_row(int row);
   void add_wanted(int begin, int end, int row);
   void add_run(int begin, int end, int row);
+  void add_varying_run(int begin, int end, int row);
+  void add_means(const Paint& paint, int begin, int end, int row);
   void add_cell(int column, int row);
   void add_swept(int column, int row);
   void add_sampled(int column, int row);
   void integrate(const SweptPart& part, int column, int row, std::int32_t place);
-  void add_place(const ArcMoments<N>& moments, std::span<const ChannelValues> step);
+  void add_place(const ArcMoments<N>& moments, const ChannelValues& step);
   void plan_row();
 
   const LayerStack& stack_;
   const CellFilter& filter_;
   int channels_;
   int width_;
-  bool finds_areas_ = false;  // which the box filter and constant colors ask for
+  bool has_parabolas_ = false;  // by which arcs of curves are told
   std::size_t sweep_steps_;   // for a row
   std::size_t most_arcs_ = 0;
   StackArcs arcs_;
@@ -73,14 +78,17 @@ class StackRows {
   CellColors colors_;
   CellSweep sweep_;
   CellAreas areas_;
-  CellSamples samples_;
+  CellQuadrature quadrature_;
+  std::unique_ptr<CellSamples> samples_;  // where a cell is sampled
+  std::unique_ptr<PaintMeans> means_;
+  const Paint* means_of_ = nullptr;
+  std::vector<double> run_;  // of means
   CellPixels pixels_;
   StackWork work_;
   KeyNumbers places_;
   std::vector<ArcMoments<N>> moments_;
   ArcBatch<N> batch_;
   std::vector<ChannelValues> state_colors_;
-  std::vector<ChannelValues> step_;
   std::array<std::vector<double>, kMaxChannels> sums_;  // of x^a y^b
 };
 
@@ -88,9 +96,6 @@ extern template class StackRows<0>;
 extern template class StackRows<1>;
 extern template class StackRows<2>;
 extern template class StackRows<3>;
-extern template class StackRows<4>;
-extern template class StackRows<5>;
 extern template class StackRows<7>;
-extern template class StackRows<9>;
 
 }  // namespace prefilter

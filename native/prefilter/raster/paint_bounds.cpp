@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "prefilter/raster/paint_bounds.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace prefilter {
+namespace {
+
+constexpr int kAlpha = kMaxChannels - 1;
+
+// The largest change of the offset over a pixel. Along a ray from the apex of the circles the
+// radius grows by |growth| - |axis| for each unit of the offset at least.
+double offset_per_pixel(const Paint& paint) {
+  const Point2 axis = paint.end - paint.start;
+  const AffineMap2& map = paint.to_shape;
+  const double determinant = cross(map.x_axis, map.y_axis);
+  const Point2 along_x{map.y_axis.y / determinant, -map.x_axis.y / determinant};
+  const Point2 along_y{-map.y_axis.x / determinant, map.x_axis.x / determinant};
+  const double pixel = length(along_x) + length(along_y);
+  if (paint.kind == Paint::Kind::kLinearStops) return pixel / length(axis);
+  if (is_cone(paint)) return HUGE_VAL;
+  return pixel / (std::abs(paint.end_radius - paint.start_radius) - length(axis));
+}
+
+}  // namespace
+
+bool is_cone(const Paint& paint) {
+  if (paint.kind != Paint::Kind::kRadialStops) return false;
+  const Point2 axis = paint.end - paint.start;
+  const double growth = paint.end_radius - paint.start_radius;
+  return dot(axis, axis) >= growth * growth;
+}
+
+double most_passing(const Paint& paint, int channels) {
+  if (channels < kMaxChannels) return 0.0;
+  if (is_cone(paint)) return 1.0;
+  double least = 1.0;
+  switch (paint.kind) {
+    case Paint::Kind::kConstant:
+      least = paint.constant[kAlpha];
+      break;
+    case Paint::Kind::kLinear:
+      least = paint.along_x[kAlpha] == 0.0 && paint.along_y[kAlpha] == 0.0
+                  ? paint.constant[kAlpha]
+                  : 0.0;
+      break;
+    default:
+      for (const GradientStop& stop : paint.stops) {
+        least = std::min(least, stop.value[kAlpha]);
+      }
+      break;
+  }
+  return 1.0 - std::clamp(least, 0.0, 1.0);
+}
+
+PaintVariation variation_per_pixel(const Paint& paint) {
+  PaintVariation variation;
+  const auto include = [&](int channel, double change) {
+    variation.value = std::max(variation.value, change);
+    if (channel == kAlpha) variation.alpha = change;
+  };
+  if (paint.kind == Paint::Kind::kConstant || paint.kind == Paint::Kind::kLinear) {
+    for (int c = 0; c < paint.channels; ++c) {
+      include(c, std::abs(paint.along_x[c]) + std::abs(paint.along_y[c]));
+    }
+    return variation;
+  }
+  const double per_pixel = offset_per_pixel(paint);
+  for (int c = 0; c < paint.channels; ++c) {
+    double steepest = 0.0;
+    for (std::size_t i = 0; i + 1 < paint.stops.size(); ++i) {
+      const double step = paint.stops[i + 1].offset - paint.stops[i].offset;
+      const double change = std::abs(paint.stops[i + 1].value[c] - paint.stops[i].value[c]);
+      if (step > 0.0 && change > 0.0) {
+        steepest = std::max(steepest, std::min(change / step * per_pixel, change));
+      }
+    }
+    include(c, steepest);
+  }
+  if (is_cone(paint) && paint.channels == kMaxChannels) {
+    variation = {std::max(variation.value, 1.0), 1.0};
+  }
+  return variation;
+}
+
+}  // namespace prefilter

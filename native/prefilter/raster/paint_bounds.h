@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// How transparent a paint is at most, and how much its value changes over a pixel.
+#pragma once
+
+#include "prefilter/raster/paint.h"
+
+namespace prefilter {
+
+/// More periods of a gradient across a shape than this are finer than what any image shows of them.
+inline constexpr double kMostPeriods = 2048.0;
+
+/// Whether a gradient has no value outside of a cone: it is between two circles, neither of which
+/// holds the other.
+bool is_cone(const Paint& paint);
+
+/// The largest transmittance of a paint, 1 - alpha, over the whole plane.
+double most_passing(const Paint& paint, int channels);
+
+/// Bounds on the difference of a value between opposite corners of a pixel, jumps at stops left
+/// out.
+struct PaintVariation {
+  double value = 0.0;  // of any channel
+  double alpha = 0.0;
+};
+PaintVariation variation_per_pixel(const Paint& paint);
+
+}  // namespace prefilter

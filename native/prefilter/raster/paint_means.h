@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// The mean of a paint over each pixel of a row.
+#pragma once
+
+#include <optional>
+
+#include "prefilter/raster/paint.h"
+#include "prefilter/raster/round_gradient.h"
+
+namespace prefilter {
+
+/// Exact for constant and linear paints. Others are told by nine points of a pixel, or by slope and
+/// curvature where they are smooth, so that means are within the range of the values.
+class PaintMeans {
+ public:
+  /// The paint, of any kind but kLinearStops, must outlive it.
+  explicit PaintMeans(const Paint& paint);
+
+  /// Writes the means over the pixels [begin, end) of a row to `out`, channel by channel.
+  void find(int begin, int end, int row, double* out) const;
+
+ private:
+  ChannelValues mean_of_points(const Point2& center) const;
+
+  const Paint& paint_;
+  std::optional<RoundGradient> round_;
+};
+
+}  // namespace prefilter
