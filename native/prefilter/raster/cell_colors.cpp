@@ -24,6 +24,8 @@ CellColors::CellColors(const LayerStack& stack, const CellFilter& filter,
       const ChannelValues& color = layer.paint->constant;
       veils_.push_back({color, 1.0 - opacity(color)});
     } else {
+      constexpr double kGentleVariation = 1.0 / 8.0;
+      is_gentle_ = is_gentle_ && variation_per_pixel(*layer.paint).value < kGentleVariation;
       most_passing_.push_back(prefilter::most_passing(*layer.paint, channels));
       round_.push_back(RoundGradient::of(*layer.paint, 1.0));
     }
@@ -112,6 +114,15 @@ ChannelValues CellColors::color_at(std::uint32_t layer, const Point2& point) con
   if (paint.kind == Paint::Kind::kConstant) return paint.constant;
   const Point2 place = center_ + pixels_per_cell_ * point;
   return round_[layer] ? round_[layer]->at(place) : paint.at(place);
+}
+
+bool CellColors::is_constant_where(std::uint64_t present) const {
+  for (const SeenLayer& seen : seen_layers_) {
+    if (seen.place != SeenLayer::kFull && (present >> seen.place & 1) == 0) continue;
+    if (stack_.layers[seen.layer].paint->kind != Paint::Kind::kConstant) return false;
+    if (most_passing_[seen.layer] < kLeastPassing) return true;
+  }
+  return true;
 }
 
 ChannelValues CellColors::compose_at(std::uint64_t present, const Point2& point) const {

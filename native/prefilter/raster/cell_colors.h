@@ -43,6 +43,8 @@ class CellColors {
              int channels);
 
   bool is_constant() const { return stack_.is_constant; }
+  /// Whether no color changes by much over a pixel, jumps at stops left out.
+  bool is_gentle() const { return is_gentle_; }
   int channels() const { return channels_; }
   const ChannelValues& background() const { return background_; }
 
@@ -73,6 +75,8 @@ class CellColors {
   std::span<const SeenLayer> seen_layers() const { return seen_layers_; }
   /// The value of a layer at a point, from the cell's center in cells.
   ChannelValues color_at(std::uint32_t layer, const Point2& point) const;
+  /// Whether what shows where these layers are present is the same all over the cell.
+  bool is_constant_where(std::uint64_t present) const;
   /// As compose(), at a point.
   ChannelValues compose_at(std::uint64_t present, const Point2& point) const;
 
@@ -88,6 +92,7 @@ class CellColors {
   double pixels_per_cell_;
   std::vector<Veil> veils_;  // the layers, where all are constant
   // Else what each lets pass at most, and faster ways to its values.
+  bool is_gentle_ = true;
   std::vector<double> most_passing_;
   std::vector<std::optional<RoundGradient>> round_;
   Point2 center_;

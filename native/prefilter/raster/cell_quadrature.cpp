@@ -12,6 +12,8 @@ namespace prefilter {
 CellQuadrature::Rule CellQuadrature::rule_of(int points) {
   const auto of = [](const auto& rule) { return Rule{rule.nodes, rule.weights}; };
   switch (points) {
+    case 2:
+      return of(gauss_rule<2>());
     case 3:
       return of(gauss_rule<3>());
     case 4:
@@ -34,9 +36,13 @@ CellQuadrature::CellQuadrature(int degree)
   static_assert(Kernel::kMostDegree == 7);
 }
 
-void CellQuadrature::clear() {
+void CellQuadrature::begin(const CellColors& colors) {
+  channels_ = colors.channels();
   const auto count = static_cast<std::size_t>(degree_ + 1) * (degree_ + 1);
   for (int c = 0; c < channels_; ++c) sums_[c].assign(count, 0.0);
+  const bool takes_few = degree_ == 0 && colors.is_gentle();
+  own_along_ = takes_few ? rule_of(2) : along_;
+  own_across_ = takes_few ? rule_of(2) : across_;
 }
 
 void CellQuadrature::add_value(const ChannelValues& value, const Point2& point, double weight) {
@@ -59,9 +65,9 @@ void CellQuadrature::add_value(const ChannelValues& value, const Point2& point, 
 
 void CellQuadrature::add_row(const CellColors& colors, std::uint64_t present, double left,
                              double width, double y, double weight) {
-  for (std::size_t i = 0; i < along_.nodes.size(); ++i) {
-    const Point2 point{left + width * along_.nodes[i], y};
-    add_value(colors.compose_at(present, point), point, weight * width * along_.weights[i]);
+  for (std::size_t i = 0; i < own_along_.nodes.size(); ++i) {
+    const Point2 point{left + width * own_along_.nodes[i], y};
+    add_value(colors.compose_at(present, point), point, weight * width * own_along_.weights[i]);
   }
 }
 
@@ -71,10 +77,11 @@ void CellQuadrature::add_slab(std::span<const CellLayer> layers, const CellColor
   for (const std::uint32_t i : slabs_.order()) {
     present_.push_back(slabs_.cross(slabs_.arc(i), layers, present_.back()));
   }
+  if (degree_ == 0 && add_constant_slab(colors, low, high)) return;
   const double height = high - low;
-  for (std::size_t j = 0; j < across_.nodes.size(); ++j) {
-    const double y = low + height * across_.nodes[j];
-    const double weight = height * across_.weights[j];
+  for (std::size_t j = 0; j < own_across_.nodes.size(); ++j) {
+    const double y = low + height * own_across_.nodes[j];
+    const double weight = height * own_across_.weights[j];
     double left = -0.5;
     for (std::size_t k = 0; k < present_.size(); ++k) {
       // Not left of the arc before, so that the widths add up to 1 in whatever order arcs are.
@@ -87,20 +94,40 @@ void CellQuadrature::add_slab(std::span<const CellLayer> layers, const CellColor
   }
 }
 
+// A slab in which no color varies, where areas are all that is asked for.
+bool CellQuadrature::add_constant_slab(const CellColors& colors, double low, double high) {
+  for (const std::uint64_t present : present_) {
+    if (!colors.is_constant_where(present)) return false;
+  }
+  const double height = high - low;
+  double left = -0.5;
+  for (std::size_t k = 0; k < present_.size(); ++k) {
+    double right = 0.5;
+    if (k < slabs_.order().size()) {
+      // A parabola's mean is that in the middle, and a twelfth of what it bends.
+      const CellSlabs::Arc& arc = slabs_.arc(slabs_.order()[k]);
+      right = std::clamp(arc.x + arc.bend * height * height / 12.0, left, 0.5);
+    }
+    if (right > left) {
+      add_value(colors.compose_at(present_[k], {left, low}), {}, height * (right - left));
+    }
+    left = right;
+  }
+  return true;
+}
+
 bool CellQuadrature::find(std::span<const CellLayer> layers, const CellColors& colors,
                           std::size_t most_work) {
-  channels_ = colors.channels();
-  clear();
+  begin(colors);
   return slabs_.visit(layers, most_work, [&](double low, double high) {
     add_slab(layers, colors, low, high);
   });
 }
 
 void CellQuadrature::find_full(const CellColors& colors) {
-  channels_ = colors.channels();
-  clear();
-  for (std::size_t j = 0; j < along_.nodes.size(); ++j) {
-    add_row(colors, 0, -0.5, 1.0, along_.nodes[j] - 0.5, along_.weights[j]);
+  begin(colors);
+  for (std::size_t j = 0; j < own_along_.nodes.size(); ++j) {
+    add_row(colors, 0, -0.5, 1.0, own_along_.nodes[j] - 0.5, own_along_.weights[j]);
   }
 }
 

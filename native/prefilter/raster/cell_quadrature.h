@@ -40,9 +40,10 @@ class CellQuadrature {
   };
   static Rule rule_of(int points);
 
-  void clear();
+  void begin(const CellColors& colors);
   void add_slab(std::span<const CellLayer> layers, const CellColors& colors, double low,
                 double high);
+  bool add_constant_slab(const CellColors& colors, double low, double high);
   void add_row(const CellColors& colors, std::uint64_t present, double left, double width, double y,
                double weight);
   void add_value(const ChannelValues& value, const Point2& point, double weight);
@@ -51,6 +52,9 @@ class CellQuadrature {
   int channels_ = 0;
   Rule along_;   // x
   Rule across_;  // y, of a slab, whose sides may slant
+  // Of the cell in hand.
+  Rule own_along_;
+  Rule own_across_;
   CellSlabs slabs_;
   std::vector<std::uint64_t> present_;  // between the arcs of a slab
   std::array<std::vector<double>, kMaxChannels> sums_;

@@ -19,8 +19,8 @@ constexpr std::uint32_t kLeastSteps = 1U << (kBoxBits - 24);
 constexpr std::uint32_t kFullSteps = 1U << kBoxBits;
 
 // A color that changes by less than this over a pixel is off by an eighth of it at most where it is
-// told by the pixel's mean: less than a tenth of 1/255.
-constexpr double kFlatVariation = 1.0 / 512.0;
+// told by the pixel's mean: about an eighth of 1/255.
+constexpr double kFlatVariation = 1.0 / 256.0;
 // The mean of a product of two colors that change over a pixel is off from the product of their
 // means by a twelfth of the product of their changes at most.
 constexpr double kMostProduct = 12.0 / 2048.0;

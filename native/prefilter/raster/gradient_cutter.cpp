@@ -9,12 +9,17 @@
 #include <cmath>
 #include <numbers>
 #include <utility>
+#include <vector>
 
 #include "prefilter/raster/edge_list.h"
 #include "prefilter/raster/paint_bounds.h"
 
 namespace prefilter {
 namespace {
+
+// Points of Gauss's rule tell the mean over a pixel of a kink, of which the slopes differ by less
+// than this over the pixel, within a third of 1/255.
+constexpr double kSmallKink = 1.0 / 16.0;
 
 // A circle that holds all of a box, before `to_shape`.
 struct Disc {
@@ -46,8 +51,9 @@ class Cutter {
         growth_(paint.end_radius - paint.start_radius) {}
 
   Outline make() {
+    find_kinks();
     if (paint_.spread == Spread::kPad) {
-      for (const GradientStop& stop : paint_.stops) add_circle(stop.offset);
+      for (const double kink : kinks_) add_circle(kink);
     } else {
       add_periods();
     }
@@ -63,16 +69,51 @@ class Cutter {
     return reach / std::abs(std::abs(growth_) - length(axis_));
   }
 
+  // The offsets from 0 to 1 at which the color jumps, or its slope does.
+  void find_kinks() {
+    // A stretch of the offset, its slope and the value at its end.
+    struct Stretch {
+      double end = 0.0;
+      ChannelValues slope{};
+      ChannelValues first{};
+      ChannelValues last{};
+    };
+    const auto& stops = paint_.stops;
+    std::vector<Stretch> stretches = {{stops.front().offset, {}, stops[0].value, stops[0].value}};
+    for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
+      const double width = stops[i + 1].offset - stops[i].offset;
+      if (!(width > 0.0)) continue;
+      Stretch stretch{stops[i + 1].offset, {}, stops[i].value, stops[i + 1].value};
+      for (int c = 0; c < paint_.channels; ++c) {
+        stretch.slope[c] = (stretch.last[c] - stretch.first[c]) / width;
+      }
+      stretches.push_back(stretch);
+    }
+    stretches.push_back({1.0, {}, stops.back().value, stops.back().value});
+    const double per_pixel = offset_per_pixel(paint_);
+    const auto add = [&](const Stretch& before, const Stretch& after) {
+      for (int c = 0; c < paint_.channels; ++c) {
+        const double slope = after.slope[c] - before.slope[c];
+        if (std::abs(before.last[c] - after.first[c]) > 0.0 ||
+            std::abs(slope) * per_pixel > kSmallKink) {
+          kinks_.push_back(before.end);
+          return;
+        }
+      }
+    };
+    for (std::size_t i = 0; i + 1 < stretches.size(); ++i) {
+      add(stretches[i], stretches[i + 1]);
+    }
+    if (paint_.spread == Spread::kPad) return;
+    // Where periods meet, whatever stretches of no width are there.
+    kinks_.push_back(0.0);
+  }
+
   void add_periods() {
     const double most = std::min(std::ceil(farthest_offset()), kMostPeriods);
     for (double period = -most; period <= most; period += 1.0) {
       const bool turned = paint_.spread == Spread::kReflect && std::fmod(period, 2.0) != 0.0;
-      add_circle(period);
-      for (const GradientStop& stop : paint_.stops) {
-        if (stop.offset > 0.0 && stop.offset < 1.0) {
-          add_circle(period + (turned ? 1.0 - stop.offset : stop.offset));
-        }
-      }
+      for (const double kink : kinks_) add_circle(period + (turned ? 1.0 - kink : kink));
     }
   }
 
@@ -134,6 +175,7 @@ class Cutter {
   Point2 axis_;
   double growth_;
   double last_offset_ = HUGE_VAL;
+  std::vector<double> kinks_;
   Outline outline_;
 };
 

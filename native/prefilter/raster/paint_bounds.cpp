@@ -10,20 +10,6 @@ namespace {
 
 constexpr int kAlpha = kMaxChannels - 1;
 
-// The largest change of the offset over a pixel. Along a ray from the apex of the circles the
-// radius grows by |growth| - |axis| for each unit of the offset at least.
-double offset_per_pixel(const Paint& paint) {
-  const Point2 axis = paint.end - paint.start;
-  const AffineMap2& map = paint.to_shape;
-  const double determinant = cross(map.x_axis, map.y_axis);
-  const Point2 along_x{map.y_axis.y / determinant, -map.x_axis.y / determinant};
-  const Point2 along_y{-map.y_axis.x / determinant, map.x_axis.x / determinant};
-  const double pixel = length(along_x) + length(along_y);
-  if (paint.kind == Paint::Kind::kLinearStops) return pixel / length(axis);
-  if (is_cone(paint)) return HUGE_VAL;
-  return pixel / (std::abs(paint.end_radius - paint.start_radius) - length(axis));
-}
-
 }  // namespace
 
 bool is_cone(const Paint& paint) {
@@ -31,6 +17,24 @@ bool is_cone(const Paint& paint) {
   const Point2 axis = paint.end - paint.start;
   const double growth = paint.end_radius - paint.start_radius;
   return dot(axis, axis) >= growth * growth;
+}
+
+// Along a ray from the apex of the circles the
+// radius grows by |growth| - |axis| for each unit of the offset at least.
+double offset_per_pixel(const Paint& paint) {
+  const Point2 axis = paint.end - paint.start;
+  const AffineMap2& map = paint.to_shape;
+  const double determinant = cross(map.x_axis, map.y_axis);
+  const Point2 along_x{map.y_axis.y / determinant, -map.x_axis.y / determinant};
+  const Point2 along_y{-map.y_axis.x / determinant, map.x_axis.x / determinant};
+  // The largest length of a direction of length 1.
+  const double squares = dot(along_x, along_x) + dot(along_y, along_y);
+  const double area = cross(along_x, along_y);
+  const double root = std::sqrt(std::max(squares * squares - 4.0 * area * area, 0.0));
+  const double pixel = std::sqrt(0.5 * (squares + root));
+  if (paint.kind == Paint::Kind::kLinearStops) return pixel / length(axis);
+  if (is_cone(paint)) return HUGE_VAL;
+  return pixel / (std::abs(paint.end_radius - paint.start_radius) - length(axis));
 }
 
 double most_passing(const Paint& paint, int channels) {
@@ -74,7 +78,8 @@ PaintVariation variation_per_pixel(const Paint& paint) {
       const double step = paint.stops[i + 1].offset - paint.stops[i].offset;
       const double change = std::abs(paint.stops[i + 1].value[c] - paint.stops[i].value[c]);
       if (step > 0.0 && change > 0.0) {
-        steepest = std::max(steepest, std::min(change / step * per_pixel, change));
+        // A pixel's diagonal is not twice its side.
+        steepest = std::max(steepest, std::min(2.0 * change / step * per_pixel, change));
       }
     }
     include(c, steepest);

@@ -17,6 +17,9 @@ bool is_cone(const Paint& paint);
 /// The largest transmittance of a paint, 1 - alpha, over the whole plane.
 double most_passing(const Paint& paint, int channels);
 
+/// How much the offset of a gradient changes along a pixel's side at most; infinite for cones.
+double offset_per_pixel(const Paint& paint);
+
 /// Bounds on the difference of a value between opposite corners of a pixel, jumps at stops left
 /// out.
 struct PaintVariation {
