@@ -15,6 +15,7 @@
 #include "prefilter/base/names.h"
 #include "prefilter/outline/set_operations.h"
 #include "prefilter/outline/stroke.h"
+#include "prefilter/raster/half_plane.h"
 #include "prefilter/raster/path_data.h"
 #include "prefilter/raster/rasterize.h"
 
@@ -35,6 +36,12 @@ std::span<const Point2> points_of(const Array<double>& points) {
 // Rows of a map: where x and y go, and the origin.
 AffineMap2 map_of(const std::array<double, 6>& matrix) {
   return {{matrix[0], matrix[3]}, {matrix[1], matrix[4]}, {matrix[2], matrix[5]}};
+}
+
+// What an outline encloses where neither coordinate is farther from 0 than a limit.
+Outline bound_within(const Outline& outline, double limit) {
+  const Outline columns = clip_between(outline, {{1.0, 0.0}, 0.0}, -limit, limit);
+  return clip_between(columns, {{0.0, 1.0}, 0.0}, -limit, limit);
 }
 
 // A contour of segments that each take `degree` points, from the first point on.
@@ -267,6 +274,7 @@ void bind_raster(py::module_& m) {
             return outline.transformed(map_of(matrix));
           },
           py::arg("matrix"))
+      .def("within", &bound_within, py::arg("limit"))
       .def("copy", [](const Outline& outline) { return Outline(outline); })
       .def("stroked", &bound_stroke, py::arg("options"), py::arg("tolerance"))
       .def("combined", &bound_combine_outlines, py::arg("fill_rule"), py::arg("other"),

@@ -32,8 +32,8 @@ from .warnings import Warnings
 
 Tell = Callable[[float], None]
 
-# In widths or heights of the drawing. No shape may be more than 1e9 pixels away.
-_LARGEST = 1e5
+# Squares of larger coordinates might not be finite.
+_LARGEST = 1e100
 _SMALLEST_DETERMINANT = 1e-40
 _MOST_NESTED = 8
 # Of the larger side: what rounding makes of a page that fits.
@@ -281,8 +281,7 @@ class Walk:
         left, top, right, bottom = drawn.box
         box = (left - margin, top - margin, right + margin, bottom + margin)
         box = carried(box, context.matrix)
-        view = self.page.view
-        if not all(abs(value) < _LARGEST * max(view.width, view.height) for value in box):
+        if not all(abs(value) < _LARGEST for value in box):
             self.sources.warnings.broken(
                 f"<{element.tag}>", "left out, as it is too far away", element.line
             )

@@ -15,6 +15,9 @@ from .filtering import is_upright
 from .paint_servers import Gradient
 from .tree import Box, Clip, Group, Painted, Picture, common, holds
 
+# Pixels farther away than this are not looked at: what an outline has there is drawn together, so
+# that one far point takes nothing from what is near.
+_FARTHEST = float(1 << 21)
 # How far the outline of a stroke may be off, in pixels: 8-bit images do not show it.
 _STROKE_TOLERANCE = 1.0 / 1024.0
 
@@ -48,7 +51,7 @@ class Outlining:
             pen = asdict(painted.stroke)
             del pen["dash_count"]
             shape = shape.stroked(**pen, tolerance=_STROKE_TOLERANCE / scale)
-        shape = shape.transformed(_rows(whole))
+        shape = _near(shape.transformed(_rows(whole)))
         if isinstance(painted.paint, Gradient):
             painted.paint.apply(shape, whole, opacity)
         elif isinstance(painted.paint, tuple):
@@ -103,7 +106,7 @@ class Outlining:
                 whole = multiplied(matrix, part.matrix)
                 if determinant(whole) == 0.0:
                     continue
-                shape = part.outline.shape(part.fill_rule).transformed(_rows(whole))
+                shape = _near(part.outline.shape(part.fill_rule).transformed(_rows(whole)))
                 for inner in part.clips:
                     shape = _combined(shape, self._region(inner, matrix), "intersection")
                 region = shape if region is None else _combined(region, shape, "union")
@@ -124,6 +127,14 @@ def _combined(first: Shape, second: Shape, operation: str) -> Shape:
     made = first._with(outline, first._paint)
     made._fill_rule, made._winds_once = "nonzero", True
     return made
+
+
+def _near(shape: Shape) -> Shape:
+    """What a shape fills not too far away."""
+    bounds = shape.bounds
+    if bounds is None or max(abs(value) for point in bounds for value in point) <= _FARTHEST:
+        return shape
+    return shape._with(shape._outline.within(_FARTHEST), shape._paint)
 
 
 def _rows(matrix: Matrix) -> np.ndarray:

@@ -10,14 +10,11 @@ from functools import lru_cache, wraps
 from typing import Any, TypeAlias, TypeVar
 
 import tinycss2
-import tinycss2.color4
 
 from ... import _native
 from ..affine import IDENTITY, Matrix, multiplied
-
-"""a, b, c, d, e, f: (x, y) goes to (a x + c y + e, b x + d y + f)."""
-Color: TypeAlias = tuple[float, float, float, float]
-"""Red, green, blue, alpha in [0, 1]; sRGB, not multiplied by alpha."""
+from .calculations import DEGREES, is_calculation, number_of, quantity_of
+from .colors import Color, color_of
 
 BLACK: Color = (0.0, 0.0, 0.0, 1.0)
 
@@ -150,14 +147,14 @@ class Paint:
 def as_color(text: str) -> Color | str | None:
     """A color, or "current"; None for what is none."""
     try:
-        return _color_of(tinycss2.parse_one_component_value(text, skip_comments=True))
+        return color_of(tinycss2.parse_one_component_value(text, skip_comments=True))
     except ValueError:
         return None
 
 
 def as_background(text: str) -> Color | str | None:
     """The color among the values of the property `background`, as of `as_color`."""
-    colors = [_color_of(token) for token in _tokens(text)]
+    colors = [color_of(token) for token in _tokens(text)]
     return next((color for color in colors if color is not None), None)
 
 
@@ -180,7 +177,7 @@ def _plain_paint(tokens: Sequence[Any]) -> Paint | None:
         return Paint(None)
     if tokens[0].type == "ident" and tokens[0].lower_value in ("context-fill", "context-stroke"):
         return Paint(tokens[0].lower_value)
-    color = _color_of(tokens[0])
+    color = color_of(tokens[0])
     return Paint(color) if color is not None else None
 
 
@@ -193,27 +190,6 @@ def url_of(token: Any) -> str | None:
     else:
         return None
     return str(url).strip()
-
-
-def _color_of(token: Any) -> Color | str | None:
-    try:
-        found = tinycss2.color4.parse_color(token)
-    except (AttributeError, IndexError, TypeError, ValueError, OverflowError):
-        return None  # Of arguments that it does not expect.
-    if found is None:
-        return None
-    if found == "currentcolor":
-        return "current"
-    if found.space not in ("srgb", "hsl", "hwb"):
-        return None
-    if found.space != "srgb":
-        hue, *rest = (value or 0.0 for value in found.coordinates)
-        limited = (hue, *(min(max(value, 0.0), 100.0) for value in rest))
-        found = tinycss2.color4.Color(found.space, limited, found.alpha).to("srgb")
-    values = [min(max(value or 0.0, 0.0), 1.0) for value in (*found.coordinates, found.alpha)]
-    if not all(map(math.isfinite, values)):
-        return None
-    return (values[0], values[1], values[2], values[3])
 
 
 def _tokens(text: str) -> list[Any]:

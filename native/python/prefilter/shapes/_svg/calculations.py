@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Numbers of style sheets with their units, and what calc() and its relatives make of them."""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, TypeAlias
+
+Quantity: TypeAlias = dict[str, float]
+"""A sum, by units in lower case: "" for numbers, "%", "px", "em", "deg" ..."""
+
+DEGREES = {"deg": 1.0, "grad": 0.9, "rad": 180.0 / math.pi, "turn": 360.0}
+_MOST_NESTED = 32
+_FUNCTIONS = frozenset(("calc", "min", "max", "clamp", "abs", "sign", "round", "mod", "rem"))
+_CONSTANTS = {"pi": math.pi, "e": math.e}
+
+
+def is_calculation(token: Any) -> bool:
+    return token.type == "function" and token.lower_name in _FUNCTIONS
+
+
+def quantity_of(
+    token: Any, units: Mapping[str, tuple[str, float]], names: Mapping[str, float] | None = None
+) -> Quantity | None:
+    """The sum that a number, a dimension, a percentage or a calculation is; None for what is none.
+
+    Args:
+        token: Of tinycss2.
+        units: Those that are multiples of others, by their names.
+        names: Words that stand for numbers.
+    """
+    try:
+        found = _value(token, units, names or {}, 0)
+    except (ZeroDivisionError, OverflowError):
+        return None
+    if found is None or not all(map(math.isfinite, found.values())):
+        return None
+    return found
+
+
+def number_of(token: Any, names: Mapping[str, float] | None = None) -> float | None:
+    """The number that a token is, or a calculation."""
+    found = quantity_of(token, {}, names)
+    return None if found is None or found.keys() - {""} else found.get("", 0.0)
+
+
+def _value(token: Any, units: Mapping[str, tuple[str, float]], names: Any, depth: int) -> Any:
+    if depth > _MOST_NESTED:
+        return None
+    match token.type:
+        case "number":
+            return {"": float(token.value)}
+        case "percentage":
+            return {"%": float(token.value)}
+        case "dimension":
+            unit, factor = units.get(token.lower_unit, (token.lower_unit, 1.0))
+            return {unit: token.value * factor}
+        case "ident":
+            word = token.lower_value
+            value = names.get(word, _CONSTANTS.get(word) if depth else None)
+            return None if value is None else {"": value}
+        case "() block":
+            return _sum(token.content, units, names, depth + 1) if depth else None
+        case "function" if token.lower_name in _FUNCTIONS:
+            return _function(token, units, names, depth + 1)
+    return None
+
+
+def _function(token: Any, units: Any, names: Any, depth: int) -> Quantity | None:
+    parts: list[list[Any]] = [[]]
+    for each in token.arguments:
+        if each == ",":
+            parts.append([])
+        else:
+            parts[-1].append(each)
+    values = [_sum(part, units, names, depth) for part in parts]
+    found = [each for each in values if each is not None]
+    if len(found) < len(values):
+        return None
+    name = token.lower_name
+    if name == "calc":
+        return found[0] if len(found) == 1 else None
+    if name == "abs" and len(found) == 1 and len(found[0]) == 1:
+        return {unit: abs(value) for unit, value in found[0].items()}
+    # What is compared must have one unit.
+    kinds = {unit for each in found for unit in each}
+    if len(kinds) != 1:
+        return None
+    unit = next(iter(kinds))
+    numbers = [each[unit] for each in found]
+    result = _of_numbers(name, numbers)
+    if result is None:
+        return None
+    return {"" if name == "sign" else unit: result}
+
+
+def _of_numbers(name: str, numbers: Sequence[float]) -> float | None:
+    match name, numbers:
+        case "min", [_, *_]:
+            return min(numbers)
+        case "max", [_, *_]:
+            return max(numbers)
+        case "clamp", [low, value, high]:
+            return max(low, min(value, high))
+        case "sign", [value]:
+            return float((value > 0.0) - (value < 0.0))
+        case "round", [value]:
+            return float(math.floor(value + 0.5))
+        case "round", [value, step]:
+            return math.floor(value / step + 0.5) * step
+        case "mod", [value, step]:
+            return value - math.floor(value / step) * step
+        case "rem", [value, step]:
+            return math.fmod(value, step)
+    return None
+
+
+def _sum(tokens: Sequence[Any], units: Any, names: Any, depth: int) -> Quantity | None:
+    """Products with + and - between them, which have blanks around them."""
+    tokens = [token for token in tokens if token.type != "comment"]
+    total: Quantity = {}
+    sign, product = 1.0, list[Any]()
+    for index, token in enumerate([*tokens, None]):
+        is_sign = token is not None and token in ("+", "-")
+        if is_sign and 0 < index < len(tokens) - 1:
+            around = tokens[index - 1], tokens[index + 1]
+            if any(each.type != "whitespace" for each in around):
+                return None
+        if token is not None and not is_sign:
+            product.append(token)
+            continue
+        value = _product([each for each in product if each.type != "whitespace"], units, names, depth)
+        if value is None:
+            return None
+        for unit, number in value.items():
+            total[unit] = total.get(unit, 0.0) + sign * number
+        # Numbers and lengths do not add up.
+        if "" in total and len(total) > 1:
+            return None
+        sign, product = (-1.0 if token == "-" else 1.0), []
+    return total
+
+
+def _product(tokens: Sequence[Any], units: Any, names: Any, depth: int) -> Quantity | None:
+    if len(tokens) % 2 == 0:
+        return None
+    total = _value(tokens[0], units, names, depth)
+    for operator, token in zip(tokens[1::2], tokens[2::2], strict=True):
+        value = _value(token, units, names, depth)
+        if total is None or value is None:
+            return None
+        if operator == "*" and value.keys() == {""}:
+            total = {unit: number * value[""] for unit, number in total.items()}
+        elif operator == "*" and total.keys() == {""}:
+            total = {unit: number * total[""] for unit, number in value.items()}
+        elif operator == "/" and value.keys() == {""}:
+            total = {unit: number / value[""] for unit, number in total.items()}
+        else:
+            return None
+    return total

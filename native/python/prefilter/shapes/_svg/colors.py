@@ -1,0 +1,286 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Colors as CSS Color 4 and 5 have them, as sRGB that is cut off at its gamut.
+
+Each function becomes a color space, three components and an alpha, of which `None` stands for the
+keyword `none`. Matrices and curves are those of the specification, 10.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+import tinycss2.color4
+
+from .calculations import DEGREES, Quantity, quantity_of
+from .color_spaces import POLAR, RGB_SPACES, converted
+
+Color: TypeAlias = tuple[float, float, float, float]
+"""Red, green, blue, alpha in [0, 1]; sRGB, not multiplied by alpha."""
+_MOST_NESTED = 8
+_ANGLES = {unit: ("", factor) for unit, factor in DEGREES.items()}
+# What a percentage of 100 is of each component, and the names of components.
+_RANGES = {
+    "rgb": (255.0, 255.0, 255.0),
+    "hsl": (None, 100.0, 100.0),
+    "hwb": (None, 100.0, 100.0),
+    "lab": (100.0, 125.0, 125.0),
+    "lch": (100.0, 150.0, None),
+    "oklab": (1.0, 0.4, 0.4),
+    "oklch": (1.0, 0.4, None),
+}
+_ALIASES = {"rgba": "rgb", "hsla": "hsl"}
+_LETTERS = {"rgb": "rgb", "hsl": "hsl", "hwb": "hwb", "lab": "lab", "lch": "lch"}
+_LETTERS |= {"oklab": "lab", "oklch": "lch"}
+_LEGACY = ("rgb", "hsl")
+
+
+@dataclass(frozen=True, slots=True)
+class SpaceColor:
+    """A color in its space. `None` is a component that is missing."""
+
+    space: str
+    values: tuple[float | None, float | None, float | None]
+    alpha: float | None = 1.0
+
+
+def color_of(token: Any) -> Color | str | None:
+    """A color, or "current" for the one of the property `color`; None for what is none."""
+    found = _parsed(token, 0)
+    return found if found is None or isinstance(found, str) else _srgb(found)
+
+
+def _srgb(color: SpaceColor) -> Color | None:
+    values = converted([value or 0.0 for value in color.values], color.space, "srgb")
+    limited = [min(max(float(value), 0.0), 1.0) for value in (*values, color.alpha or 0.0)]
+    if not np.isfinite(limited).all():
+        return None
+    return (limited[0], limited[1], limited[2], limited[3])
+
+
+def _parsed(token: Any, depth: int) -> SpaceColor | str | None:
+    if depth > _MOST_NESTED or token is None:
+        return None
+    if token.type in ("ident", "hash"):
+        found = tinycss2.color4.parse_color(token)
+        if found is None or isinstance(found, str):
+            return "current" if found else None
+        red, green, blue = found.coordinates
+        return SpaceColor("srgb", (red, green, blue), found.alpha)
+    if token.type != "function":
+        return None
+    name = _ALIASES.get(token.lower_name, token.lower_name)
+    tokens = [each for each in token.arguments if each.type not in ("whitespace", "comment")]
+    if name == "color-mix":
+        return _mixed(tokens, depth)
+    if name == "light-dark":
+        parts = _split(tokens)
+        found = [_parsed(part[0], depth + 1) if len(part) == 1 else None for part in parts]
+        return found[0] if len(found) == 2 and None not in found else None
+    if name in _RANGES or name == "color":
+        return _function(name, tokens, depth)
+    return None
+
+
+def _split(tokens: Sequence[Any]) -> list[list[Any]]:
+    parts: list[list[Any]] = [[]]
+    for token in tokens:
+        if token == ",":
+            parts.append([])
+        else:
+            parts[-1].append(token)
+    return parts
+
+
+def _function(name: str, tokens: list[Any], depth: int) -> SpaceColor | None:
+    origin = None
+    if len(tokens) > 1 and tokens[0].type == "ident" and tokens[0].lower_value == "from":
+        found = _parsed(tokens[1], depth + 1)
+        if not isinstance(found, SpaceColor):
+            return None
+        origin, tokens = found, tokens[2:]
+    space, ranges = name, _RANGES.get(name, (1.0, 1.0, 1.0))
+    if name == "color":
+        space = tokens[0].lower_value if tokens and tokens[0].type == "ident" else ""
+        space = "xyz-d65" if space == "xyz" else space
+        if space not in RGB_SPACES and space not in ("xyz-d65", "xyz-d50"):
+            return None
+        tokens = tokens[1:]
+    names = _names_of(name, space, origin) if origin is not None else {}
+    if any(token == "," for token in tokens):
+        return _legacy(name, tokens) if origin is None else None
+    alpha_tokens: list[Any] | None = None
+    for index, token in enumerate(tokens):
+        if token == "/":
+            tokens, alpha_tokens = tokens[:index], tokens[index + 1 :]
+            break
+    if len(tokens) != 3 or (alpha_tokens is not None and len(alpha_tokens) != 1):
+        return None
+    values = [_component(token, whole, names) for token, whole in zip(tokens, ranges, strict=True)]
+    alpha: Any = 1.0 if origin is None else origin.alpha
+    if alpha_tokens is not None:
+        alpha = _component(alpha_tokens[0], 1.0, names)
+    if any(value == "" for value in (*values, alpha)):
+        return None
+    return _made(name, space, values, alpha)
+
+
+def _legacy(name: str, tokens: list[Any]) -> SpaceColor | None:
+    """With commas, and then without `none`; all of red, green and blue in one unit."""
+    parts = _split(tokens)
+    if name not in _LEGACY or len(parts) not in (3, 4) or any(len(part) != 1 for part in parts):
+        return None
+    tokens = [part[0] for part in parts]
+    kinds = {token.type for token in tokens[:3]}
+    if name == "rgb" and "percentage" in kinds and "number" in kinds:
+        return None
+    if name == "hsl" and any(token.type == "number" for token in tokens[1:3]):
+        return None
+    values = [
+        _component(token, whole, {}) for token, whole in zip(tokens, _RANGES[name], strict=False)
+    ]
+    alpha = _component(tokens[3], 1.0, {}) if len(tokens) == 4 else 1.0
+    if any(value in ("", None) for value in (*values, alpha)):
+        return None
+    return _made(name, name, values, alpha)
+
+
+def _component(token: Any, whole: float | None, names: Mapping[str, float]) -> Any:
+    """A number, None for `none`, or "" for what is none of them; an angle where there is no whole.
+    """
+    if token.type == "ident" and token.lower_value == "none":
+        return None
+    found: Quantity | None = quantity_of(token, _ANGLES if whole is None else {}, names)
+    if found is None or len(found) > 1 or (found and next(iter(found)) not in ("", "%")):
+        return ""
+    if "%" in found:
+        return "" if whole is None else found["%"] * whole / 100.0
+    return found.get("", 0.0)
+
+
+def _made(name: str, space: str, values: Sequence[Any], alpha: Any) -> SpaceColor:
+    a, b, c = values
+    if name == "rgb":
+        space = "srgb"
+        a, b, c = (None if value is None else value / 255.0 for value in values)
+    elif name in ("hsl", "hwb"):
+        b = None if b is None else max(b, 0.0)
+        c = c if c is None or name == "hsl" else max(c, 0.0)
+    elif name in ("lab", "lch", "oklab", "oklch"):
+        a = None if a is None else min(max(a, 0.0), _RANGES[name][0] or 0.0)
+        if name in ("lch", "oklch"):
+            b = None if b is None else max(b, 0.0)
+    return SpaceColor(space, (a, b, c), None if alpha is None else min(max(alpha, 0.0), 1.0))
+
+
+def _names_of(name: str, space: str, origin: SpaceColor) -> dict[str, float]:
+    """What the components of a color are called within another one."""
+    target = "srgb" if name == "rgb" else space
+    values = converted([value or 0.0 for value in origin.values], origin.space, target)
+    scale = 255.0 if name == "rgb" else 1.0
+    letters = _LETTERS.get(name, "xyz" if space.startswith("xyz") else "rgb")
+    names = {letter: float(value) * scale for letter, value in zip(letters, values, strict=True)}
+    return names | {"alpha": origin.alpha or 0.0}
+
+
+def _mixed(tokens: list[Any], depth: int) -> SpaceColor | None:
+    """`color-mix()`: CSS Color 5, 3."""
+    parts = _split(tokens)
+    how = [token.lower_value for token in parts[0] if token.type == "ident"]
+    if len(parts) == 2:
+        parts, how = [[], *parts], ["in", "oklab"]
+    if len(parts) != 3 or len(how) < 2 or how[0] != "in" or len(how) < len(parts[0]):
+        return None
+    space = {"xyz": "xyz-d65"}.get(how[1], how[1])
+    hue = how[2] if len(how) > 2 else "shorter"
+    is_known = space in _RANGES or space in RGB_SPACES or space in ("xyz-d65", "xyz-d50")
+    if not is_known or space == "rgb" or hue not in ("shorter", "longer", "increasing", "decreasing"):
+        return None
+    colors: list[SpaceColor] = []
+    shares: list[float | None] = []
+    for part in parts[1:]:
+        share = None
+        rest = []
+        for token in part:
+            found = quantity_of(token, {})
+            if found is not None and found.keys() == {"%"}:
+                share = found["%"]
+            else:
+                rest.append(token)
+        color = _parsed(rest[0], depth + 1) if len(rest) == 1 else None
+        if not isinstance(color, SpaceColor) or (share is not None and not 0.0 <= share <= 100.0):
+            return None
+        colors.append(color)
+        shares.append(share)
+    first, second = shares
+    if first is None:
+        first = 50.0 if second is None else 100.0 - second
+    second = 100.0 - first if second is None else second
+    if first + second == 0.0:
+        return None
+    return _mix(colors, space, hue, second / (first + second), min((first + second) / 100.0, 1.0))
+
+
+def _mix(
+    colors: Sequence[SpaceColor], space: str, hue: str, share: float, opacity: float
+) -> SpaceColor:
+    """The color at a share of the way from the first to the second one."""
+    both = [_in_space(color, space) for color in colors]
+    values: list[list[float | None]] = [list(each.values) for each in both]
+    alphas = [each.alpha for each in both]
+    for one, other in ((0, 1), (1, 0)):
+        for index in range(3):
+            if values[one][index] is None:
+                values[one][index] = values[other][index]
+        if alphas[one] is None:
+            alphas[one] = alphas[other]
+    whole = [1.0 if alpha is None else alpha for alpha in alphas]
+    alpha = whole[0] + share * (whole[1] - whole[0])
+    mixed: list[float | None] = []
+    for index in range(3):
+        low, high = values[0][index], values[1][index]
+        if low is None or high is None:
+            mixed.append(None)
+        elif index == POLAR.get(space):
+            mixed.append(low + share * _way(low % 360.0, high % 360.0, hue))
+        else:
+            # Multiplied by alpha.
+            sum_ = (1.0 - share) * low * whole[0] + share * high * whole[1]
+            mixed.append(sum_ / alpha if alpha > 0.0 else (1.0 - share) * low + share * high)
+    return SpaceColor(space, (mixed[0], mixed[1], mixed[2]), alpha * opacity)
+
+
+def _way(low: float, high: float, hue: str) -> float:
+    """From an angle to another one."""
+    way = high - low
+    if hue == "shorter":
+        return way - 360.0 if way > 180.0 else way + 360.0 if way < -180.0 else way
+    if hue == "longer":
+        return way - 360.0 if 0.0 < way < 180.0 else way + 360.0 if -180.0 < way <= 0.0 else way
+    if hue == "increasing":
+        return way + 360.0 if way < 0.0 else way
+    return way - 360.0 if way > 0.0 else way
+
+
+def _in_space(color: SpaceColor, space: str) -> SpaceColor:
+    """The same color in another space, where a hue that counts for nothing is missing."""
+    if color.space == space:
+        return color
+    values: list[float | None] = [
+        float(value)
+        for value in converted([value or 0.0 for value in color.values], color.space, space)
+    ]
+    hue = POLAR.get(space)
+    if hue is not None:
+        chroma = values[1] or 0.0
+        is_gray = chroma <= {"lch": 0.0015, "oklch": 0.000004}.get(space, 0.001)
+        if space == "hwb":
+            is_gray = (values[1] or 0.0) + (values[2] or 0.0) >= 99.999
+        if is_gray:
+            values[hue] = None
+        # A missing hue stays missing from one polar space to the next.
+        before = POLAR.get(color.space)
+        if before is not None and color.values[before] is None:
+            values[hue] = None
+    return SpaceColor(space, (values[0], values[1], values[2]), color.alpha)
