@@ -2,7 +2,7 @@
 
 """Where an element of a drawing stands, and what all elements are read with."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -17,7 +17,7 @@ from .outline import Outline
 from .paint_servers import Colors, PaintServers
 from .pictures import Texels
 from .styles import Style, StyleSheets
-from .tree import Clip, Group
+from .tree import Box, Clip, Group
 from .values import Length, Paint, as_paint
 from .warnings import Warnings
 
@@ -33,6 +33,7 @@ class Sources:
         outlines: Those that are known, by element.
         circular: Elements whose masks would mask themselves.
         letters: The texels of letters that are pictures, read once.
+        measure: Returns the box around what an element fills.
     """
 
     document: Document
@@ -46,6 +47,7 @@ class Sources:
     outlines: dict[tuple[SvgElement, Units], Outline | None] = field(default_factory=dict)
     circular: set[SvgElement] = field(default_factory=set)
     letters: dict[Bitmap, Texels] = field(default_factory=dict)
+    measure: "Callable[[SvgElement, Context, Sources], Box | None] | None" = None
 
     def pixels(self, element: SvgElement, name: str, default: Length, units: Units) -> float:
         """An attribute of an element, or what stands for it where there is none."""

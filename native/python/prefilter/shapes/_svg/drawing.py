@@ -10,6 +10,7 @@ from ..affine import IDENTITY, Matrix, determinant, multiplied
 from ..shape import Shape
 from .basic_shapes import BASIC_SHAPES
 from .clip_paths import clipped
+from .bounding import object_bounds
 from .clips import box_clip
 from .context import Context, Sources
 from .document import Document, SvgElement, read_document
@@ -128,7 +129,16 @@ class Walk:
         check_uses(document, sheets)
         own = fonts.with_rules(sheets.font_rules, warnings)
         self._fonts = fonts
-        self.sources = Sources(document, sheets, servers, warnings, budget, own, document.folder)
+        self.sources = Sources(
+            document,
+            sheets,
+            servers,
+            warnings,
+            budget,
+            own,
+            document.folder,
+            measure=object_bounds,
+        )
         self.page: Page = read_page(self.sources)
         self._tell = tell
         self._depth = depth

@@ -40,12 +40,21 @@ class Units:
         return length.pixels(whole, self.font_size)
 
 
-def about_origin(matrix: Matrix, text: str, units: Units) -> Matrix | None:
-    """A transform about the place that the property `transform-origin` holds; None if none."""
+def about_origin(
+    matrix: Matrix, text: str, units: Units, corner: tuple[float, float] = (0.0, 0.0)
+) -> Matrix | None:
+    """A transform about the place that the property `transform-origin` holds; None if none.
+
+    Args:
+        matrix: The transform.
+        text: The property.
+        units: With the width and height of the box that it is relative to.
+        corner: Of that box.
+    """
     origin = as_origin(text)
     if origin is None or matrix == IDENTITY:
         return None if origin is None else matrix
-    x, y = units.pixels(origin[0], "x"), units.pixels(origin[1], "y")
+    x, y = corner[0] + units.pixels(origin[0], "x"), corner[1] + units.pixels(origin[1], "y")
     matrix = multiplied((1.0, 0.0, 0.0, 1.0, x, y), matrix)
     return multiplied(matrix, (1.0, 0.0, 0.0, 1.0, -x, -y))
 

@@ -5,14 +5,14 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
-from ..affine import IDENTITY, multiplied
+from ..affine import multiplied
 from .basic_shapes import BASIC_SHAPES
 from .clips import box_clip
 from .context import Context, Sources, paints_of
 from .document import SvgElement
-from .lengths import Units, about_origin
 from .tags import GROUPS
-from .values import Length, as_transform
+from .transforms import own_transform
+from .values import Length
 from .viewports import as_view_box, placed
 
 _ZERO, _WHOLE = Length(0.0), Length(100.0, "%")
@@ -46,18 +46,11 @@ def moved(element: SvgElement, context: Context, sources: Sources) -> Context:
     """The context within an element: with its style, and in its units."""
     style = sources.sheets.style_below(element, context.style)
     declared = sources.sheets.declared(element)
-    turn, origin = declared.get("transform", ""), declared.get("transform-origin", "")
-    if not turn and not origin:
-        return context if style is context.style else replace(context, style=style)
-    matrix = as_transform(turn)
+    inside = context if style is context.style else replace(context, style=style)
+    matrix = own_transform(element, declared, inside, sources)
     if matrix is None:
-        sources.warnings.broken("transform", "ignored", element.line)
-        matrix = IDENTITY
-    turned = about_origin(matrix, origin, Units(*context.viewport, style.font_size))
-    if turned is None:
-        sources.warnings.broken("transform-origin", "ignored", element.line)
-    matrix = matrix if turned is None else turned
-    return replace(context, style=style, matrix=multiplied(context.matrix, matrix))
+        return inside
+    return replace(inside, matrix=multiplied(context.matrix, matrix))
 
 
 def used(

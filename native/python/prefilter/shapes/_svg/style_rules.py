@@ -200,7 +200,9 @@ def declarations_in(content: Any) -> Iterator[tuple[str, str, bool]]:
     """Yields names, values, and whether they are important, of the contents of a rule."""
     for node in tinycss2.parse_blocks_contents(content, True, True):
         if node.type == "declaration":
-            yield node.lower_name, tinycss2.serialize(node.value).strip(), node.important
+            # The case of variables counts.
+            name = node.name if node.name.startswith("--") else node.lower_name
+            yield name, tinycss2.serialize(node.value).strip(), node.important
 
 
 def _takes_long(prelude: list[Any], depth: int = 0) -> bool:

@@ -33,8 +33,10 @@ from .values import (
     as_lengths,
     as_number,
     as_paint,
+    as_path,
     remembered,
 )
+from .variables import uses_variables, variables, with_variables
 from .warnings import Warnings
 
 MOST_ANCESTORS = 20_000_000
@@ -81,6 +83,7 @@ class Style:
     marker_mid: str = "none"
     marker_end: str = "none"
     text: TextStyle = USUAL_TEXT
+    custom: tuple[tuple[str, str], ...] = ()  # properties whose names begin with --
     # Those of the element itself.
     opacity: float = 1.0
     mix_blend_mode: str = "normal"
@@ -157,31 +160,76 @@ _FIELDS = {name: name.replace("-", "_") for name in (*_PARSERS, "font-size")}
 
 # What draws in another way than it would here, with the values that do nothing.
 UNSUPPORTED = {
-    "vector-effect": ("none",),
+    "vector-effect": ("none", "non-scaling-stroke"),
 }
 # Attributes that are properties too, so that style sheets may set them.
-_PLACES = ("x", "y", "cx", "cy", "r", "rx", "ry", "width", "height", "transform")
+_PLACES = ("x", "y", "cx", "cy", "r", "rx", "ry", "width", "height", "transform", "d")
+INDIVIDUAL = {"translate": "--translate", "rotate": "--rotate", "scale": "--scale"}
+"""Transforms that are properties and not attributes, and what they are called among both."""
 _OTHER: tuple[str, ...] = ("background", "background-color", "clip-path", "display", "filter")
-_OTHER += ("mask", "overflow", "flood-color", "flood-opacity", "lighting-color", "transform-origin")
+_OTHER += ("mask", "overflow", "flood-color", "flood-opacity", "lighting-color")
+_OTHER += ("transform-origin", "transform-box")
 # Those that are no attributes.
 _IN_SHEETS_ONLY = frozenset(
-    ("background", "background-color", "mix-blend-mode", "isolation", *NO_ATTRIBUTES)
+    (
+        "background",
+        "background-color",
+        "mix-blend-mode",
+        "isolation",
+        "transform-box",
+        *NO_ATTRIBUTES,
+    )
 )
 _MARKERS = ("marker-start", "marker-mid", "marker-end")
 _PROPERTIES = frozenset(
-    (*_PARSERS, *UNSUPPORTED, *_PLACES, *_OTHER, *PROPERTIES, *OWN_PROPERTIES, "font-size")
+    (
+        *_PARSERS,
+        *UNSUPPORTED,
+        *_PLACES,
+        *_OTHER,
+        *PROPERTIES,
+        *OWN_PROPERTIES,
+        *INDIVIDUAL,
+        "font-size",
+    )
+)
+_SHORTHANDS = ("font", "marker")
+
+
+_HELD = frozenset(INDIVIDUAL.values())
+_KEYWORDS = ("initial", "unset", "revert", "revert-layer")
+# What pictures that stand still do not show, or what says again how it is drawn anyway.
+_WITHOUT_EFFECT = frozenset(
+    (
+        *("cursor", "pointer-events", "user-select", "touch-action", "will-change", "src"),
+        *("text-rendering", "color-rendering", "enable-background", "solid-color", "speak"),
+        *("solid-opacity", "line-height", "text-align", "text-indent", "block-progression"),
+        *("font-variant-ligatures", "font-feature-settings", "outline", "outline-offset"),
+        *("transition", "transition-property", "transition-duration", "transition-delay"),
+        *("transition-timing-function", "marker", "margin", "padding", "box-sizing", "float"),
+        *("color-profile", "shape-padding", "shape-margin", "position", "z-index", "zoom"),
+        *("font-synthesis", "page-break-inside", "orphans", "widows", "backface-visibility"),
+        *("text-orientation", "glyph-orientation-vertical", "glyph-orientation-horizontal"),
+        *("content", "appearance", "contain", "color-scheme", "all", "fill-color"),
+    )
 )
 
 
 def _style_below(declared: Mapping[str, str], parent: Style, font_size: float) -> Style:
     changed: dict[str, Any] = {}
+    own = tuple((name, text) for name, text in declared.items() if name.startswith("--"))
+    if own:
+        changed["custom"] = tuple({**dict(parent.custom), **dict(own)}.items())
     if font_size != parent.font_size:
         changed["font_size"] = font_size
     if declared.keys() & PROPERTIES.keys():
         changed["text"] = text_style_below(declared, parent.text, font_size)
     for name in declared.keys() & _PARSERS.keys():
         field, text = _FIELDS[name], declared[name]
-        value = getattr(parent, field) if text == "inherit" else _parsed(name, text)
+        if text in ("inherit", "initial"):
+            value = getattr(parent, field) if text == "inherit" else _INITIAL[field]
+        else:
+            value = _parsed(name, text)
         if value is not None and not (name == "color" and value == "current"):
             changed[field] = value
     for name in _OWN:
@@ -220,6 +268,9 @@ class StyleSheets:
         self._warnings = warnings
         self._styles: dict[SvgElement, Style] = {}
         self._declared: dict[SvgElement, dict[str, str]] = {}
+        self._written: dict[SvgElement, dict[str, str]] = {}
+        """What is declared, of elements that have or use variables."""
+        self._custom: dict[SvgElement, dict[str, str]] = {}
         # By the parent, which is kept so that its number stays its own, and what is declared.
         self._below: dict[tuple[Any, ...], tuple[Style, Style]] = {}
         found = StyleRules(document, warnings)
@@ -255,11 +306,18 @@ class StyleSheets:
     def style_below(self, element: SvgElement, parent: Style) -> Style:
         """The properties of an element in a place where its parent has those given."""
         declared = self._declared[element]
+        if element in self._written:
+            # Variables have the values that they have where the element is brought.
+            declared = substituted(self._written[element], parent.custom)
         size = parent.font_size
         if "font-size" in declared:
             size = self._font_size(declared["font-size"], parent, element)
         # Words of a text, and parts of a diagram, mostly say the same again and again.
-        said = tuple((name, text) for name, text in declared.items() if name in _STYLED)
+        said = tuple(
+            (name, text)
+            for name, text in declared.items()
+            if name in _STYLED or (name.startswith("--") and name not in _HELD)
+        )
         key = (id(parent), size, said)
         found = self._below.get(key)
         if found is None:
@@ -289,19 +347,69 @@ class StyleSheets:
         }
         own = _parsed_declarations(found.pop("style")) if "style" in found else ()
         if not rules and not own:
-            return self._inherited(element, found)
+            return self._inherited(element, self._with_variables(element, found))
         for important in (False, True):
             for declarations in (*rules, own):
                 for name, value, is_important in declarations:
                     if is_important != important:
                         continue
-                    if name == "marker":
-                        found.update(dict.fromkeys(_MARKERS, value))
-                    if name == "font":
-                        found.update(expanded_font(value))
-                    if name in _PROPERTIES and self._is_valid(name, value, element):
-                        found[name] = value
-        return self._inherited(element, found)
+                    self._declare(name, value, found, element)
+        return self._inherited(element, self._with_variables(element, found))
+
+    def _declare(
+        self, name: str, value: str, found: dict[str, str], element: SvgElement
+    ) -> None:
+        """Adds what a rule says of a property."""
+        if name.startswith("--"):
+            found[name] = value
+        elif uses_variables(value):
+            if name in _SHORTHANDS or name in _PROPERTIES:
+                found[INDIVIDUAL.get(name, name)] = value
+            else:
+                self._report_unknown(name, element)
+        elif name in _SHORTHANDS:
+            found.update(expanded(name, value))
+        elif name not in _PROPERTIES:
+            self._report_unknown(name, element)
+        elif value.lower() in _KEYWORDS and name in (*_PARSERS, *_OTHER, *_PLACES, *INDIVIDUAL):
+            is_initial = value.lower() == "initial" or _FIELDS.get(name) in _OWN
+            if is_initial and name in _PARSERS:
+                found[name] = "initial"
+            else:
+                found.pop(INDIVIDUAL.get(name, name), None)
+        elif self._is_valid(name, value, element):
+            found[INDIVIDUAL.get(name, name)] = as_path(value) or "" if name == "d" else value
+        else:
+            self._report_value(name, value, element)
+
+    def _with_variables(self, element: SvgElement, found: dict[str, str]) -> dict[str, str]:
+        """The same, with the values of variables."""
+        around = {} if element.parent is None else self._custom.get(element.parent, {})
+        has_own = any(name.startswith("--") and name not in _HELD for name in found)
+        if not has_own and not any(uses_variables(text) for text in found.values()):
+            if around:
+                self._custom[element] = around
+            return found
+        self._written[element] = found
+        resolved = substituted(found, tuple(around.items()))
+        self._custom[element] = around | {
+            name: text for name, text in resolved.items() if name.startswith("--")
+        }
+        for name in found.keys() - resolved.keys():
+            if not name.startswith("--") and name not in _SHORTHANDS:
+                self._warnings.broken(f"{name} '{found[name][:40]}'", "ignored", element.line)
+        return resolved
+
+    def _report_unknown(self, name: str, element: SvgElement) -> None:
+        if name not in _WITHOUT_EFFECT and not name.startswith("-"):
+            self._warnings.unsupported(name, "ignored", element.line)
+
+    def _report_value(self, name: str, value: str, element: SvgElement) -> None:
+        unit = _unknown_unit(name, value) if name in _PARSERS else ""
+        if unit:
+            self._warnings.unsupported(f"unit '{unit}'", "ignored", element.line)
+        else:
+            self._warnings.broken(f"{name} '{value[:40]}'", "ignored", element.line)
 
     def _inherited(self, element: SvgElement, found: dict[str, str]) -> dict[str, str]:
         """The same, where properties that are not inherited by themselves have parents' values."""
@@ -318,19 +426,63 @@ class StyleSheets:
         return found
 
     def _is_valid(self, name: str, value: str, element: SvgElement) -> bool:
+        if name == "d":
+            return as_path(value) is not None
         if name not in _PARSERS or value == "inherit":
             return True
         return _parsed(name, value) is not None
 
     def _report(self, element: SvgElement, found: Mapping[str, str]) -> None:
         for name in found.keys() & _PARSERS.keys():
-            if found[name] == "inherit" or _parsed(name, found[name]) is not None:
+            if found[name] in ("inherit", "initial") or _parsed(name, found[name]) is not None:
                 continue
             unit = _unknown_unit(name, found[name])
             if unit:
                 self._warnings.unsupported(f"unit '{unit}'", "ignored", element.line)
             else:
                 self._warnings.broken(f"{name} '{found[name][:40]}'", "ignored", element.line)
+
+
+def substituted(
+    declared: Mapping[str, str], custom: tuple[tuple[str, str], ...]
+) -> dict[str, str]:
+    """What is declared with the values of variables; what has none that is valid is left out.
+
+    Args:
+        declared: With the element's own variables.
+        custom: The variables of its parent.
+    """
+    own = {
+        name: text
+        for name, text in declared.items()
+        if name.startswith("--") and name not in _HELD
+    }
+    values = variables(own, dict(custom))
+    found: dict[str, str] = {}
+    for name, written in declared.items():
+        if name in own:
+            if name in values:
+                found[name] = values[name]
+            continue
+        text: str | None = written
+        if uses_variables(written):
+            text = with_variables(written, values)
+        if text is None:
+            continue
+        if name in _SHORTHANDS:
+            found.update(expanded(name, text))
+        elif text is not written and name == "d":
+            found[name] = as_path(text) or ""
+        elif text is written or name not in _PARSERS or _parsed(name, text) is not None:
+            found[name] = text
+        elif text.lower() in ("inherit", "initial"):
+            found[name] = text.lower()
+    return found
+
+
+def expanded(name: str, value: str) -> dict[str, str]:
+    """The properties that a shorthand sets."""
+    return dict.fromkeys(_MARKERS, value) if name == "marker" else expanded_font(value)
 
 
 _INITIAL = {field.name: field.default for field in fields(Style)}

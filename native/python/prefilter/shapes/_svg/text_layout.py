@@ -2,6 +2,7 @@
 
 """Where the glyphs of a text are: characters become clusters, and clusters follow each other."""
 
+import math
 import unicodedata
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -163,18 +164,19 @@ class TextLayout:
         y = self._at[1] if first.y is None else first.y
         if along is not None:
             x, y = along.offset + (first.x or 0.0), 0.0
-        whole = sum(c.advance + sum(each.dx for each in c.characters) for c in clusters)
         style = first.span.text
         is_vertical = along is None and next(first.span.line()).text.is_vertical
-        moved = [(each.dx, each.dy)[is_vertical] for each in part]
-        whole = sum(cluster.advance for cluster in clusters) + sum(moved)
+        low, high = _extent(clusters, is_vertical)
         share = {"start": 0.0, "middle": 0.5, "end": 1.0}[style.anchor]
         if style.direction == "rtl":
             share = 1.0 - share
+        # SVG 2, 11.5: of all glyphs of the chunk, wherever dx and dy have moved them, what the
+        # anchor names comes to where the first one is.
+        shift = low + share * (high - low) - (first.dx, first.dy)[is_vertical]
         if is_vertical:
-            y -= share * whole
+            y -= shift
         else:
-            x -= share * whole
+            x -= shift
         for cluster in clusters:
             head = cluster.characters[0]
             x += sum(each.dx for each in cluster.characters)
@@ -190,6 +192,18 @@ class TextLayout:
         else:
             end = along.track.at(along.track.length)
             self._at = (end[4], end[5]) if end is not None else self._at
+
+
+def _extent(clusters: Sequence[Cluster], is_vertical: bool) -> tuple[float, float]:
+    """The least and the greatest place along a line that its clusters reach, from its beginning."""
+    at = 0.0
+    low, high = math.inf, -math.inf
+    for cluster in clusters:
+        at += sum((each.dx, each.dy)[is_vertical] for each in cluster.characters)
+        low = min(low, at, at + cluster.advance)
+        high = max(high, at, at + cluster.advance)
+        at += cluster.advance
+    return (low, high) if clusters else (0.0, 0.0)
 
 
 def _matrix(cluster: Cluster, head: Character, x: float, y: float) -> Matrix | None:

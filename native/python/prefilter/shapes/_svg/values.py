@@ -5,7 +5,7 @@
 import math
 import re
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache, wraps
 from typing import Any, TypeAlias, TypeVar
 
@@ -13,7 +13,7 @@ import tinycss2
 
 from ... import _native
 from ..affine import IDENTITY, Matrix, multiplied
-from .calculations import DEGREES, is_calculation, number_of, quantity_of
+from .calculations import DEGREES, Quantity, is_calculation, quantity_of
 from .colors import Color, color_of
 
 BLACK: Color = (0.0, 0.0, 0.0, 1.0)
@@ -34,6 +34,7 @@ _UNITS = {
     "pt": 96.0 / 72.0,
     "pc": 16.0,
 }
+_PIXELS = {unit: ("px", factor) for unit, factor in _UNITS.items() if unit}
 _FONT_UNITS = {"em": 1.0, "ex": 0.5}
 _OTHER_UNITS = frozenset(
     ["ch", "rem", "cap", "ic", "lh", "rlh", "vw", "vh", "vi", "vb", "vmin", "vmax"]
@@ -42,13 +43,21 @@ _OTHER_UNITS = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class Length:
-    """A number with its unit; "%" and the units of fonts need to know what they are relative to."""
+    """A number with its unit; "%" and the units of fonts need to know what they are relative to.
+
+    Attributes:
+        more: What is added to it, as calc() has it.
+    """
 
     value: float
     unit: str = ""
+    more: tuple["Length", ...] = ()
 
     def pixels(self, whole: float, font_size: float) -> float:
         """In pixels; `whole` is 100 %."""
+        if self.more:
+            parts = (Length(self.value, self.unit), *self.more)
+            return sum(part.pixels(whole, font_size) for part in parts)
         if self.unit == "%":
             return self.value * whole / 100.0
         if self.unit in _FONT_UNITS:
@@ -64,8 +73,11 @@ def as_length(text: str) -> Length | None:
     """The length that a text is; None where it is none. Raises UnknownUnitError."""
     match = _LENGTH.fullmatch(text)
     if not match:
-        return None
-    value, unit = float(match[1]), match[2].lower()
+        return _calculated_length(text) if "(" in text else None
+    return _length_of(float(match[1]), match[2].lower())
+
+
+def _length_of(value: float, unit: str) -> Length | None:
     if not math.isfinite(value):
         return None
     if unit == "%" or unit in _UNITS or unit in _FONT_UNITS:
@@ -75,7 +87,29 @@ def as_length(text: str) -> Length | None:
     return None
 
 
+def _calculated_length(text: str) -> Length | None:
+    tokens = _tokens(text)
+    if len(tokens) != 1 or not is_calculation(tokens[0]):
+        return None
+    return _length_of_sum(quantity_of(tokens[0], _PIXELS))
+
+
+def _length_of_sum(found: Quantity | None) -> Length | None:
+    if found is None:
+        return None
+    parts = [_length_of(value, unit) for unit, value in found.items()]
+    lengths = [part for part in parts if part is not None]
+    if len(lengths) < len(parts):
+        return None
+    first = lengths[0] if lengths else Length(0.0)
+    return replace(first, more=tuple(lengths[1:])) if lengths[1:] else first
+
+
 def as_lengths(text: str) -> tuple[Length, ...] | None:
+    if "(" in text:
+        tokens = [token for token in _tokens(text) if token != ","]
+        lengths = [_length_of_sum(quantity_of(token, _PIXELS)) for token in tokens]
+        return None if None in lengths else tuple(each for each in lengths if each is not None)
     found = [as_length(part) for part in re.split(r"\s*,\s*|\s+", text.strip())]
     return tuple(each for each in found if each is not None) if None not in found else None
 
@@ -85,7 +119,7 @@ _ORIGINS = {"left": 0.0, "top": 0.0, "center": 50.0, "right": 100.0, "bottom": 1
 
 def as_origin(text: str) -> tuple[Length, Length] | None:
     """The two lengths that the property `transform-origin` holds; None for what is none."""
-    names = text.lower().split()
+    names = _words(text.lower())
     if not names:
         return Length(0.0), Length(0.0)
     if len(names) > 1 and (names[0] in ("top", "bottom") or names[1] in ("left", "right")):
@@ -103,9 +137,22 @@ def as_origin(text: str) -> tuple[Length, Length] | None:
     return (x, y) if x is not None and y is not None and len(found) < 4 else None
 
 
+def _words(text: str) -> list[str]:
+    """What blanks are between, but for those in calculations."""
+    if "(" not in text:
+        return text.split()
+    return [tinycss2.serialize([token]) for token in _tokens(text)]
+
+
 def as_number(text: str) -> float | None:
     """A number, or a percentage as its hundredth."""
     match = _LENGTH.fullmatch(text)
+    if not match and "(" in text:
+        tokens = _tokens(text)
+        found = quantity_of(tokens[0], {}) if len(tokens) == 1 else None
+        if found is None or found.keys() - {"", "%"}:
+            return None
+        return found.get("", 0.0) + 0.01 * found.get("%", 0.0)
     if not match or match[2] not in ("", "%"):
         return None
     value = float(match[1]) * (0.01 if match[2] else 1.0)
@@ -117,8 +164,9 @@ def remembered(read: Callable[..., Found]) -> Callable[..., Found]:
     cached = lru_cache(maxsize=4096)(read)
 
     @wraps(read)
-    def found(*texts: str) -> Found:
-        return (read if len(texts[-1]) > _MOST_REMEMBERED else cached)(*texts)
+    def found(*texts: Any) -> Found:
+        is_long = any(isinstance(text, str) and len(text) > _MOST_REMEMBERED for text in texts)
+        return (read if is_long else cached)(*texts)
 
     return found
 
@@ -198,12 +246,18 @@ def _tokens(text: str) -> list[Any]:
 
 
 @remembered
-def as_transform(text: str) -> Matrix | None:
-    """The product of a list of transforms; None where one of them is none."""
+def as_transform(text: str, *whole: float) -> Matrix | None:
+    """The product of a list of transforms; None where one of them is none.
+
+    Args:
+        text: The list.
+        whole: What is 100 % along x and along y, and the size of the font; without them lengths are
+            numbers and pixels.
+    """
     if text.strip().lower() in ("", "none"):
         return IDENTITY
     matrix = IDENTITY
-    for name, arguments in _functions(text):
+    for name, arguments in _functions(text, whole or (0.0, 0.0, 0.0)):
         one = _transform(name, arguments)
         if one is None:
             return None
@@ -211,33 +265,48 @@ def as_transform(text: str) -> Matrix | None:
     return matrix if all(map(math.isfinite, matrix)) else None
 
 
-def _functions(text: str) -> Iterator[tuple[str, list[float] | None]]:
+def needs_whole(text: str) -> bool:
+    """Whether a list of transforms has lengths that are shares of something else."""
+    return "%" in text or "em" in text or "ex" in text
+
+
+def _functions(
+    text: str, whole: tuple[float, ...]
+) -> Iterator[tuple[str, list[float] | None]]:
     name = ""
     for token in _tokens(text):
         if token.type == "ident" and not name:
             name = token.lower_value  # A blank stands before its parenthesis.
         elif token.type == "() block" and name:
-            yield name, _numbers_in(token.content)
+            yield name, _numbers_in(name, token.content, whole)
             name = ""
         elif token.type == "function" and not name:
-            yield token.lower_name, _numbers_in(token.arguments)
+            yield token.lower_name, _numbers_in(token.lower_name, token.arguments, whole)
         elif token != "," or name:
             yield "", None
     if name:
         yield "", None
 
 
-def _numbers_in(tokens: Sequence[Any]) -> list[float] | None:
+_IN_TRANSFORMS = _PIXELS | {unit: ("deg", factor) for unit, factor in DEGREES.items()}
+
+
+def _numbers_in(name: str, tokens: Sequence[Any], whole: tuple[float, ...]) -> list[float] | None:
     """Numbers, pixels, and angles in degrees."""
-    degrees = {"deg": 1.0, "grad": 0.9, "rad": 180.0 / math.pi, "turn": 360.0, "px": 1.0}
     found: list[float] = []
     for token in tokens:
-        if token.type == "number":
-            found.append(token.value)
-        elif token.type == "dimension" and token.lower_unit in degrees:
-            found.append(token.value * degrees[token.lower_unit])
-        elif token.type not in ("whitespace", "comment") and token != ",":
+        if token.type in ("whitespace", "comment") or token == ",":
+            continue
+        quantity = quantity_of(token, _IN_TRANSFORMS)
+        if quantity is None or quantity.keys() - {"", "px", "deg", "%", "em", "ex"}:
             return None
+        total = 0.0
+        along = whole[1] if name == "translatey" or len(found) == 1 else whole[0]
+        for unit, value in quantity.items():
+            if unit == "%":
+                value *= 0.01 * (1.0 if name.startswith("scale") else along)
+            total += value * _FONT_UNITS[unit] * whole[2] if unit in _FONT_UNITS else value
+        found.append(total)
     return found if all(map(math.isfinite, found)) else None
 
 
@@ -271,6 +340,42 @@ def _transform(name: str, numbers: list[float] | None) -> Matrix | None:
         case "skewy", [angle]:
             return (1.0, _native.tan(math.radians(angle)), 0.0, 1.0, 0.0, 0.0)
     return None
+
+
+def as_rotate(text: str) -> Matrix | None:
+    """The transform of the property `rotate`: an angle, and an axis before or behind it."""
+    axis: list[str] = []
+    angle: float | None = None
+    numbers: list[float] = []
+    for token in _tokens(text):
+        quantity = quantity_of(token, _IN_TRANSFORMS)
+        if token.type == "ident":
+            axis.append(token.lower_value)
+        elif quantity is not None and quantity.keys() == {"deg"} and angle is None:
+            angle = quantity["deg"]
+        elif quantity is not None and quantity.keys() == {""}:
+            numbers.append(quantity[""])
+        else:
+            return None
+    # Other axes would turn it out of the plane.
+    is_flat = axis in ([], ["z"]) if not numbers else not axis and len(numbers) == 3
+    if angle is None or not is_flat or (numbers and (numbers[:2] != [0.0, 0.0] or not numbers[2])):
+        return None
+    return rotation(-angle if numbers and numbers[2] < 0.0 else angle)
+
+
+def as_path(text: str) -> str | None:
+    """The path data that the property `d` holds; None for what is none."""
+    tokens = _tokens(text)
+    if len(tokens) != 1:
+        return None
+    token = tokens[0]
+    if token.type == "ident" and token.lower_value == "none":
+        return ""
+    if token.type != "function" or token.lower_name != "path":
+        return None
+    inside = [each for each in token.arguments if each.type not in ("whitespace", "comment")]
+    return str(inside[0].value) if len(inside) == 1 and inside[0].type == "string" else None
 
 
 def rotation(angle: float) -> Matrix:
