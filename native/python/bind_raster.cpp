@@ -17,6 +17,7 @@
 #include "prefilter/outline/stroke.h"
 #include "prefilter/raster/half_plane.h"
 #include "prefilter/raster/path_data.h"
+#include "prefilter/raster/pixel_outline.h"
 #include "prefilter/raster/rasterize.h"
 
 namespace py = pybind11;
@@ -36,6 +37,10 @@ std::span<const Point2> points_of(const Array<double>& points) {
 // Rows of a map: where x and y go, and the origin.
 AffineMap2 map_of(const std::array<double, 6>& matrix) {
   return {{matrix[0], matrix[3]}, {matrix[1], matrix[4]}, {matrix[2], matrix[5]}};
+}
+
+Outline bound_pixels(const Outline& outline, const std::string& rule) {
+  return pixel_outline(outline, value_named("fill_rule", rule, kFillRules));
 }
 
 // What an outline encloses where neither coordinate is farther from 0 than a limit.
@@ -274,6 +279,7 @@ void bind_raster(py::module_& m) {
             return outline.transformed(map_of(matrix));
           },
           py::arg("matrix"))
+      .def("pixels", &bound_pixels, py::arg("fill_rule"))
       .def("within", &bound_within, py::arg("limit"))
       .def("copy", [](const Outline& outline) { return Outline(outline); })
       .def("stroked", &bound_stroke, py::arg("options"), py::arg("tolerance"))

@@ -165,8 +165,7 @@ def _made(name: str, space: str, values: Sequence[Any], alpha: Any) -> SpaceColo
         space = "srgb"
         a, b, c = (None if value is None else value / 255.0 for value in values)
     elif name in ("hsl", "hwb"):
-        b = None if b is None else max(b, 0.0)
-        c = c if c is None or name == "hsl" else max(c, 0.0)
+        b, c = (None if value is None else min(max(value, 0.0), 100.0) for value in (b, c))
     elif name in ("lab", "lch", "oklab", "oklch"):
         a = None if a is None else min(max(a, 0.0), _RANGES[name][0] or 0.0)
         if name in ("lch", "oklch"):

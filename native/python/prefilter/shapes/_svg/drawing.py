@@ -6,11 +6,11 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
-from ..affine import IDENTITY, Matrix, determinant, multiplied
+from ..affine import IDENTITY, Matrix, determinant, inverse, multiplied
 from ..shape import Shape
 from .basic_shapes import BASIC_SHAPES
-from .clip_paths import clipped
 from .bounding import object_bounds
+from .clip_paths import clipped
 from .clips import box_clip
 from .context import Context, Sources
 from .document import Document, SvgElement, read_document
@@ -23,12 +23,13 @@ from .masks import masks_of
 from .nesting import DRAWN, FOREIGN, SHOWN, children, is_wanted, moved, used, viewport
 from .outline import Outline
 from .page import Page, background_of, read_page
-from .paint_servers import Colors, PaintServers
+from .paint_servers import Colors, Gradient, PaintServers
 from .painting import paint_order, resolved, stroke_of
 from .styles import UNSUPPORTED, Style, StyleSheets
 from .tags import NOT_DRAWN
-from .tree import Box, Clip, Group, Painted, Stroke, carried
+from .tree import Box, Clip, Group, Painted, Pattern, Stroke, carried
 from .values import Paint
+from .viewports import placed
 from .warnings import Warnings
 
 Tell = Callable[[float], None]
@@ -283,6 +284,8 @@ class Walk:
         found = resolved(element, context, drawn.bounds, paint, opacity, self.sources)
         if found is None:
             return
+        if stroke is not None and self._is_unscaled(element):
+            context, drawn, found = self._on_page(context, drawn, found)
         outline = drawn.outline
         margin = 0.0
         if stroke is not None:
@@ -296,12 +299,36 @@ class Walk:
                 f"<{element.tag}>", "left out, as it is too far away", element.line
             )
             return
+        # As browsers: what is drawn fast has no soft edges either.
+        is_crisp = element.tag != "text" and context.style.shape_rendering in (
+            "crispedges",
+            "optimizespeed",
+        )
         self.sources.budget.take_segments(len(outline), stroke.dash_count if stroke else 0.0)
         rule = context.style.fill_rule
         matrix, clips = context.matrix, context.clips
         context.target.items.append(
-            Painted(outline, rule, matrix, found, stroke, clips, box, element.line)
+            Painted(outline, rule, matrix, found, stroke, clips, box, element.line, is_crisp)
         )
+
+    def _is_unscaled(self, element: SvgElement) -> bool:
+        """Whether strokes of an element are as wide as they say on the page, however it is moved."""
+        effect = self.sources.sheets.declared(element).get("vector-effect", "none")
+        return effect.strip().lower() == "non-scaling-stroke"
+
+    def _on_page(
+        self, context: Context, drawn: _Drawn, paint: tuple[float, ...] | Gradient | Pattern
+    ) -> tuple[Context, _Drawn, tuple[float, ...] | Gradient | Pattern]:
+        """The same in pixels of the page."""
+        page = self.page
+        to_page = placed(page.view, page.aspect, page.width, page.height)
+        own = multiplied(to_page, context.matrix)
+        outline = drawn.outline.transformed(own)
+        if not isinstance(paint, tuple):
+            paint = replace(paint, matrix=multiplied(own, paint.matrix))
+        box = outline.bounds() or drawn.box
+        context = replace(context, matrix=inverse(to_page))
+        return context, _Drawn(outline, box, drawn.bounds), paint
 
     def _nested(self, data: bytes, name: str) -> "Walk":
         """A drawing in this one; nothing in it comes from other files."""

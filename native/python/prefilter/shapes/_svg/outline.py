@@ -11,6 +11,7 @@ from itertools import pairwise
 import numpy as np
 
 from ... import _native
+from ..affine import Matrix
 from ..shape import Shape
 from .document import TooLargeError
 from .limits import MOST_SEGMENTS
@@ -73,6 +74,18 @@ class Outline:
             raise _too_many()
         self._letters += letter
         self._numbers.extend(numbers)
+
+    def transformed(self, matrix: Matrix) -> "Outline":
+        """The same where an affine map takes it."""
+        moved = Outline()
+        a, b, c, d, e, f = matrix
+        for letter, numbers in self.segments():
+            weight = numbers[2:3] if letter == "W" else ()
+            points = numbers[:2] + numbers[3:] if letter == "W" else numbers
+            pairs = zip(points[::2], points[1::2], strict=True)
+            found = [v for x, y in pairs for v in (a * x + c * y + e, b * x + d * y + f)]
+            moved._add(letter.encode(), (*found[:2], *weight, *found[2:]))
+        return moved
 
     def ellipse(self, cx: float, cy: float, rx: float, ry: float) -> None:
         """A whole ellipse, from its right side on over its lower one (with y downwards)."""

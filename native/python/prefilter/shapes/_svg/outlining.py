@@ -52,6 +52,8 @@ class Outlining:
             del pen["dash_count"]
             shape = shape.stroked(**pen, tolerance=_STROKE_TOLERANCE / scale)
         shape = _near(shape.transformed(_rows(whole)))
+        if painted.is_crisp:
+            shape = _crisp(shape)
         if isinstance(painted.paint, Gradient):
             painted.paint.apply(shape, whole, opacity)
         elif isinstance(painted.paint, tuple):
@@ -135,6 +137,13 @@ def _near(shape: Shape) -> Shape:
     if bounds is None or max(abs(value) for point in bounds for value in point) <= _FARTHEST:
         return shape
     return shape._with(shape._outline.within(_FARTHEST), shape._paint)
+
+
+def _crisp(shape: Shape) -> Shape:
+    """The pixels whose centers a shape fills."""
+    made = shape._with(shape._outline.pixels(shape.fill_rule), shape._paint)
+    made._fill_rule, made._winds_once = "nonzero", True
+    return made
 
 
 def _rows(matrix: Matrix) -> np.ndarray:

@@ -79,6 +79,7 @@ class Style:
     color_interpolation: str = "srgb"
     color_interpolation_filters: str = "linearrgb"
     image_rendering: str = "auto"
+    shape_rendering: str = "auto"
     marker_start: str = "none"
     marker_mid: str = "none"
     marker_end: str = "none"
@@ -145,6 +146,9 @@ _PARSERS: dict[str, Callable[[str], Any]] = {
     "color-interpolation": _one_of("auto", "srgb", "linearrgb"),
     "color-interpolation-filters": _one_of("auto", "srgb", "linearrgb"),
     "image-rendering": lambda text: text.lower(),
+    "shape-rendering": _one_of(
+        "auto", "optimizespeed", "crispedges", "geometricprecision", "inherit"
+    ),
     "marker-start": lambda text: text,
     "marker-mid": lambda text: text,
     "marker-end": lambda text: text,

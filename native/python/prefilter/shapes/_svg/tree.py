@@ -95,6 +95,7 @@ class Painted:
         clips: What it is cut off at.
         box: Around it, in the tree's units.
         line: Where it is in the file.
+        is_crisp: Whether each pixel is covered wholly or not at all.
     """
 
     outline: Outline
@@ -105,6 +106,7 @@ class Painted:
     clips: tuple[Clip, ...]
     box: Box
     line: int
+    is_crisp: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False)
