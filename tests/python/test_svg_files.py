@@ -26,7 +26,7 @@ CLIP = "<clipPath id='c' transform='scale(2)'><rect x='5' width='15' height='50'
         (f'<filter id="f"><feOffset/></filter><g filter="url(#f)">{BOX}</g>', "filter"),
         ('<image width="9" height="9" href="http://example.org/a.png"/>', "<image>"),
         ('<rect width="9" height="9" clip-path="circle(4px)"/>', "clip-path"),
-        ('<rect width="9" height="9" vector-effect="non-scaling-stroke"/>', "vector-effect"),
+        ('<rect width="9" height="9" vector-effect="fixed-position"/>', "vector-effect"),
         ("<script>alert(1)</script>", "<script>"),
         (f'<mask id="m"><rect width="9" height="9"/></mask><g mask="url(#m)">{BOX}</g>', "mask"),
         (f"<style>g{{mix-blend-mode:multiply}}</style><g>{BOX}</g>", "mix-blend-mode"),

@@ -40,9 +40,8 @@ bool CellAreas::find(std::span<const CellLayer> layers, const CellColors& colors
                      std::size_t most_work) {
   mean_ = {};
   states_.clear();
-  return slabs_.visit(layers, most_work, [&](double low, double high) {
-    add_slab(layers, colors, high - low);
-  });
+  return slabs_.visit(layers, most_work,
+                      [&](double low, double high) { add_slab(layers, colors, high - low); });
 }
 
 }  // namespace prefilter

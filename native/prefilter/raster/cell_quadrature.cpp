@@ -119,9 +119,8 @@ bool CellQuadrature::add_constant_slab(const CellColors& colors, double low, dou
 bool CellQuadrature::find(std::span<const CellLayer> layers, const CellColors& colors,
                           std::size_t most_work) {
   begin(colors);
-  return slabs_.visit(layers, most_work, [&](double low, double high) {
-    add_slab(layers, colors, low, high);
-  });
+  return slabs_.visit(layers, most_work,
+                      [&](double low, double high) { add_slab(layers, colors, low, high); });
 }
 
 void CellQuadrature::find_full(const CellColors& colors) {

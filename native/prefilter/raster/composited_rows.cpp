@@ -196,7 +196,8 @@ void CompositedRows::put_over(int first_row, int end_row, const ChannelValues& b
 
 CompositedRows::Coat CompositedRows::coat_of(const StackLayer& layer, double steepest_below) {
   const Paint& paint = *layer.paint;
-  Coat coat{paint.constant, 1.0 - most_passing(paint, channels_), layer.winds_once, layer.fill_rule};
+  Coat coat{paint.constant, 1.0 - most_passing(paint, channels_), layer.winds_once,
+            layer.fill_rule};
   if (paint.kind == Paint::Kind::kConstant) {
     if (channels_ == kMaxChannels) coat.opacity = paint.constant[kMaxChannels - 1];
     return coat;

@@ -56,9 +56,9 @@ class CompositedRows {
     FillRule fill_rule = FillRule::kNonzero;
     /// Of a color that varies.
     const PaintMeans* means = nullptr;
-    bool is_steep = false;        // so that it counts which part of a pixel is covered
-    bool is_veil = false;         // so that it counts where in a pixel it is how opaque
-    bool marks_steep = false;     // also of what it covers all over
+    bool is_steep = false;     // so that it counts which part of a pixel is covered
+    bool is_veil = false;      // so that it counts where in a pixel it is how opaque
+    bool marks_steep = false;  // also of what it covers all over
   };
 
   BlockBits* bits(int row) {

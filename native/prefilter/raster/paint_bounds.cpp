@@ -46,9 +46,8 @@ double most_passing(const Paint& paint, int channels) {
       least = paint.constant[kAlpha];
       break;
     case Paint::Kind::kLinear:
-      least = paint.along_x[kAlpha] == 0.0 && paint.along_y[kAlpha] == 0.0
-                  ? paint.constant[kAlpha]
-                  : 0.0;
+      least = paint.along_x[kAlpha] == 0.0 && paint.along_y[kAlpha] == 0.0 ? paint.constant[kAlpha]
+                                                                           : 0.0;
       break;
     default:
       for (const GradientStop& stop : paint.stops) {

@@ -30,7 +30,8 @@ void PaintMeans::find(int begin, int end, int row, double* out) const {
   if (paint_.kind == Paint::Kind::kConstant || paint_.kind == Paint::Kind::kLinear) {
     for (int x = begin; x < end; ++x) {
       for (int c = 0; c < channels; ++c) {
-        *out++ = paint_.constant[c] + (x + 0.5) * paint_.along_x[c] + (row + 0.5) * paint_.along_y[c];
+        *out++ =
+            paint_.constant[c] + (x + 0.5) * paint_.along_x[c] + (row + 0.5) * paint_.along_y[c];
       }
     }
     return;

@@ -33,8 +33,7 @@ struct Run {
 double settled(double coordinate) { return std::round(coordinate * 65536.0) / 65536.0; }
 
 int limited(double index) {
-  return static_cast<int>(
-      std::clamp(index, double{-kMostCrispPixels}, double{kMostCrispPixels}));
+  return static_cast<int>(std::clamp(index, double{-kMostCrispPixels}, double{kMostCrispPixels}));
 }
 
 void append_passages(const MonotoneCurve& piece, bool backward, std::vector<Passage>* passages) {
@@ -83,9 +82,7 @@ class RunJoiner {
     }
     runs_.push_back(run);
   }
-  void finish() {
-    next_row(row_ + 2);
-  }
+  void finish() { next_row(row_ + 2); }
 
  private:
   void next_row(int row) {

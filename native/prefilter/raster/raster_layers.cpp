@@ -280,8 +280,8 @@ class LayerFinder {
     std::vector<CoveringLayer> layers;
     for (const std::uint32_t i : group->shapes) {
       const Paint& paint = shapes_[i].paint;
-      layers.push_back({&shapes_[i].outline, shapes_[i].fill_rule,
-                        most_passing(paint, paint.channels) == 0.0});
+      layers.push_back(
+          {&shapes_[i].outline, shapes_[i].fill_rule, most_passing(paint, paint.channels) == 0.0});
     }
     group->pieces =
         visible_pieces(layers, ArrangementEffort::kBounded, threads, progress.part(0.1, 1.0));

@@ -70,7 +70,7 @@ class StackRows {
   int channels_;
   int width_;
   bool has_parabolas_ = false;  // by which arcs of curves are told
-  std::size_t sweep_steps_;   // for a row
+  std::size_t sweep_steps_;     // for a row
   std::size_t most_arcs_ = 0;
   StackArcs arcs_;
   OpenColumns wanted_;

@@ -44,7 +44,9 @@ def number_of(token: Any, names: Mapping[str, float] | None = None) -> float | N
     return None if found is None or found.keys() - {""} else found.get("", 0.0)
 
 
-def _value(token: Any, units: Mapping[str, tuple[str, float]], names: Any, depth: int) -> Any:
+def _value(
+    token: Any, units: Mapping[str, tuple[str, float]], names: Mapping[str, float], depth: int
+) -> Quantity | None:
     if depth > _MOST_NESTED:
         return None
     match token.type:
@@ -129,7 +131,9 @@ def _sum(tokens: Sequence[Any], units: Any, names: Any, depth: int) -> Quantity 
         if token is not None and not is_sign:
             product.append(token)
             continue
-        value = _product([each for each in product if each.type != "whitespace"], units, names, depth)
+        value = _product(
+            [each for each in product if each.type != "whitespace"], units, names, depth
+        )
         if value is None:
             return None
         for unit, number in value.items():
@@ -144,7 +148,7 @@ def _sum(tokens: Sequence[Any], units: Any, names: Any, depth: int) -> Quantity 
 def _product(tokens: Sequence[Any], units: Any, names: Any, depth: int) -> Quantity | None:
     if len(tokens) % 2 == 0:
         return None
-    total = _value(tokens[0], units, names, depth)
+    total: Quantity | None = _value(tokens[0], units, names, depth)
     for operator, token in zip(tokens[1::2], tokens[2::2], strict=True):
         value = _value(token, units, names, depth)
         if total is None or value is None:

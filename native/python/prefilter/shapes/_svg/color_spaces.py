@@ -50,6 +50,8 @@ _LMS_TO_OKLAB = np.array(
         [0.0259040424655478, 0.7827717124575296, -0.8086757549230774],
     ]
 )
+# Of the curve of ITU-R BT.2020, which browsers use.
+_ALPHA, _BETA = 1.09929682680944, 0.018053968510807
 _KAPPA, _EPSILON = 24389.0 / 27.0, 216.0 / 24389.0
 
 
@@ -162,7 +164,8 @@ def _linear(values: Values, curve: str) -> Values:
         case "prophoto":
             return np.where(size <= 16.0 / 512.0, values / 16.0, _power(values, 1.8))
         case "rec2020":
-            return _power(values, 2.4)
+            high = _power(np.sign(values) * (size + _ALPHA - 1.0) / _ALPHA, 1.0 / 0.45)
+            return np.where(size < 4.5 * _BETA, values / 4.5, high)
     return values
 
 
@@ -177,7 +180,8 @@ def _encoded(values: Values, curve: str) -> Values:
         case "prophoto":
             return np.where(size < 1.0 / 512.0, 16.0 * values, _power(values, 1.0 / 1.8))
         case "rec2020":
-            return _power(values, 1.0 / 2.4)
+            high = np.sign(values) * (_ALPHA * _native.powers(size, 0.45) - (_ALPHA - 1.0))
+            return np.where(size < _BETA, 4.5 * values, high)
     return values
 
 
@@ -205,7 +209,8 @@ def _lab_to_xyz(lab: Values) -> Values:
     found = np.where(cubes > _EPSILON, cubes, (116.0 * parts - 16.0) / _KAPPA)
     if lab[0] <= _KAPPA * _EPSILON:
         found[1] = lab[0] / _KAPPA
-    return found * np.array(_WHITE["d50"])
+    xyz: Values = found * np.array(_WHITE["d50"])
+    return xyz
 
 
 def _xyz_to_lab(xyz: Values) -> Values:
@@ -218,14 +223,16 @@ def _hsl_to_rgb(hsl: Values) -> Values:
     hue, saturation, light = hsl[0] % 360.0, hsl[1] / 100.0, hsl[2] / 100.0
     k = (np.array([0.0, 8.0, 4.0]) + hue / 30.0) % 12.0
     spread = saturation * min(light, 1.0 - light)
-    return light - spread * np.clip(np.minimum(k - 3.0, 9.0 - k), -1.0, 1.0)
+    rgb: Values = light - spread * np.clip(np.minimum(k - 3.0, 9.0 - k), -1.0, 1.0)
+    return rgb
 
 
 def _hwb_to_rgb(hwb: Values) -> Values:
     white, black = hwb[1] / 100.0, hwb[2] / 100.0
     if white + black >= 1.0:
         return np.full(3, white / (white + black))
-    return _hsl_to_rgb(np.array([hwb[0], 100.0, 50.0])) * (1.0 - white - black) + white
+    rgb: Values = _hsl_to_rgb(np.array([hwb[0], 100.0, 50.0])) * (1.0 - white - black) + white
+    return rgb
 
 
 def _hue(rgb: Values) -> float:

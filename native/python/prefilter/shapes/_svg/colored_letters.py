@@ -10,6 +10,7 @@ from .._fonts.color_layers import ColorFill, ColorGroup, ColorStop
 from .._fonts.font import Font
 from ..affine import Matrix, determinant, inverse, multiplied
 from .clips import clip_of
+from .colors import Color
 from .context import Context, Sources
 from .document import SvgElement
 from .outline import Outline
@@ -17,7 +18,7 @@ from .paint_servers import Colors, Gradient, Stop, pieces_between
 from .pictures import PictureError, read_picture, size_of
 from .styles import Style
 from .tree import Clip, ClipPart, Group, Mask, Painted, Picture, carried
-from .values import BLACK, Color
+from .values import BLACK
 
 # The side of what a color fills where no glyph says how far, in heights of the font.
 _PLANE = 8.0

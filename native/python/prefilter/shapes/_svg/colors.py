@@ -34,6 +34,7 @@ _ALIASES = {"rgba": "rgb", "hsla": "hsl"}
 _LETTERS = {"rgb": "rgb", "hsl": "hsl", "hwb": "hwb", "lab": "lab", "lch": "lch"}
 _LETTERS |= {"oklab": "lab", "oklch": "lch"}
 _LEGACY = ("rgb", "hsl")
+_WAYS = ("shorter", "longer", "increasing", "decreasing")
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,8 +148,7 @@ def _legacy(name: str, tokens: list[Any]) -> SpaceColor | None:
 
 
 def _component(token: Any, whole: float | None, names: Mapping[str, float]) -> Any:
-    """A number, None for `none`, or "" for what is none of them; an angle where there is no whole.
-    """
+    """A number, None for `none`, or "" for neither; an angle where there is no whole."""
     if token.type == "ident" and token.lower_value == "none":
         return None
     found: Quantity | None = quantity_of(token, _ANGLES if whole is None else {}, names)
@@ -194,7 +194,11 @@ def _mixed(tokens: list[Any], depth: int) -> SpaceColor | None:
     space = {"xyz": "xyz-d65"}.get(how[1], how[1])
     hue = how[2] if len(how) > 2 else "shorter"
     is_known = space in _RANGES or space in RGB_SPACES or space in ("xyz-d65", "xyz-d50")
-    if not is_known or space == "rgb" or hue not in ("shorter", "longer", "increasing", "decreasing"):
+    if (
+        not is_known
+        or space == "rgb"
+        or hue not in ("shorter", "longer", "increasing", "decreasing")
+    ):
         return None
     colors: list[SpaceColor] = []
     shares: list[float | None] = []

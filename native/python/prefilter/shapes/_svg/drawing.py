@@ -312,7 +312,7 @@ class Walk:
         )
 
     def _is_unscaled(self, element: SvgElement) -> bool:
-        """Whether strokes of an element are as wide as they say on the page, however it is moved."""
+        """Whether strokes are as wide as they say on the page, however an element is moved."""
         effect = self.sources.sheets.declared(element).get("vector-effect", "none")
         return effect.strip().lower() == "non-scaling-stroke"
 

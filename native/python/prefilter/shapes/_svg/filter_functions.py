@@ -9,10 +9,11 @@ import numpy as np
 import tinycss2
 
 from ..affine import Matrix
+from .colors import Color
 from .filter_steps import Matrix5, saturating, turning_hues
 from .lengths import Units
 from .tree import Filter, Step
-from .values import Color, as_color, as_length, url_of
+from .values import as_color, as_length, url_of
 
 MOST_FUNCTIONS = 32
 _DEGREES = {"deg": 1.0, "grad": 0.9, "rad": 180.0 / np.pi, "turn": 360.0}

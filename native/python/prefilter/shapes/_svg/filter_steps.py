@@ -12,10 +12,11 @@ import numpy.typing as npt
 from ... import _native
 from ..affine import Matrix
 from .blending import BLEND_MODES
+from .colors import Color
 from .context import Sources
 from .document import SvgElement
 from .tree import Box
-from .values import Color, as_color, as_number, leading_numbers
+from .values import as_color, as_number, leading_numbers
 
 _OPERATORS = ("over", "in", "out", "atop", "xor", "lighter", "arithmetic")
 _CHANNELS = ("feFuncR", "feFuncG", "feFuncB", "feFuncA")

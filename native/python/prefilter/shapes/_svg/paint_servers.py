@@ -11,10 +11,11 @@ import numpy as np
 from ... import _native
 from ..affine import IDENTITY, Matrix, determinant, multiplied
 from ..shape import Shape
+from .colors import Color
 from .document import Document, SvgElement
 from .lengths import Units, about_origin, read_length
 from .styles import StyleSheets
-from .values import Color, Length, as_number, as_transform
+from .values import Length, as_number, as_transform
 from .warnings import Warnings
 
 GRADIENTS = ("linearGradient", "radialGradient")

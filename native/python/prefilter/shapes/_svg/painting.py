@@ -8,6 +8,7 @@ import numpy as np
 
 from ..affine import inverse, multiplied
 from .bounding import object_bounds
+from .colors import Color
 from .context import Context, HeldPaint, Sources
 from .document import SvgElement
 from .masks import shares_of
@@ -16,7 +17,7 @@ from .paint_servers import GRADIENTS, Gradient
 from .patterns import pattern_of
 from .tags import OTHER_PAINTS
 from .tree import Box, Pattern, Stroke
-from .values import Color, Paint
+from .values import Paint
 
 _MOST_DASHES = 100_000
 

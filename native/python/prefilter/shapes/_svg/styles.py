@@ -10,6 +10,7 @@ from typing import Any
 import cssselect2
 
 from .blending import BLEND_MODES
+from .colors import Color
 from .document import Document, SvgElement, TooLargeError
 from .style_rules import StyleRules, declarations_in
 from .text_style import (
@@ -24,7 +25,6 @@ from .text_style import (
 )
 from .values import (
     BLACK,
-    Color,
     Length,
     Paint,
     UnknownUnitError,
@@ -360,9 +360,7 @@ class StyleSheets:
                     self._declare(name, value, found, element)
         return self._inherited(element, self._with_variables(element, found))
 
-    def _declare(
-        self, name: str, value: str, found: dict[str, str], element: SvgElement
-    ) -> None:
+    def _declare(self, name: str, value: str, found: dict[str, str], element: SvgElement) -> None:
         """Adds what a rule says of a property."""
         if name.startswith("--"):
             found[name] = value
@@ -447,9 +445,7 @@ class StyleSheets:
                 self._warnings.broken(f"{name} '{found[name][:40]}'", "ignored", element.line)
 
 
-def substituted(
-    declared: Mapping[str, str], custom: tuple[tuple[str, str], ...]
-) -> dict[str, str]:
+def substituted(declared: Mapping[str, str], custom: tuple[tuple[str, str], ...]) -> dict[str, str]:
     """What is declared with the values of variables; what has none that is valid is left out.
 
     Args:
@@ -457,16 +453,13 @@ def substituted(
         custom: The variables of its parent.
     """
     own = {
-        name: text
-        for name, text in declared.items()
-        if name.startswith("--") and name not in _HELD
+        name: text for name, text in declared.items() if name.startswith("--") and name not in _HELD
     }
     values = variables(own, dict(custom))
     found: dict[str, str] = {}
     for name, written in declared.items():
         if name in own:
-            if name in values:
-                found[name] = values[name]
+            found[name] = values.get(name, "initial")
             continue
         text: str | None = written
         if uses_variables(written):

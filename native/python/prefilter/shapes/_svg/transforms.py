@@ -10,7 +10,7 @@ from .document import SvgElement
 from .lengths import Units, about_origin
 from .styles import INDIVIDUAL
 from .tree import Box
-from .values import as_rotate, as_transform, needs_whole
+from .values import as_origin, as_rotate, as_transform, needs_whole
 
 if TYPE_CHECKING:
     from .context import Context, Sources
@@ -33,6 +33,8 @@ def own_transform(
     turn, origin = declared.get("transform", ""), declared.get("transform-origin", "")
     parts = {name: declared[key] for name, key in INDIVIDUAL.items() if key in declared}
     if not turn and not parts:
+        if origin and as_origin(origin) is None:
+            sources.warnings.broken("transform-origin", "ignored", element.line)
         return None
     box = _reference_box(element, declared, context, sources)
     if box is None:

@@ -252,10 +252,11 @@ def joined(one: Box | None, other: Box | None) -> Box | None:
 
 def holds(outer: Box, inner: Box) -> bool:
     """Whether a box holds another one, but for rounding."""
-    slack = 1e-6 * max(outer[2] - outer[0], outer[3] - outer[1])
+    # By the inner one: a large outer one may be cut off close to what is looked at.
+    wide, high = 1e-6 * (inner[2] - inner[0]), 1e-6 * (inner[3] - inner[1])
     return (
-        inner[0] >= outer[0] - slack
-        and inner[1] >= outer[1] - slack
-        and inner[2] <= outer[2] + slack
-        and inner[3] <= outer[3] + slack
+        inner[0] >= outer[0] - wide
+        and inner[1] >= outer[1] - high
+        and inner[2] <= outer[2] + wide
+        and inner[3] <= outer[3] + high
     )

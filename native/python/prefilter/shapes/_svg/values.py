@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache, wraps
-from typing import Any, TypeAlias, TypeVar
+from typing import Any, TypeVar
 
 import tinycss2
 
@@ -270,9 +270,7 @@ def needs_whole(text: str) -> bool:
     return "%" in text or "em" in text or "ex" in text
 
 
-def _functions(
-    text: str, whole: tuple[float, ...]
-) -> Iterator[tuple[str, list[float] | None]]:
+def _functions(text: str, whole: tuple[float, ...]) -> Iterator[tuple[str, list[float] | None]]:
     name = ""
     for token in _tokens(text):
         if token.type == "ident" and not name:

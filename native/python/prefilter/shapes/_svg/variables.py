@@ -62,7 +62,7 @@ class _Values:
             if word == "initial":
                 raise _InvalidError
             return _resolved(self._own[name], self, (*line, name))
-        if name not in self._around:
+        if self._around.get(name, "initial") == "initial":
             raise _InvalidError
         return self._around[name]
 

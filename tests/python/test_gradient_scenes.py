@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Random scenes of gradients over each other: in range, and against points by brute force."""
+
+import numpy as np
+import prefilter
+import pytest
+
+SIDE = 8
+
+
+def random_color(random):
+    alpha = random.choice([1.0, 0.5, random.random()])
+    return (*(random.random(3) * alpha).tolist(), float(alpha))
+
+
+def random_stops(random):
+    offsets = np.sort(random.random(random.integers(2, 5)))
+    if random.random() < 0.5:
+        offsets[[0, -1]] = 0.0, 1.0
+    if random.random() < 0.5:
+        doubled = random.integers(0, len(offsets) - 1)
+        offsets[doubled + 1] = offsets[doubled]
+    return [(float(offset), random_color(random)) for offset in offsets]
+
+
+def random_polygon(random):
+    if random.random() < 0.5:
+        left, right = np.sort(random.choice(2 * SIDE + 1, 2, replace=False)) / 2.0
+        low, high = np.sort(random.choice(2 * SIDE + 1, 2, replace=False)) / 2.0
+        return np.array([[left, low], [right, low], [right, high], [left, high]])
+    return random.uniform(0.0, SIDE, (random.integers(3, 6), 2))
+
+
+class Scene:
+    """Shapes, and what each of them is at points."""
+
+    def __init__(self, seed, kinds, spreads):
+        random = np.random.default_rng(seed)
+        self.shapes, self.layers = [], []
+        for _ in range(random.integers(2, 5)):
+            points = random_polygon(random)
+            shape = prefilter.Shape(color=(0.0, 0.0, 0.0, 1.0))
+            shape.add_polygon(points)
+            kind = str(random.choice(kinds))
+            if kind == "color":
+                shape.color = random_color(random)
+                paint = (kind, shape.color)
+            else:
+                stops, spread = random_stops(random), str(random.choice(spreads))
+                start, end = random.uniform(0.0, SIDE, (2, 2))
+                radius = float(random.uniform(1.0, SIDE))
+                if kind == "linear":
+                    shape.linear_gradient(tuple(start), tuple(end), stops, spread=spread)
+                else:
+                    shape.radial_gradient(tuple(start), radius, stops, spread=spread)
+                paint = (kind, stops, spread, start, end, radius)
+            self.shapes.append(shape)
+            self.layers.append((points, paint))
+
+    def means(self, count):
+        """The means over pixels of so many points a side."""
+        at = (np.arange(SIDE * count) + 0.5) / count
+        x, y = np.meshgrid(at, at)
+        sum_ = np.zeros((*x.shape, 4))
+        for points, paint in self.layers:
+            color = colors_at(paint, x, y)
+            over = color + (1.0 - color[..., 3:]) * sum_
+            sum_ = np.where(inside(points, x, y)[..., None], over, sum_)
+        return sum_.reshape(SIDE, count, SIDE, count, 4).mean(axis=(1, 3))
+
+
+def inside(points, x, y):
+    winding = np.zeros(x.shape, int)
+    for (ax, ay), (bx, by) in zip(points, np.roll(points, -1, 0), strict=True):
+        if ay != by:
+            passes = (y >= min(ay, by)) & (y < max(ay, by))
+            at = ax + (y - ay) / (by - ay) * (bx - ax)
+            winding += np.where(passes & (at > x), 1 if by > ay else -1, 0)
+    return winding != 0
+
+
+def colors_at(paint, x, y):
+    if paint[0] == "color":
+        return np.broadcast_to(np.array(paint[1]), (*x.shape, 4))
+    kind, stops, spread, start, end, radius = paint
+    if kind == "linear":
+        way = end - start
+        t = ((x - start[0]) * way[0] + (y - start[1]) * way[1]) / (way @ way)
+    else:
+        t = np.hypot(x - start[0], y - start[1]) / radius
+    if spread == "repeat":
+        t = t - np.floor(t)
+    elif spread == "reflect":
+        t = 1.0 - np.abs(t - 2.0 * np.floor(0.5 * t) - 1.0)
+    offsets = np.array([offset for offset, _ in stops])
+    values = np.array([value for _, value in stops])
+    index = np.clip(np.searchsorted(offsets, t, side="right") - 1, 0, len(stops) - 1)
+    after = np.minimum(index + 1, len(stops) - 1)
+    width = offsets[after] - offsets[index]
+    share = np.where(width > 0.0, (t - offsets[index]) / np.where(width > 0.0, width, 1.0), 0.0)
+    share = np.where(t < offsets[0], 0.0, share)[..., None]
+    return (1.0 - share) * values[index] + share * values[after]
+
+
+@pytest.mark.parametrize("filter_", ["box", "tent"])
+def test_values_are_in_range(filter_):
+    """What pixels show is a mean of what the shapes show at points."""
+    for seed in range(2000 if filter_ == "box" else 200):
+        shapes = Scene(seed, ("color", "linear", "radial"), ("pad", "repeat", "reflect")).shapes
+        found = prefilter.rasterize(shapes, SIDE, SIDE, filter=filter_, threads=1)
+        assert found.min() >= -1e-6, seed
+        assert found.max() <= 1.0 + 1e-6, seed
+        assert (found[..., :3] <= found[..., 3:] + 1e-6).all(), seed
+
+
+def test_linear_scenes_are_what_points_show():
+    for seed in range(40):
+        scene = Scene(seed, ("color", "linear"), ("pad",))
+        found = prefilter.rasterize(scene.shapes, SIDE, SIDE, threads=1)
+        np.testing.assert_allclose(found, scene.means(96), atol=2.0 / 255.0, err_msg=str(seed))
+
+
+def test_radial_scenes_are_what_points_show():
+    for seed in range(1000, 1025):
+        scene = Scene(seed, ("color", "linear", "radial"), ("pad", "repeat", "reflect"))
+        found = prefilter.rasterize(scene.shapes, SIDE, SIDE, threads=1)
+        np.testing.assert_allclose(found, scene.means(96), atol=4.0 / 255.0, err_msg=str(seed))
+
+
+def test_hard_stops_of_a_radial_gradient():
+    """A disc of radius 3: its area is in closed form, and all of it is white."""
+    shape = prefilter.Shape(color=(0.0, 0.0, 0.0, 1.0))
+    shape.add_polygon([(0, 0), (SIDE, 0), (SIDE, SIDE), (0, SIDE)])
+    white, nothing = (1.0, 1.0, 1.0, 1.0), (0.0, 0.0, 0.0, 0.0)
+    shape.radial_gradient((4.0, 4.0), 3.0, [(0.0, white), (1.0, white), (1.0, nothing)])
+    for overlap in ("cover", "add"):
+        found = prefilter.rasterize([shape], SIDE, SIDE, overlap=overlap)
+        assert found[..., 3].sum() == pytest.approx(np.pi * 9.0, abs=1e-4)
+
+
+@pytest.mark.parametrize("filter_", ["box", "tent"])
+def test_a_doubled_stop_over_another_shape(filter_):
+    """Two stops at 0: the first counts only before them, where the shape has a corner alone."""
+
+    def box(left, low, right, high, color):
+        shape = prefilter.Shape(color=color)
+        shape.add_polygon([(left, low), (right, low), (right, high), (left, high)])
+        return shape
+
+    back = box(1.0, 0.5, 4.0, 7.5, (0.0, 0.0, 1.0, 1.0))
+    front = box(2.0, 1.0, 3.0, 7.0, (1.0, 1.0, 1.0, 1.0))
+    stops = [(0.0, (1.0,) * 4), (0.0, (0.2,) * 4), (1.0, (0.1,) * 4)]
+    front.linear_gradient((0.0, 2.0), (0.0, 7.0), stops)
+    found = prefilter.rasterize([back, front], SIDE, SIDE, filter=filter_)
+    assert found.max() <= 1.0 + 1e-6
+    if filter_ == "box":
+        np.testing.assert_allclose(found[2:6, 2, 3], 1.0, atol=1e-6)
+        # White over blue at the row below the stops; then 0.2 to 0.1 of white.
+        np.testing.assert_allclose(found[1, 2], [1.0, 1.0, 1.0, 1.0], atol=1e-6)
+        shares = 0.2 - 0.1 * (np.arange(4) + 0.5) / 5.0
+        np.testing.assert_allclose(found[2:6, 2, 0], shares, atol=1e-6)
