@@ -160,3 +160,21 @@ def test_a_doubled_stop_over_another_shape(filter_):
         np.testing.assert_allclose(found[1, 2], [1.0, 1.0, 1.0, 1.0], atol=1e-6)
         shares = 0.2 - 0.1 * (np.arange(4) + 0.5) / 5.0
         np.testing.assert_allclose(found[2:6, 2, 0], shares, atol=1e-6)
+
+
+def test_a_gradient_that_is_nothing_outside_of_a_cone():
+    """Both circles of radius 1: the strip between two lines, 2 pixels wide."""
+    shape = prefilter.Shape(color=(0.0, 0.0, 0.0, 1.0))
+    shape.add_polygon([(0, 0), (SIDE, 0), (SIDE, SIDE), (0, SIDE)])
+    white = (1.0, 1.0, 1.0, 1.0)
+    turn = np.radians(20.0)
+    end = (4.0 + np.cos(turn), 4.0 + np.sin(turn))
+    shape.radial_gradient(
+        end, 1.0, [(0.0, white), (1.0, white)], focus=(4.0, 4.0), focus_radius=1.0
+    )
+    found = prefilter.rasterize([shape], SIDE, SIDE)[..., 3]
+    at = (np.arange(SIDE * 96) + 0.5) / 96
+    x, y = np.meshgrid(at, at)
+    across = np.abs((y - 4.0) * np.cos(turn) - (x - 4.0) * np.sin(turn))
+    expected = (across <= 1.0).reshape(SIDE, 96, SIDE, 96).mean(axis=(1, 3))
+    np.testing.assert_allclose(found, expected, atol=1.0 / 255.0)

@@ -153,8 +153,7 @@ class Shape(Contours):
         Where neither circle holds the other, colors fill a cone, and beside it a shape with alpha
         is transparent.
 
-        Within a pixel the color is taken for a polynomial of degree 2: where it jumps at a stop, a
-        pixel may be some hundredths off.
+        A pixel is a mean of the colors at points of it, on both sides of a stop where colors jump.
 
         Args:
             center: The center (x, y) of the circle of offset 1.
