@@ -110,6 +110,9 @@ class Cutter {
   }
 
   void add_periods() {
+    // Points tell as much of more periods in a pixel.
+    constexpr double kMostPeriodsPerPixel = 8.0;
+    if (!is_cone(paint_) && offset_per_pixel(paint_) > kMostPeriodsPerPixel) return;
     const double most = std::min(std::ceil(farthest_offset()), kMostPeriods);
     for (double period = -most; period <= most; period += 1.0) {
       const bool turned = paint_.spread == Spread::kReflect && std::fmod(period, 2.0) != 0.0;

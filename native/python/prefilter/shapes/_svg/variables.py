@@ -16,7 +16,7 @@ class _InvalidError(Exception):
 
 
 def uses_variables(text: str) -> bool:
-    return "var(" in text.lower()
+    return "(" in text and "var(" in text.lower()
 
 
 def variables(own: Mapping[str, str], around: Mapping[str, str]) -> dict[str, str]:
