@@ -89,6 +89,8 @@ _OF_GLTF_SCENES = {
     "export_lights": True,
     "export_extras": True,
     "export_all_influences": True,
+    "use_mesh_edges": True,
+    "use_mesh_vertices": True,
 }
 """What the exporter of glTF leaves out unless it is told."""
 
