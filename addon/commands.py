@@ -38,11 +38,13 @@ class Commands:
             The exit status: 0, 1 for a failure that was told on stderr, 2 for wrong arguments, 130
             after Ctrl-C, 143 after SIGTERM.
         """
-        from prefilter._command.program import ended, execute
+        from prefilter._command import streams
+        from prefilter._command.program import ended, execute, parse
         from prefilter._command.voices import output_apart
 
+        streams.prepare()
         try:
-            options = self.parser().parse_args(arguments)
+            options = parse(self.parser(), arguments)
         except SystemExit as end:
             return int(end.code or 0)
         with output_apart():

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import bpy
 
+from ..core.file_names import clean_name
 from .files import staging
 from .images import kind_that_is_no_still, tile_numbers
 
@@ -90,7 +91,7 @@ def _stem(image: bpy.types.Image) -> str:
     base, ending = image.name, Path(image.name).suffix
     if ending.lower() in bpy.path.extensions_image:
         base = base.removesuffix(ending)
-    return bpy.path.clean_name(base)
+    return clean_name(base)
 
 
 def _ending(image: bpy.types.Image, data: bytes) -> str:

@@ -3,18 +3,21 @@
 """The files of several images: each has a name of its own, and none is the source of an image."""
 
 import os
-from collections.abc import Hashable, Iterable, Iterator, Sequence
-from contextlib import suppress
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import bpy
-from prefilter._work.files import target_files
+from prefilter._border.file_names import identities
+from prefilter._work.files import patterns, target_files
 
 from ..bridge import images
+from ..core.file_names import clean_name
 from . import udim
 from .choices import FILE_FORMATS
 
+NAME = "name"
+"""The placeholder for the name of an image in a path."""
 PLACE = target_files.PLACE
 """What stands for the name of an image in a path."""
 
@@ -41,16 +44,17 @@ class Pattern:
         if not output:
             return cls("")
         stem, ending = os.path.splitext(output)
-        if PLACE in output:
+        if patterns.has(output, NAME):
             return cls(output if is_texture(output) else f"{output}{extension}")
         if is_texture(output) and not os.path.isdir(output):
             return cls(f"{stem}.{PLACE}{ending}")
-        return cls.in_folder(output, extension)
+        return cls(os.path.join(output, f"{PLACE}{extension}"))
 
     @classmethod
     def in_folder(cls, folder: str, extension: str) -> "Pattern":
         """Returns the pattern of files in a folder; of none if that is empty."""
-        return cls(os.path.join(folder, f"{PLACE}{extension}") if folder else "")
+        place = f"{PLACE}{extension}"
+        return cls(os.path.join(patterns.literal(folder), place) if folder else "")
 
     @property
     def extension(self) -> str:
@@ -81,7 +85,7 @@ def name_of(image: bpy.types.Image) -> str:
     numbers = [str(number) for number in images.tile_numbers(image)]
     for place in ("<UDIM>", "<UVTILE>", *numbers) if numbers else ():
         name = name.removesuffix(place)
-    return bpy.path.clean_name(name.rstrip("._-") or image.name)
+    return clean_name(name.rstrip("._-") or image.name)
 
 
 def paths(
@@ -103,19 +107,19 @@ def paths(
     """
     if not pattern.text:
         return [""] * len(chosen)
-    taken = {one for path in (*sources, *source_files()) for one in _identities(path)}
+    taken = {one for path in (*sources, *source_files()) for one in identities(path)}
     found: list[str] = []
     for image, part in zip(chosen, parts or [""] * len(chosen), strict=True):
         name, number = f"{name_of(image)}_{part}" if part else name_of(image), 1
         while True:
             numbered = name if number == 1 else f"{name}_{number}"
-            path = pattern.text.replace(PLACE, numbered)
+            path = patterns.filled(pattern.text, {NAME: numbered})
             files = _written(path, images.tile_numbers(image))
-            identities = {one for file in files for one in _identities(file)}
-            if taken.isdisjoint(identities):
+            own = {one for file in files for one in identities(file)}
+            if taken.isdisjoint(own):
                 break
             number += 1
-        taken |= identities
+        taken |= own
         found.append(path)
     return found
 
@@ -135,11 +139,3 @@ def source_files() -> Iterator[Path]:
                 yield images.tile_path(image, number)
         elif path:
             yield Path(path)
-
-
-def _identities(path: Path) -> Iterator[Hashable]:
-    """Yields what tells a file from others, whatever its path, also where case does not matter."""
-    yield os.path.realpath(path).casefold()
-    with suppress(OSError):
-        found = path.stat()
-        yield found.st_dev, found.st_ino

@@ -6,6 +6,7 @@ import os
 from collections.abc import Sequence
 
 import bpy
+from prefilter._work.files import patterns
 
 from ..bridge import image_roles, meshes
 from ..core.wording import listed
@@ -47,4 +48,5 @@ def output_paths(path: str, images: Sequence[bpy.types.Image]) -> list[str]:
     if len(images) == 1 or not path:
         return [path] * len(images)
     stem, extension = os.path.splitext(path)
-    return file_names.paths(file_names.Pattern(f"{stem}.{file_names.PLACE}{extension}"), images)
+    text = f"{patterns.literal(stem)}.{file_names.PLACE}{patterns.literal(extension)}"
+    return file_names.paths(file_names.Pattern(text), images)

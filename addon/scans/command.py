@@ -33,9 +33,9 @@ other targets the surface is made in memory. In a .blend file, objects with poin
 used.
 
 examples:
-  prefilter reconstruct scan.ply surface.ply
-  prefilter reconstruct city.laz city.ply --depth 11 --memory-limit 600
-  prefilter reconstruct left.ply right.ply both.glb --wavelet d4 --trim 4"""
+  prefilter reconstruct scan.ply -o surface.ply
+  prefilter reconstruct city.laz -o city.ply --depth 11 --memory-limit 600
+  prefilter reconstruct left.ply right.ply -o both.glb --wavelet d4 --trim 4"""
 
 
 def add(commands: Any) -> None:
@@ -56,7 +56,7 @@ def add(commands: Any) -> None:
 
 
 def _reconstruct(options: argparse.Namespace) -> None:
-    reconstruct.expand_folders(options)
+    reconstruct.settle(options)
     endings = [command.check_ending(options, "SOURCE", path, _SOURCES) for path in options.sources]
     ending = command.check_ending(options, "TARGET", options.target, scenes.TARGETS)
     has_blend = _BLEND in endings

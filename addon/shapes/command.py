@@ -37,9 +37,9 @@ with --pixel-type byte, otherwise 16, and straight alpha; OpenEXR files are scen
 premultiplied alpha.
 
 examples:
-  prefilter rasterize logo.svg logo.png --side 512
-  prefilter rasterize sign.blend sign.exr --object Text --density 400 --filter mitchell
-  prefilter rasterize figure.glb mask.png --uv --object Body --width 2048 --height 2048"""
+  prefilter rasterize logo.svg -o logo.png --side 512
+  prefilter rasterize sign.blend -o sign.exr --object Text --density 400 --filter mitchell
+  prefilter rasterize figure.glb -o mask.png --uv --object Body --width 2048 --height 2048"""
 
 
 def add(commands: Any) -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import bpy
-from prefilter._command import many, tasks, voxelize
+from prefilter._command import boolean, many, outputs, tasks, voxelize
 from prefilter._command.many import Pair
 from prefilter._command.program import COMMANDS
 from prefilter._command.voxelize import RESOLUTIONS
@@ -34,15 +34,15 @@ Each object of FILE is voxelized by itself, with its modifiers and instances. Me
 leaky, and intersect themselves.
 
 examples:
-  prefilter voxelize bunny.ply bunny.stl --depth 8
-  prefilter voxelize scene.blend figure.glb --object Figure --voxel-size 0.01
-  prefilter voxelize cloud.obj cloud.vdb --depth 9"""
+  prefilter voxelize bunny.ply -o bunny.stl --depth 8
+  prefilter voxelize scene.blend -o figure.glb --object Figure --voxel-size 0.01
+  prefilter voxelize cloud.obj -o cloud.vdb --depth 9"""
 _BOOLEAN_NOTES = """\
 The objects of one file count as one. With --object, the operands are these objects, in this order.
 
 examples:
-  prefilter boolean bunny.ply armadillo.ply --operation difference --output bite.ply
-  prefilter boolean scene.blend --object Body --object Hole --output scene.blend"""
+  prefilter boolean bunny.ply armadillo.ply --operation difference -o bite.ply
+  prefilter boolean scene.blend --object Body --object Hole -o scene.blend --overwrite"""
 
 
 def add(commands: Any) -> None:
@@ -77,13 +77,14 @@ def _add_boolean(commands: Any) -> None:
     parser.add_argument(
         "files", metavar="FILE", nargs="+", help=f"the operands: {either(scenes.SOURCES)}"
     )
-    parser.add_argument(
-        "--output",
-        "-o",
-        metavar="FILE",
-        required=True,
-        help=f"the file to write: {either(scenes.TARGETS)}",
+    outputs.add_output(
+        parser,
+        "OUTPUT",
+        f"the file to write: {either(scenes.TARGETS)}",
+        is_required=True,
+        destination="output",
     )
+    parser.set_defaults(intermixed="files")
     parser.add_argument(
         "--object",
         metavar="NAME",
@@ -97,6 +98,7 @@ def _add_boolean(commands: Any) -> None:
 
 
 def _voxelize(options: argparse.Namespace) -> None:
+    many.settle(options)
     for path in options.sources:
         command.check_ending(options, "FILE", path, scenes.SOURCES)
     ending = command.check_ending(options, "OUTPUT", options.target, _TARGETS)
@@ -132,7 +134,7 @@ def _boolean(options: argparse.Namespace) -> None:
         options.usage_error("FILE: give two files or more, or --object for two objects or more")
     for path in options.files:
         command.check_ending(options, "FILE", path, scenes.SOURCES)
-    command.check_ending(options, "--output", options.output, scenes.TARGETS)
+    boolean.check_output(options, scenes.TARGETS)
     target = scenes.check_target(options.output)
     groups = scenes.load(options.files, _is_wanted, _WANTED)
     if options.object:

@@ -18,6 +18,7 @@ from ..bridge import new_meshes, solids
 from ..bridge.armatures import at_rest
 from ..bridge.files import staging, volumes
 from ..bridge.place import Place, naming, still_there
+from ..core.file_names import clean_names
 from ..core.jobs import Progress, go_on, parts, share
 from ..core.options import check
 from ..core.outcome import Outcome
@@ -237,10 +238,10 @@ def _volume_files(names: list[str], settings: VoxelizeSettings) -> list[Path]:
         path = Path(bpy.path.abspath(settings.filepath))
         paths = [path]
         if len(names) > 1:
-            paths = [path.with_stem(f"{path.stem}.{bpy.path.clean_name(name)}") for name in names]
+            paths = [path.with_stem(f"{path.stem}.{name}") for name in clean_names(names)]
     elif bpy.data.is_saved:
         folder = Path(bpy.data.filepath).parent
-        paths = [folder / f"{bpy.path.clean_name(name)}.vdb" for name in names]
+        paths = [folder / f"{name}.vdb" for name in clean_names(names)]
     else:
         raise ValueError(
             Sentence("File: choose a file for the volume, or save the .blend file first")

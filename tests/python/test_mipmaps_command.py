@@ -202,7 +202,7 @@ def test_outputs_that_are_refused(texture, tmp_path, capsys):
     other = tmp_path / "paint.dds"
     texture.rename(other)
     before = other.read_bytes()
-    assert "is read; choose another" in fails(capsys, 1, "mipmaps", other, "-o", other)
+    assert "is read; choose another" in fails(capsys, 2, "mipmaps", other, "-o", other)
     assert other.read_bytes() == before
 
 

@@ -34,14 +34,14 @@ def pixels(path, kind):
 def test_svg_to_floats_is_what_the_package_draws(logo, tmp_path, capsys):
     out = tmp_path / "out.exr"
     flags = ("--width", "64", "--height", "32", "--margin", "0", "--pixel-type", "float")
-    assert run("rasterize", logo, out, *flags, "--filter", "tent") == 0
+    assert run("rasterize", logo, "-o", out, *flags, "--filter", "tent") == 0
     assert "Rasterized 'logo' to" in capsys.readouterr().out
     encoded, _ = prefilter.rasterize_svg(logo, 64, 32, filter="tent")
     alpha = encoded[..., 3:]
     straight = np.divide(encoded, alpha, out=np.zeros_like(encoded), where=alpha > 0)[..., :3]
     expected = np.concatenate([prefilter.to_linear(straight) * alpha, alpha], 2)
     np.testing.assert_allclose(pixels(out, "float"), expected, atol=1e-6)
-    assert run("rasterize", logo, out, *flags, "--filter", "tent", "--light", "linear") == 0
+    assert run("rasterize", logo, "-o", out, *flags, "--filter", "tent", "--light", "linear") == 0
     expected, _ = prefilter.rasterize_svg(logo, 64, 32, filter="tent", light="linear")
     np.testing.assert_allclose(pixels(out, "float"), np.clip(expected, 0, None), atol=1e-6)
 
@@ -54,7 +54,7 @@ def test_svg_mixes_with_a_background_as_in_browsers_and_ends_at_its_page(tmp_pat
     )
     flags = ("--density", "2", "--margin", "3", "--background", "#ffffff")
     for more, gray in (((), 127), (("--light", "linear"), 188)):
-        assert run("rasterize", path, out, *flags, *more) == 0
+        assert run("rasterize", path, "-o", out, *flags, *more) == 0
         expected = np.full((14, 22, 3), 255)
         expected[3:11, 3:19] = gray
         np.testing.assert_array_equal(pixels(out, "uint8"), expected)
@@ -62,13 +62,13 @@ def test_svg_mixes_with_a_background_as_in_browsers_and_ends_at_its_page(tmp_pat
 
 def test_svg_to_bytes(logo, tmp_path):
     out = tmp_path / "out.png"
-    assert run("rasterize", logo, out, "--side", "80", "--margin", "0") == 0
+    assert run("rasterize", logo, "-o", out, "--side", "80", "--margin", "0") == 0
     found = pixels(out, "uint8")
     assert found.shape == (40, 80, 4)
     assert found[20, 40].tolist() == [255, 128, 0, 255]
     assert found[0, 0].tolist() == [255, 128, 0, 0]
     more = ("--background", "#ffffff", "--density", "2", "--margin", "1")
-    assert run("rasterize", logo, out, *more) == 0
+    assert run("rasterize", logo, "-o", out, *more) == 0
     found = pixels(out, "uint8")
     assert found.shape == (10, 18, 3)
     assert found[0, 0].tolist() == [255, 255, 255]
@@ -83,7 +83,7 @@ def test_text_has_the_fonts_of_a_folder(tmp_path):
     )
     out = tmp_path / "out.png"
     more = ("--fonts", tmp_path, "--density", "1", "--margin", "0")
-    assert run("rasterize", drawing, out, *more) == 0
+    assert run("rasterize", drawing, "-o", out, *more) == 0
     covered = np.zeros((20, 40))
     covered[5:15, 5:17] = 255
     np.testing.assert_array_equal(pixels(out, "uint8")[..., 3], covered)
@@ -94,7 +94,7 @@ def test_mask_of_a_uv_map(tmp_path):
     path = write_quad(tmp_path / "quad.obj")
     path.write_text(path.read_text().replace("vt 1 0\nvt 1 1", "vt 0.5 0\nvt 0.5 1"))
     out = tmp_path / "mask.png"
-    assert run("rasterize", path, out, "--uv", "--side", "8") == 0
+    assert run("rasterize", path, "-o", out, "--uv", "--side", "8") == 0
     found = pixels(out, "uint8")
     assert found.shape == (8, 8, 1)
     assert (found[:, :4] == 255).all()
@@ -113,9 +113,9 @@ def test_what_is_refused(logo, tmp_path, capsys):
     }.items():
         assert words in fails(capsys, 2, "rasterize", *arguments)
     none = tmp_path / "none.svg"
-    assert "INPUT: there is no file" in fails(capsys, 1, "rasterize", none, out)
-    told = fails(capsys, 1, "rasterize", logo, out, "--side", "8", "--margin", "9")
+    assert "INPUT: there is no file" in fails(capsys, 1, "rasterize", none, "-o", out)
+    told = fails(capsys, 1, "rasterize", logo, "-o", out, "--side", "8", "--margin", "9")
     assert "leaves no room" in told
     bare = write_quad(tmp_path / "bare.obj", has_uvs=False)
-    assert "has no UV map" in fails(capsys, 1, "rasterize", bare, out, "--uv")
+    assert "has no UV map" in fails(capsys, 1, "rasterize", bare, "-o", out, "--uv")
     assert not out.exists()

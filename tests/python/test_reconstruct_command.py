@@ -22,7 +22,9 @@ def scan(tmp_path):
 
 def test_the_file_is_that_of_the_package(scan, tmp_path, capsys):
     out, expected = tmp_path / "out.ply", tmp_path / "expected.ply"
-    assert run("reconstruct", scan, out, "--depth", "5", "--no-fit", "--isovalue", "half") == 0
+    assert (
+        run("reconstruct", scan, "-o", out, "--depth", "5", "--no-fit", "--isovalue", "half") == 0
+    )
     told = capsys.readouterr()
     assert "Reconstructed 'out.ply' from 3000 points at depth 5, in cells of 0." in told.out
     assert "100 %" in told.err
@@ -34,7 +36,7 @@ def test_several_sources_and_a_size(scan, tmp_path, capsys):
     other = tmp_path / "other.xyz"
     other.write_bytes(scan.read_bytes())
     out, expected = tmp_path / "out.ply", tmp_path / "expected.ply"
-    assert run("reconstruct", scan, other, out, "--voxel-size", "0.1") == 0
+    assert run("reconstruct", scan, other, "-o", out, "--voxel-size", "0.1") == 0
     assert "read 'scan.xyz', 'other.xyz'" in capsys.readouterr().out
     prefilter.reconstruct_file([scan, other], expected, cell_size=0.1)
     assert out.read_bytes() == expected.read_bytes()
@@ -42,7 +44,7 @@ def test_several_sources_and_a_size(scan, tmp_path, capsys):
 
 def test_an_isovalue_of_ones_own(scan, tmp_path):
     out, expected = tmp_path / "out.ply", tmp_path / "expected.ply"
-    assert run("reconstruct", scan, out, "--depth", "5", "--custom-isovalue", "0.3") == 0
+    assert run("reconstruct", scan, "-o", out, "--depth", "5", "--custom-isovalue", "0.3") == 0
     prefilter.reconstruct_file(scan, expected, depth=5, isovalue=0.3)
     assert out.read_bytes() == expected.read_bytes()
 
@@ -56,15 +58,15 @@ def test_normals_face_a_viewpoint(tmp_path, capsys):
     out, expected = tmp_path / "out.ply", tmp_path / "expected.ply"
     places = [[0.1, 0.0, 0.0], [4.1, 0.0, 0.0]]
     flags = [part for place in places for part in ("--viewpoint", *map(str, place))]
-    assert run("reconstruct", *scans, out, "--depth", "6", *flags) == 0
+    assert run("reconstruct", *scans, "-o", out, "--depth", "6", *flags) == 0
     assert "normals point to the scanner" in capsys.readouterr().out
     prefilter.reconstruct_file(scans, expected, depth=6, viewpoint=places)
     assert out.read_bytes() == expected.read_bytes()
     assert prefilter.reconstruct_file(scans, expected, depth=6, direction="outward")
     assert out.read_bytes() != expected.read_bytes()
-    told = fails(capsys, 1, "reconstruct", *scans, out, "--direction", "given")
+    told = fails(capsys, 1, "reconstruct", *scans, "-o", out, "--direction", "given")
     assert "Normals: 'given', but there are points without normals" in told
-    told = fails(capsys, 1, "reconstruct", *scans, out, *flags, *flags)
+    told = fails(capsys, 1, "reconstruct", *scans, "-o", out, *flags, *flags)
     assert "viewpoint: found 4 for 2 sources" in told
 
 
@@ -77,7 +79,7 @@ def test_points_that_are_chosen(tmp_path, capsys):
     np.savetxt(scan, np.column_stack(columns), fmt="%.9g", delimiter=",", header=names, comments="")
     box = ["-1", "-1", "-0.5", "1", "1", "0.9"]
     choice = ("--classes", "1, 3", "--returns", "last", "--box", *box)
-    assert run("reconstruct", scan, out, "--depth", "4", "--trim", "3", *choice) == 0
+    assert run("reconstruct", scan, "-o", out, "--depth", "4", "--trim", "3", *choice) == 0
     corners = [[-1, -1, -0.5], [1, 1, 0.9]]
     report = prefilter.reconstruct_file(
         scan, expected, depth=4, trim=3.0, classes=[1, 3], returns="last", box=corners
@@ -89,9 +91,9 @@ def test_points_that_are_chosen(tmp_path, capsys):
         "Classes: found '2,256'": ("--classes", "2,256"),
         "box: from": ("--box", *["1", "0", "0", "0", "1", "1"]),
     }.items():
-        assert words in fails(capsys, 1, "reconstruct", scan, out, *arguments)
+        assert words in fails(capsys, 1, "reconstruct", scan, "-o", out, *arguments)
     assert "--returns: found 'second'" in fails(
-        capsys, 2, "reconstruct", scan, out, "--returns", "second"
+        capsys, 2, "reconstruct", scan, "-o", out, "--returns", "second"
     )
 
 
@@ -104,7 +106,7 @@ def test_files_that_are_aligned(tmp_path, capsys):
         rows = np.hstack([positions, normals / (1, 1.3, 0.8)]).tolist()
         path.write_bytes(gzip.compress(ply("binary_little_endian", [("vertex", kinds, rows)])))
     out, expected = tmp_path / "out.ply", tmp_path / "expected.ply"
-    assert run("reconstruct", *scans, out, "--depth", "5", "--align") == 0
+    assert run("reconstruct", *scans, "-o", out, "--depth", "5", "--align") == 0
     told = capsys.readouterr().out
     report = prefilter.reconstruct_file(scans, expected, depth=5, align=True)
     assert out.read_bytes() == expected.read_bytes()
@@ -124,9 +126,9 @@ def test_what_is_refused(scan, tmp_path, capsys):
         "--depth: found '99'": (scan, out, "--depth", "99"),
     }.items():
         assert words in fails(capsys, 2, "reconstruct", *arguments)
-    assert "none.xyz" in fails(capsys, 1, "reconstruct", tmp_path / "none.xyz", out)
-    told = fails(capsys, 1, "reconstruct", scan, out, "--voxel-size", "1e-5")
+    assert "none.xyz" in fails(capsys, 1, "reconstruct", tmp_path / "none.xyz", "-o", out)
+    told = fails(capsys, 1, "reconstruct", scan, "-o", out, "--voxel-size", "1e-5")
     assert "Voxel Size: " in told
-    told = fails(capsys, 1, "reconstruct", scan, out, "--memory-limit", "1")
+    told = fails(capsys, 1, "reconstruct", scan, "-o", out, "--memory-limit", "1")
     assert "Memory Limit: 1 MiB; at least " in told
     assert not out.exists()

@@ -52,7 +52,7 @@ def expected(scans):
     def of(*flags):
         if flags not in made:
             target = scans[0].with_name("whole.ply")
-            assert run("reconstruct", *scans, target, *DEPTH, *flags) == 0
+            assert run("reconstruct", *scans, "-o", target, *DEPTH, *flags) == 0
             made[flags] = target.read_bytes()
         return made[flags]
 
@@ -62,7 +62,7 @@ def expected(scans):
 def steps(scans, folder, *flags, parts=5):
     """Does all steps in this process; returns the surface."""
     target = folder / "surface.ply"
-    words = ("reconstruct", *scans, target, *DEPTH, *flags, "--work", folder / "work")
+    words = ("reconstruct", *scans, "-o", target, *DEPTH, *flags, "--work", folder / "work")
     for step in STEPS:
         assert run(*words, "--parts", str(parts), "--step", step) == 0
     return target.read_bytes()
@@ -96,13 +96,13 @@ def test_a_folder_of_sources(scans, expected, tmp_path, capsys):
     (tmp_path / "scans" / "notes.md").write_text("none")
     assert steps([tmp_path / "scans"], tmp_path) == expected()
     (tmp_path / "empty").mkdir()
-    words = ("reconstruct", tmp_path / "empty", tmp_path / "s.ply")
+    words = ("reconstruct", tmp_path / "empty", "-o", tmp_path / "s.ply")
     assert "empty" in fails(capsys, 2, *words)
 
 
 def test_a_single_source_and_limits_of_memory(scans, tmp_path):
     one = tmp_path / "one.ply"
-    assert run("reconstruct", scans[1], one, *DEPTH) == 0
+    assert run("reconstruct", scans[1], "-o", one, *DEPTH) == 0
     limit = ("--memory-limit", "40", "--threads", "1")
     assert steps(scans[1:2], tmp_path, *limit) == one.read_bytes()
 
@@ -114,12 +114,22 @@ SHARE = 60_000
 def test_files_are_counted_in_shares(scans, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(sources, "POINTS_A_SHARE", SHARE)
     whole = tmp_path / "whole.ply"
-    assert run("reconstruct", *scans, whole, *DEPTH) == 0
+    assert run("reconstruct", *scans, "-o", whole, *DEPTH) == 0
     capsys.readouterr()
     assert steps(scans, tmp_path, parts=3) == whole.read_bytes()
     told = capsys.readouterr().out
     assert told.count("Step measure") == told.count("Step count") == 1 + 5 + 1 + 3
-    words = ("reconstruct", *scans, whole, *DEPTH, "--work", tmp_path / "w", "--step", "count")
+    words = (
+        "reconstruct",
+        *scans,
+        "-o",
+        whole,
+        *DEPTH,
+        "--work",
+        tmp_path / "w",
+        "--step",
+        "count",
+    )
     assert run(*words, "--list") == 0
     assert len(capsys.readouterr().out.splitlines()) == 1 + 5 + 1 + 3
 
@@ -172,14 +182,14 @@ def test_shares_of_other_files(tmp_path, monkeypatch, capsys, name, flags, share
     if source != scan:
         write_other(source, prefilter.read_points(scan))
     whole = tmp_path / "whole.ply"
-    assert run("reconstruct", source, whole, *DEPTH, *flags) == 0
+    assert run("reconstruct", source, "-o", whole, *DEPTH, *flags) == 0
     capsys.readouterr()
     assert steps([source], tmp_path, *flags, parts=1) == whole.read_bytes()
     assert capsys.readouterr().out.count("Step count") == shares
     # No point is lost, and none is counted twice.
     monkeypatch.setattr(sources, "POINTS_A_SHARE", 1 << 30)
     at_once = prefilter.read_points(whole)
-    assert run("reconstruct", source, whole, *DEPTH, *flags) == 0
+    assert run("reconstruct", source, "-o", whole, *DEPTH, *flags) == 0
     again = prefilter.read_points(whole)
     assert len(again.positions) == len(at_once.positions)
     np.testing.assert_allclose(again.positions, at_once.positions, atol=1e-4)
@@ -187,7 +197,7 @@ def test_shares_of_other_files(tmp_path, monkeypatch, capsys, name, flags, share
 
 def test_four_processes_at_once(scans, expected, tmp_path):
     target = tmp_path / "surface.ply"
-    words = ["-m", "prefilter", "reconstruct", *map(str, scans), str(target), *DEPTH]
+    words = ["-m", "prefilter", "reconstruct", *map(str, scans), "-o", str(target), *DEPTH]
     words += ["--work", str(tmp_path / "work"), "--parts", "8"]
     for step in STEPS:
         count = 1 if step in ("merge", "join") else 4
@@ -222,7 +232,7 @@ def test_what_is_there_is_not_made_again(scans, expected, tmp_path, capsys):
 
 
 def test_a_list_of_the_runs(scans, tmp_path, capsys):
-    words = ("reconstruct", *scans, tmp_path / "s.ply", *DEPTH, "--work", tmp_path / "w")
+    words = ("reconstruct", *scans, "-o", tmp_path / "s.ply", *DEPTH, "--work", tmp_path / "w")
     for step, count in (("measure", 4), ("count", 4), ("merge", 1), ("part", 16), ("join", 1)):
         assert run(*words, "--step", step, "--list", "--json") == 0
         tasks = json.loads(capsys.readouterr().out)["tasks"]
@@ -230,7 +240,7 @@ def test_a_list_of_the_runs(scans, tmp_path, capsys):
 
 
 def test_files_that_are_missing_or_damaged(scans, tmp_path, capsys):
-    words = ("reconstruct", *scans, tmp_path / "s.ply", *DEPTH, "--work", tmp_path / "w")
+    words = ("reconstruct", *scans, "-o", tmp_path / "s.ply", *DEPTH, "--work", tmp_path / "w")
     words = (*words, "--parts", "2")
     assert "measure.1-of-4" in fails(capsys, 1, *words, "--step", "count")
     assert run(*words, "--step", "measure") == 0
@@ -266,20 +276,20 @@ def test_files_that_are_missing_or_damaged(scans, tmp_path, capsys):
 
 
 def test_what_steps_do_not_have(scans, tmp_path, capsys):
-    words = ("reconstruct", *scans, tmp_path / "s.ply", "--work", tmp_path / "w")
+    words = ("reconstruct", *scans, "-o", tmp_path / "s.ply", "--work", tmp_path / "w")
     assert "Depth" in fails(capsys, 1, *words, "--step", "measure").title()
     assert "haar" in fails(capsys, 1, *words, *DEPTH, "--wavelet", "d4", "--step", "measure")
     assert "align" in fails(capsys, 1, *words, *DEPTH, "--align", "--step", "measure")
     bare = tmp_path / "bare.xyz"
     bare.write_text("0 0 0\n1 0 0\n0 1 0\n")
-    alone = ("reconstruct", bare, tmp_path / "s.ply", *DEPTH, "--work", tmp_path / "w")
+    alone = ("reconstruct", bare, "-o", tmp_path / "s.ply", *DEPTH, "--work", tmp_path / "w")
     assert "no normals" in fails(capsys, 1, *alone, "--step", "measure")
     for flags, word in (
         (("--step", "measure", "--parts", "0"), "--parts"),
         (("--step", "all"), "--step"),
     ):
         assert word in fails(capsys, 2, *words, *DEPTH, *flags)
-    last = fails(capsys, 2, "reconstruct", *scans, tmp_path / "s.ply", "--step", "measure")
+    last = fails(capsys, 2, "reconstruct", *scans, "-o", tmp_path / "s.ply", "--step", "measure")
     assert "--work" in last
     assert "--step" in fails(capsys, 2, *words)
 
@@ -287,7 +297,7 @@ def test_what_steps_do_not_have(scans, tmp_path, capsys):
 def test_points_far_from_all_others(scans, tmp_path, capsys):
     far = write_ball(tmp_path / "far.ply", 2, 1, height=1e4)
     sources = (*scans, far)
-    words = ("reconstruct", *sources, tmp_path / "s.ply", *DEPTH, "--work", tmp_path / "w")
+    words = ("reconstruct", *sources, "-o", tmp_path / "s.ply", *DEPTH, "--work", tmp_path / "w")
     assert run(*words, "--step", "measure") == 0
     assert "box" in fails(capsys, 1, *words, "--step", "count").lower()
 

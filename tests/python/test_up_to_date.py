@@ -79,22 +79,33 @@ def test_levels(photo, tmp_path, capsys, kind):
 )
 def test_pictures(photo, tmp_path, capsys, kind, command, flags, others):
     out = tmp_path / f"out.{kind}"
-    assert is_made(capsys, out, command, photo, out, *flags)
+    assert is_made(capsys, out, command, photo, "-o", out, *flags)
     pixels = oiio.ImageBuf(str(out)).get_pixels("float")
-    assert not is_made(capsys, out, command, photo, out, *flags)
-    assert is_made(capsys, out, command, photo, out, *others)
-    assert is_made(capsys, out, command, photo, out, *flags)
-    assert run(command, photo, tmp_path / f"plain.{kind}", *flags) == 0
+    assert not is_made(capsys, out, command, photo, "-o", out, *flags)
+    assert is_made(capsys, out, command, photo, "-o", out, *others)
+    assert is_made(capsys, out, command, photo, "-o", out, *flags)
+    assert run(command, photo, "-o", tmp_path / f"plain.{kind}", *flags) == 0
     plain = oiio.ImageBuf(str(tmp_path / f"plain.{kind}")).get_pixels("float")
     np.testing.assert_array_equal(pixels, plain)
 
 
 def test_the_table_of_a_filter_counts(photo, tmp_path, capsys):
     table, out = tmp_path / "table.json", tmp_path / "out.png"
-    command = ("resample", photo, out, "--scale", "0.5", "--method", "table", "--table", table)
+    command = (
+        "resample",
+        photo,
+        "-o",
+        out,
+        "--scale",
+        "0.5",
+        "--method",
+        "table",
+        "--table",
+        table,
+    )
     for name in ("tent", "lanczos2"):
         small = ("--texels", "4", "--grid", "1", "--slices", "1")
-        assert run("sampling-table", table, "--filter", name, *small) == 0
+        assert run("sampling-table", "-o", table, "--filter", name, *small) == 0
         assert is_made(capsys, out, *command)
         assert not is_made(capsys, out, *command)
 
@@ -104,19 +115,19 @@ def test_meshes(tmp_path, capsys, kind):
     trimesh = pytest.importorskip("trimesh")
     source, out, plain = tmp_path / "box.ply", tmp_path / f"out.{kind}", tmp_path / f"plain.{kind}"
     trimesh.creation.box().export(source)
-    command = ("voxelize", source, out, "--depth", "4")
+    command = ("voxelize", source, "-o", out, "--depth", "4")
     assert is_made(capsys, out, *command)
     assert not is_made(capsys, out, *command)
     assert not is_made(capsys, out, *command, "--threads", "1")
-    assert run("voxelize", source, plain, "--depth", "4") == 0
+    assert run("voxelize", source, "-o", plain, "--depth", "4") == 0
     assert KEY.encode() not in plain.read_bytes()
     found, expected = (trimesh.load(path, force="mesh") for path in (out, plain))
     np.testing.assert_array_equal(found.vertices, expected.vertices)
     np.testing.assert_array_equal(found.faces, expected.faces)
-    assert is_made(capsys, out, "voxelize", source, out, "--depth", "5")
+    assert is_made(capsys, out, "voxelize", source, "-o", out, "--depth", "5")
     trimesh.creation.box((1, 1, 2)).export(source)
-    assert is_made(capsys, out, "voxelize", source, out, "--depth", "5")
-    assert not is_made(capsys, out, "voxelize", source, out, "--depth", "5")
+    assert is_made(capsys, out, "voxelize", source, "-o", out, "--depth", "5")
+    assert not is_made(capsys, out, "voxelize", source, "-o", out, "--depth", "5")
 
 
 @pytest.mark.parametrize("kind", ["png", "exr"])
@@ -125,15 +136,15 @@ def test_drawings(tmp_path, capsys, kind):
     drawing.write_text(
         '<svg viewBox="0 0 4 4"><path id="a" d="M0 0h4L0 4z"/><use href="#a"/></svg>'
     )
-    command = ("rasterize", drawing, out, "--side", "32")
+    command = ("rasterize", drawing, "-o", out, "--side", "32")
     assert is_made(capsys, out, *command)
     assert not is_made(capsys, out, *command)
     assert is_made(capsys, out, *command, "--filter", "tent")
     drawing.write_text('<svg viewBox="0 0 4 4"><path d="M0 0h4L1 4z"/></svg>')
     assert is_made(capsys, out, *command)
     quad = write_quad(tmp_path / "quad.obj")
-    assert is_made(capsys, out, "rasterize", quad, out, "--uv", "--side", "32")
-    assert not is_made(capsys, out, "rasterize", quad, out, "--uv", "--side", "32")
+    assert is_made(capsys, out, "rasterize", quad, "-o", out, "--uv", "--side", "32")
+    assert not is_made(capsys, out, "rasterize", quad, "-o", out, "--uv", "--side", "32")
 
 
 @pytest.mark.parametrize(
@@ -189,7 +200,7 @@ def test_a_drawing_that_is_large_when_unpacked_is_not_looked_through(tmp_path):
 def test_of_many_files_those_that_have_changed_are_made(tmp_path, capsys):
     pictures = [write_picture(tmp_path / f"{i}.png", noise(8, 8, seed=i)) for i in range(3)]
     (tmp_path / "out").mkdir()
-    command = ("resize", *pictures, tmp_path / "out" / "{name}.png", "--percent", "50")
+    command = ("resize", *pictures, "-o", tmp_path / "out" / "{name}.png", "--percent", "50")
     assert run(*command, "--skip-up-to-date", "--task", "1/2") == 0
     capsys.readouterr()
     assert run(*command, "--skip-up-to-date") == 0

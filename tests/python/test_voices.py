@@ -18,7 +18,7 @@ pytest.importorskip("OpenImageIO", reason="scripts/decoders.txt is not installed
 def pictures(tmp_path):
     (tmp_path / "out").mkdir()
     found = [write_picture(tmp_path / f"{i}.png", noise(8, 12, seed=i)) for i in range(4)]
-    return [*found, tmp_path / "out" / "{name}.png", "--percent", "50"]
+    return [*found, "-o", tmp_path / "out" / "{name}.png", "--percent", "50"]
 
 
 def rises_to(values, end):

@@ -31,7 +31,7 @@ def read(path):
 def test_the_surface_is_that_of_the_package(cube, tmp_path, capsys):
     out = tmp_path / "out.ply"
     flags = ("--depth", "5", "--interpolant", "plane", "--adaptivity", "0", "--no-cleanup")
-    assert run("voxelize", cube, out, *flags) == 0
+    assert run("voxelize", cube, "-o", out, *flags) == 0
     told = capsys.readouterr().out
     assert "Voxelized 'cube' in 32³ cells of " in told
     positions, triangles = corners_and_faces()
@@ -46,7 +46,7 @@ def test_the_surface_is_that_of_the_package(cube, tmp_path, capsys):
 @pytest.mark.parametrize("ending", ["obj", "ply", "stl", "glb"])
 def test_files(cube, tmp_path, ending):
     out = tmp_path / f"out.{ending}"
-    assert run("voxelize", cube, out, "--voxel-size", "0.1") == 0
+    assert run("voxelize", cube, "-o", out, "--voxel-size", "0.1") == 0
     made = trimesh.load_mesh(out)
     made.merge_vertices()
     assert made.is_watertight
@@ -62,10 +62,10 @@ def test_each_mesh_by_itself(tmp_path, capsys):
         scene.add_geometry(mesh, node_name=name, geom_name=name)
     scene.export(tmp_path / "two.glb")
     out = tmp_path / "out.glb"
-    assert run("voxelize", tmp_path / "two.glb", out, "--depth", "4") == 0
+    assert run("voxelize", tmp_path / "two.glb", "-o", out, "--depth", "4") == 0
     assert "Voxelized 2 objects: " in capsys.readouterr().out
     assert set(trimesh.load_scene(out).geometry) == {"A", "B"}
-    assert run("voxelize", tmp_path / "two.glb", out, "--depth", "4", "--object", "B") == 0
+    assert run("voxelize", tmp_path / "two.glb", "-o", out, "--depth", "4", "--object", "B") == 0
     assert trimesh.load_scene(out).bounds[0].min() > 3
 
 
@@ -104,7 +104,7 @@ def test_what_is_refused(cube, tmp_path, capsys):
         "--depth: found '0'": (cube, out, "--depth", "0"),
     }.items():
         assert words in fails(capsys, 2, "voxelize", *arguments)
-    assert "FILE: there is no file" in fails(capsys, 1, "voxelize", tmp_path / "no.stl", out)
-    told = fails(capsys, 1, "voxelize", cube, out, "--voxel-size", "1e-5")
+    assert "FILE: there is no file" in fails(capsys, 1, "voxelize", tmp_path / "no.stl", "-o", out)
+    told = fails(capsys, 1, "voxelize", cube, "-o", out, "--voxel-size", "1e-5")
     assert "mesh 'cube': Voxel Size: 1e-05 would need" in told
     assert not out.exists()

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 import bpy
-from prefilter._command import tasks
-from prefilter._work.files import target_files
+from prefilter._command import outputs, tasks
+from prefilter._work.files import patterns, target_files
 from prefilter._work.up_to_date import LEVELS
 
 from ...bridge import images
@@ -47,7 +47,7 @@ examples:
   prefilter bake helmet.gltf --all --output textures/ --task 3/5
   prefilter bake helmet.blend --all --output helmet.glb
   prefilter bake scene.blend --image Wood --save
-  prefilter bake spot.obj --image spot.png --output spot.exr
+  prefilter bake spot.obj --image spot.png -o spot.exr
   prefilter bake helmet.gltf --object Visor --filter pam-box --output visor.tif
   prefilter bake helmet.gltf --object Visor --output visor.ktx2 --texture-format bc3"""
 
@@ -65,7 +65,8 @@ def add(commands: Any) -> None:
     )
     source.add_arguments(parser, "; with --all, bake this one alone, as the whole does")
     presets.add_flag(parser)
-    add_flags(parser, Settings)
+    add_flags(parser, Settings, short={"filepath": "-o"})
+    outputs.add_overwrite(parser)
     parser.add_argument(
         "--frames",
         metavar="START:END[:STEP]",
@@ -100,6 +101,8 @@ def _bake(options: argparse.Namespace) -> None:
     extension = command.check_ending(options, "FILE", options.file, scenes.SOURCES)
     tasks.check(options)
     settings = _settings(options)
+    for argument, path in _outputs(settings):
+        outputs.check_path(options, argument, path, (outputs.NAME,))
     if options.save and extension != ".blend":
         options.usage_error(f"--save: needs a .blend FILE, found '{options.file}'")
     if given(options, GltfSettings) and not (options.all and is_gltf(settings.filepath)):
@@ -112,6 +115,11 @@ def _bake(options: argparse.Namespace) -> None:
         _bake_some(options, settings)
 
 
+def _outputs(settings: Settings) -> list[tuple[str, str]]:
+    """Returns the flags of the files to write, and what they say."""
+    return [("--output", settings.filepath), ("--roughness-output", settings.roughness_filepath)]
+
+
 def _bake_some(options: argparse.Namespace, settings: Settings) -> None:
     """Bakes one image, or the base colors."""
     for name in ("list", "file_format", "material", "manifest", "task"):
@@ -121,8 +129,10 @@ def _bake_some(options: argparse.Namespace, settings: Settings) -> None:
     if not options.save and not settings.filepath:
         options.usage_error("nothing to write: give --output FILE or --save")
     paths = (settings.filepath, settings.roughness_filepath)
-    if any(file_names.PLACE in path for path in paths):
+    if any(patterns.has(path, outputs.NAME) for path in paths):
         options.usage_error(f"--output: {file_names.PLACE} needs --all")
+    filled = [outputs.resolved(options, argument, path) for argument, path in _outputs(settings)]
+    settings = replace(settings, filepath=filled[0], roughness_filepath=filled[1])
     settings = source.fitted(options, settings, paths)
     if settings.texture_format != "auto" and not any(map(target_files.has_formats, paths)):
         options.usage_error(
@@ -154,6 +164,7 @@ def _bake_some(options: argparse.Namespace, settings: Settings) -> None:
     for image, target in zip(chosen, targets, strict=True):
         for file in udim.paths(target, images.tile_numbers(image)):
             target_files.check_target(file)
+    _check_sources(options, [*targets, settings.roughness_filepath])
     settings = replace(settings, roughness=_roughness_name(settings.roughness))
     failed: list[str] = []
     for image, target in zip(chosen, targets, strict=True):
@@ -179,6 +190,12 @@ def _bake_some(options: argparse.Namespace, settings: Settings) -> None:
         scenes.save_open(path)
     if failed:
         raise ValueError(f"not baked: {listed(failed)}")
+
+
+def _check_sources(options: argparse.Namespace, paths: Iterable[str]) -> None:
+    """Ends the program where a file that is read would be replaced."""
+    written = [file for path in paths if path for file in target_files.written(Path(path))]
+    outputs.check_kept(options, written, [options.file, *file_names.source_files()])
 
 
 def _check_skipping(options: argparse.Namespace, paths: Iterable[str]) -> None:

@@ -6,6 +6,8 @@ import argparse
 import os
 from pathlib import Path
 
+from prefilter._command import outputs
+
 from ...bridge import meshes
 from ...bridge.files import scenes
 from ...core import command
@@ -33,9 +35,10 @@ def is_gltf(path: str) -> bool:
 def bake_gltf(options: argparse.Namespace, settings: Settings) -> None:
     """Exports the model, as Blender's exporter does with Prefilter Mipmaps."""
     _check(options)
-    target = scenes.check_target(settings.filepath)
+    target = scenes.check_target(outputs.resolved(options, "--output", settings.filepath))
     (objects,) = scenes.load([options.file], meshes.may_show_image, WANTED)
-    _check_sources(options, target)
+    if not options.overwrite:
+        _check_sources(options, target)
     chosen_objects = scenes.chosen(objects, options.object, WANTED) if options.object else []
     shared = {"texture_format", "effort", "supercompression", "quality"}
     chosen = {key: value for key, value in given(options, Settings).items() if key in shared}
@@ -80,5 +83,5 @@ def _check_sources(options: argparse.Namespace, target: Path) -> None:
     if target in sources or target.parent in folders:
         raise ValueError(
             f"--output: '{target}' is among the files of the model, which stay as they are; "
-            "choose another folder"
+            "choose another folder, or give --overwrite"
         )

@@ -7,13 +7,14 @@ from functools import partial
 from typing import Any
 
 import bpy
+from prefilter._command import outputs
 
 from ...bridge import images, new_images
 from ...bridge.files import scenes, staging
 from ...core import command
 from ...core.flags import add_flags, given, settings_given, tables
 from ...core.wording import listed
-from .. import reading
+from .. import file_names, reading
 from ..bake import Bake
 from ..choices import PlotSettings, Settings
 from ..view import errors, figure
@@ -28,7 +29,7 @@ surface at each mip value, dashed ones those over all mip values. The image is c
 for bake; name one if bake would bake several.
 
 examples:
-  prefilter plot spot.obj --image spot.png --output error.png
+  prefilter plot spot.obj --image spot.png -o error.png
   prefilter plot scene.blend --image Wood --filters box pam-bilinear --table error.csv"""
 
 
@@ -39,7 +40,7 @@ def add(commands: Any) -> None:
     source.add_arguments(parser)
     add_flags(parser, PlotSettings)
     add_flags(parser, Settings, *_PLOTTED)
-    parser.add_argument("--output", metavar="FILE", default="", help="a .png file to write")
+    outputs.add_output(parser, "FILE", "a .png file to write", destination="output")
     parser.add_argument(
         "--table", metavar="FILE", default="", help="a .csv file to write the values to"
     )
@@ -50,6 +51,10 @@ def _plot(options: argparse.Namespace) -> None:
     command.check_ending(options, "FILE", options.file, scenes.SOURCES)
     if not options.output and not options.table:
         options.usage_error("nothing to write: give --output FILE or --table FILE")
+    for name in ("output", "table"):
+        if getattr(options, name):
+            path = outputs.resolved(options, f"--{name}", getattr(options, name))
+            setattr(options, name, path)
     targets = [
         staging.check_plain_target(path, ending)
         for path, ending in ((options.output, ".png"), (options.table, ".csv"))
@@ -57,6 +62,7 @@ def _plot(options: argparse.Namespace) -> None:
     ]
     objects = source.objects_of(options)
     chosen, is_picture = source.images_of(options.image, objects, "auto")
+    outputs.check_kept(options, targets, [options.file, *file_names.source_files()])
     if len(chosen) > 1:
         found = listed(image.name for image in chosen)
         raise ValueError(f"--image: choose one; the meshes use {found}")

@@ -2,6 +2,7 @@
 
 """`prefilter.bake_mipmaps`: the levels of an image, right for the meshes that wear it."""
 
+import os
 from collections.abc import Generator
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -100,6 +101,8 @@ class PREFILTER_OT_bake_mipmaps(
 
     def _with_files(self, image: bpy.types.Image, settings: Settings) -> Settings:
         """Returns settings whose files have names, beside the .blend file where none is given."""
+        from prefilter._work.files import patterns
+
         from ...bridge import images
         from .. import file_names
 
@@ -116,7 +119,11 @@ class PREFILTER_OT_bake_mipmaps(
             )
         found = []
         for path, name in zip(paths, (image.name, settings.roughness), strict=True):
-            if file_names.PLACE in path:
+            folder, last = os.path.split(path)
+            patterns.check("File", last, (file_names.NAME,))
+            if patterns.has(path, file_names.NAME):
                 (path,) = file_names.paths(file_names.Pattern(path), [images.find(name)])
+            else:
+                path = os.path.join(folder, patterns.filled(last, {}))
             found.append(path)
         return replace(settings, filepath=found[0], roughness_filepath=found[1])

@@ -91,7 +91,7 @@ def test_commands_follow(preferences, told, tmp_path):
     calls = told("reconstruct")
     preferences.threads, preferences.memory_limit = 1, 1024
     path, target = saved_scan(tmp_path), tmp_path / "surface.ply"
-    arguments = ("reconstruct", path, target, "--depth", 4)
+    arguments = ("reconstruct", path, "-o", target, "--depth", 4)
     for more in ((), ("--threads", 2, "--memory-limit", 0)):
         assert run(*arguments, *more).returncode == 0
     assert [call["threads"] for call in calls] == [1, 2]

@@ -303,7 +303,9 @@ def test_flags_turn_on_what_a_preset_turns_off(addon):
     parser = addon("commands").Commands(["voxels"]).parser()
     kind = addon("voxels.properties").VOXELIZE
     for flags, expected in (([], False), (["--cleanup"], True), (["--no-cleanup"], False)):
-        options = parser.parse_args(["voxelize", "a.ply", "b.ply", "--preset", "Preview", *flags])
+        options = parser.parse_args(
+            ["voxelize", "a.ply", "-o", "b.ply", "--preset", "Preview", *flags]
+        )
         found = presets.settings_given(options, kind, voxels.VoxelizeSettings)
         assert (found.use_cleanup, found.use_colors, found.depth) == (expected, True, 6)
 
@@ -323,10 +325,10 @@ def pixels(path):
 def test_tiled_texture(model, tmp_path):
     """Edges are filtered with what lies beyond them, and the size is the caller's."""
     picture = model.parent / "color.png"
-    shrink = ["resize", picture, tmp_path / "a.png"]
+    shrink = ["resize", picture, "-o", tmp_path / "a.png"]
     assert_fails(run(*shrink, "--preset", "Tiled texture"), "no size", status=2)
     assert run(*shrink, "--percent", "50", "--preset", "Tiled texture").returncode == 0
-    plain = ["resize", picture, tmp_path / "b.png", "--percent", "50", "--wrap"]
+    plain = ["resize", picture, "-o", tmp_path / "b.png", "--percent", "50", "--wrap"]
     assert run(*plain, "repeat").returncode == 0
     np.testing.assert_array_equal(pixels(tmp_path / "a.png"), pixels(tmp_path / "b.png"))
     assert run(*plain, "clamp").returncode == 0
@@ -340,11 +342,11 @@ def test_sizes_of_a_preset(kind, model, tmp_path, monkeypatch):
     (tmp_path / "Small.py").write_text("settings.size = 'pixels'\nsettings.width = 6\n")
     picture, target = model.parent / "color.png", tmp_path / "out.png"
     for more, size in (([], 6), (["--percent", "25"], 4), (["--height", "5"], 5)):
-        assert run("resize", picture, target, "--preset", "small", *more).returncode == 0
+        assert run("resize", picture, "-o", target, "--preset", "small", *more).returncode == 0
         assert pixels(target).shape[:2] == (size, size)
     (tmp_path / "Small.py").write_text("settings.warp = 'corners'\nsettings.size = 'image'\n")
     more = ("--rotate", "90", "--preset", "Small")
-    assert run("resample", picture, target, *more).returncode == 0
+    assert run("resample", picture, "-o", target, *more).returncode == 0
     np.testing.assert_array_equal(pixels(target)[..., :3], np.rot90(pixels(picture))[..., :3])
 
 
@@ -356,7 +358,7 @@ def test_mask(tmp_path):
         'fill="red"/></svg>'
     )
     size = ("--width", "8", "--height", "8", "--margin", "2")
-    result = run("rasterize", drawing, target, *size, "--preset", "Mask")
+    result = run("rasterize", drawing, "-o", target, *size, "--preset", "Mask")
     assert result.returncode == 0, result.stderr
     found = pixels(target)
     assert found.shape[:2] == (8, 8)

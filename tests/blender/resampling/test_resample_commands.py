@@ -64,7 +64,7 @@ def test_help():
 )
 def test_where_the_image_goes(sky, tmp_path, transform, arguments, options):
     path, pixels = sky
-    result = run("resample", path, tmp_path / "new.exr", *arguments, "--wrap", "clamp")
+    result = run("resample", path, "-o", tmp_path / "new.exr", *arguments, "--wrap", "clamp")
     assert result.returncode == 0, result.stderr
     if "warp" in options:
         names = ("lower_left", "lower_right", "upper_right", "upper_left")
@@ -84,8 +84,8 @@ def test_corners_in_pixels(sky, tmp_path):
     path, _ = sky
     share = ("--corners", *CORNERS, "--size", "image")
     pixels = ("--pixels", "--corners", *(np.reshape(CORNERS, (4, 2)) * (20, 12)).ravel())
-    run("resample", path, tmp_path / "shares.exr", *share)
-    run("resample", path, tmp_path / "pixels.exr", *pixels, "--size", "image")
+    run("resample", path, "-o", tmp_path / "shares.exr", *share)
+    run("resample", path, "-o", tmp_path / "pixels.exr", *pixels, "--size", "image")
     one, other = (content(tmp_path / f"{name}.exr")[0] for name in ("shares", "pixels"))
     np.testing.assert_allclose(one, other, atol=1e-5)
     assert one.shape == (12, 20, 4)
@@ -95,7 +95,7 @@ def test_corners_in_pixels(sky, tmp_path):
 def test_methods(sky, tmp_path, transform, method):
     path, pixels = sky
     result = run(
-        *("resample", path, tmp_path / "new.exr", "--scale", 0.7, "--wrap", "repeat"),
+        *("resample", path, "-o", tmp_path / "new.exr", "--scale", 0.7, "--wrap", "repeat"),
         *("--method", method, "--filter", "tent"),
     )
     assert result.returncode == 0, result.stderr
@@ -119,10 +119,12 @@ def test_own_table(sky, tmp_path):
     assert run("sampling-table", tmp_path / "tent.json", "--filter", "tent").returncode == 0
     size = ("--scale", 0.6)
     run(
-        *("resample", sky[0], tmp_path / "own.exr", *size),
+        *("resample", sky[0], "-o", tmp_path / "own.exr", *size),
         *("--method", "table", "--table", tmp_path / "tent.json"),
     )
-    run("resample", sky[0], tmp_path / "known.exr", *size, "--method", "8", "--filter", "tent")
+    run(
+        "resample", sky[0], "-o", tmp_path / "known.exr", *size, "--method", "8", "--filter", "tent"
+    )
     one, other = (content(tmp_path / f"{name}.exr")[0] for name in ("own", "known"))
     np.testing.assert_array_equal(one, other)
 
@@ -130,7 +132,7 @@ def test_own_table(sky, tmp_path):
 def test_bytes_get_an_alpha_where_nothing_is(tmp_path):
     pixels = np.ones((16, 16, 3), np.float32) * (0.6, 0.4, 0.2)
     write(tmp_path / "card.png", pixels, "uint8")
-    run("resample", tmp_path / "card.png", tmp_path / "turned.png", "--rotate", 45)
+    run("resample", tmp_path / "card.png", "-o", tmp_path / "turned.png", "--rotate", 45)
     found, kind = content(tmp_path / "turned.png")
     assert kind == "uint8"
     assert found.shape == (23, 23, 4)
@@ -144,7 +146,7 @@ def test_data(tmp_path):
     pixels = scenes.noise(8, 12)[..., :3]
     write(tmp_path / "mask.png", pixels, "uint8")
     run(
-        *("resample", tmp_path / "mask.png", tmp_path / "half.png", "--scale", 0.5, "--data"),
+        *("resample", tmp_path / "mask.png", "-o", tmp_path / "half.png", "--scale", 0.5, "--data"),
         *("--filter", "box", "--size", "fit"),
     )
     found, _ = content(tmp_path / "half.png")
@@ -154,7 +156,7 @@ def test_data(tmp_path):
 def test_threads_make_no_difference(sky, tmp_path):
     for threads in (1, 3):
         run(
-            *("resample", sky[0], tmp_path / f"{threads}.png", "--rotate", 20),
+            *("resample", sky[0], "-o", tmp_path / f"{threads}.png", "--rotate", 20),
             *("--threads", threads, "--method", "8"),
         )
     assert (tmp_path / "1.png").read_bytes() == (tmp_path / "3.png").read_bytes()
@@ -184,8 +186,8 @@ def test_wrong_arguments(sky, tmp_path):
         (("--table", "x.json"), ("--table: not allowed without --method table",)),
         (("--max-probes", 4), ("--max-probes: not allowed without --filter gaussian",)),
     ):
-        assert_fails(run("resample", path, target, *arguments), *words, status=2)
-    assert_fails(run("resample", path, tmp_path / "new.jpg"), "OUTPUT", "new.jpg", status=2)
+        assert_fails(run("resample", path, "-o", target, *arguments), *words, status=2)
+    assert_fails(run("resample", path, "-o", tmp_path / "new.jpg"), "OUTPUT", "new.jpg", status=2)
     assert not target.exists()
 
 

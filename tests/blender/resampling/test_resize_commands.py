@@ -31,7 +31,7 @@ def test_help():
 
 def test_bytes(paint, tmp_path):
     path, pixels = paint
-    result = run("resize", path, tmp_path / "small.png", "--percent", 50, "--filter", "box")
+    result = run("resize", path, "-o", tmp_path / "small.png", "--percent", 50, "--filter", "box")
     assert result.returncode == 0, result.stderr
     assert "from 12 x 8 to 6 x 4 pixels with Box" in result.stdout
     found, kind = content(tmp_path / "small.png")
@@ -104,7 +104,7 @@ def test_the_color_space_can_be_said(tmp_path):
 
 def test_data(paint, tmp_path):
     path, pixels = paint
-    run("resize", path, tmp_path / "small.png", "--percent", 50, "--filter", "box", "--data")
+    run("resize", path, "-o", tmp_path / "small.png", "--percent", 50, "--filter", "box", "--data")
     found, _ = content(tmp_path / "small.png")
     np.testing.assert_allclose(found, scenes.halved(pixels), atol=0.5 / 255 + 1e-6)
 
@@ -119,7 +119,7 @@ def test_data(paint, tmp_path):
     ],
 )
 def test_sizes(paint, tmp_path, arguments, size):
-    result = run("resize", paint[0], tmp_path / "new.png", *arguments)
+    result = run("resize", paint[0], "-o", tmp_path / "new.png", *arguments)
     assert result.returncode == 0, result.stderr
     assert content(tmp_path / "new.png")[0].shape[1::-1] == size
 
@@ -127,7 +127,16 @@ def test_sizes(paint, tmp_path, arguments, size):
 def test_sixteen_bits_stay(tmp_path):
     pixels = np.random.default_rng(4).random((8, 8, 3)).astype(np.float32)
     write(tmp_path / "deep.png", pixels, "uint16")
-    run("resize", tmp_path / "deep.png", tmp_path / "small.png", "--percent", 50, "--filter", "box")
+    run(
+        "resize",
+        tmp_path / "deep.png",
+        "-o",
+        tmp_path / "small.png",
+        "--percent",
+        50,
+        "--filter",
+        "box",
+    )
     found, kind = content(tmp_path / "small.png")
     assert kind == "uint16"
     expected = scenes.to_srgb(scenes.halved(scenes.to_linear(pixels)))
@@ -137,7 +146,7 @@ def test_sixteen_bits_stay(tmp_path):
 def test_floats_stay(tmp_path):
     pixels = 9 * np.random.default_rng(5).random((9, 6, 3)).astype(np.float32)
     write(tmp_path / "sky.exr", pixels, "float")
-    result = run("resize", tmp_path / "sky.exr", tmp_path / "large.exr", "--percent", 200)
+    result = run("resize", tmp_path / "sky.exr", "-o", tmp_path / "large.exr", "--percent", 200)
     assert result.returncode == 0, result.stderr
     found, kind = content(tmp_path / "large.exr")
     assert kind == "float"
@@ -149,7 +158,9 @@ def test_alpha(tmp_path, target):
     pixels = np.ones((8, 8, 4), np.float32) * (1, 0, 1, 0)
     pixels[:, :3] = (0, 0.6, 0, 1)
     write(tmp_path / "leaf.png", pixels, "uint8")
-    run("resize", tmp_path / "leaf.png", tmp_path / target, "--percent", 50, "--filter", "box")
+    run(
+        "resize", tmp_path / "leaf.png", "-o", tmp_path / target, "--percent", 50, "--filter", "box"
+    )
     found, kind = content(tmp_path / target)
     linear = float(scenes.to_linear(np.float32(0.6)))
     expected = [(0, 0.6, 0, 1), (0, 0.6, 0, 0.5)]
@@ -163,7 +174,7 @@ def test_alpha_of_floats(tmp_path):
     pixels = np.full((8, 8, 4), 0.25, np.float32)
     pixels[..., 3] = 0.5
     write(tmp_path / "glass.exr", pixels, "float", straight=False)
-    run("resize", tmp_path / "glass.exr", tmp_path / "glass.png", "--percent", 50)
+    run("resize", tmp_path / "glass.exr", "-o", tmp_path / "glass.png", "--percent", 50)
     found, _ = content(tmp_path / "glass.png")
     expected = scenes.to_srgb(np.float32([0.5, 0.5, 0.5]))
     np.testing.assert_allclose(found[..., :3], np.broadcast_to(expected, (4, 4, 3)), atol=1e-4)
@@ -173,7 +184,7 @@ def test_alpha_of_floats(tmp_path):
 def test_threads_make_no_difference(paint, tmp_path):
     for threads in (1, 3):
         run(
-            *("resize", paint[0], tmp_path / f"{threads}.png", "--percent", 300),
+            *("resize", paint[0], "-o", tmp_path / f"{threads}.png", "--percent", 300),
             *("--threads", threads, "--filter", "least-squares", "--constrained"),
         )
     assert (tmp_path / "1.png").read_bytes() == (tmp_path / "3.png").read_bytes()

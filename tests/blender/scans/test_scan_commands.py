@@ -68,7 +68,7 @@ def test_from_file_to_file(scan, tmp_path, addon, monkeypatch):
     """The points come nowhere near Blender."""
     monkeypatch.setattr(addon("scans.files").prefilter, "read_points", None)
     target = tmp_path / "out.ply"
-    result = run("reconstruct", scan, target, *DEPTH, "--memory-limit", 200)
+    result = run("reconstruct", scan, "-o", target, *DEPTH, "--memory-limit", 200)
     assert result.returncode == 0, result.stderr
     assert "Reconstructed 'out.ply' from 20000 points at depth 6, in cells of" in result.stdout
     assert "100 %" in result.stderr
@@ -80,7 +80,7 @@ def test_from_file_to_file(scan, tmp_path, addon, monkeypatch):
 @pytest.mark.parametrize("ending", [".obj", ".stl", ".glb", ".blend"])
 def test_other_targets(scan, tmp_path, ending):
     target = tmp_path / f"out{ending}"
-    result = run("reconstruct", scan, target, *DEPTH)
+    result = run("reconstruct", scan, "-o", target, *DEPTH)
     assert result.returncode == 0, result.stderr
     assert f"Reconstructed 'out{ending}' from 20000 points" in result.stdout
     assert_torus(target)
@@ -89,7 +89,7 @@ def test_other_targets(scan, tmp_path, ending):
 def test_colors(scan, tmp_path):
     """As the file has them, both from file to file and in memory."""
     for name, options in (("stream.ply", DEPTH), ("memory.ply", ("--voxel-size", 0.1))):
-        result = run("reconstruct", scan, tmp_path / name, *options)
+        result = run("reconstruct", scan, "-o", tmp_path / name, *options)
         assert result.returncode == 0, result.stderr
         (made,) = loaded(tmp_path / name).values()
         colors = made.data.color_attributes.active_color
@@ -107,7 +107,7 @@ def test_several_sources(tmp_path):
         own = normals[part] if i < 2 else None
         sources.append(write_ply(tmp_path / f"{i}.ply", points[part], own))
     target = tmp_path / "out.ply"
-    result = run("reconstruct", *sources, target, *DEPTH)
+    result = run("reconstruct", *sources, "-o", target, *DEPTH)
     assert result.returncode == 0, result.stderr
     assert "from 20000 points" in result.stdout
     assert_torus(target)
@@ -125,7 +125,7 @@ def far(tmp_path):
 
 def test_far_away_points_keep_their_precision(far, tmp_path):
     target = tmp_path / "out.blend"
-    result = run("reconstruct", far, target, *DEPTH)
+    result = run("reconstruct", far, "-o", target, *DEPTH)
     assert result.returncode == 0, result.stderr
     assert "kept as the custom property 'scan_offset'" in result.stderr
     (made,) = loaded(target).values()
@@ -137,7 +137,7 @@ def test_far_away_points_keep_their_precision(far, tmp_path):
 def test_far_away_points_in_files_of_places(far, tmp_path):
     """A place of an object holds round numbers."""
     target = tmp_path / "out.glb"
-    result = run("reconstruct", far, target, *DEPTH)
+    result = run("reconstruct", far, "-o", target, *DEPTH)
     assert result.returncode == 0, result.stderr
     assert "custom property" not in result.stderr
     (made,) = loaded(target).values()
@@ -149,7 +149,7 @@ def test_far_away_points_in_files_of_places(far, tmp_path):
 
 def test_far_away_points_in_files_of_few_digits(far, tmp_path):
     target = tmp_path / "out.stl"
-    result = run("reconstruct", far, target, *DEPTH)
+    result = run("reconstruct", far, "-o", target, *DEPTH)
     assert result.returncode == 0, result.stderr
     told = "(500000, 5000000, 100) is to be added to its coordinates"
     assert told in result.stderr
@@ -164,11 +164,11 @@ def test_offsets_of_objects_are_added_back(tmp_path, addon):
     blend = tmp_path / "scan.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(blend))
     target = tmp_path / "out.ply"
-    result = run("reconstruct", blend, target, *DEPTH)
+    result = run("reconstruct", blend, "-o", target, *DEPTH)
     assert result.returncode == 0, result.stderr
     made = addon("scans.files").prefilter.read_points(target)
     assert np.abs(clouds.torus_distance(made.positions - AWAY)).mean() < 0.01
-    result = run("reconstruct", blend, tmp_path / "out.glb", *DEPTH)
+    result = run("reconstruct", blend, "-o", tmp_path / "out.glb", *DEPTH)
     assert result.returncode == 0, result.stderr
     (made,) = loaded(tmp_path / "out.glb").values()
     np.testing.assert_array_equal(made.matrix_world.translation, AWAY)
@@ -182,7 +182,7 @@ def test_several_files_to_ply_keep_their_doubles(tmp_path, addon):
         write_ply(tmp_path / f"{i}.ply", points[i::2] + offset, normals[i::2]) for i in range(2)
     ]
     target = tmp_path / "out.ply"
-    result = run("reconstruct", *sources, target, "--voxel-size", 0.05)
+    result = run("reconstruct", *sources, "-o", target, "--voxel-size", 0.05)
     assert result.returncode == 0, result.stderr
     assert "from 20000 points" in result.stdout
     assert "read '0.ply', '1.ply'" in result.stdout
@@ -198,7 +198,7 @@ def test_objects_of_a_blend_file(tmp_path):
     path = tmp_path / "scene.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(path))
     target = tmp_path / "out.ply"
-    result = run("reconstruct", path, target, *DEPTH, "--object", "Scan")
+    result = run("reconstruct", path, "-o", target, *DEPTH, "--object", "Scan")
     assert result.returncode == 0, result.stderr
     assert "Reconstructed 'Scan.surface' from 20000 points" in result.stdout
     assert_torus(target)
@@ -246,7 +246,7 @@ def test_ctrl_c_leaves_nothing(scan, tmp_path, addon, monkeypatch, number, statu
 
     monkeypatch.setitem(voices.VOICES, "plain", Interrupted)
     for name in ("out.ply", "out.stl"):
-        result = run("reconstruct", scan, tmp_path / name, *DEPTH)
+        result = run("reconstruct", scan, "-o", tmp_path / name, *DEPTH)
         assert result.returncode == status
         assert result.stderr.strip().endswith("prefilter: canceled")
     assert [path.name for path in tmp_path.iterdir()] == ["scan.ply"]

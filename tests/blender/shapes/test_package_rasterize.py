@@ -19,7 +19,7 @@ def same(source, folder, ending, *flags):
     """Makes a file with both commands; tells whether they are the same."""
     ours, theirs = folder / f"ours.{ending}", folder / f"theirs.{ending}"
     assert program.main(["rasterize", str(source), str(ours), *flags]) == 0
-    result = run("rasterize", source, theirs, *flags)
+    result = run("rasterize", source, "-o", theirs, *flags)
     assert result.returncode == 0, result.stderr
     # OpenImageIO puts the time into files.
     first, second = (TIME.sub(b"", path.read_bytes()) for path in (ours, theirs))

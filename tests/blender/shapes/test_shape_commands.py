@@ -60,7 +60,7 @@ def test_help():
 
 def test_curves_to_png_and_exr(blend, tmp_path):
     options = ("--width", 32, "--height", 32, "--margin", 0)
-    result = run("rasterize", blend, tmp_path / "out.png", *options)
+    result = run("rasterize", blend, "-o", tmp_path / "out.png", *options)
     assert result.returncode == 0, result.stderr
     assert f"Rasterized 'First' to '{tmp_path / 'out.png'}': 32 x 32 pixels" in result.stdout
     assert "100 %" in result.stderr
@@ -72,7 +72,7 @@ def test_curves_to_png_and_exr(blend, tmp_path):
     np.testing.assert_array_equal(values[..., 3], expected[..., 3])
     np.testing.assert_array_equal(values * values[..., 3:], expected)
     for pixel_type, wanted in (("half", "half"), ("float", "float"), ("byte", "half")):
-        run("rasterize", blend, tmp_path / "out.exr", *options, "--pixel-type", pixel_type)
+        run("rasterize", blend, "-o", tmp_path / "out.exr", *options, "--pixel-type", pixel_type)
         kind, values = picture(tmp_path / "out.exr")
         assert kind == wanted
         np.testing.assert_array_equal(values, expected)
@@ -95,7 +95,7 @@ def test_curves_to_png_and_exr(blend, tmp_path):
 def test_pixels_per_unit_and_background(blend, tmp_path):
     target = tmp_path / "out.png"
     options = ("--object", "Second", "--density", 20, "--margin", 2, "--background", "#00ff00")
-    result = run("rasterize", blend, target, *options)
+    result = run("rasterize", blend, "-o", target, *options)
     assert result.returncode == 0, result.stderr
     _, values = picture(target)
     assert values.shape == (24, 24, 3)
@@ -105,7 +105,7 @@ def test_pixels_per_unit_and_background(blend, tmp_path):
 
 def test_uv_mask(blend, tmp_path):
     target = tmp_path / "mask.png"
-    result = run("rasterize", blend, target, "--uv", "--width", 16, "--height", 8)
+    result = run("rasterize", blend, "-o", target, "--uv", "--width", 16, "--height", 8)
     assert result.returncode == 0, result.stderr
     _, values = picture(target)
     assert values.shape == (8, 16, 1)
@@ -151,7 +151,7 @@ def move_hidden():
 def test_what_is_up_to_date_is_left_alone(blend, tmp_path, change, flags, decides):
     target = tmp_path / "out.png"
     uv = ("--uv",) if "--uv" in flags else ()
-    words = ("rasterize", blend, target, "--side", 40, *uv, "--skip-up-to-date")
+    words = ("rasterize", blend, "-o", target, "--side", 40, *uv, "--skip-up-to-date")
     assert run(*words).returncode == 0
     first = target.read_bytes()
     again = run(*words)
@@ -169,7 +169,7 @@ def test_what_is_up_to_date_is_left_alone(blend, tmp_path, change, flags, decide
 
 
 def test_drawings_that_stand_alone_are_left_alone(svg, tmp_path):
-    words = ("rasterize", svg, tmp_path / "out.exr", "--side", 40, "--skip-up-to-date")
+    words = ("rasterize", svg, "-o", tmp_path / "out.exr", "--side", 40, "--skip-up-to-date")
     for expected in (False, True):
         assert ("Up to date" in run(*words).stdout) is expected
     svg.write_text(SVG.replace("#ff0000", "#0000ff"))
@@ -181,7 +181,7 @@ def test_drawings_that_stand_alone_are_left_alone(svg, tmp_path):
 
 
 def test_svg(svg, tmp_path):
-    result = run("rasterize", svg, "out.png", "--density", 2, "--margin", 0, cwd=tmp_path)
+    result = run("rasterize", svg, "-o", "out.png", "--density", 2, "--margin", 0, cwd=tmp_path)
     assert result.returncode == 0, result.stderr
     _, values = picture(tmp_path / "out.png")
     assert values.shape == (8, 16, 4)
@@ -212,24 +212,28 @@ def test_failures_leave_nothing(blend, svg, tmp_path):
     before = {file.name: file.read_bytes() for file in tmp_path.iterdir()}
     target = tmp_path / "out.png"
     rows = [
-        (("rasterize", tmp_path / "gone.svg", target), ["there is no file"], 1),
-        (("rasterize", blend, tmp_path / "gone" / "out.png"), ["there is no folder"], 1),
-        (("rasterize", blend, tmp_path / "out.jpg"), ["OUTPUT: found", ".png, .exr"], 2),
-        (("rasterize", "image.png", target), ["INPUT: found 'image.png'"], 2),
-        (("rasterize", blend, target, "--width", 0), ["--width: found '0'", "1 to 65536"], 2),
-        (("rasterize", blend, target, "--density", 2, "--width", 8), ["--density, and --width"], 2),
-        (("rasterize", svg, target, "--uv"), ["--object, --uv"], 2),
+        (("rasterize", tmp_path / "gone.svg", "-o", target), ["there is no file"], 1),
+        (("rasterize", blend, "-o", tmp_path / "gone" / "out.png"), ["there is no folder"], 1),
+        (("rasterize", blend, "-o", tmp_path / "out.jpg"), ["OUTPUT: found", ".png, .exr"], 2),
+        (("rasterize", "image.png", "-o", target), ["INPUT: found 'image.png'"], 2),
+        (("rasterize", blend, "-o", target, "--width", 0), ["--width: found '0'", "1 to 65536"], 2),
         (
-            ("rasterize", blend, target, "--object", "Hidden"),
+            ("rasterize", blend, "-o", target, "--density", 2, "--width", 8),
+            ["--density, and --width"],
+            2,
+        ),
+        (("rasterize", svg, "-o", target, "--uv"), ["--object, --uv"], 2),
+        (
+            ("rasterize", blend, "-o", target, "--object", "Hidden"),
             ["no visible curve or text named 'Hidden'", "'First', 'Second'"],
             1,
         ),
         (
-            ("rasterize", blend, target, "--uv", "--object", "First"),
+            ("rasterize", blend, "-o", target, "--uv", "--object", "First"),
             ["no visible mesh with a UV map named 'First'", "'Quad'"],
             1,
         ),
-        (("rasterize", blend, target, "--density", 1e6), ["Pixels per Unit", "65536"], 1),
+        (("rasterize", blend, "-o", target, "--density", 1e6), ["Pixels per Unit", "65536"], 1),
     ]
     for arguments, words, status in rows:
         assert_fails(run(*arguments), *words, status=status)
@@ -239,5 +243,5 @@ def test_failures_leave_nothing(blend, svg, tmp_path):
 def test_damaged_svg(tmp_path):
     path = tmp_path / "bad.svg"
     path.write_text("<svg")
-    assert_fails(run("rasterize", path, tmp_path / "out.png"), "bad.svg")
+    assert_fails(run("rasterize", path, "-o", tmp_path / "out.png"), "bad.svg")
     assert not (tmp_path / "out.png").exists()

@@ -50,7 +50,7 @@ def test_help(command):
 def test_formats(sphere, tmp_path, extension):
     path, volume = sphere
     target = tmp_path / f"out{extension}"
-    result = run("voxelize", path, target, "--depth", 5)
+    result = run("voxelize", path, "-o", target, "--depth", 5)
     assert result.returncode == 0, result.stderr
     assert "Voxelized 'ball' in 32³ cells" in result.stdout
     assert "open edges; the result is closed" in result.stdout
@@ -64,7 +64,7 @@ def test_formats(sphere, tmp_path, extension):
 
 
 def test_openvdb_file(sphere, tmp_path):
-    result = run("voxelize", sphere[0], tmp_path / "out.vdb", "--depth", 5)
+    result = run("voxelize", sphere[0], "-o", tmp_path / "out.vdb", "--depth", 5)
     if not any(map(importlib.util.find_spec, ("openvdb", "pyopenvdb"))):
         assert_fails(result, "no Python module for OpenVDB")
         return
@@ -77,7 +77,9 @@ def test_openvdb_file(sphere, tmp_path):
 
 
 def test_blend_in_place(blend):
-    result = run("voxelize", blend, blend, "--object", "Hole", "--voxel-size", 0.1)
+    result = run(
+        "voxelize", blend, "-o", blend, "--overwrite", "--object", "Hole", "--voxel-size", 0.1
+    )
     assert result.returncode == 0, result.stderr
     assert "'Hole' in 32³ cells of 10 cm" in result.stdout
     line = "object 'Hole': parts: 1 before, 1 after; genus: 0 before, 0 after"
@@ -89,7 +91,7 @@ def test_blend_in_place(blend):
 
 
 def test_all_visible_objects(blend, tmp_path):
-    result = run("voxelize", blend.name, "out.glb", "--depth", 4, cwd=tmp_path)
+    result = run("voxelize", blend.name, "-o", "out.glb", "--depth", 4, cwd=tmp_path)
     assert result.returncode == 0, result.stderr
     assert "Voxelized 2 objects" in result.stdout
     assert set(loaded(tmp_path / "out.glb")) == {"Body", "Hole"}
@@ -139,7 +141,7 @@ def is_left_alone(*words):
 
 
 def test_what_is_up_to_date_is_left_alone(blend, tmp_path):
-    words = ("voxelize", blend, tmp_path / "out.glb")
+    words = ("voxelize", blend, "-o", tmp_path / "out.glb")
     assert [is_left_alone(*words) for _ in range(2)] == [False, True]
     assert is_left_alone(*words, "--threads", 1)
     assert not is_left_alone(*words, "--object", "Hole")
@@ -167,7 +169,7 @@ def test_materials_and_textures_decide(blend, tmp_path):
 
     paint((1, 0, 0, 1))
     blend_again(blend, wear)
-    words = ("voxelize", blend, tmp_path / "out.glb")
+    words = ("voxelize", blend, "-o", tmp_path / "out.glb")
     assert [is_left_alone(*words) for _ in range(2)] == [False, True]
     image = bpy.data.images.new("Texture", 2, 2)
     paint((0, 1, 0, 1))
@@ -176,8 +178,8 @@ def test_materials_and_textures_decide(blend, tmp_path):
 
 @pytest.mark.parametrize("extension", [".obj", ".ply", ".stl", ".glb"])
 def test_files_tell_what_they_were_made_of(blend, tmp_path, extension):
-    run("voxelize", blend, tmp_path / "made.obj", "--depth", 3)
-    words = ("voxelize", tmp_path / "made.obj", tmp_path / f"out{extension}")
+    run("voxelize", blend, "-o", tmp_path / "made.obj", "--depth", 3)
+    words = ("voxelize", tmp_path / "made.obj", "-o", tmp_path / f"out{extension}")
     assert [is_left_alone(*words) for _ in range(2)] == [False, True]
     assert set(loaded(words[2])) == {"Body", "Hole"} or extension in {".ply", ".stl"}
     (tmp_path / "made.mtl").write_text("newmtl other\n")
@@ -193,26 +195,30 @@ def test_layers_of_usd_may_be_elsewhere(blend, tmp_path):
     source = tmp_path / "made.usda"
     bpy.ops.wm.usd_export(filepath=str(source))
     for _ in range(2):
-        assert not is_left_alone("voxelize", source, tmp_path / "out.ply")
+        assert not is_left_alone("voxelize", source, "-o", tmp_path / "out.ply")
 
 
 def test_failures_leave_nothing(blend, tmp_path):
     before = {file.name: file.read_bytes() for file in tmp_path.iterdir()}
     target = tmp_path / "out.ply"
     rows = [
-        (("voxelize", tmp_path / "gone.ply", target), ["there is no file"], 1),
-        (("voxelize", blend, tmp_path / "gone" / "out.ply"), ["there is no folder"], 1),
-        (("voxelize", blend, tmp_path / "out.txt"), ["OUTPUT: found", "allowed: "], 2),
-        (("voxelize", blend, tmp_path / "out.fbx", "--skip-up-to-date"), ["found", ".glb"], 2),
-        (("voxelize", "image.png", target), ["FILE: found 'image.png'", "allowed: "], 2),
-        (("voxelize", blend, target, "--depth", 13), ["--depth: found '13'", "1 to 12"], 2),
+        (("voxelize", tmp_path / "gone.ply", "-o", target), ["there is no file"], 1),
+        (("voxelize", blend, "-o", tmp_path / "gone" / "out.ply"), ["there is no folder"], 1),
+        (("voxelize", blend, "-o", tmp_path / "out.txt"), ["OUTPUT: found", "allowed: "], 2),
         (
-            ("voxelize", blend, target, "--object", "Hidden"),
+            ("voxelize", blend, "-o", tmp_path / "out.fbx", "--skip-up-to-date"),
+            ["found", ".glb"],
+            2,
+        ),
+        (("voxelize", "image.png", "-o", target), ["FILE: found 'image.png'", "allowed: "], 2),
+        (("voxelize", blend, "-o", target, "--depth", 13), ["--depth: found '13'", "1 to 12"], 2),
+        (
+            ("voxelize", blend, "-o", target, "--object", "Hidden"),
             ["no visible object with a surface named 'Hidden'", "'Body', 'Hole'"],
             1,
         ),
         (
-            ("voxelize", blend, target, "--voxel-size", "0.0001"),
+            ("voxelize", blend, "-o", target, "--voxel-size", "0.0001"),
             ["object 'Body': Voxel Size: 0.0001", "the limit is 4096"],
             1,
         ),
@@ -227,5 +233,5 @@ def test_failures_leave_nothing(blend, tmp_path):
 def test_damaged_file(tmp_path):
     path = tmp_path / "bad.glb"
     path.write_bytes(b"no glTF")
-    assert_fails(run("voxelize", path, tmp_path / "out.ply"), "cannot load", "bad.glb")
+    assert_fails(run("voxelize", path, "-o", tmp_path / "out.ply"), "cannot load", "bad.glb")
     assert not (tmp_path / "out.ply").exists()

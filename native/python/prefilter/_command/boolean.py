@@ -24,7 +24,7 @@ from .._work.voxels.grid import check_memory, choose_grid
 from .._work.voxels.nothing import NO_CELL, NothingLeftError
 from .._work.wording import amount, either, listed
 from ..meshes.measures import measure_mesh
-from . import telling, voxelize
+from . import outputs, telling, voxelize
 from .host import PLAIN
 
 FLAGS = (*voxelize.FLAGS, "operation")
@@ -36,8 +36,8 @@ Meshes may be open, leaky, and intersect themselves. Only positions and triangle
 materials and attributes need Blender.
 
 examples:
-  prefilter boolean bunny.ply armadillo.ply --operation difference --output bite.ply
-  prefilter boolean scene.glb --object Body --object Hole --output body.stl"""
+  prefilter boolean bunny.ply armadillo.ply --operation difference -o bite.ply
+  prefilter boolean scene.glb --object Body --object Hole -o body.stl"""
 
 
 def add(commands: Any, purpose: str) -> None:
@@ -47,13 +47,11 @@ def add(commands: Any, purpose: str) -> None:
     parser.add_argument(
         "files", metavar="FILE", nargs="+", help=f"the operands: {either(mesh_endings.ENDINGS)}"
     )
-    parser.add_argument(
-        "--output",
-        "-o",
-        metavar="FILE",
-        required=True,
-        help=f"the file to write: {either(mesh_endings.TARGETS)}",
+    endings = either(mesh_endings.TARGETS)
+    outputs.add_output(
+        parser, "OUTPUT", f"the file to write: {endings}", is_required=True, destination="output"
     )
+    parser.set_defaults(intermixed="files")
     parser.add_argument(
         "--object",
         metavar="NAME",
@@ -157,11 +155,18 @@ def _boolean(options: argparse.Namespace) -> None:
         options.usage_error("FILE: give two files or more, or --object for two meshes or more")
     for path in options.files:
         telling.check_ending(options, "FILE", path, mesh_endings.ENDINGS)
-    telling.check_ending(options, "--output", options.output, mesh_endings.TARGETS)
+    check_output(options, mesh_endings.TARGETS)
     target = Path(os.path.realpath(options.output))
     staging.check_target(target)
     settings = voxelize.settings_of(options, PLAIN, BooleanSettings)
     telling.tell(telling.done(BooleanFile(_operands(options), target, settings)))
+
+
+def check_output(options: argparse.Namespace, allowed: Sequence[str]) -> None:
+    """Ends the program unless the file to write has a known extension, and is not read."""
+    options.output = outputs.resolved(options, "--output", options.output)
+    telling.check_ending(options, "--output", options.output, allowed)
+    outputs.check_kept(options, [options.output], options.files)
 
 
 def _operands(options: argparse.Namespace) -> list[Part]:

@@ -4,17 +4,18 @@
 
 import argparse
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from .._border.file_names import identities
 from .._border.staging import check_target
-from .._work.files.target_files import PLACE
+from .._work.files import patterns
 from .._work.outcome import FAILURES, reason
 from .._work.up_to_date import KEY, PICTURES, fingerprint
 from .._work.wording import listed
-from . import tasks, telling
+from . import outputs, tasks, telling
 
 
 @dataclass(frozen=True)
@@ -53,13 +54,24 @@ def add_arguments(
         source: What may be read.
         target: What may be written.
     """
-    parser.add_argument("sources", metavar=names[0], nargs="+", help=f"{source}, or several")
     parser.add_argument(
-        "target",
-        metavar=names[1],
-        help=f"the file to write: {target}. {PLACE} in it stands for the name of {names[0]} "
-        f"without its extension, and is needed where there are several",
+        "sources",
+        metavar=names[0],
+        nargs="+",
+        help=f"{source}, or several with -o; of two without -o, the second is {names[1]}",
     )
+    outputs.add_output(
+        parser,
+        names[1],
+        f"the file to write: {target}. {{name}} in it stands for the name of {names[0]} without "
+        f"its extension, and is needed for several",
+    )
+    parser.set_defaults(intermixed="sources", file_names=names)
+
+
+def settle(options: argparse.Namespace) -> None:
+    """Finds out which files are read, and which one is written; ends the program in doubt."""
+    outputs.settle(options, options.file_names, (outputs.NAME,))
 
 
 def run(
@@ -126,27 +138,26 @@ def _skipping(
 def _pairs(options: argparse.Namespace) -> list[Pair]:
     """Returns what is to become of each file; ends the program where files would meet."""
     sources: Sequence[str] = options.sources
-    if len(sources) > 1 and PLACE not in options.target:
+    if len(sources) > 1 and not patterns.has(options.target, outputs.NAME):
         options.usage_error(
-            f"found '{options.target}' for {len(sources)} files; {PLACE} is needed in it"
+            f"found '{options.target}' for {len(sources)} files; {{name}} is needed in it"
         )
-    pairs = [Pair(one, options.target.replace(PLACE, Path(one).stem)) for one in sources]
-    if len(pairs) > 1:
-        read = {_identity(pair.source): pair.source for pair in pairs}
-        written: dict[str, str] = {}
-        for pair in pairs:
-            identity = _identity(pair.target)
-            if identity in read:
-                options.usage_error(f"'{pair.target}' is read; choose other files to write")
-            if identity in written:
-                both = listed((written[identity], pair.source))
-                options.usage_error(f"{both} would both become '{pair.target}'")
-            written[identity] = pair.source
+    pairs = [Pair(source, outputs.for_source(options.target, source)) for source in sources]
+    read = [(pair, identities(pair.source)) for pair in pairs]
+    written: dict[Hashable, Pair] = {}
+    for pair in pairs:
+        own = identities(pair.target)
+        for identity in own & written.keys():
+            both = listed((written[identity].source, pair.source))
+            options.usage_error(f"{both} would both become '{pair.target}'")
+        written |= dict.fromkeys(own, pair)
+        # Even where files may be replaced: one would be read after that.
+        if any(other is not pair and not own.isdisjoint(names) for other, names in read):
+            options.usage_error(f"'{pair.target}' is read; choose other files to write")
+    outputs.check_kept(
+        options, [pair.target for pair in pairs], [*sources, *getattr(options, "also_read", ())]
+    )
     return pairs
-
-
-def _identity(path: str) -> str:
-    return os.path.realpath(path).casefold()
 
 
 def _list(options: argparse.Namespace, pairs: Sequence[Pair]) -> None:

@@ -3,7 +3,6 @@
 """What the command `mipmaps` does: the levels of one texture, from files to files."""
 
 import argparse
-import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -115,7 +114,6 @@ def read(
         keeps_bytes=textures.is_stored(target),
         turns=not meshes,
     )
-    _check_sources([texture, settings.roughness, *meshes], settings)
     content = settings.content
     if content == "auto":
         content = "data" if picture.is_data else "color"
@@ -194,11 +192,3 @@ def _rough(settings: Settings, *, turns: bool) -> Picture:
 
 def _of(rough: Rough) -> tuple[contents.Roughness | None, Path | None]:
     return rough.roughness, rough.target
-
-
-def _check_sources(sources: list[str], settings: Settings) -> None:
-    """Raises ValueError where a file that is read would be replaced."""
-    read = {os.path.realpath(path) for path in sources if path}
-    for path in (settings.filepath, settings.roughness_filepath):
-        if path and os.path.realpath(path) in read:
-            raise ValueError(f"'{path}' is read; choose another file to write")

@@ -4,6 +4,7 @@
 
 import argparse
 from dataclasses import asdict
+from pathlib import Path
 from typing import Any
 
 from .._options.flags import add_flags, given, tables
@@ -12,7 +13,7 @@ from .._work import mesh_endings
 from .._work.files import target_files
 from .._work.up_to_date import KEY, LEVELS, fingerprint
 from .._work.wording import either
-from . import color_arguments, telling
+from . import color_arguments, outputs, telling
 
 FLAGS = (
     *("filter", "reader", "lookups", "wrap", "wrap_v", "content", "threshold", "roughness"),
@@ -52,14 +53,16 @@ def add(commands: Any, purpose: str) -> None:
     )
     add_flags(parser, Settings, *FLAGS, short={"filepath": "-o"})
     color_arguments.add_flags(parser, "TEXTURE")
+    outputs.add_overwrite(parser)
     telling.add_skipping(parser)
-    parser.set_defaults(execute=_run, usage_error=parser.error)
+    parser.set_defaults(intermixed="meshes", execute=_run, usage_error=parser.error)
 
 
 def _run(options: argparse.Namespace) -> None:
     for path in options.meshes:
         telling.check_ending(options, "MESH", path, mesh_endings.ENDINGS)
     settings = _settings(options)
+    _check_files(options, settings)
     number = _fingerprint(options, settings) if options.skip_up_to_date else None
     if number is not None:
         targets = [target_files.check_target(path) for path in _paths(settings)]
@@ -72,6 +75,13 @@ def _run(options: argparse.Namespace) -> None:
         options.texture, options.meshes, options.object, settings, metadata, options
     )
     telling.tell(telling.done(work))
+
+
+def _check_files(options: argparse.Namespace, settings: Settings) -> None:
+    """Ends the program where a file that is read would be replaced."""
+    written = [file for path in _paths(settings) for file in target_files.written(Path(path))]
+    sources = [options.texture, settings.roughness, *options.meshes]
+    outputs.check_kept(options, written, filter(None, sources))
 
 
 def _paths(settings: Settings) -> list[str]:
@@ -97,6 +107,9 @@ def _settings(options: argparse.Namespace) -> Settings:
     found = given(options, Settings)
     if not found.get("filepath"):
         options.usage_error("nothing to write: give -o FILE")
+    for name, flag in (("filepath", "-o"), ("roughness_filepath", "--roughness-output")):
+        if found.get(name):
+            found[name] = outputs.resolved(options, flag, found[name], options.texture)
     if options.object and not options.meshes:
         options.usage_error("--object: needs a MESH")
     if not options.meshes and found.setdefault("filter", _WITHOUT_MESH) not in (

@@ -48,6 +48,7 @@ def decisive(options: argparse.Namespace, host: Host, settings: type) -> dict[st
 
 def check_target(options: argparse.Namespace) -> None:
     """Ends the program unless OUTPUT has an extension of a picture."""
+    many.settle(options)
     telling.check_ending(options, "OUTPUT", options.target, pictures.ENDINGS)
 
 

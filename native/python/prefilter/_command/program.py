@@ -9,7 +9,7 @@ from importlib import import_module
 
 from .. import _native
 from .._border import stopping
-from . import telling
+from . import reports, streams, telling
 
 COMMANDS = {
     "mipmaps": "make the mipmap levels of a texture, weighted by the meshes that wear it",
@@ -32,11 +32,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
         after Ctrl-C, 143 after SIGTERM.
     """
     words = list(sys.argv[1:] if arguments is None else arguments)
-    return ended(lambda: _run(words))
+    return ended(lambda: execute(parse(parser(words[:1]), words)))
 
 
-def _run(words: Sequence[str]) -> None:
-    execute(parser(words[:1]).parse_args(words))
+def parse(reader: argparse.ArgumentParser, words: Sequence[str]) -> argparse.Namespace:
+    """Returns the arguments; files may come before, between and after flags."""
+    options, left = reader.parse_known_args(words)
+    name = getattr(options, "intermixed", None)
+    if left and (name is None or any(word.startswith("-") for word in left)):
+        reader.error(f"unrecognized arguments: {' '.join(left)}")
+    if left:
+        setattr(options, name, [*getattr(options, name), *left])
+    return options
 
 
 def execute(options: argparse.Namespace) -> None:
@@ -47,23 +54,36 @@ def execute(options: argparse.Namespace) -> None:
 
 def ended(run: Callable[[], object]) -> int:
     """Runs a command; returns its exit status, of which stderr says why it is not 0."""
-    from .._work.outcome import FAILURES, reason
-
+    streams.prepare()
     telling.speak()
     with stopping.heeded():
+        status = _status_of(run)
         try:
-            run()
-        except SystemExit as end:
-            return end.code if isinstance(end.code, int) else 0
-        except BaseException as error:
-            # What was interrupted may fail in any way, as operators of Blender do.
-            if stopping.asked() or isinstance(error, (_native.Cancelled, KeyboardInterrupt)):
-                telling.cancel()
-                return stopping.status()
-            if not isinstance(error, FAILURES):
-                raise
+            streams.finish()
+        except OSError as error:
+            telling.fail(f"what was said could not be written: {error.strerror}")
+            status = status or 1
+    return status
+
+
+def _status_of(run: Callable[[], object]) -> int:
+    from .._work.outcome import FAILURES, reason
+
+    try:
+        run()
+    except SystemExit as end:
+        return end.code if isinstance(end.code, int) else 0
+    except BaseException as error:
+        # What was interrupted may fail in any way, as operators of Blender do.
+        if stopping.asked() or isinstance(error, (_native.Cancelled, KeyboardInterrupt)):
+            telling.cancel()
+            return stopping.status()
+        if isinstance(error, FAILURES):
             telling.fail(reason(error))
-            return 1
+            reports.show(error)
+        else:
+            telling.fail(reports.unexpected(error))
+        return 1
     return 0
 
 

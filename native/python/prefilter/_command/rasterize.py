@@ -38,8 +38,9 @@ have 8 bits with --pixel-type byte, otherwise 16, and straight alpha; OpenEXR fi
 scene-linear, with premultiplied alpha.
 
 examples:
-  prefilter rasterize logo.svg logo.png --side 512
-  prefilter rasterize figure.glb mask.png --uv --object Body --width 2048 --height 2048"""
+  prefilter rasterize logo.svg -o logo.png --side 512
+  prefilter rasterize icons/*.svg -o '{name}.png' --side 64
+  prefilter rasterize figure.glb -o mask.png --uv --object Body --width 2048 --height 2048"""
 
 
 def add(commands: Any, purpose: str) -> None:
@@ -90,6 +91,7 @@ def _rasterize(options: argparse.Namespace) -> None:
 
 def check_files(options: argparse.Namespace, allowed: Sequence[str]) -> set[str]:
     """Returns the extensions of what is read; ends the program unless the files fit the flags."""
+    many.settle(options)
     endings = {telling.check_ending(options, "INPUT", path, allowed) for path in options.sources}
     telling.check_ending(options, "OUTPUT", options.target, pictures.ENDINGS)
     if SVG in endings and (options.uv or options.object):

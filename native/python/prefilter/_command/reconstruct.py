@@ -18,7 +18,7 @@ from .._work.scans import options as scan_options
 from .._work.wording import either
 from ..points.scan_files import POINT_EXTENSIONS
 from ..points.steps import STEPS, Steps
-from . import tasks, telling
+from . import outputs, tasks, telling
 from .host import PLAIN, Host
 
 _MOST_PARTS = 4096
@@ -28,11 +28,11 @@ are estimated. All other points are read, and the surface is written, piece by p
 neither has to fit into memory; with --memory-limit, the rest goes to temporary files.
 
 examples:
-  prefilter reconstruct scan.ply surface.ply
-  prefilter reconstruct city.laz city.ply --depth 11 --memory-limit 600
-  prefilter reconstruct left.ply right.ply hall.ply --viewpoint 0 0 1.5 --viewpoint 8 0 1.5
-  prefilter reconstruct tile.laz ground.ply --classes 2 --returns last --trim 8
-  prefilter reconstruct *.laz city.ply --depth 12 --work steps/ --step count --task 3/40"""
+  prefilter reconstruct scan.ply -o surface.ply
+  prefilter reconstruct city.laz -o city.ply --depth 11 --memory-limit 600
+  prefilter reconstruct left.ply right.ply -o hall.ply --viewpoint 0 0 1.5 --viewpoint 8 0 1.5
+  prefilter reconstruct tile.laz -o ground.ply --classes 2 --returns last --trim 8
+  prefilter reconstruct *.laz -o city.ply --depth 12 --work steps/ --step count --task 3/40"""
 
 
 def add(commands: Any, purpose: str) -> None:
@@ -52,9 +52,11 @@ def add_files(
         "sources",
         metavar="SOURCE",
         nargs="+",
-        help=f"a file of points: {either(sources)}; repeat for several, or name a folder of such",
+        help=f"a file of points: {either(sources)}; repeat for several with -o, or name a folder "
+        "of such; of two without -o, the second is TARGET",
     )
-    parser.add_argument("target", metavar="TARGET", help=f"the file to write: {either(targets)}")
+    outputs.add_output(parser, "TARGET", f"the file to write: {either(targets)}")
+    parser.set_defaults(intermixed="sources")
     parser.add_argument(
         "--viewpoint",
         nargs=3,
@@ -66,7 +68,18 @@ def add_files(
     )
 
 
-def expand_folders(options: argparse.Namespace) -> None:
+def settle(options: argparse.Namespace) -> None:
+    """Finds out which files are read and written; a folder stands for its files of points.
+
+    Ends the program where a file that is read would be replaced.
+    """
+    outputs.settle(options, ("SOURCE", "TARGET"))
+    options.target = outputs.for_source(options.target, "")
+    _expand_folders(options)
+    outputs.check_kept(options, [options.target], options.sources)
+
+
+def _expand_folders(options: argparse.Namespace) -> None:
     """Puts the files of points in the place of the folders that they are in, by their names."""
     found: list[str] = []
     for source in options.sources:
@@ -171,7 +184,7 @@ def settings_of(options: argparse.Namespace, host: Host) -> ScanSettings:
 
 
 def _reconstruct(host: Host, options: argparse.Namespace) -> None:
-    expand_folders(options)
+    settle(options)
     for path in options.sources:
         telling.check_ending(options, "SOURCE", path, POINT_EXTENSIONS)
     telling.check_ending(options, "TARGET", options.target, (STREAMED_TARGET,))

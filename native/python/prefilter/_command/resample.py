@@ -35,9 +35,9 @@ shares of the width and height of OUTPUT, or of INPUT for --rectify and if the s
 {picture_arguments.NOTE}
 
 examples:
-  prefilter resample photo.png turned.png --rotate 30 --scale 0.5
-  prefilter resample poster.png pinned.png --size image --corners 0.1 0 1 0.1 0.9 0.9 0 1
-  prefilter resample facade.png front.png --pixels --rectify 310 95 902 140 881 700 295 655"""
+  prefilter resample photo.png -o turned.png --rotate 30 --scale 0.5
+  prefilter resample poster.png -o pinned.png --size image --corners 0.1 0 1 0.1 0.9 0.9 0 1
+  prefilter resample facade.png -o front.png --pixels --rectify 310 95 902 140 881 700 295 655"""
 
 
 def add(commands: Any, purpose: str, host: Host = PLAIN) -> None:
@@ -69,6 +69,7 @@ def add(commands: Any, purpose: str, host: Host = PLAIN) -> None:
 def _resample(host: Host, options: argparse.Namespace) -> None:
     picture_arguments.check_target(options)
     settings = _settings(options, host)
+    options.also_read = [settings.table] if settings.table else []
     decisive = picture_arguments.decisive(options, host, ResampleSettings)
     if settings.table and options.skip_up_to_date:
         decisive["table"] = fingerprint([settings.table], {})

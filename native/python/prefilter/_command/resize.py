@@ -18,10 +18,10 @@ _NOTES = f"""\
 {picture_arguments.NOTE}
 
 examples:
-  prefilter resize photo.png small.png --percent 25 --filter least-squares
-  prefilter resize roughness.png roughness-1k.png --width 1024 --data --wrap repeat
-  prefilter resize sky.exr sky-2k.exr --width 2048 --height 1024 --filter mitchell
-  prefilter resize *.png half/{{name}}.png --percent 50 --task 2/8"""
+  prefilter resize photo.png -o small.png --percent 25 --filter least-squares
+  prefilter resize roughness.png -o roughness-1k.png --width 1024 --data --wrap repeat
+  prefilter resize sky.exr -o sky-2k.exr --width 2048 --height 1024 --filter mitchell
+  prefilter resize *.png -o 'half/{{name}}.png' --percent 50 --task 2/8"""
 
 
 def add(commands: Any, purpose: str, host: Host = PLAIN) -> None:

@@ -13,7 +13,7 @@ from .._options.flags import add_flags, given, tables
 from .._options.tables import TableSettings
 from .._work.resampling.table_making import ENDINGS, TableMaking
 from .._work.wording import either
-from . import telling
+from . import outputs, telling
 from .host import PLAIN, Host
 
 _NOTES = """\
@@ -21,32 +21,59 @@ _NOTES = """\
 shader code with the table in it.
 
 examples:
-  prefilter sampling-table lanczos2.glsl
-  prefilter sampling-table tent.json tent.hlsl --filter tent --texels 4 --certify
-  prefilter sampling-table tent.osl --table tent.json"""
+  prefilter sampling-table -o lanczos2.glsl
+  prefilter sampling-table -o tent.json -o tent.hlsl --filter tent --texels 4 --certify
+  prefilter sampling-table -o tent.osl --table tent.json"""
 
 
 def add(commands: Any, purpose: str, host: Host = PLAIN) -> None:
     """Adds the command."""
     notes = (*tables(TableSettings), _NOTES)
     parser = telling.add_command(commands, "sampling-table", purpose, *notes)
+    kinds = either(ENDINGS)
     parser.add_argument(
-        "targets", metavar="OUTPUT", nargs="+", help=f"a file to write: {either(ENDINGS)}"
+        "targets", metavar="OUTPUT", nargs="*", help="the same as -o, for new files"
     )
+    parser.add_argument(
+        "-o",
+        "--output",
+        dest="outputs",
+        metavar="OUTPUT",
+        action="append",
+        default=[],
+        help=f"a file to write: {kinds}; repeat for several",
+    )
+    outputs.add_overwrite(parser)
     add_flags(parser, TableSettings, preferred=host.preferred)
     parser.set_defaults(execute=partial(_make, host), usage_error=parser.error)
 
 
+def _paths(options: argparse.Namespace) -> list[str]:
+    """Returns the files to write; ends the program without any."""
+    for name in ("outputs", "targets"):
+        paths = [outputs.resolved(options, "OUTPUT", path) for path in getattr(options, name)]
+        setattr(options, name, paths)
+    if not options.outputs and not options.targets:
+        options.usage_error("nothing to write: give -o OUTPUT")
+    return [*options.outputs, *options.targets]
+
+
 def _make(host: Host, options: argparse.Namespace) -> None:
-    for target in options.targets:
+    paths = _paths(options)
+    for target in paths:
         telling.check_ending(options, "OUTPUT", target, ENDINGS)
     found = given(options, TableSettings)
     others = sorted(found.keys() - {"table", "threads"})
     if "table" in found and others:
         flag = f"--{others[0].removeprefix('use_')}"
         options.usage_error(f"--table: not allowed with {flag}, as no table is built")
-    targets = [Path(os.path.realpath(target)) for target in options.targets]
+    settings = host.settings(options, TableSettings)
+    read = [settings.table] if settings.table else []
+    options.is_positional = False
+    outputs.check_kept(options, options.outputs, read)
+    options.is_positional = True
+    outputs.check_kept(options, options.targets, read)
+    targets = [Path(os.path.realpath(target)) for target in paths]
     for path in targets:
         check_target(path)
-    settings = host.settings(options, TableSettings)
     telling.tell(telling.done(TableMaking(settings, targets)))

@@ -78,7 +78,7 @@ def chosen(options: argparse.Namespace, tasks: Sequence[T]) -> list[T]:
 def say_json(tasks: Sequence[Mapping[str, Any]], **more: Any) -> None:
     """Prints tasks with their numbers, and more, as one JSON object on a line."""
     numbered = [{"task": number, **task} for number, task in enumerate(tasks, start=1)]
-    telling.say(json.dumps({"tasks": numbered, **more}, ensure_ascii=False))
+    telling.say(json.dumps({"tasks": numbered, **more}))
 
 
 def _part(text: str) -> Part:

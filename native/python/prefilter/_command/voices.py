@@ -14,6 +14,7 @@ from contextlib import contextmanager
 from typing import Any, TextIO
 
 from .._work.outcome import Outcome
+from . import streams
 
 
 class Plain:
@@ -29,17 +30,17 @@ class Plain:
         percent = self._risen(fraction, step)
         if percent is not None:
             line = f"prefilter: {percent:3d} %"
-            print(line, end="\r" if step == 1 else "\n", file=sys.stderr, flush=True)
+            streams.write(sys.stderr, line, end="\r" if step == 1 else "\n")
 
     def end_progress(self) -> None:
         """Leaves the line of progress."""
         if self._shown >= 0 and sys.stderr.isatty():
-            print(file=sys.stderr)
+            streams.write(sys.stderr, "")
         self._shown = -1
 
     def say(self, line: str) -> None:
         """Prints a line of what was asked for."""
-        print(line, file=output(), flush=True)
+        streams.write(output(), line)
 
     def tell(self, outcome: Outcome) -> None:
         """Prints what was done."""
@@ -49,15 +50,15 @@ class Plain:
 
     def warn(self, text: str) -> None:
         """Prints what a user should look at."""
-        print(f"prefilter: warning: {text}", file=sys.stderr, flush=True)
+        streams.write(sys.stderr, f"prefilter: warning: {one_line(text)}")
 
     def fail(self, text: str) -> None:
         """Prints why the command ends."""
-        print(f"prefilter: error: {text}", file=sys.stderr, flush=True)
+        streams.write(sys.stderr, f"prefilter: error: {one_line(text)}")
 
     def cancel(self) -> None:
         """Prints that a signal has ended the command."""
-        print("prefilter: canceled", file=sys.stderr, flush=True)
+        streams.write(sys.stderr, "prefilter: canceled")
 
     def _risen(self, fraction: float, step: int = 1) -> int | None:
         """Returns percents where they have risen by a step; None where not."""
@@ -75,7 +76,7 @@ class OpenJobDescription(Plain):
         """Prints the percents."""
         percent = self._risen(fraction)
         if percent is not None:
-            print(f"openjd_progress: {percent:.1f}", file=output(), flush=True)
+            streams.write(output(), f"openjd_progress: {percent:.1f}")
 
     def end_progress(self) -> None:
         """Starts anew."""
@@ -85,12 +86,12 @@ class OpenJobDescription(Plain):
         """Prints what was done, which becomes the status of the task."""
         for note in outcome.notes:
             self.say(note)
-        self.say(f"openjd_status: {_one_line(outcome.summary)}")
+        self.say(f"openjd_status: {one_line(outcome.summary)}")
 
     def fail(self, text: str) -> None:
         """Prints why the command ends, which becomes that of the task."""
         super().fail(text)
-        self.say(f"openjd_fail: {_one_line(text)}")
+        self.say(f"openjd_fail: {one_line(text)}")
 
 
 class JsonLines(Plain):
@@ -132,7 +133,7 @@ class JsonLines(Plain):
         self._print(error="canceled")
 
     def _print(self, **values: Any) -> None:
-        print(json.dumps(values, ensure_ascii=False), file=output(), flush=True)
+        streams.write(output(), json.dumps(values))  # ASCII, which every encoding has.
 
 
 VOICES = {"plain": Plain, "openjd": OpenJobDescription, "json": JsonLines}
@@ -154,8 +155,9 @@ def output_apart() -> Iterator[None]:
     well. What others print goes there after the context, too: a process has one command.
     """
     global _own_output
-    sys.stdout.flush()
-    with os.fdopen(os.dup(1), "w", encoding="utf-8", errors="replace") as own:
+    streams.prepare()
+    streams.write(sys.stdout, "", "")
+    with os.fdopen(os.dup(1), "w", encoding="utf-8", errors="backslashreplace") as own:
         os.dup2(2, 1)
         if os.name == "posix":
             # What C has not written would come last, after the line that says why a command ends.
@@ -167,5 +169,6 @@ def output_apart() -> Iterator[None]:
             _own_output = None
 
 
-def _one_line(text: str) -> str:
-    return " ".join(text.split())
+def one_line(text: str) -> str:
+    """Returns a text without breaks of lines, which messages of others and names may have."""
+    return " ".join(line.strip() for line in text.splitlines())

@@ -38,8 +38,8 @@ Each mesh of FILE is voxelized by itself. Meshes may be open, leaky, and interse
 positions and triangles are written; materials and attributes need Blender.
 
 examples:
-  prefilter voxelize bunny.ply bunny.stl --depth 8
-  prefilter voxelize scene.glb figure.glb --object Figure --voxel-size 0.01"""
+  prefilter voxelize bunny.ply -o bunny.stl --depth 8
+  prefilter voxelize scene.glb -o figure.glb --object Figure --voxel-size 0.01"""
 
 
 def add(commands: Any, purpose: str) -> None:
@@ -158,6 +158,7 @@ class VoxelFile:
 
 
 def _voxelize(options: argparse.Namespace) -> None:
+    many.settle(options)
     for path in options.sources:
         telling.check_ending(options, "FILE", path, mesh_endings.ENDINGS)
     telling.check_ending(options, "OUTPUT", options.target, mesh_endings.TARGETS)

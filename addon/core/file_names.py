@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Names of data-blocks as names of files."""
+
+from collections.abc import Sequence
+
+import bpy
+from prefilter._border.file_names import portable
+
+
+def clean_name(name: str) -> str:
+    """Returns the name of a data-block as one that every system allows for files."""
+    return portable(bpy.path.clean_name(name))
+
+
+def clean_names(names: Sequence[str]) -> list[str]:
+    """Returns the same of several, numbered where two are alike but for the case of letters."""
+    taken: set[str] = set()
+    cleaned: list[str] = []
+    for name in names:
+        stem, number = clean_name(name), 1
+        numbered = stem
+        while numbered.casefold() in taken:
+            number += 1
+            numbered = f"{stem}_{number}"
+        taken.add(numbered.casefold())
+        cleaned.append(numbered)
+    return cleaned
