@@ -164,21 +164,21 @@ WRITERS = [
     *(
         Writer(
             f"resize to {ending}",
-            f"resize in/paint.png out/out{ending} --percent 50",
+            f"resize in/paint.png -o out/out{ending} --percent 50",
             (f"out{ending}",),
         )
         for ending in (".png", ".exr")
     ),
-    Writer("resample", "resample in/paint.png out/out.png --rotate 30", ("out.png",)),
+    Writer("resample", "resample in/paint.png -o out/out.png --rotate 30", ("out.png",)),
     Writer(
         "sampling-table",
-        "sampling-table out/out.json out/out.hlsl --filter tent --texels 2",
+        "sampling-table -o out/out.json -o out/out.hlsl --filter tent --texels 2",
         ("out.json", "out.hlsl"),
     ),
     *(
         Writer(
             f"voxelize to {ending}",
-            f"voxelize in/solid.ply out/out{ending} --depth 4",
+            f"voxelize in/solid.ply -o out/out{ending} --depth 4",
             (f"out{ending}",),
         )
         for ending in (".obj", ".ply", ".stl", ".glb")
@@ -188,12 +188,12 @@ WRITERS = [
         "boolean in/solid.ply in/solid.ply --operation union --output out/out.ply --depth 4",
         ("out.ply",),
     ),
-    Writer("rasterize", "rasterize in/drawing.svg out/out.png --side 64", ("out.png",)),
-    Writer("reconstruct", "reconstruct in/scan.ply out/out.ply --depth 5", ("out.ply",)),
+    Writer("rasterize", "rasterize in/drawing.svg -o out/out.png --side 64", ("out.png",)),
+    Writer("reconstruct", "reconstruct in/scan.ply -o out/out.ply --depth 5", ("out.ply",)),
     *(
         _blenders(
             f"voxelize to {ending}",
-            f"voxelize in/solid.ply out/out{ending} --depth 4",
+            f"voxelize in/solid.ply -o out/out{ending} --depth 4",
             f"out{ending}",
             *_MORE.get(ending, ()),
         )
@@ -204,8 +204,8 @@ WRITERS = [
         "boolean in/solid.ply in/solid.ply --operation union --output out/out.ply --depth 4",
         "out.ply",
     ),
-    _blenders("reconstruct to .ply", "reconstruct in/scan.ply out/out.ply --depth 5", "out.ply"),
-    _blenders("reconstruct to .glb", "reconstruct in/scan.ply out/out.glb --depth 5", "out.glb"),
+    _blenders("reconstruct to .ply", "reconstruct in/scan.ply -o out/out.ply --depth 5", "out.ply"),
+    _blenders("reconstruct to .glb", "reconstruct in/scan.ply -o out/out.glb --depth 5", "out.glb"),
     *(
         _blenders(
             f"bake to {ending}",
@@ -243,9 +243,9 @@ WRITERS = [
         "out.png",
         "out.csv",
     ),
-    _blenders("resize", "resize in/paint.png out/out.png --percent 50", "out.png"),
-    _blenders("resample", "resample in/paint.png out/out.exr --rotate 30", "out.exr"),
-    _blenders("rasterize", "rasterize in/drawing.svg out/out.png --side 64", "out.png"),
+    _blenders("resize", "resize in/paint.png -o out/out.png --percent 50", "out.png"),
+    _blenders("resample", "resample in/paint.png -o out/out.exr --rotate 30", "out.exr"),
+    _blenders("rasterize", "rasterize in/drawing.svg -o out/out.png --side 64", "out.png"),
 ]
 
 

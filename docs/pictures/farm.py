@@ -74,7 +74,8 @@ def shares(points: Floats) -> np.ndarray:
 def made_in_steps(files: list[Path], work: Path) -> tuple[Mesh, float]:
     """Returns the surface, of a process for each task, and the side of a cell."""
     target = work / "surface.ply"
-    words = [sys.executable, "-m", "prefilter", "reconstruct", *map(str, files), str(target)]
+    words = [sys.executable, "-m", "prefilter", "reconstruct", *map(str, files)]
+    words += ["-o", str(target)]
     words += ["--depth", str(DEPTH), "--parts", str(PARTS), "--work", str(work / "steps")]
     search = ":".join([str(Path(prefilter.__file__).parents[1]), *sys.path])
     for step, tasks in {"measure": FILES, "count": FILES, "merge": 1, "part": PARTS}.items():

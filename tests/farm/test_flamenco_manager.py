@@ -174,8 +174,8 @@ def test_a_surface_of_a_million_points_is_canceled_and_goes_on(call, tmp_path):
     for number in range(2):
         write_ball(points / f"{number}.ply", 500_000, number)
     whole, surface, work = tmp_path / "whole.ply", tmp_path / "surface.ply", tmp_path / "work"
-    made = ("--background", "--command", "prefilter", "reconstruct", points, whole, "--depth", "8")
-    run(BLENDER, *made)
+    made = ("--background", "--command", "prefilter", "reconstruct", points)
+    run(BLENDER, *made, "-o", whole, "--depth", "8")
     places = {"points": points, "surface": surface, "work": work}
     job = submit(call, "prefilter-reconstruct", **places, depth=8, parts=4, tasks=2)
     wait_for(lambda: statuses(call, job)["part-1"] == "active", 300)

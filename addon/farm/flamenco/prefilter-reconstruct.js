@@ -28,8 +28,8 @@ const JOB_TYPE = {
 
 function compileJob(job) {
     const { points, surface, work, depth, parts, tasks, memory_limit } = job.settings;
-    const start = ["--background", "--command", "prefilter", "reconstruct", points, surface,
-        "--depth", `${depth}`, "--memory-limit", `${memory_limit}`, "--work", work,
+    const start = ["--background", "--command", "prefilter", "reconstruct", points,
+        "--output", surface, "--depth", `${depth}`, "--memory-limit", `${memory_limit}`, "--work", work,
         "--parts", `${parts}`];
     let before = [];
     for (const step of ["measure", "count", "merge", "part", "join"]) {

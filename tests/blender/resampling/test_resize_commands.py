@@ -211,7 +211,7 @@ def test_failures(paint, tmp_path):
         ((tmp_path / "none.png", tmp_path / "new.png", *size), ("INPUT", "none.png")),
         ((tmp_path / "text.png", tmp_path / "new.png", *size), ("text.png", "no pixels")),
         ((paint[0], tmp_path / "none" / "new.png", *size), ("there is no folder",)),
-        ((paint[0], tmp_path / "kept.png", *size), ("kept.png", "read-only")),
+        ((paint[0], "-o", tmp_path / "kept.png", *size), ("kept.png", "read-only")),
         (
             (paint[0], tmp_path / "new.png", "--width", 2**20, "--height", 2**20),
             ("1048576 x 1048576", "are free"),

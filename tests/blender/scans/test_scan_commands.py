@@ -220,7 +220,7 @@ def test_failures_leave_nothing(scan, tmp_path):
         (("image.png", target), ["SOURCE: found 'image.png'", "allowed: "], 2),
         ((scan, target, "--depth", 13), ["--depth: found '13'", "1 to 12"], 2),
         ((scan, target, "--object", "Scan"), ["--object: only .blend files"], 2),
-        ((scan, blend, target), ["SOURCE: .blend files"], 2),
+        ((scan, blend, "-o", target), ["SOURCE: .blend files"], 2),
         ((blend, target), ["no visible object with points and no faces"], 1),
         ((cut, target), ["cut.ply"], 1),
         ((cut, tmp_path / "out.glb"), ["cut.ply"], 1),

@@ -79,6 +79,7 @@ def test_curves_to_png_and_exr(blend, tmp_path):
     run(
         "rasterize",
         blend,
+        "-o",
         tmp_path / "out.png",
         *options,
         "--pixel-type",

@@ -145,11 +145,11 @@ def test_what_is_up_to_date_is_left_alone(blend, tmp_path):
     assert [is_left_alone(*words) for _ in range(2)] == [False, True]
     assert is_left_alone(*words, "--threads", 1)
     assert not is_left_alone(*words, "--object", "Hole")
-    assert set(loaded(words[2])) == {"Hole"}
+    assert set(loaded(words[3])) == {"Hole"}
     blend_again(blend, lambda: bpy.data.objects["Body"].data.transform(Matrix.Scale(2, 4)))
     assert [is_left_alone(*words) for _ in range(2)] == [False, True]
-    assert bodies.volume(loaded(words[2])["Body"]) == pytest.approx(64, rel=0.05)
-    words[2].unlink()
+    assert bodies.volume(loaded(words[3])["Body"]) == pytest.approx(64, rel=0.05)
+    words[3].unlink()
     assert not is_left_alone(*words)
 
 
@@ -181,11 +181,11 @@ def test_files_tell_what_they_were_made_of(blend, tmp_path, extension):
     run("voxelize", blend, "-o", tmp_path / "made.obj", "--depth", 3)
     words = ("voxelize", tmp_path / "made.obj", "-o", tmp_path / f"out{extension}")
     assert [is_left_alone(*words) for _ in range(2)] == [False, True]
-    assert set(loaded(words[2])) == {"Body", "Hole"} or extension in {".ply", ".stl"}
+    assert set(loaded(words[3])) == {"Body", "Hole"} or extension in {".ply", ".stl"}
     (tmp_path / "made.mtl").write_text("newmtl other\n")
     assert not is_left_alone(*words)
     if extension == ".obj":
-        words[2].with_suffix(".mtl").unlink()
+        words[3].with_suffix(".mtl").unlink()
         assert not is_left_alone(*words)
 
 

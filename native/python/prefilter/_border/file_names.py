@@ -2,6 +2,7 @@
 
 """Names of files: what each system allows in them, and which paths lead to one file."""
 
+import ntpath
 import os
 import re
 import unicodedata
@@ -41,7 +42,7 @@ def check_windows_names(path: str, who: str = "", *, is_windows: bool = os.name 
     """
     if not is_windows:
         return
-    for part in re.split(r"[\\/]", os.path.splitdrive(path)[1]):
+    for part in re.split(r"[\\/]", ntpath.splitdrive(path)[1]):
         if part in ("", ".", ".."):
             continue
         name = portable(part)
