@@ -38,25 +38,16 @@ class Commands:
             The exit status: 0, 1 for a failure that was told on stderr, 2 for wrong arguments, 130
             after Ctrl-C, 143 after SIGTERM.
         """
-        from prefilter._command import streams
         from prefilter._command.program import ended, execute, parse
-        from prefilter._command.voices import output_apart
 
-        streams.prepare()
-        try:
-            options = parse(self.parser(), arguments)
-        except SystemExit as end:
-            return int(end.code or 0)
-        with output_apart():
-            return ended(lambda: execute(options))
+        return ended(lambda: execute(parse(self.parser(), arguments)), is_end=True)
 
     def parser(self) -> "argparse.ArgumentParser":
         """Returns what reads the arguments."""
-        import argparse
-
+        from prefilter._command.program import Parser
         from prefilter._command.telling import add_progress
 
-        parser = argparse.ArgumentParser(
+        parser = Parser(
             prog=_PROGRAM,
             description=(
                 "Filters images for the surfaces that use them, resizes and warps them; makes "

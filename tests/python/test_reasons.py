@@ -19,7 +19,8 @@ FULL = "No space left on device"
         (OSError(errno.ENOSPC, FULL), FULL),
         (OSError("file 'a': cannot be written"), "file 'a': cannot be written"),
         (ValueError("depth: 30; 1 to 15 are allowed"), "depth: 30; 1 to 15 are allowed"),
-        (MemoryError(), "MemoryError"),
+        (MemoryError(), "there is not enough memory"),
+        (MemoryError("of 1 GB"), "there is not enough memory: of 1 GB"),
     ],
 )
 def test_errors_of_the_system_have_no_number(error, expected):

@@ -7,9 +7,11 @@ import os
 import re
 import subprocess
 import sys
+import tempfile
 
 import pytest
 from command_files import noise, run, write_picture
+from prefilter._command import program
 
 pytest.importorskip("OpenImageIO", reason="scripts/decoders.txt is not installed")
 
@@ -75,21 +77,113 @@ def test_a_program_that_ends_early_says_so(tmp_path):
     assert (done.returncode, done.stdout, done.stderr) == (130, "", "prefilter: canceled\n")
 
 
-def test_output_is_kept_apart_from_what_others_print():
-    code = (
-        "import os\n"
-        "from prefilter._command import telling, voices\n"
-        "print('before')\n"
-        "with voices.output_apart():\n"
-        "    print('an importer')\n"
-        "    os.write(1, b'a library\\n')\n"
-        "    telling.say('ours')\n"
-        "print('Blender quits')\n"
-    )
-    environment = os.environ | {"PYTHONUNBUFFERED": "1"}
+OTHERS = (
+    "import logging, os, sys, warnings\n"
+    "from prefilter._command import program, telling\n"
+    "def run():\n"
+    "    print('an importer')\n"
+    "    os.write(1, b'a library\\n')\n"
+    "    os.write(2, b'a library\\n')\n"
+    "    warnings.warn('of Python')\n"
+    "    logging.warning('of a reader')\n"
+    "    telling.say('ours')\n"
+    "    telling.warn(['of two\\n  lines'])\n"
+    "print('before')\n"
+    "status = program.ended(run, is_end={})\n"
+    "print('after')\n"
+    "raise SystemExit(status)\n"
+)
+
+
+@pytest.mark.parametrize("is_end", [False, True])
+@pytest.mark.parametrize("debugs", [False, True])
+def test_both_streams_have_what_commands_say_alone(is_end, debugs):
+    environment = os.environ | {"PYTHONUNBUFFERED": "1", "PREFILTER_DEBUG": "1" if debugs else ""}
     done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, env=environment
+        [sys.executable, "-c", OTHERS.format(is_end)],
+        capture_output=True,
+        text=True,
+        env=environment,
     )
     assert done.returncode == 0, done.stderr
-    assert done.stdout == "before\nours\n"
-    assert set(done.stderr.splitlines()) == {"an importer", "a library", "Blender quits"}
+    assert done.stdout == ("before\nours\n" if is_end else "before\nours\nafter\n")
+    assert "prefilter: warning: of two lines\n" in done.stderr
+    if not debugs:
+        assert done.stderr.count("\n") == 1
+    for line in ("an importer", "a library", "of Python", "of a reader"):
+        assert (line in done.stderr) == debugs
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "cp1252", "cp932", "utf-8"])
+def test_letters_that_a_console_lacks(tmp_path, encoding):
+    write_picture(tmp_path / "\u5199\U0001f600.png", noise(8, 8))
+    command = [sys.executable, "-m", "prefilter", "resize", "--percent", "50"]
+    command += ["\u5199\U0001f600.png", "-o", "out.png"]
+    environment = os.environ | {"PYTHONIOENCODING": encoding}
+    for more in ([], ["--progress", "json"], ["--progress", "openjd"]):
+        done = subprocess.run([*command, *more], cwd=tmp_path, capture_output=True, env=environment)
+        assert done.returncode == 0, done.stderr
+        said = done.stdout.decode(encoding)
+        if more[1:] == ["json"]:
+            last = [json.loads(line) for line in said.splitlines()][-1]["done"]
+            assert "'\u5199\U0001f600.png'" in last
+        else:
+            assert ("\\U0001f600" in said) == (encoding != "utf-8")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="its shell has other words for that")
+def test_streams_that_nobody_reads(tmp_path):
+    write_picture(tmp_path / "a.png", noise(8, 8))
+    words = f"'{sys.executable}' -m prefilter resize a.png -o out.png --percent 50"
+    for shell in (
+        f"set -o pipefail; {words} | true",
+        f"set -o pipefail; {words} --progress json | true",
+        f"set -o pipefail; {words} --list | true",
+        f"set -o pipefail; '{sys.executable}' -m prefilter resize --help | true",
+        f"{words} >&-",
+        f"{words} >/dev/null 2>&-",
+        f"{words} <&- >&- 2>&-",
+        f"{words} --progress json <&- >&- 2>&-",
+    ):
+        (tmp_path / "out.png").unlink(missing_ok=True)
+        done = subprocess.run(["bash", "-c", shell], cwd=tmp_path, capture_output=True, text=True)
+        assert (done.returncode, done.stdout) == (0, ""), shell
+        assert "Exception" not in done.stderr
+        assert (tmp_path / "out.png").exists() == ("--list" not in shell and "help" not in shell)
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="there is no such device")
+def test_an_output_that_is_full_is_told(tmp_path):
+    write_picture(tmp_path / "a.png", noise(8, 8))
+    words = f"'{sys.executable}' -m prefilter resize a.png -o out.png --percent 50 >/dev/full"
+    done = subprocess.run(["bash", "-c", words], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 1
+    assert "error: not all that was said could be written" in done.stderr.splitlines()[-1]
+    assert (tmp_path / "out.png").exists()
+
+
+def test_what_nobody_foresaw_asks_for_a_report(tmp_path, monkeypatch, capsys):
+    def run():
+        return {}["of a bug"]
+
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    assert program.ended(run) == 1
+    told = capsys.readouterr().err
+    (file,) = tmp_path.iterdir()
+    assert told.count("\n") == 1
+    assert told.startswith("prefilter: error: unexpected failure (KeyError: 'of a bug')")
+    assert f"'{file}'" in told
+    assert "in run" in file.read_text()
+    monkeypatch.setenv("PREFILTER_DEBUG", "1")
+    assert program.ended(run) == 1
+    assert "in run" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == [file]
+
+
+def test_words_of_other_libraries_are_not_ours(tmp_path, monkeypatch, capsys):
+    """They say nothing to users, who can act on what is ours."""
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    assert program.ended(lambda: json.loads("{")) == 1
+    assert "unexpected failure (JSONDecodeError" in capsys.readouterr().err
+    assert program.ended(lambda: (tmp_path / "none").read_bytes()) == 1
+    assert "error: No such file or directory: " in capsys.readouterr().err

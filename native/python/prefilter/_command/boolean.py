@@ -23,7 +23,7 @@ from .._work.voxels import booleans, surfaces
 from .._work.voxels.grid import check_memory, choose_grid
 from .._work.voxels.nothing import NO_CELL, NothingLeftError
 from .._work.wording import amount, either, listed
-from ..meshes.measures import measure_mesh
+from ..meshes.measures import MeshMeasures, measure_mesh
 from . import outputs, telling, voxelize
 from .host import PLAIN
 
@@ -122,10 +122,7 @@ class BooleanFile:
     def _combined(self, progress: Progress) -> tuple[prefilter.Octree, list[tuple[Any, ...]], int]:
         """Returns what is filled, the meshes that fill it, and how many cells there are."""
         settings = self._settings
-        measures = [
-            measure_mesh(one.positions, one.triangles, threads=settings.threads)
-            for one in self._operands
-        ]
+        measures = [self._measured(one) for one in self._operands]
         grid = choose_grid(
             booleans.box([one.box for one in measures], settings.operation), settings
         )
@@ -148,6 +145,14 @@ class BooleanFile:
             trees, settings.operation, share(progress, 1.0, 1.0), settings.threads
         )
         return tree, sources, grid.cells
+
+    def _measured(self, operand: Part) -> MeshMeasures:
+        try:
+            return measure_mesh(
+                operand.positions, operand.triangles, threads=self._settings.threads
+            )
+        except ValueError as error:
+            raise ValueError(f"mesh '{operand.name}': {error}") from error
 
 
 def _boolean(options: argparse.Namespace) -> None:
@@ -176,7 +181,7 @@ def _operands(options: argparse.Namespace) -> list[Part]:
         named = [mesh_files.chosen(found, [name]) for name in options.object]
         operands = [as_one(parts[0].name, parts) for parts in named]
     else:
-        names = [Path(path).stem for path in options.files]
+        names = [mesh_files.name_of(path) for path in options.files]
         operands = [as_one(name, group) for name, group in zip(names, groups, strict=True)]
     return [mesh_files.without_seams(one) for one in operands]
 

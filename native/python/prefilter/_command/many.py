@@ -12,10 +12,9 @@ from typing import Any
 from .._border.file_names import identities
 from .._border.staging import check_target
 from .._work.files import patterns
-from .._work.outcome import FAILURES, reason
 from .._work.up_to_date import KEY, PICTURES, fingerprint
 from .._work.wording import listed
-from . import outputs, tasks, telling
+from . import outputs, reports, tasks, telling
 
 
 @dataclass(frozen=True)
@@ -109,10 +108,10 @@ def run(
         with telling.share(number, len(chosen)):
             try:
                 do(pair)
-            except FAILURES as error:
-                if len(chosen) == 1:
+            except Exception as error:
+                if len(chosen) == 1 or telling.is_canceled(error):
                     raise
-                telling.warn([f"'{pair.source}': {reason(error)}"])
+                telling.warn([f"'{pair.source}': {reports.told(error)}"])
                 failed.append(pair.source)
     if failed:
         raise ValueError(f"not done: {listed(failed)}")

@@ -6,6 +6,7 @@ import argparse
 import sys
 from collections.abc import Callable, Sequence
 from importlib import import_module
+from typing import Any
 
 from .. import _native
 from .._border import stopping
@@ -35,6 +36,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return ended(lambda: execute(parse(parser(words[:1]), words)))
 
 
+class Parser(argparse.ArgumentParser):
+    """Prints help and errors where commands print."""
+
+    def _print_message(self, message: str, file: Any = None) -> None:
+        stream = streams.output() if file is sys.stdout else streams.errors()
+        streams.write(stream, message, "")
+
+
 def parse(reader: argparse.ArgumentParser, words: Sequence[str]) -> argparse.Namespace:
     """Returns the arguments; files may come before, between and after flags."""
     options, left = reader.parse_known_args(words)
@@ -52,37 +61,32 @@ def execute(options: argparse.Namespace) -> None:
     options.execute(options)
 
 
-def ended(run: Callable[[], object]) -> int:
-    """Runs a command; returns its exit status, of which stderr says why it is not 0."""
-    streams.prepare()
+def ended(run: Callable[[], object], *, is_end: bool = False) -> int:
+    """Runs a command; returns its exit status, of which stderr says why it is not 0.
+
+    Args:
+        run: Reads arguments, and does what they say.
+        is_end: Whether whatever the process prints after that is lost.
+    """
     telling.speak()
-    with stopping.heeded():
+    with streams.apart(is_end=is_end), stopping.heeded():
         status = _status_of(run)
-        try:
-            streams.finish()
-        except OSError as error:
-            telling.fail(f"what was said could not be written: {error.strerror}")
+        if (failure := streams.failure()) is not None:
+            telling.fail(f"not all that was said could be written: {failure.strerror}")
             status = status or 1
     return status
 
 
 def _status_of(run: Callable[[], object]) -> int:
-    from .._work.outcome import FAILURES, reason
-
     try:
         run()
     except SystemExit as end:
         return end.code if isinstance(end.code, int) else 0
     except BaseException as error:
-        # What was interrupted may fail in any way, as operators of Blender do.
-        if stopping.asked() or isinstance(error, (_native.Cancelled, KeyboardInterrupt)):
+        if telling.is_canceled(error):
             telling.cancel()
             return stopping.status()
-        if isinstance(error, FAILURES):
-            telling.fail(reason(error))
-            reports.show(error)
-        else:
-            telling.fail(reports.unexpected(error))
+        telling.fail(reports.told(error))
         return 1
     return 0
 
@@ -93,7 +97,7 @@ def parser(chosen: Sequence[str] = tuple(COMMANDS)) -> argparse.ArgumentParser:
     Args:
         chosen: The commands that need their arguments: the modules of others are not imported.
     """
-    found = argparse.ArgumentParser(
+    found = Parser(
         prog="prefilter",
         description=(
             "Filters images for the surfaces that use them. In Blender the same options, and more "

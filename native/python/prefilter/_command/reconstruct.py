@@ -15,7 +15,7 @@ from .._options.scans import ScanSettings
 from .._work.outcome import up_to_date
 from .._work.scans import STREAMED_TARGET, Step, Streaming
 from .._work.scans import options as scan_options
-from .._work.wording import either
+from .._work.wording import either, listed
 from ..points.scan_files import POINT_EXTENSIONS
 from ..points.steps import STEPS, Steps
 from . import outputs, tasks, telling
@@ -77,6 +77,8 @@ def settle(options: argparse.Namespace) -> None:
     options.target = outputs.for_source(options.target, "")
     _expand_folders(options)
     outputs.check_kept(options, [options.target], options.sources)
+    if all(os.path.isfile(path) and not os.path.getsize(path) for path in options.sources):
+        raise ValueError(f"SOURCE: {listed(options.sources)}: there is nothing in it")
 
 
 def _expand_folders(options: argparse.Namespace) -> None:

@@ -2,21 +2,30 @@
 
 """What is kept of failures that nobody has foreseen, for those who mend them."""
 
-import os
 import sys
 
+from .._work.damage import DEBUG, is_debugging, is_own
 from . import streams
 
-DEBUG = "PREFILTER_DEBUG"
-"""The environment variable that has tracebacks printed, if it is not empty."""
 _PAGE = "https://extensions.blender.org/add-ons/prefilter/"
+
+
+def told(error: BaseException) -> str:
+    """Returns the line that says why work failed: our own reason, or that nobody foresaw it."""
+    from .._work.outcome import reason
+
+    is_of_system = isinstance(error, OSError) and error.strerror is not None
+    if not (is_of_system or is_own(error) or isinstance(error, MemoryError)):
+        return unexpected(error)
+    show(error)
+    return reason(error)
 
 
 def unexpected(error: BaseException) -> str:
     """Returns the line that asks for a report; the traceback is printed, or kept in a file."""
     kind, text = type(error).__name__, str(error)
     what = f"{kind}: {text[:200]}" if text else kind
-    if os.environ.get(DEBUG):
+    if is_debugging():
         show(error)
         where = "the lines above"
     else:
@@ -27,8 +36,8 @@ def unexpected(error: BaseException) -> str:
 
 def show(error: BaseException) -> None:
     """Prints where an error comes from, where that is wanted."""
-    if os.environ.get(DEBUG):
-        streams.write(sys.stderr, _traceback(error), "")
+    if is_debugging():
+        streams.write(streams.errors(), _traceback(error), "")
 
 
 def _kept(error: BaseException) -> str:

@@ -1,39 +1,45 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Standard output and standard error: they take any character, and closed ones lose what comes.
+"""Standard output and standard error, which have only what commands say.
 
 What a command does never fails because nobody reads what it says, or a console lacks a letter.
 """
 
+import ctypes
 import errno
 import os
 import sys
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from typing import TextIO
 
+from .._work.damage import is_debugging
+
 _NOBODY_READS = {errno.EPIPE, errno.EBADF, *([errno.EINVAL] if os.name == "nt" else [])}
-_NAMES = ("stdout", "stderr")
-_failures: list[OSError] = []
+_NUMBERS = {"stdout": 1, "stderr": 2}
 
 
-def prepare() -> None:
-    """Has both streams take any character: one that the encoding lacks becomes an escape.
+@dataclass
+class _Streams:
+    """Where commands write, and what went wrong."""
 
-    A stream that was closed before this program began is replaced by one that loses all it gets,
-    down to its number, so that no file gets that number and what libraries print.
-    """
-    _failures.clear()
-    for number in range(3):
-        try:
-            os.fstat(number)
-        except OSError:
-            os.open(os.devnull, os.O_RDWR)
-    for name in _NAMES:
-        stream = getattr(sys, name)
-        if stream is None or stream.closed:
-            setattr(sys, name, open(os.devnull, "w", encoding="utf-8", errors="replace"))  # noqa: SIM115
-        elif hasattr(stream, "reconfigure"):
-            stream.reconfigure(errors="backslashreplace")
+    output: TextIO
+    errors: TextIO
+    failure: OSError | None = None
+
+
+_own: _Streams | None = None
+
+
+def output() -> TextIO:
+    """Returns standard output, whatever else it is that prints in this process."""
+    return sys.stdout if _own is None else _own.output
+
+
+def errors() -> TextIO:
+    """Returns standard error likewise."""
+    return sys.stderr if _own is None else _own.errors
 
 
 def write(stream: TextIO, text: str, end: str = "\n") -> None:
@@ -45,20 +51,103 @@ def write(stream: TextIO, text: str, end: str = "\n") -> None:
         pass  # It has been closed.
     except OSError as error:
         _silence(stream)
-        if error.errno not in _NOBODY_READS:
-            _failures.append(error)
+        if error.errno not in _NOBODY_READS and _own is not None:
+            _own.failure = error
 
 
-def finish() -> None:
-    """Writes what others have left in the streams.
+def failure() -> OSError | None:
+    """Returns why something that may be read could not be written; None if all was."""
+    return None if _own is None else _own.failure
 
-    Raises:
-        OSError: Something could not be written, although somebody may read it.
+
+@contextmanager
+def apart(*, is_end: bool) -> Iterator[None]:
+    """A context in which only what commands say reaches the streams.
+
+    What libraries, Blender and its importers print is lost, or goes to standard error where
+    somebody debugs.
+
+    Args:
+        is_end: Whether that stays so, because this process has no more to say. Blender prints
+            something as it quits.
     """
-    for name in _NAMES:
-        write(getattr(sys, name), "", "")
-    if _failures:
-        raise _failures[0]
+    global _own
+    _prepare()
+    before = sys.stdout, sys.stderr
+    with _quiet(is_end=is_end) as (own_output, own_errors):
+        _own = _Streams(own_output, own_errors)
+        try:
+            yield
+        finally:
+            _own = None
+            sys.stdout, sys.stderr = before
+
+
+def _prepare() -> None:
+    """Gives both streams numbers and objects, whatever was closed before this program began.
+
+    A file that is opened later would get the number of a closed stream, and what libraries print.
+    """
+    for number in range(3):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)
+    for name in _NUMBERS:
+        stream = getattr(sys, name)
+        if stream is None or stream.closed:
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8", errors="replace"))  # noqa: SIM115
+        elif hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="backslashreplace")
+
+
+@contextmanager
+def _quiet(*, is_end: bool) -> Iterator[tuple[TextIO, TextIO]]:
+    """Moves both streams elsewhere; yields those that go where they went."""
+    own = [_same(getattr(sys, name), number) for name, number in _NUMBERS.items()]
+    kept = {number: os.dup(number) for number in _NUMBERS.values()}
+    _flush()
+    sink = os.dup(2) if is_debugging() else os.open(os.devnull, os.O_WRONLY)
+    for number in _NUMBERS.values():
+        os.dup2(sink, number)
+    given = sys.stdout, sys.stderr
+    sys.stdout, sys.stderr = (_text(one) for one in (sink, os.dup(sink)))
+    moved = sys.stdout, sys.stderr
+    try:
+        yield own[0], own[1]
+    finally:
+        _flush()
+        for number, old in kept.items():
+            if not is_end:
+                os.dup2(old, number)
+            os.close(old)
+        # At the end, what others have kept of these goes on to work.
+        done = [] if is_end else list(moved)
+        for stream in (*done, *(each for each in own if each not in given)):
+            write(stream, "", "")
+            stream.close()
+
+
+def _same(stream: TextIO, number: int) -> TextIO:
+    """Returns a stream of its own to where a stream leads, or what somebody put in its place."""
+    try:
+        if not os.path.samestat(os.fstat(stream.fileno()), os.fstat(number)):
+            return stream
+    except (OSError, ValueError):
+        return stream
+    return _text(os.dup(number), stream.encoding)
+
+
+def _text(number: int, encoding: str = "utf-8") -> TextIO:
+    return os.fdopen(number, "w", 1, encoding=encoding, errors="backslashreplace")
+
+
+def _flush() -> None:
+    """Writes what Python and C have not written yet; C's would come last, after our last line."""
+    for stream in (sys.stdout, sys.stderr):
+        write(stream, "", "")
+    if os.name == "posix":
+        ctypes.CDLL(None).fflush(None)
 
 
 def _silence(stream: TextIO) -> None:

@@ -10,6 +10,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+from .. import _native
 from .._border import stopping
 from .._options.flags import given
 from .._work import progress as works
@@ -149,6 +150,12 @@ def warn(warnings: Iterable[str]) -> None:
 def fail(text: str) -> None:
     """Prints why the command ends."""
     _voice.fail(text)
+
+
+def is_canceled(error: BaseException) -> bool:
+    """Tells whether work failed because a signal asked it to stop."""
+    # What was interrupted may fail in any way, as operators of Blender do.
+    return bool(stopping.asked()) or isinstance(error, _native.Cancelled | KeyboardInterrupt)
 
 
 def cancel() -> None:

@@ -5,13 +5,8 @@
 Warnings and errors are lines on standard error for all of them, which people read in logs.
 """
 
-import ctypes
 import json
-import os
-import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
-from typing import Any, TextIO
+from typing import Any
 
 from .._work.outcome import Outcome
 from . import streams
@@ -26,21 +21,21 @@ class Plain:
 
     def progress(self, fraction: float) -> None:
         """Shows how much is done: one line that changes on a terminal, else a line each quarter."""
-        step = 1 if sys.stderr.isatty() else 25
+        step = 1 if streams.errors().isatty() else 25
         percent = self._risen(fraction, step)
         if percent is not None:
             line = f"prefilter: {percent:3d} %"
-            streams.write(sys.stderr, line, end="\r" if step == 1 else "\n")
+            streams.write(streams.errors(), line, end="\r" if step == 1 else "\n")
 
     def end_progress(self) -> None:
         """Leaves the line of progress."""
-        if self._shown >= 0 and sys.stderr.isatty():
-            streams.write(sys.stderr, "")
+        if self._shown >= 0 and streams.errors().isatty():
+            streams.write(streams.errors(), "")
         self._shown = -1
 
     def say(self, line: str) -> None:
         """Prints a line of what was asked for."""
-        streams.write(output(), line)
+        streams.write(streams.output(), line)
 
     def tell(self, outcome: Outcome) -> None:
         """Prints what was done."""
@@ -50,15 +45,15 @@ class Plain:
 
     def warn(self, text: str) -> None:
         """Prints what a user should look at."""
-        streams.write(sys.stderr, f"prefilter: warning: {one_line(text)}")
+        streams.write(streams.errors(), f"prefilter: warning: {one_line(text)}")
 
     def fail(self, text: str) -> None:
         """Prints why the command ends."""
-        streams.write(sys.stderr, f"prefilter: error: {one_line(text)}")
+        streams.write(streams.errors(), f"prefilter: error: {one_line(text)}")
 
     def cancel(self) -> None:
         """Prints that a signal has ended the command."""
-        streams.write(sys.stderr, "prefilter: canceled")
+        streams.write(streams.errors(), "prefilter: canceled")
 
     def _risen(self, fraction: float, step: int = 1) -> int | None:
         """Returns percents where they have risen by a step; None where not."""
@@ -76,7 +71,7 @@ class OpenJobDescription(Plain):
         """Prints the percents."""
         percent = self._risen(fraction)
         if percent is not None:
-            streams.write(output(), f"openjd_progress: {percent:.1f}")
+            streams.write(streams.output(), f"openjd_progress: {percent:.1f}")
 
     def end_progress(self) -> None:
         """Starts anew."""
@@ -133,40 +128,11 @@ class JsonLines(Plain):
         self._print(error="canceled")
 
     def _print(self, **values: Any) -> None:
-        streams.write(output(), json.dumps(values))  # ASCII, which every encoding has.
+        streams.write(streams.output(), json.dumps(values))  # ASCII, which every encoding has.
 
 
 VOICES = {"plain": Plain, "openjd": OpenJobDescription, "json": JsonLines}
 """By what `--progress` calls them."""
-
-_own_output: TextIO | None = None
-
-
-def output() -> TextIO:
-    """Returns standard output, whatever else it is that prints in this process."""
-    return sys.stdout if _own_output is None else _own_output
-
-
-@contextmanager
-def output_apart() -> Iterator[None]:
-    """A context in which standard output has only what commands say; all else goes to stderr.
-
-    Blender's importers print there, and so does Blender itself, what it has not flushed yet as
-    well. What others print goes there after the context, too: a process has one command.
-    """
-    global _own_output
-    streams.prepare()
-    streams.write(sys.stdout, "", "")
-    with os.fdopen(os.dup(1), "w", encoding="utf-8", errors="backslashreplace") as own:
-        os.dup2(2, 1)
-        if os.name == "posix":
-            # What C has not written would come last, after the line that says why a command ends.
-            ctypes.CDLL(None).fflush(None)
-        _own_output = own
-        try:
-            yield
-        finally:
-            _own_output = None
 
 
 def one_line(text: str) -> str:

@@ -15,7 +15,10 @@ from numpy.typing import NDArray
 import prefilter
 
 from .. import _native
+from .._border.file_names import portable
+from .._border.odd_names import is_text, readable_name
 from .._border.staging import StagedFile, stage_bytes, stage_data
+from .damage import why_unreadable
 from .files.gltf import read_gltf
 from .files.mesh_notes import with_note
 from .files.obj import read_obj
@@ -77,6 +80,12 @@ def chosen(parts: Sequence[Part], names: Sequence[str]) -> list[Part]:
             known = listed(dict.fromkeys(part.name for part in parts))
             raise ValueError(f"--object: found no mesh '{name}'; there are {known}")
     return [part for part in parts if part.name in names] if names else list(parts)
+
+
+def name_of(path: str) -> str:
+    """Returns what a mesh is called after its file; names that are no text become some."""
+    stem = os.path.splitext(os.path.basename(path))[0]
+    return stem if is_text(stem) else portable(stem)
 
 
 def without_seams(part: Part) -> Part:
@@ -155,14 +164,13 @@ def _parts(argument: str, path: str) -> list[Part]:
     except MissingModuleError:
         raise
     except Exception as error:  # Readers raise whatever goes wrong in them.
-        reason = " ".join(str(error).split())
+        reason = why_unreadable(error, path)
         raise OSError(f"{argument}: '{path}' cannot be read as a mesh: {reason}") from error
     parts = [_part(mesh) for mesh in sorted(meshes, key=lambda mesh: mesh.name)]
     parts = [part for part in parts if len(part.triangles)]
     if not parts:
         raise ValueError(f"{argument}: there is no triangle in '{path}'")
-    stem = os.path.splitext(os.path.basename(path))[0]
-    return [part if part.name else replace(part, name=stem) for part in parts]
+    return [part if part.name else replace(part, name=name_of(path)) for part in parts]
 
 
 def _part(mesh: PolygonMesh) -> Part:
@@ -180,14 +188,16 @@ def _part(mesh: PolygonMesh) -> Part:
 def _read_by_trimesh(path: str) -> list[PolygonMesh]:
     """Reads a file whose faces are triangles without UVs."""
     trimesh = _trimesh()
-    scene = trimesh.load_scene(path, process=False)
+    with readable_name(path) as known:
+        scene = trimesh.load_scene(known, process=False)
+        nodes = list(scene.graph.nodes_geometry)
     found = []
-    for node in scene.graph.nodes_geometry:
+    for node in nodes:
         mesh = scene.geometry[scene.graph[node][1]]
         triangles = np.asarray(getattr(mesh, "faces", np.empty((0, 3))), np.int64).reshape(-1, 3)
         points = rounded(getattr(mesh, "vertices", np.empty((0, 3))))
         name = str(scene.graph[node][1])
-        name = "" if name == os.path.basename(path) else name
+        name = "" if name == os.path.basename(known) else name
         sizes = np.full(len(triangles), 3, np.int64)
         found.append(PolygonMesh(name, points, triangles.reshape(-1), sizes, None))
     return found

@@ -16,6 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._border.claims import temporary_folder
+from .._border.odd_names import reads_any_name, writes_any_name
+from .damage import damaged
 from .files.tiff import NO_DATE, remove_dates
 from .memory import free_memory
 from .wording import listed
@@ -186,6 +188,7 @@ def _is_png(path: str) -> bool:
         return False
 
 
+@reads_any_name
 def read_pixels(path: Path) -> Pixels:
     """Reads a picture file as it is, without a conversion of alpha or color.
 
@@ -232,6 +235,7 @@ def _left_out(reader: Any, spec: Any, channels: Sequence[int]) -> str:
     return " and ".join(found)
 
 
+@reads_any_name
 def read_stated(path: Path) -> tuple[Stated, int, bool]:
     """Returns what a picture file says of itself, and reads no pixels.
 
@@ -300,7 +304,7 @@ def _stated(format: str, spec: Any) -> Stated:
 
 
 def _unreadable(path: Path, reason: str) -> str:
-    return f"'{path}' cannot be read as a picture: {reason}"
+    return f"'{path}' cannot be read as a picture: {damaged(path, reason)}"
 
 
 def _channels(names: list[str]) -> list[int]:
@@ -329,6 +333,7 @@ def _on_canvas(values: NDArray[Any], spec: Any) -> NDArray[Any]:
     return canvas
 
 
+@reads_any_name
 def text_attribute(path: Path, name: str) -> str:
     """Returns a text that a picture file says of itself; empty where it says none.
 
@@ -344,6 +349,7 @@ def text_attribute(path: Path, name: str) -> str:
         reader.close()
 
 
+@reads_any_name
 def check_whole(path: Path, levels: int = 1) -> None:
     """Reads a file that was written, band by band: writers say nothing of what fails at the end.
 
@@ -407,6 +413,7 @@ def _is_read(reader: Any, image: int, level: int, first: int, end: int) -> bool:
     return pixels is not None
 
 
+@writes_any_name
 def write_texture(
     path: Path,
     levels: Sequence[NDArray[Any]],

@@ -15,6 +15,8 @@ FAILURES = (ValueError, OSError, MemoryError)
 
 def reason(error: BaseException) -> str:
     """Returns what an error says: one of the system without its number."""
+    if isinstance(error, MemoryError):
+        return f"there is not enough memory{f': {error}' if str(error) else ''}"
     if not isinstance(error, OSError) or error.strerror is None:
         return str(error) or type(error).__name__
     names = [os.fsdecode(name) for name in (error.filename, error.filename2) if name is not None]

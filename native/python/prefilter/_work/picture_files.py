@@ -14,6 +14,7 @@ import prefilter
 from . import color_spaces, openimageio
 from .alpha import associated, unassociated
 from .color_spaces import Space
+from .damage import damaged
 from .files.embedded import embedded
 from .orientation import turned
 from .picture import Encoding, FloatArray, Picture, without_fourth
@@ -59,6 +60,9 @@ def read(
             raise OSError(f"there is no file '{path}'")
         values, is_straight, stated, left_out = openimageio.read_pixels(Path(path))
         found = embedded(Path(path))
+    except UnicodeError as error:
+        reason = damaged(path, str(error))
+        raise OSError(f"{argument}: '{path}' cannot be read as a picture: {reason}") from error
     except (ValueError, OSError, MemoryError) as error:
         raise type(error)(f"{argument}: {error}") from error
     try:

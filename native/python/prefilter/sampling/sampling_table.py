@@ -398,8 +398,10 @@ def _parsed(data: bytes) -> _native.SamplingTable:
     """The table of a file's contents. Raises ValueError where they are none."""
     try:
         found = json.loads(data)
-    except (UnicodeDecodeError, RecursionError) as error:
-        raise ValueError(f"it is no JSON: {error}") from None
+    except json.JSONDecodeError as error:
+        raise ValueError(f"no JSON from line {error.lineno}, column {error.colno} on") from None
+    except (UnicodeDecodeError, RecursionError):
+        raise ValueError("it is no JSON") from None
     name = _member(found, "format", str)
     version = _member(found, "version", int)
     if (name, version) != (_FORMAT, _VERSION):
@@ -443,8 +445,8 @@ def _section(found: Any, levels: int, texels: int) -> tuple[np.ndarray, ...]:
 def _array(found: Any, name: str) -> npt.NDArray[np.float64]:
     try:
         array = np.array(_member(found, name, list), np.float64)
-    except (TypeError, ValueError) as error:
-        raise ValueError(f"{name}: {error}") from None
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(f"{name}: lists of numbers, of equal lengths, are needed") from None
     if not np.isfinite(array).all():
         raise ValueError(f"{name}: a value is not finite")
     return array

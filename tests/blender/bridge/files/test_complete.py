@@ -106,8 +106,7 @@ def test_a_full_disk_keeps_the_earlier_file(tmp_path, small_disk, command, endin
     target.write_bytes(b"earlier")
     more = ["--operation", "union"] if command == "boolean" else []
     more += [] if command == "reconstruct" else ["--adaptivity", 0]
-    more += ["--output"] if command == "boolean" else []
-    result = run(command, *sources, *more, target, "--depth", 5)
+    result = run(command, *sources, *more, "-o", target, "--depth", 5)
     # Blender itself prints the whole report of an exporter in Python.
     last = result.stderr.strip().splitlines()[-1]
     assert result.returncode == 1

@@ -29,6 +29,12 @@ MOST_TEXT = 1 << 25
 _MOST_VALUES = {"points": 1 << 24, **dict.fromkeys(("d", "href", XLINK_HREF), MOST_UNPACKED)}
 _TEXT_AT_ONCE = 1 << 20
 _UNPACKED_AT_ONCE = 1 << 20
+# Errors that expat has few words for.
+_WORDS = {
+    expat.errors.codes[expat.errors.XML_ERROR_NO_ELEMENTS]: "the file ends in the middle",
+    expat.errors.codes[expat.errors.XML_ERROR_INVALID_TOKEN]: "not well-formed XML",
+    expat.errors.codes[expat.errors.XML_ERROR_SYNTAX]: "XML does not begin like that",
+}
 # What entities may add to a file: expat's own limit came with 2.4.
 _MOST_EXPANDED = 1 << 24
 _TOLD_EVERY = 1000
@@ -108,7 +114,7 @@ class Document:
                 parser.Parse(part, False)
             parser.Parse(b"", True)
         except expat.ExpatError as error:
-            what = expat.ErrorString(error.code)
+            what = _WORDS.get(error.code, expat.ErrorString(error.code))
             raise ValueError(
                 f"{name}, line {error.lineno}, column {error.offset + 1}: {what}"
             ) from None
@@ -239,8 +245,8 @@ def unpacked(data: bytes, name: str) -> Iterator[bytes]:
     while not unpacker.eof:
         try:
             part = unpacker.decompress(data, _UNPACKED_AT_ONCE)
-        except zlib.error as error:
-            raise ValueError(f"{name}: compressed, and damaged: {error}") from None
+        except zlib.error:
+            raise ValueError(f"{name}: compressed, and damaged") from None
         data = unpacker.unconsumed_tail
         count += len(part)
         if count > MOST_UNPACKED:

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Why files cannot be read, in our own words, and whose words an error has."""
+
+import os
+from contextlib import suppress
+from json import JSONDecodeError
+
+DEBUG = "PREFILTER_DEBUG"
+"""The environment variable that has tracebacks printed, and what libraries say, if not empty."""
+_OF_ENCODINGS = ("charset_normalizer", "chardet")
+"""Packages that libraries ask for where text is not in UTF-8."""
+_DAMAGED = "it is damaged, or not what its extension says"
+
+
+def is_debugging() -> bool:
+    """Tells whether whoever runs this wants to know where errors come from."""
+    return bool(os.environ.get(DEBUG))
+
+
+def damaged(path: str | os.PathLike[str], detail: str) -> str:
+    """Returns what is wrong with a file that a library cannot read.
+
+    Args:
+        path: The file.
+        detail: What the library says, for those who debug.
+    """
+    text = _DAMAGED
+    with suppress(OSError):
+        if os.path.getsize(path) == 0:
+            text = "it is empty"
+    return f"{text} ({' '.join(detail.split())})" if is_debugging() else text
+
+
+def why_unreadable(error: BaseException, path: str | os.PathLike[str]) -> str:
+    """Returns why another library could not read a file; what Prefilter says of it stays."""
+    if isinstance(error, OSError) and error.strerror:
+        return error.strerror
+    if is_own(error):
+        return " ".join(str(error).split())
+    if isinstance(error, MemoryError):
+        return "it takes more memory than there is"
+    if isinstance(error, ImportError) and error.name in _OF_ENCODINGS:
+        return "it is damaged, or has letters that are not in UTF-8"
+    if isinstance(error, ImportError):
+        return f"the Python package {error.name or 'that reads it'} is missing"
+    if isinstance(error, JSONDecodeError) and error.doc.strip():
+        return f"it is damaged: no JSON from line {error.lineno}, column {error.colno} on"
+    return damaged(path, f"{type(error).__name__}: {error}")
+
+
+def is_own(error: BaseException) -> bool:
+    """Tells whether Prefilter raised an error itself, for a reason that it names."""
+    if not isinstance(error, ValueError | OSError | MemoryError) or isinstance(error, UnicodeError):
+        return False
+    trace = error.__traceback__
+    while trace is not None and trace.tb_next is not None:
+        trace = trace.tb_next
+    module = trace.tb_frame.f_globals.get("__name__", "") if trace is not None else ""
+    return "prefilter" in module.split(".")
