@@ -106,17 +106,21 @@ def _quiet(*, is_end: bool) -> Iterator[tuple[TextIO, TextIO]]:
     """Moves both streams elsewhere; yields those that go where they went."""
     own = [_same(getattr(sys, name), number) for name, number in _NUMBERS.items()]
     kept = {number: os.dup(number) for number in _NUMBERS.values()}
-    _flush()
+    for stream in (sys.stdout, sys.stderr):
+        write(stream, "", "")
     sink = os.dup(2) if is_debugging() else os.open(os.devnull, os.O_WRONLY)
     for number in _NUMBERS.values():
         os.dup2(sink, number)
+    _flush_c()  # It is nobody's any more; later it would come after our last line.
     given = sys.stdout, sys.stderr
     sys.stdout, sys.stderr = (_text(one) for one in (sink, os.dup(sink)))
     moved = sys.stdout, sys.stderr
     try:
         yield own[0], own[1]
     finally:
-        _flush()
+        for stream in moved:
+            write(stream, "", "")
+        _flush_c()
         for number, old in kept.items():
             if not is_end:
                 os.dup2(old, number)
@@ -142,10 +146,8 @@ def _text(number: int, encoding: str = "utf-8") -> TextIO:
     return os.fdopen(number, "w", 1, encoding=encoding, errors="backslashreplace")
 
 
-def _flush() -> None:
-    """Writes what Python and C have not written yet; C's would come last, after our last line."""
-    for stream in (sys.stdout, sys.stderr):
-        write(stream, "", "")
+def _flush_c() -> None:
+    """Writes what C has not written yet."""
     if os.name == "posix":
         ctypes.CDLL(None).fflush(None)
 

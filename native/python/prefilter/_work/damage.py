@@ -10,6 +10,7 @@ DEBUG = "PREFILTER_DEBUG"
 """The environment variable that has tracebacks printed, and what libraries say, if not empty."""
 _OF_ENCODINGS = ("charset_normalizer", "chardet")
 """Packages that libraries ask for where text is not in UTF-8."""
+_EMPTY = "it is empty"
 _DAMAGED = "it is damaged, or not what its extension says"
 
 
@@ -25,11 +26,11 @@ def damaged(path: str | os.PathLike[str], detail: str) -> str:
         path: The file.
         detail: What the library says, for those who debug.
     """
-    text = _DAMAGED
+    reason = _DAMAGED
     with suppress(OSError):
         if os.path.getsize(path) == 0:
-            text = "it is empty"
-    return f"{text} ({' '.join(detail.split())})" if is_debugging() else text
+            reason = _EMPTY
+    return f"{reason} ({' '.join(detail.split())})" if is_debugging() else reason
 
 
 def why_unreadable(error: BaseException, path: str | os.PathLike[str]) -> str:

@@ -3,38 +3,19 @@
 """Which font a text gets: by family, width, slant and weight, as CSS chooses."""
 
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import islice
 from pathlib import Path
 
-from .faces import Face, UnreadableFontError, faces_in
+from .faces import DAMAGED, Face, UnreadableFontError, faces_in
 from .folders import files_in, system_folders
 from .font import Font
+from .substitutes import GENERIC, MONO, SAME_ADVANCES, SANS, SERIF, from_fontconfig, generic
 
-# What stands for a generic family, and for well-known ones where they are missing: the first that
-# is there. The first ones of each have the same advances.
-_SERIF: tuple[str, ...] = ("times new roman", "times", "liberation serif", "tinos", "nimbus roman")
-_SERIF += ("dejavu serif", "noto serif", "georgia")
-_SANS: tuple[str, ...] = ("arial", "helvetica", "liberation sans", "arimo", "nimbus sans")
-_SANS += ("dejavu sans", "bitstream vera sans", "verdana", "noto sans", "inter", "roboto")
-_SANS += ("segoe ui", "helvetica neue", "open sans", "tahoma", "trebuchet ms", "ubuntu", "lato")
-_MONO: tuple[str, ...] = ("courier new", "courier", "liberation mono", "cousine", "nimbus mono ps")
-_MONO += ("dejavu sans mono", "noto sans mono", "noto mono", "menlo", "consolas")
-_CURSIVE = ("comic sans ms", "yellowtail", "apple chancery", "z003")
-_GENERIC: Mapping[str, Sequence[str]] = {
-    "serif": _SERIF,
-    "sans-serif": _SANS,
-    "monospace": _MONO,
-    "cursive": (*_CURSIVE, *_SERIF),
-    "fantasy": ("impact", "papyrus", "sedgwick ave display", *_SANS),
-    "system-ui": ("segoe ui", "cantarell", *_SANS),
-    "ui-sans-serif": _SANS,
-    "ui-serif": _SERIF,
-    "ui-monospace": _MONO,
-}
 # The first that is there stands for each of them.
-_ALIKE = (("calibri", "carlito", *_SANS), ("cambria", "caladea", *_SERIF), _SANS, _SERIF, _MONO)
+_ALIKE = (("calibri", "carlito", *SANS), ("cambria", "caladea", *SERIF), SANS, SERIF, MONO)
 # Of a slanted face that is made: that of browsers.
 _SKEW = 0.25
 _MOST_TRIED = 400
@@ -79,7 +60,10 @@ class Fonts:
     ) -> None:
         self._own = tuple(own)
         self._places = None if places is None else tuple(Path(each) for each in places)
-        self._faces = None if self._places is None else tuple(_listed(self._places))
+        self._damaged: dict[Path, str] = {}
+        self._faces = None
+        if self._places is not None:
+            self._faces = tuple(_listed(self._places, self._damaged))
         self._families: dict[str, list[Face]] = {}
         self._first: dict[Wanted, tuple[list[Font], list[str]]] = {}
         self._others: dict[tuple[int, Wanted], Font | None] = {}
@@ -89,8 +73,14 @@ class Fonts:
     def faces(self) -> tuple[Face, ...]:
         """All of them."""
         if self._faces is None:
-            self._faces = _system_faces()
+            self._faces, damaged = _system_faces()
+            self._damaged |= damaged
         return self._faces
+
+    def take_damaged(self) -> dict[Path, str]:
+        """Files that were left out since this was last asked, and what is wrong with each."""
+        found, self._damaged = self._damaged, {}
+        return found
 
     def first(self, wanted: Wanted) -> tuple[list[Font], list[str]]:
         """The fonts of the families that are there, best first, and the names of those missing.
@@ -109,15 +99,20 @@ class Fonts:
             fonts = self._own_fonts(name, wanted)
             faces = self._of_family(name) if not fonts else ()
             font = self._open(faces, wanted) if faces else None
+            if font is None and not fonts:
+                # It is as good, and yet another one.
+                font = self._open(self._with_same_advances(name), wanted)
+                if font is not None and not found:
+                    missing.append(name)
             if font is not None:
                 fonts = [font]
             if fonts:
                 found.extend(fonts)
-            elif not found and name.lower() not in _GENERIC:
+            elif not found and name.lower() not in GENERIC:
                 missing.append(name)
         if not found:
-            font = self._open(self._stand_in(missing[:1]), wanted)
-            found = [font] if font is not None else []
+            opened = (self._open(faces, wanted) for faces in self._stand_ins(missing[:1]))
+            found = list(islice((font for font in opened if font is not None), 1))
         return found, missing
 
     def _own_fonts(self, name: str, wanted: Wanted) -> list[Font]:
@@ -152,34 +147,57 @@ class Fonts:
             if len(seen) > _MOST_TRIED:
                 break
             font = self._open(self._of_family(face.family), wanted)
-            if font is not None and code in font.characters:
+            if font is not None and font.shows(code):
                 if font.is_colored == (code in _PICTURES):
                     return font
                 other = other or font
         return other
 
-    def _of_family(self, name: str) -> list[Face]:
+    def _of_family(self, name: str) -> Sequence[Face]:
         if not self._families:
             for face in self.faces:
                 for family in face.families:
                     self._families.setdefault(family, []).append(face)
-        for each in _GENERIC.get(name.lower(), (name.lower(),)):
-            if each in self._families:
-                return self._families[each]
-        return []
+        key = name.lower()
+        if key not in GENERIC:
+            return self._families.get(key, ())
+        if faces := self._from_fontconfig(key):
+            return faces
+        return next((self._families[each] for each in generic(key) if each in self._families), ())
 
-    def _stand_in(self, missing: Sequence[str]) -> Sequence[Face]:
-        """What is most like the families that are missing: as wide, or else with serifs."""
+    def _from_fontconfig(self, name: str) -> Sequence[Face]:
+        """What fontconfig takes for a family, where the fonts are those of the system."""
+        if self._places is not None:
+            return ()
+        for path, index in from_fontconfig(name):
+            try:
+                face = next((each for each in faces_in(path) if each.index == index), None)
+            except (UnreadableFontError, OSError):
+                continue
+            if face is not None:
+                return self._families.get(face.family.lower(), [face])
+        return ()
+
+    def _with_same_advances(self, name: str) -> Sequence[Face]:
+        """What stands for a family that is missing, with lines of the same length."""
+        groups = [group for group in SAME_ADVANCES if name.lower() in group]
+        if not groups:
+            return ()
+        faces = self._from_fontconfig(name)
+        if faces:
+            return faces if not groups[0].isdisjoint(faces[0].families) else ()
+        others = (self._of_family(each) for each in sorted(groups[0]))
+        return next((each for each in others if each), ())
+
+    def _stand_ins(self, missing: Sequence[str]) -> Iterator[Sequence[Face]]:
+        """Yields what is most like the families that are missing: as wide, else with serifs."""
         for name in missing:
+            yield self._from_fontconfig(name)
             for group in _ALIKE:
                 if name.lower() in group:
-                    for each in group:
-                        if faces := self._of_family(each):
-                            return faces
-        for name in ("serif", "sans-serif"):
-            if faces := self._of_family(name):
-                return faces
-        return self._of_family(self.faces[0].family) if self.faces else ()
+                    yield from map(self._of_family, group)
+        for name in ("serif", "sans-serif", *dict.fromkeys(face.family for face in self.faces)):
+            yield self._of_family(name)
 
     def _open(self, faces: Sequence[Face], wanted: Wanted) -> Font | None:
         """The font of a family that is nearest to what is wanted; None where none can be read."""
@@ -197,6 +215,7 @@ class Fonts:
                     self._opened[key] = Font(face, location, skew)
                 except Exception:
                     self._opened[key] = None
+                    self._damaged[face.path] = DAMAGED
             font = self._opened[key]
             if font is not None:
                 return font
@@ -258,11 +277,11 @@ def _location(face: Face, wanted: Wanted) -> dict[str, float]:
     }
 
 
-def _listed(places: Sequence[Path]) -> Iterator[Face]:
+def _listed(places: Sequence[Path], damaged: dict[Path, str]) -> Iterator[Face]:
     """Yields the faces in files, which must be fonts, and folders, which may hold others."""
     for place in places:
         if place.is_dir():
-            yield from _faces_of(files_in(place))
+            yield from _faces_of(files_in(place), damaged)
             continue
         try:
             found = faces_in(place)
@@ -275,16 +294,20 @@ def _listed(places: Sequence[Path]) -> Iterator[Face]:
         yield from found
 
 
-def _faces_of(files: Iterable[Path]) -> Iterator[Face]:
+def _faces_of(files: Iterable[Path], damaged: dict[Path, str]) -> Iterator[Face]:
+    """Yields the faces in files; `damaged` gets those that cannot be read."""
     for file in files:
         try:
             yield from faces_in(file)
-        except (UnreadableFontError, OSError):
-            continue
+        except UnreadableFontError as error:
+            damaged[file] = str(error)
+        except OSError as error:
+            damaged[file] = error.strerror or DAMAGED
 
 
 @lru_cache(maxsize=1)
-def _system_faces() -> tuple[Face, ...]:
-    """Those of the system, looked for once."""
+def _system_faces() -> tuple[tuple[Face, ...], dict[Path, str]]:
+    """Those of the system, looked for once, and the files that cannot be read."""
     files = dict.fromkeys(file for folder in system_folders() for file in files_in(folder))
-    return tuple(_faces_of(files))
+    damaged: dict[Path, str] = {}
+    return tuple(_faces_of(files, damaged)), damaged

@@ -3,6 +3,7 @@
 """What the tables of a font file say of its faces, without their glyphs."""
 
 import io
+import logging
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -19,6 +20,8 @@ _WIDTHS = (100.0, 50.0, 62.5, 75.0, 87.5, 100.0, 112.5, 125.0, 150.0, 200.0)
 _FAMILY_NAMES = (16, 1, 21)
 OUTLINES = ("glyf", "CFF ", "CFF2")
 _MOST_FACES = 256
+DAMAGED = "it is damaged, or no font"
+"""What is said of a file whose tables cannot be read."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -66,6 +69,10 @@ def _source(path: Path, data: bytes | None) -> str | io.BytesIO:
     return str(path) if data is None else io.BytesIO(data)
 
 
+# It says much of what is damaged; Python prints that where nobody listens.
+logging.getLogger("fontTools").addHandler(logging.NullHandler())
+
+
 class UnreadableFontError(ValueError):
     """A file holds no font that can be read; the message says why."""
 
@@ -86,8 +93,8 @@ def _faces_as_of(path: Path, stamp: tuple[int, int]) -> tuple[Face, ...]:
         raise
     except ImportError:
         raise UnreadableFontError("WOFF 2 needs the Python package brotli") from None
-    except Exception as error:
-        raise UnreadableFontError(str(error)[:200] or type(error).__name__) from None
+    except Exception:
+        raise UnreadableFontError(DAMAGED) from None
 
 
 def faces_in(path: Path) -> tuple[Face, ...]:
@@ -109,9 +116,12 @@ def face_in(data: bytes, name: str) -> Face:
     """
     try:
         unpacked = as_sfnt(data)
-        found = _face(Path(name), 0, unpacked)
     except Exception as error:
         raise UnreadableFontError(str(error)[:200] or type(error).__name__) from None
+    try:
+        found = _face(Path(name), 0, unpacked)
+    except Exception:
+        raise UnreadableFontError(DAMAGED) from None
     if found is None:
         raise UnreadableFontError("it has no outlines")
     return found

@@ -31,7 +31,8 @@ def system_folders() -> list[Path]:
 def _configured(home: Path) -> Iterator[Path]:
     """Yields the folders that fontconfig's main file names."""
     try:
-        root = ElementTree.parse(_FONTCONFIG).getroot()
+        file = os.environ.get("FONTCONFIG_FILE") or _FONTCONFIG
+        root = ElementTree.parse(file).getroot()
     except (OSError, ElementTree.ParseError):
         return
     for element in root.iter("dir"):

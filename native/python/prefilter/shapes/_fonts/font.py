@@ -2,6 +2,7 @@
 
 """Glyphs of a font, as fontTools reads them."""
 
+import os
 from array import array
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -16,6 +17,11 @@ from .faces import OUTLINES, Face
 
 # Of a glyph: components of components may be many.
 _MOST_SEGMENTS = 200_000
+# What the table "head" says of itself, and may say of the units of an em.
+_MAGIC = 0x5F0F3CF5
+_UNITS = range(16, 16385)
+# Bytes of a glyph before its contours.
+_GLYPH_HEAD = 10
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,8 +66,44 @@ class Font:
         self._glyphs = None
         if any(tag in self._file for tag in OUTLINES):
             self._glyphs = self._file.getGlyphSet(location=self.location or None)
+        self._check()
         self._drawn: dict[int, Glyph] = {}
+        self._damaged: set[int] = set()
         self._looks: dict[int, ColorGroup | Bitmap | str | None] = {}
+
+    def _check(self) -> None:
+        """Reads all that is read later but for single glyphs; raises what goes wrong in that.
+
+        What is cut off would be read as glyphs without outlines.
+        """
+        _ = self.characters, self.metrics, self._file["hmtx"].metrics
+        head = self._file["head"]
+        if head.magicNumber != _MAGIC or not self._file["cmap"].tables:
+            raise ValueError("its tables are overwritten")
+        if head.unitsPerEm not in _UNITS:
+            raise ValueError(f"found {head.unitsPerEm} units")
+        reader = self._file.reader
+        if reader.flavor == "woff2":
+            return  # Its tables are made as it is unpacked, which fails if it is cut off.
+        size = reader.file.seek(0, os.SEEK_END)
+        if any(entry.offset + entry.length > size for entry in reader.tables.values()):
+            raise ValueError("a table is cut off")
+        if "glyf" in self._file:
+            entry = reader.tables["glyf"]
+            outlines = getattr(entry, "origLength", entry.length)
+            last = max(self._file["loca"], default=0)
+            if last > outlines or (last == 0 and self.characters):
+                raise ValueError("the outlines are cut off")
+
+    def is_whole(self, number: int) -> bool:
+        """Whether the outline of a glyph can be read."""
+        self.glyph(number)
+        return number not in self._damaged
+
+    def shows(self, code: int) -> bool:
+        """Whether there is a glyph for a character, and its outline can be read."""
+        number = self.characters.get(code)
+        return number is not None and (chr(code).isspace() or self.is_whole(number))
 
     @cached_property
     def characters(self) -> Mapping[int, int]:
@@ -135,19 +177,33 @@ class Font:
         name = self._order[number]
         if self._glyphs is None:
             return float(self._file["hmtx"].metrics[name][0])
-        return float(self._glyphs[name].width)
+        try:
+            return float(self._glyphs[name].width)
+        except Exception:
+            self._damaged.add(number)
+            return 0.0
 
     def glyph(self, number: int) -> Glyph:
-        """The outline of a glyph, read once; an empty one where it is damaged."""
+        """The outline of a glyph, read once; an empty one where it is damaged: see `is_whole`."""
         if number not in self._drawn:
             pen = _Pen(self._glyphs)
             try:
                 if self._glyphs is not None:
                     self._glyphs[self._order[number]].draw(pen)
+                    if not pen.letters and self._is_overwritten(number):
+                        self._damaged.add(number)
             except Exception:
                 pen = _Pen(self._glyphs)
+                self._damaged.add(number)
             self._drawn[number] = Glyph(bytes(pen.letters), pen.numbers)
         return self._drawn[number]
+
+    def _is_overwritten(self, number: int) -> bool:
+        """Whether a glyph without an outline has more than the head of one in the file."""
+        if "glyf" not in self._file:
+            return False
+        places = self._file["loca"]
+        return bool(places[number + 1] - places[number] > _GLYPH_HEAD + 2)
 
 
 class _Pen(BasePen):  # type: ignore[misc]

@@ -166,14 +166,19 @@ class _Kerning:
         """How much nearer the second of two glyphs is: a negative number of units."""
         key = (first, second)
         if key not in self._known:
-            left, right = self._names[first], self._names[second]
-            found = [
-                value
-                for lookup in self._subtables
-                if (value := _first_of(lookup, left, right)) is not None
-            ]
-            self._known[key] = float(sum(found) if found else self._pairs.get((left, right), 0.0))
+            try:
+                self._known[key] = self._between(self._names[first], self._names[second])
+            except Exception:  # Tables are read as they are needed, and may be damaged.
+                self._known[key] = 0.0
         return self._known[key]
+
+    def _between(self, left: str, right: str) -> float:
+        found = [
+            value
+            for lookup in self._subtables
+            if (value := _first_of(lookup, left, right)) is not None
+        ]
+        return float(sum(found) if found else self._pairs.get((left, right), 0.0))
 
     def _read(self, tables: Any) -> None:
         if "GPOS" in tables and tables["GPOS"].table.LookupList:

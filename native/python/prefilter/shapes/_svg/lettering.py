@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from .._fonts.bitmaps import Bitmap
 from .._fonts.collection import Fonts, Wanted
 from .._fonts.color_layers import ColorGroup
-from .._fonts.font import Font
+from .._fonts.font import Font, Glyph
 from .text_characters import Character, Span
 from .values import UnknownUnitError, as_length
 from .warnings import Warnings
@@ -111,6 +111,7 @@ class Lettering:
             if not found:
                 self.warnings.unsupported("<text>", "left out, as there are no fonts", line)
                 missing = []
+            self._warn_of_damage(line)
             for name in missing:
                 effect = f"drawn in {found[0].face.family}"
                 self.warnings.unsupported(f"font '{name[:60]}'", effect, line)
@@ -132,16 +133,38 @@ class Lettering:
         fonts = self._fonts_for(span)
         code = ord(letter)
         for font in fonts:
-            if code in font.characters:
+            if self._shows(font, code, span):
                 return font
         if not fonts or letter.isspace() or letter in _INVISIBLE:
             return fonts[0] if fonts else None
         found = self._fonts.with_character(code, wanted_by(span))
+        self._warn_of_damage(span.element.line)
         if found is None:
             self.warnings.unsupported(
                 f"character U+{code:04X}", "left out, as no font has it", span.element.line
             )
         return found
+
+    def outline_of(self, font: Font, glyph: int, span: Span) -> Glyph:
+        """The outline of a glyph; warns where it is damaged."""
+        if not font.is_whole(glyph):
+            name = f"font '{font.face.family[:60]}'"
+            self.warnings.broken(name, "letters left out, as it is damaged", span.element.line)
+        return font.glyph(glyph)
+
+    def _shows(self, font: Font, code: int, span: Span) -> bool:
+        """Tells whether a font has a character; warns where it is damaged in it."""
+        is_shown = font.shows(code)
+        if not is_shown and code in font.characters:
+            name = f"font '{font.face.family[:60]}'"
+            effect = "damaged: some letters are drawn in other fonts"
+            self.warnings.broken(name, effect, span.element.line)
+        return is_shown
+
+    def _warn_of_damage(self, line: int) -> None:
+        """Warns of files that were left out while fonts were looked for."""
+        for path, reason in self._fonts.take_damaged().items():
+            self.warnings.broken(f"font file '{path}'", f"left out: {reason}", line)
 
 
 def wanted_by(span: Span) -> Wanted:

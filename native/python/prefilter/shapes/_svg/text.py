@@ -97,7 +97,7 @@ def _pieces(
         for glyph, matrix in _placed(cluster):
             look = lettering.look_of(cluster.font, glyph, span)
             if look is None:
-                plain.append((cluster.font.glyph(glyph), matrix))
+                plain.append((lettering.outline_of(cluster.font, glyph, span), matrix))
             else:
                 colored.append(ColoredLetter(cluster.font, look, matrix))
     yield from _piece(span, _letters(plain))
