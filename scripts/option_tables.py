@@ -45,8 +45,10 @@ def command_table(parser: argparse.ArgumentParser, name: str) -> str:
     rows = ["| Argument | Meaning |", "|---|---|"]
     for action in commands.choices[name]._actions:
         if action.dest != "help":
-            # Of a switch, the flag for each direction.
-            names = action.option_strings if action.nargs == 0 else action.option_strings[:1]
+            # The flag for each direction of a switch, and the short one of a value.
+            names = (
+                sorted(action.option_strings, key=len) if action.metavar else action.option_strings
+            )
             shown = "`, `".join(names) or action.metavar
             if names and action.metavar:
                 shown += f" {action.metavar}"

@@ -73,3 +73,29 @@ def test_neither_pictures_nor_meshes_are_loaded_for_help():
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     loaded = set(done.stdout.splitlines()[-1].split())
     assert not loaded & {"OpenImageIO", "trimesh"}
+
+
+@pytest.mark.parametrize("text", ["nan", "inf", "-inf", "1e999", "9" * 400, "", "abc", "0x10"])
+@pytest.mark.parametrize(
+    ("command", "flags"),
+    [
+        ("resize", ["--percent", "--width", "--threads"]),
+        ("resample", ["--rotate", "--scale-x", "--offset-y"]),
+        ("rasterize", ["--side", "--density", "--margin"]),
+        ("voxelize", ["--depth", "--voxel-size", "--adaptivity"]),
+        ("reconstruct", ["--depth", "--trim", "--memory-limit", "--parts"]),
+        ("sampling-table", ["--texels", "--ramp-weight"]),
+        ("mipmaps", ["--threshold", "--quality", "--seams"]),
+    ],
+)
+def test_odd_numbers_are_refused_in_one_line(tmp_path, capsys, command, flags, text):
+    source = {"resize": "a.png", "resample": "a.png", "rasterize": "a.svg", "mipmaps": "a.png"}
+    files = [tmp_path / source.get(command, "a.obj")] if command != "sampling-table" else []
+    for flag in flags:
+        arguments = [command, *files, "-o", tmp_path / "out", f"{flag}={text}"]
+        assert program.main([str(one) for one in arguments]) in (1, 2)
+        told = capsys.readouterr().err.splitlines()
+        assert sum("error: " in line for line in told) == 1
+        assert "error: " in told[-1]
+        assert "unexpected" not in told[-1]
+        assert len(told[-1]) < 700

@@ -132,7 +132,10 @@ def test_what_is_told_of_a_model(addon):
     results.fail(["D"], ValueError("image 'D': is broken"))
     results.fail(["E"], MemoryError())
     lines = ["Left out, no pixels: 'A', 'B'", "Left out, a movie: 'C'"]
-    reasons = ["image 'D' is not baked: is broken", "image 'E' is not baked: MemoryError"]
+    reasons = [
+        "image 'D' is not baked: is broken",
+        "image 'E' is not baked: there is not enough memory",
+    ]
     assert results.nothing() == ["no image was baked", *reasons, *lines]
     with pytest.raises(ValueError, match="no image was baked"):
         results.outcome()

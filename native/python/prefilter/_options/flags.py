@@ -12,6 +12,8 @@ from typing import Any
 from .colors import from_hex
 from .options import Option, declared
 
+_LONGEST_SHOWN = 60
+
 
 def add_flags(
     parser: argparse.ArgumentParser,
@@ -102,5 +104,6 @@ def _read(default: Any, declaration: Option, text: str) -> Any:
         if declaration.subtype == "ANGLE":
             value = math.radians(value)
     if not declaration.allows(value):
-        raise argparse.ArgumentTypeError(f"found '{text}'; allowed: {declaration.allowed}")
+        shown = text if len(text) <= _LONGEST_SHOWN else f"{text[:_LONGEST_SHOWN]}..."
+        raise argparse.ArgumentTypeError(f"found '{shown}'; allowed: {declaration.allowed}")
     return value

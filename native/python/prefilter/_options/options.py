@@ -88,7 +88,8 @@ class Option:
             return True
         # Blender keeps numbers in single precision.
         slack = _ROUNDING * abs(value) if isinstance(value, float) else 0
-        if not math.isfinite(value) or (self.is_above and value <= self.low):
+        is_finite = isinstance(value, int) or math.isfinite(value)
+        if not is_finite or (self.is_above and value <= self.low):
             return False
         return self.low - slack <= value <= self.high + slack
 
