@@ -16,7 +16,7 @@ from prefilter._work.files.mesh_notes import with_note
 
 from ...core.outcome import reason
 from ...core.wording import listed
-from . import staging
+from . import damage, staging
 from .complete import check_whole
 
 
@@ -131,10 +131,12 @@ def load(
     found = []
     for i, path in enumerate(paths):
         before = set() if i == 0 else set(bpy.data.objects)
+        damage.check(path)
         try:
             _load_one(os.path.abspath(path), is_first=i == 0)
-        except RuntimeError as error:
-            raise OSError(f"FILE: cannot load '{path}': {str(error).strip()}") from error
+        except (RuntimeError, UnicodeError) as error:
+            reason = damage.why(path, error)
+            raise OSError(f"FILE: cannot load '{path}': {reason}") from error
         everything = bpy.context.view_layer.objects
         objects = [obj for obj in everything if obj not in before and is_wanted(obj)]
         if not objects:

@@ -36,7 +36,11 @@ def damaged(path: str | os.PathLike[str], detail: str) -> str:
 def why_unreadable(error: BaseException, path: str | os.PathLike[str]) -> str:
     """Returns why another library could not read a file; what Prefilter says of it stays."""
     if isinstance(error, OSError) and error.strerror:
-        return error.strerror
+        other = error.filename
+        is_other = other is not None and os.path.basename(os.fsdecode(other)) != os.path.basename(
+            path
+        )
+        return f"{error.strerror}: '{os.fsdecode(other)}'" if is_other else error.strerror
     if is_own(error):
         return " ".join(str(error).split())
     if isinstance(error, MemoryError):

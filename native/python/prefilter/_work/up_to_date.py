@@ -54,7 +54,7 @@ def fingerprint(sources: Iterable[str | os.PathLike[str]], settings: Mapping[str
     """
     found = _begun(settings)
     for source in sources:
-        for path in (Path(source), *_referred(Path(source))):
+        for path in (Path(source), *referred_files(Path(source))):
             data = path.read_bytes()
             found.update(len(data).to_bytes(8, "little"))
             found.update(data)
@@ -174,7 +174,7 @@ def _exr_text(header: bytes, wanted: str) -> str:
     return ""
 
 
-def _referred(path: Path) -> list[Path]:
+def referred_files(path: Path) -> list[Path]:
     """Returns the buffers of a glTF file that are files by themselves."""
     if path.suffix.lower() != ".gltf":
         return []
