@@ -117,9 +117,9 @@ def _after(data: mmap.mmap, place: int, element: _Element, order: str, vertices:
         row = struct.calcsize(order + "".join(one.kind for one in element.properties))
         end = place + element.count * row
         return end if end <= len(data) else None
-    end = _after_uniform(data, place, element, order, vertices)
-    if end is not None:
-        return end
+    uniform = _after_uniform(data, place, element, order, vertices)
+    if uniform is not None:
+        return uniform
     try:
         for _ in range(element.count):
             for one in element.properties:

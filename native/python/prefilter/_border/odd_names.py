@@ -52,7 +52,7 @@ def reads_any_name(
     """Has a function that reads a file, its first argument, get a path that is text."""
 
     @wraps(function)
-    def read(path: Path, *arguments: P.args, **more: P.kwargs) -> Result:
+    def read(path: Path, /, *arguments: P.args, **more: P.kwargs) -> Result:
         if is_text(path):
             return function(path, *arguments, **more)
         with readable_name(path) as name:
@@ -67,7 +67,7 @@ def writes_any_name(
     """The same for a function that writes a file; that is then moved to where it belongs."""
 
     @wraps(function)
-    def write(path: Path, *arguments: P.args, **more: P.kwargs) -> None:
+    def write(path: Path, /, *arguments: P.args, **more: P.kwargs) -> None:
         if is_text(path):
             function(path, *arguments, **more)
             return

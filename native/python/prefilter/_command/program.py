@@ -47,8 +47,8 @@ class Parser(argparse.ArgumentParser):
 def parse(reader: argparse.ArgumentParser, words: Sequence[str]) -> argparse.Namespace:
     """Returns the arguments; files may come before, between and after flags."""
     options, left = reader.parse_known_args(words)
-    name = getattr(options, "intermixed", None)
-    if left and (name is None or any(word.startswith("-") for word in left)):
+    name = getattr(options, "intermixed", "")
+    if left and (not name or any(word.startswith("-") for word in left)):
         reader.error(f"unrecognized arguments: {' '.join(left)}")
     if left:
         setattr(options, name, [*getattr(options, name), *left])

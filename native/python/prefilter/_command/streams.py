@@ -8,7 +8,9 @@ What a command does never fails because nobody reads what it says, or a console 
 import ctypes
 import errno
 import os
+import signal
 import sys
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -88,6 +90,9 @@ def _prepare() -> None:
 
     A file that is opened later would get the number of a closed stream, and what libraries print.
     """
+    if hasattr(signal, "SIGPIPE") and threading.current_thread() is threading.main_thread():
+        # Python leaves pipes that nobody reads to `write`; Blender would end there.
+        signal.signal(signal.SIGPIPE, signal.SIG_IGN)
     for number in range(3):
         try:
             os.fstat(number)
