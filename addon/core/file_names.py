@@ -2,29 +2,16 @@
 
 """Names of data-blocks as names of files."""
 
-import re
 import unicodedata
 from collections.abc import Sequence
 
+import bpy
 from prefilter._border.file_names import portable
-
-_KEPT = re.compile(r"[A-Za-z0-9_-]")
 
 
 def clean_name(name: str) -> str:
-    """Returns the name of a data-block as one that every system allows for files.
-
-    As Blender's own function does, it leaves only letters, digits, "-" and "_" of ASCII; other
-    letters stay, of which Blender replaces some.
-    """
-    composed = unicodedata.normalize("NFC", name)
-    return portable("".join(each if _is_kept(each) else "_" for each in composed))
-
-
-def _is_kept(letter: str) -> bool:
-    if letter.isascii():
-        return _KEPT.fullmatch(letter) is not None
-    return unicodedata.category(letter)[0] not in "CZ"
+    """Returns the name of a data-block as one that every system allows for files."""
+    return portable(bpy.path.clean_name(unicodedata.normalize("NFC", name)))
 
 
 def clean_names(names: Sequence[str]) -> list[str]:
