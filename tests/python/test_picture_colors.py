@@ -163,7 +163,17 @@ def test_colors_under_a_configuration_of_aces(tmp_path, kind):
     settings = {"OCIO": "ocio://cg-config-v1.0.0_aces-v1.3_ocio-v2.1"}
     for ending in ("exr", "png"):
         target = tmp_path / f"out.{ending}"
-        command = [sys.executable, "-m", "prefilter", "resize", source, target, "--percent", "50"]
+        command = [
+            sys.executable,
+            "-m",
+            "prefilter",
+            "resize",
+            source,
+            "-o",
+            target,
+            "--percent",
+            "50",
+        ]
         subprocess.run(command, check=True, env=os.environ | settings)
         color, is_data = light_of(target)
         assert is_data == (kind == "raw")
@@ -181,23 +191,25 @@ def test_the_color_space_can_be_said(tmp_path, capsys):
     source = flat_exr(tmp_path / "in.exr", INSIDE, {"colorInteropID": "lin_p3d65_scene"})
     target = tmp_path / "out.exr"
     for name, matrix in (("ACEScg", FROM_AP1), ("lin_rec709_scene", np.eye(3)), ("raw", np.eye(3))):
-        assert run("resize", source, target, "--percent", "50", "--colorspace", name) == 0
+        assert run("resize", source, "-o", target, "--percent", "50", "--colorspace", name) == 0
         color, is_data = light_of(target)
         assert is_data == (name == "raw")
         assert np.abs(color - matrix @ INSIDE).max() < 1 / 1024
-    told = fails(capsys, 2, "resize", source, target, "--percent", "50", "--colorspace", "srbg")
+    told = fails(
+        capsys, 2, "resize", source, "-o", target, "--percent", "50", "--colorspace", "srbg"
+    )
     assert "--colorspace: found 'srbg'; auto, sRGB" in told
 
 
 def test_files_that_contradict_themselves(tmp_path, capsys):
     both = {"colorInteropID": "lin_rec709_scene", "chromaticities": AP1}
     source = flat_exr(tmp_path / "in.exr", INSIDE, both)
-    told = fails(capsys, 1, "resize", source, tmp_path / "out.exr", "--percent", "50")
+    told = fails(capsys, 1, "resize", source, "-o", tmp_path / "out.exr", "--percent", "50")
     assert "colorInteropID 'lin_rec709_scene' and its chromaticities are different" in told
     more = ("--percent", "50", "--colorspace", "ACEScg")
-    assert run("resize", source, tmp_path / "out.exr", *more) == 0
+    assert run("resize", source, "-o", tmp_path / "out.exr", *more) == 0
     unknown = flat_exr(tmp_path / "b.exr", INSIDE, {"colorInteropID": "pq_rec2020_display"})
-    told = fails(capsys, 1, "resize", unknown, tmp_path / "out.exr", "--percent", "50")
+    told = fails(capsys, 1, "resize", unknown, "-o", tmp_path / "out.exr", "--percent", "50")
     assert "colorInteropID 'pq_rec2020_display': is not known; --colorspace" in told
 
 
@@ -223,13 +235,13 @@ def test_colors_of_png_files(tmp_path, chunks, light, matrix, kind):
     values = np.rint(color * most).astype(kind)
     source = png_file(tmp_path / "in.png", np.full((16, 16, 3), values), *chunks)
     expected = matrix @ light(values / most)
-    assert run("resize", source, tmp_path / "out.exr", "--percent", "50") == 0
+    assert run("resize", source, "-o", tmp_path / "out.exr", "--percent", "50") == 0
     assert np.abs(light_of(tmp_path / "out.exr")[0] - expected).max() < 1 / 1024
     assert run("mipmaps", source, "-o", tmp_path / "levels.png") == 0
     step = 0.51 / most * 2.4 + 1 / 4096
     assert np.abs(light_of(tmp_path / "levels.00.png")[0] - expected).max() < step
     # A PNG file keeps both the numbers and what they mean.
-    assert run("resize", source, tmp_path / "out.png", "--percent", "50") == 0
+    assert run("resize", source, "-o", tmp_path / "out.png", "--percent", "50") == 0
     made = chunks_of(tmp_path / "out.png")
     said = [one for one in chunks if one[0] != b"gAMA" or (b"sRGB", b"\0") not in chunks]
     assert all(made[name] == content for name, content in said)
@@ -301,12 +313,12 @@ def test_icc_profiles(tmp_path, ending, curve):
     pixels = np.full((16, 16, 3), (130, 120, 90), np.uint8)
     source = with_profile(tmp_path / f"in.{ending}", pixels, profile)
     # OpenEXR files get other numbers for the same color; one step of 8 bits is lost on the way.
-    assert run("resize", source, tmp_path / "out.exr", "--percent", "50") == 0
+    assert run("resize", source, "-o", tmp_path / "out.exr", "--percent", "50") == 0
     made = light_of(tmp_path / "out.exr")[0]
     expected = by_icc(pixels, profile)[4, 4]
     assert np.abs(made - srgb_light(expected / 255.0)).max() < 1 / 200
     # PNG files keep the profile with the numbers.
-    assert run("resize", source, tmp_path / "out.png", "--percent", "50") == 0
+    assert run("resize", source, "-o", tmp_path / "out.png", "--percent", "50") == 0
     kept = chunks_of(tmp_path / "out.png")
     assert zlib.decompress(kept[b"iCCP"].partition(b"\0\0")[2]) == profile
     assert b"sRGB" not in kept
@@ -356,7 +368,7 @@ def test_light_is_averaged_in_the_curve_of_a_profile(tmp_path):
     pixels[:, ::2] = 255
     source = with_profile(tmp_path / "in.png", pixels, profile)
     more = ("--width", "8", "--height", "16", "--filter", "box")
-    assert run("resize", source, tmp_path / "out.png", *more) == 0
+    assert run("resize", source, "-o", tmp_path / "out.png", *more) == 0
     made = oiio.ImageBuf(str(tmp_path / "out.png")).get_pixels(oiio.FLOAT)
     assert np.abs(made[8, 4] - 0.5 ** (256 / 563)).max() < 0.51 / 255
 
@@ -365,11 +377,11 @@ def test_gray_profiles(tmp_path):
     profile = icc_profile(None, [POWER], b"GRAY")
     pixels = np.full((16, 16, 1), 100, np.uint8)
     source = with_profile(tmp_path / "in.png", pixels, profile)
-    assert run("resize", source, tmp_path / "out.png", "--percent", "50") == 0
+    assert run("resize", source, "-o", tmp_path / "out.png", "--percent", "50") == 0
     kept = chunks_of(tmp_path / "out.png")
     assert kept[b"IHDR"][8:10] == bytes([8, 0])
     assert zlib.decompress(kept[b"iCCP"].partition(b"\0\0")[2]) == profile
-    assert run("resize", source, tmp_path / "out.exr", "--percent", "50") == 0
+    assert run("resize", source, "-o", tmp_path / "out.exr", "--percent", "50") == 0
     buffer = oiio.ImageBuf(str(tmp_path / "out.exr"))
     assert buffer.spec().channelnames == ("Y",)
     expected = (100 / 255) ** (563 / 256)
@@ -382,7 +394,7 @@ def test_a_profile_of_srgb_is_srgb(tmp_path):
     source = with_profile(tmp_path / "in.png", noise(16, 16), profile)
     plain = png_file(tmp_path / "plain.png", noise(16, 16))
     for name in (source, plain):
-        assert run("resize", name, tmp_path / f"{name.stem}-out.png", "--percent", "50") == 0
+        assert run("resize", name, "-o", tmp_path / f"{name.stem}-out.png", "--percent", "50") == 0
     made, expected = ((tmp_path / f"{one}-out.png").read_bytes() for one in ("in", "plain"))
     assert made == expected
 
@@ -400,12 +412,12 @@ def test_profiles_that_cannot_be_converted(tmp_path, capsys):
     }
     for profile, words in cases.values():
         source = with_profile(tmp_path / "in.png", noise(16, 16), profile)
-        told = fails(capsys, 1, "resize", source, tmp_path / "out.png", "--percent", "50")
+        told = fails(capsys, 1, "resize", source, "-o", tmp_path / "out.png", "--percent", "50")
         assert words in told
         assert "--colorspace" in told
         assert not (tmp_path / "out.png").exists()
     more = ("--percent", "50", "--colorspace", "sRGB")
-    assert run("resize", source, tmp_path / "out.png", *more) == 0
+    assert run("resize", source, "-o", tmp_path / "out.png", *more) == 0
     assert b"iCCP" not in chunks_of(tmp_path / "out.png")
 
 
@@ -426,7 +438,9 @@ def test_cmyk_is_refused(tmp_path, capsys):
     image = pytest.importorskip("PIL.Image").fromarray(noise(16, 16))
     for name in ("in.jpg", "in.tif"):
         image.convert("CMYK").save(tmp_path / name)
-        told = fails(capsys, 1, "resize", tmp_path / name, tmp_path / "out.png", "--percent", "50")
+        told = fails(
+            capsys, 1, "resize", tmp_path / name, "-o", tmp_path / "out.png", "--percent", "50"
+        )
         assert "its colors are CMYK, which cannot be converted" in told
 
 
@@ -437,7 +451,7 @@ def test_adobe_rgb_by_exif(tmp_path):
     block.get_ifd(0x8769)[0xA001] = 0xFFFF
     block.get_ifd(0x8769)[0xA005] = {1: "R03"}
     image.fromarray(pixels).save(tmp_path / "in.jpg", exif=block, quality=100, subsampling=0)
-    assert run("resize", tmp_path / "in.jpg", tmp_path / "out.exr", "--percent", "50") == 0
+    assert run("resize", tmp_path / "in.jpg", "-o", tmp_path / "out.exr", "--percent", "50") == 0
     read = oiio.ImageBuf(str(tmp_path / "in.jpg")).get_pixels(oiio.FLOAT)[4, 4]
     to_rec709 = np.array([[1.39836, -0.39836, 0.0], [0.0, 1.0, 0.0], [0.0, -0.04293, 1.04293]])
     expected = to_rec709 @ (read**2.2)

@@ -56,9 +56,9 @@ def test_pictures_are_turned_upright(tmp_path, ending, orientation):
     source = oriented(tmp_path / f"in.{ending}", pixels, orientation)
     stored = pixels if ending != "jpg" else read(source)[0]
     expected = UPRIGHT[orientation](stored)
-    assert run("resize", source, tmp_path / "out.png", *SAME_SIZE) == 0
+    assert run("resize", source, "-o", tmp_path / "out.png", *SAME_SIZE) == 0
     assert (read(tmp_path / "out.png")[0] == expected).all()
-    assert run("resample", source, tmp_path / "out.png", *PLAIN) == 0
+    assert run("resample", source, "-o", tmp_path / "out.png", *PLAIN) == 0
     middle = (slice(2, -2), slice(2, -2))
     assert np.abs(read(tmp_path / "out.png")[0][middle].astype(int) - expected[middle]).max() <= 1
     if orientation in {1, 6}:
@@ -93,7 +93,7 @@ def test_channels_and_bits_stay(tmp_path, command, channels, kind):
                 if command == "resize"
                 else ("--scale", "0.5", "--wrap", "clamp")
             )
-            assert run(command, source, target, *more) == 0
+            assert run(command, source, "-o", target, *more) == 0
         if command == "mipmaps" and ending == "png":
             target = tmp_path / "out.00.png"
         spec = read(target)[1]
@@ -106,7 +106,7 @@ def test_gray_has_the_values_of_colors(tmp_path):
     gray = noise(32, 32, 2)
     for name, pixels in (("gray", gray), ("colors", gray[..., [0, 0, 0, 1]].copy())):
         source = write_picture(tmp_path / f"{name}.png", pixels)
-        assert run("resize", source, tmp_path / f"{name}-out.png", "--percent", "50") == 0
+        assert run("resize", source, "-o", tmp_path / f"{name}-out.png", "--percent", "50") == 0
     made, expected = (read(tmp_path / f"{name}-out.png")[0] for name in ("gray", "colors"))
     assert (made == expected[..., [0, 3]]).all()
 
@@ -136,7 +136,7 @@ def test_palettes_and_few_bits(tmp_path):
     image = pytest.importorskip("PIL.Image").fromarray(noise(16, 16))
     for mode, channels in (("P", 3), ("1", 1)):
         image.convert(mode).save(tmp_path / "in.png")
-        assert run("resize", tmp_path / "in.png", tmp_path / "out.png", *SAME_SIZE) == 0
+        assert run("resize", tmp_path / "in.png", "-o", tmp_path / "out.png", *SAME_SIZE) == 0
         values, spec = read(tmp_path / "out.png")
         assert spec.nchannels == channels
         wanted = np.asarray(image.convert(mode).convert("RGB" if channels == 3 else "L"))
@@ -147,7 +147,7 @@ def test_floats_with_straight_alpha(tmp_path):
     pixels = np.full((8, 8, 4), (0.5, 0.25, 0.125, 0.5), np.float32)
     source = write_picture(tmp_path / "in.tif", pixels)
     assert read(source, "float")[1].get_int_attribute("oiio:UnassociatedAlpha") == 1
-    assert run("resize", source, tmp_path / "out.exr", "--percent", "50") == 0
+    assert run("resize", source, "-o", tmp_path / "out.exr", "--percent", "50") == 0
     made = read(tmp_path / "out.exr", "float")[0]
     assert np.abs(made - (0.25, 0.125, 0.0625, 0.5)).max() < 1e-6
 
@@ -207,9 +207,9 @@ def test_pictures_have_no_date(tmp_path, ending):
     drawing.write_text("<svg xmlns='http://www.w3.org/2000/svg'><rect width='9' height='9'/></svg>")
     target = tmp_path / f"out.{ending}"
     for command in (
-        ("resize", source, target, "--percent", "50"),
-        ("resample", source, target, "--scale", "0.5"),
-        ("rasterize", drawing, target, "--side", "32"),
+        ("resize", source, "-o", target, "--percent", "50"),
+        ("resample", source, "-o", target, "--scale", "0.5"),
+        ("rasterize", drawing, "-o", target, "--side", "32"),
     ):
         assert run(*command) == 0
         assert DATE.search(target.read_bytes()) is None
@@ -223,7 +223,7 @@ def test_drawings_name_their_color_space(tmp_path):
     drawing.write_text(
         f"<svg xmlns='http://www.w3.org/2000/svg' width='99' height='99'>{rect}</svg>"
     )
-    assert run("rasterize", drawing, tmp_path / "out.exr", "--side", "32") == 0
+    assert run("rasterize", drawing, "-o", tmp_path / "out.exr", "--side", "32") == 0
     values, spec = read(tmp_path / "out.exr", "float")
     assert spec.getattribute("colorInteropID") == "lin_rec709_scene"
     stored = np.array([0xBC, 0x80, 0x40]) / 255

@@ -62,7 +62,7 @@ def test_pictures_are_turned_upright(tmp_path):
     pixels = (scenes.noise(8, 12)[..., :3] * 255).astype(np.uint8)
     turn = b"MM\0\x2a\0\0\0\x08\0\x01" + struct.pack(">HHIHHI", 0x112, 3, 1, 6, 0, 0)
     source = chunked(tmp_path / "in.png", pixels, (b"eXIf", turn))
-    result = run("resize", source, tmp_path / "out.png", *SAME_SIZE)
+    result = run("resize", source, "-o", tmp_path / "out.png", *SAME_SIZE)
     assert result.returncode == 0, result.stderr
     found, _ = content(tmp_path / "out.png")
     np.testing.assert_array_equal(np.rint(found[::-1] * 255), np.rot90(pixels, -1))
@@ -72,7 +72,7 @@ def test_pictures_are_turned_upright(tmp_path):
 def test_gray_stays_gray(tmp_path, channels):
     pixels = (scenes.noise(8, 12)[..., :channels] * 255).astype(np.uint8)
     source = chunked(tmp_path / "in.png", pixels)
-    result = run("resize", source, tmp_path / "out.png", *SAME_SIZE)
+    result = run("resize", source, "-o", tmp_path / "out.png", *SAME_SIZE)
     assert result.returncode == 0, result.stderr
     found, _ = content(tmp_path / "out.png")
     np.testing.assert_array_equal(np.rint(found[::-1] * 255), pixels)
@@ -81,14 +81,14 @@ def test_gray_stays_gray(tmp_path, channels):
 def test_colors_of_other_spaces(tmp_path):
     pixels = np.full((8, 8, 3), (150, 120, 90), np.uint8)
     source = chunked(tmp_path / "in.png", pixels, (b"cICP", bytes([12, 13, 0, 1])))
-    result = run("resize", source, tmp_path / "out.exr", "--percent", 50)
+    result = run("resize", source, "-o", tmp_path / "out.exr", "--percent", 50)
     assert result.returncode == 0, result.stderr
     found, _ = content(tmp_path / "out.exr")
     # As SMPTE publishes it, from Display P3 to Rec. 709.
     matrix = [[1.22494, -0.22494, 0.0], [-0.04206, 1.04206, 0.0], [-0.01964, -0.07864, 1.09828]]
     expected = np.array(matrix) @ scenes.to_linear(pixels[0, 0] / 255)
     assert np.abs(found[2, 2] - expected).max() < 1 / 1024
-    result = run("resize", source, tmp_path / "out.png", "--percent", 50)
+    result = run("resize", source, "-o", tmp_path / "out.png", "--percent", 50)
     assert result.returncode == 0, result.stderr
     assert b"cICP\x0c\x0d\0\1" in (tmp_path / "out.png").read_bytes()
 
@@ -96,7 +96,7 @@ def test_colors_of_other_spaces(tmp_path):
 def test_the_color_space_can_be_said(tmp_path):
     source = chunked(tmp_path / "in.png", np.full((8, 8, 3), (150, 120, 90), np.uint8))
     more = ("--percent", 50, "--colorspace", "lin_rec709_scene")
-    result = run("resize", source, tmp_path / "out.exr", *more)
+    result = run("resize", source, "-o", tmp_path / "out.exr", *more)
     assert result.returncode == 0, result.stderr
     found, _ = content(tmp_path / "out.exr")
     assert np.abs(found[2, 2] - np.array([150, 120, 90]) / 255).max() < 1 / 1024

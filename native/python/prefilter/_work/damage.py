@@ -41,6 +41,8 @@ def why_unreadable(error: BaseException, path: str | os.PathLike[str]) -> str:
             path
         )
         return f"{error.strerror}: '{os.fsdecode(other)}'" if is_other else error.strerror
+    if os.path.isfile(path) and os.path.getsize(path) == 0:
+        return _EMPTY
     if is_own(error):
         return " ".join(str(error).split())
     if isinstance(error, MemoryError):

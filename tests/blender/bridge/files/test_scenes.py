@@ -131,7 +131,7 @@ def test_chosen_objects_bring_what_moves_them(scene, tmp_path):
 @pytest.mark.parametrize("ending", [*IMPORTERS, ".blend"])
 def test_results_in_every_kind_of_file(scene, tmp_path, ending):
     target = tmp_path / f"out{ending}"
-    result = run("voxelize", scene, target, "--depth", 4)
+    result = run("voxelize", scene, "-o", target, "--depth", 4)
     assert result.returncode == 0, result.stderr
     found = loaded(target)
     if ending in (".ply", ".stl"):
@@ -157,7 +157,7 @@ def test_an_exporter_that_is_missing_is_told_first(scene, tmp_path, monkeypatch,
     absent = files.Exporter("export_scene.nothing", "use_selection")
     monkeypatch.setitem(files.EXPORTERS, ".fbx", absent)
     monkeypatch.setitem(files.EXPORTERS, ".glb", absent)
-    voxelize = ("voxelize", scene, tmp_path / "out.fbx", "--depth", 4)
+    voxelize = ("voxelize", scene, "-o", tmp_path / "out.fbx", "--depth", 4)
     bake = ("bake", scene, "--all", "--output", tmp_path / "out.glb")
     for command in (voxelize, bake):
         result = run(*command)

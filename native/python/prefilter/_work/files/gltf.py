@@ -53,8 +53,11 @@ class _File:
             data = self._chunks(data)
         try:
             self._tree = json.loads(data.decode("utf-8-sig"))
-        except ValueError as error:
-            raise ValueError(f"its JSON is damaged: {error}") from error
+        except json.JSONDecodeError as error:
+            where = f"line {error.lineno}, column {error.colno}"
+            raise ValueError(f"its JSON is damaged from {where} on") from error
+        except (ValueError, RecursionError) as error:
+            raise ValueError("its JSON is damaged") from error
         for name in _COMPRESSIONS:
             if name in self._list("extensionsRequired"):
                 raise ValueError(f"it is compressed by {name}; export it without compression")
