@@ -8,10 +8,9 @@ Blender ends as a whole where some of its importers find a file cut off.
 import os
 from pathlib import Path
 
+from prefilter import _native
 from prefilter._work.damage import damaged
 from prefilter._work.up_to_date import referred_files
-
-from .ply_check import is_whole as is_whole_ply
 
 _MOST_HEADER = 1 << 16
 _STL_HEADER, _STL_TRIANGLE = 84, 50
@@ -19,20 +18,15 @@ _STL_HEADER, _STL_TRIANGLE = 84, 50
 
 def check(path: str) -> None:
     """Raises OSError for a file that is empty, or of which Blender's importer would not return."""
-    with open(path, "rb") as file:
-        start = file.read(_MOST_HEADER)
     size = os.path.getsize(path)
     ending = Path(path).suffix.lower()
-    is_whole = size > 0
-    if ending == ".ply":
-        is_whole = is_whole_ply(Path(path))
-    elif ending == ".stl":
-        count = int.from_bytes(start[80:84], "little")
-        is_whole = b"facet" in start or (
-            len(start) >= _STL_HEADER and size == _STL_HEADER + count * _STL_TRIANGLE
-        )
-    if not is_whole:
+    if size == 0 or (ending == ".stl" and not _is_stl(path, size)):
         raise OSError(f"FILE: cannot load '{path}': {damaged(path, 'its contents are too short')}")
+    if ending == ".ply":
+        try:
+            _native.read_ply_mesh(os.fsencode(path), None)
+        except ValueError as error:
+            raise OSError(f"FILE: {error}") from error
 
 
 def why(path: str, error: BaseException) -> str:
@@ -44,3 +38,11 @@ def why(path: str, error: BaseException) -> str:
         reason = damaged(path, str(error))
         return f"{reason}, or of a Blender that is much newer"
     return damaged(path, str(error))
+
+
+def _is_stl(path: str, size: int) -> bool:
+    """Tells whether an STL file is text, or has as many triangles as it says."""
+    with open(path, "rb") as file:
+        start = file.read(_MOST_HEADER)
+    count = int.from_bytes(start[80:84], "little")
+    return b"facet" in start or size == _STL_HEADER + count * _STL_TRIANGLE

@@ -4,10 +4,8 @@
 
 import importlib
 import random
-from pathlib import Path
 
 import bpy
-import numpy as np
 import pytest
 from command_line import assert_fails, run
 
@@ -62,43 +60,3 @@ def test_a_file_beside_it_that_is_missing_is_named(files):
     buffer.unlink()
     result = run("voxelize", files / "whole.gltf", "-o", files / "out.ply", "--depth", 3)
     assert_fails(result, f"the file '{buffer.name}' beside it is missing")
-
-
-def write_ply(path: Path, kind: str, faces: list[list[int]], *, is_listed_first: bool) -> None:
-    """Writes four vertices, and faces with a value of their own before or behind the corners."""
-    corners, value = "property list uchar int vertex_indices\n", "property short group\n"
-    properties = corners + value if is_listed_first else value + corners
-    head = f"ply\nformat {kind} 1.0\nelement vertex 4\n"
-    head += "".join(f"property float {name}\n" for name in "xyz")
-    head += f"element face {len(faces)}\n{properties}end_header\n"
-    if kind == "ascii":
-        rows = ["0 0 0", "1 0 0", "0 1 0", "0 0 1"]
-        for face in faces:
-            words = " ".join(map(str, [len(face), *face]))
-            rows.append(f"{words} 7" if is_listed_first else f"7 {words}")
-        path.write_text(head + "\n".join(rows) + "\n")
-        return
-    order = "<" if "little" in kind else ">"
-    data = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], f"{order}f4").tobytes()
-    for face in faces:
-        group = np.array([7], f"{order}i2").tobytes()
-        listed = bytes([len(face)]) + np.array(face, f"{order}i4").tobytes()
-        data += listed + group if is_listed_first else group + listed
-    path.write_bytes(head.encode() + data)
-
-
-@pytest.mark.parametrize("kind", ["ascii", "binary_little_endian", "binary_big_endian"])
-@pytest.mark.parametrize("is_listed_first", [False, True])
-def test_ply_files_are_whole_or_not(tmp_path, kind, is_listed_first):
-    package = "bl_ext.user_default.prefilter.bridge.files.ply_check"
-    is_whole = importlib.import_module(package).is_whole
-    path = tmp_path / "a.ply"
-    for faces in ([[0, 2, 1], [0, 1, 3]], [[0, 2, 1], [0, 1, 3, 2]], [], [[0, 1, 2, 3]]):
-        write_ply(path, kind, faces, is_listed_first=is_listed_first)
-        data = path.read_bytes()
-        assert is_whole(path)
-        path.write_bytes(data[:-3])
-        assert not is_whole(path)
-    for face in ([0, 1, 4], [0, 1, -1]):
-        write_ply(path, kind, [face], is_listed_first=is_listed_first)
-        assert not is_whole(path)
