@@ -20,11 +20,11 @@ def files(tmp_path):
         "bl_ext.user_default.prefilter.bridge.files.scenes"
     ).EXPORTERS
     for ending in KINDS:
-        path = str(tmp_path / f"whole{ending}")
+        path = tmp_path / f"whole{ending}"
         if ending == ".blend":
-            bpy.ops.wm.save_as_mainfile(filepath=path, copy=True)
+            bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True)
         else:
-            exporters[ending](path)
+            exporters[ending].export(path, is_selection=True)
     return tmp_path
 
 
