@@ -142,8 +142,8 @@ def test_flamenco_reconstructs_in_steps():
     places = {"points": "scans", "surface": "scan.ply", "work": "/work"}
     job = compiled("prefilter-reconstruct", **places, depth=11, parts=32, tasks=2)
     start = ["{blender}", "--background", "--command", "prefilter", "reconstruct"]
-    start += ["scans", "scan.ply", "--depth", "11", "--memory-limit", "0", "--work", "/work"]
-    start += ["--parts", "32", "--step"]
+    start += ["scans", "--output", "scan.ply", "--depth", "11", "--memory-limit", "0"]
+    start += ["--work", "/work", "--parts", "32", "--step"]
     runs = (("measure", 2), ("count", 2), ("merge", 1), ("part", 2), ("join", 1))
     assert commands(job) == [
         [*start, step, "--task", f"{number}/{count}"]
