@@ -220,7 +220,7 @@ def _phantoms(report: "prefilter.ReconstructionReport", origin: Sequence[float])
 def _contradiction(report: "prefilter.ReconstructionReport") -> Iterator[str]:
     """Yields what became of given normals that contradict each other."""
     if report.is_contradictory:
-        share = f"{100.0 * report.contradiction:.2g} %"
+        share = f"{report.contradiction:.2f}"
         if report.is_reoriented:
             text = (
                 "given normals contradict those of near points ({} of them), and were turned to "
