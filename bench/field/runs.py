@@ -51,6 +51,7 @@ def _command(*arguments: str) -> Callable[[Path, Path], list[str]]:
         *_COMMAND,
         arguments[0],
         str(source),
+        "-o",
         str(target),
         *arguments[1:],
     ]
