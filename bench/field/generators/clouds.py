@@ -26,7 +26,7 @@ def write(stem: Path, random: np.random.Generator) -> Mapping[str, Any]:
     scale = float(random.choice([1, 1, 1, 0.001, 1000]))
     sizes = tuple(scale * size for size in sizes)
     # A room is seen from its middle, which is the origin.
-    is_far = kind != "room" and random.random() < 0.3
+    is_far = kind != "room" and scale >= 1 and random.random() < 0.3
     center = np.array([4.2e5, 5.4e6, 300.0]) if is_far else np.zeros(3)
     if kind != "room" and not is_far:
         center = scale * random.choice([0, 3, -5], 3)
@@ -95,7 +95,7 @@ def _write_file(
     elif extension == ".pcd":
         _write_pcd(stem.with_suffix(".pcd"), rows)
     else:
-        np.savetxt(stem.with_suffix(".xyz"), rows, "%.9g")
+        np.savetxt(stem.with_suffix(".xyz"), rows, "%.12g")
 
 
 def _write_ply(path: Path, rows: Floats, random: np.random.Generator) -> None:
