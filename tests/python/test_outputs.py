@@ -54,7 +54,7 @@ def test_one_file_needs_no_flag(folder):
     [
         (["1.png"], ["nothing to write", "-o OUTPUT"]),
         (["1.png", "2.png", "3.png"], ["found 3 files without -o", "{name}"]),
-        (["1.png", "2.png", "half/{name}.png"], ["-o 'half/{name}.png'"]),
+        (["1.png", "2.png", "half/{nam}.png"], ["found 3 files without -o", "{name}"]),
         (["1.png", "{nam}.png"], ["{nam}", "allowed: {name}"]),
         (["1.png", "-o", "{nam}.png"], ["{nam}", "allowed: {name}"]),
         (["1.png", "-o", "{name}{}.png"], ["{}", "allowed: {name}"]),
@@ -180,3 +180,16 @@ def test_a_shell_that_fills_in_names(folder):
     done = subprocess.run(["sh", "-c", words], capture_output=True, text=True, check=False)
     assert done.returncode == 2
     assert contents(folder) == before
+
+
+def test_a_pattern_behind_several_files_is_what_they_become(folder):
+    arguments = ("resize", "1.png", "2.png", "small-{name}.png", *HALF)
+    for _ in range(2):
+        assert run(*arguments) == 0
+    assert all((folder / f"small-{name}.png").exists() for name in "12")
+
+
+def test_a_file_whose_name_has_the_placeholder_is_no_pattern(folder, capsys):
+    (folder / "{name}.png").write_bytes((folder / "1.png").read_bytes())
+    told = fails(capsys, 2, "resize", "1.png", "2.png", "{name}.png", *HALF)
+    assert "found 3 files without -o" in told

@@ -57,7 +57,9 @@ def settle(
     names: tuple[str, str],
     placeholders: Sequence[str] = (),
 ) -> None:
-    """Finds out which file is written: that of -o, or the second of two.
+    """Finds out which file is written: that of -o, the second of two, or a pattern behind several.
+
+    A pattern of the shell becomes names of files that exist, none of which has a placeholder.
 
     Args:
         options: The arguments: `sources` and `target`, which are set as they were meant.
@@ -70,13 +72,15 @@ def settle(
         count = len(options.sources)
         if count == 1:
             options.usage_error(f"nothing to write: give -o {target}")
-        if count > 2:
-            last = options.sources[-1]
-            if placeholders and not patterns.has(last, NAME):
+        last = options.sources[-1]
+        is_pattern = bool(placeholders) and patterns.has(last, NAME) and not Path(last).exists()
+        if count > 2 and not is_pattern:
+            if placeholders:
                 last = "FOLDER/{name}.EXTENSION"
             options.usage_error(
                 f"found {count} files without -o: give every {source}, and -o '{last}'"
             )
+        options.is_positional = not is_pattern
         *options.sources, options.target = options.sources
     check_path(options, target, options.target, placeholders)
 
