@@ -2,6 +2,7 @@
 
 """Benchmarks: results are data, and the pages follow from them."""
 
+import fnmatch
 import re
 import sys
 from pathlib import Path
@@ -25,18 +26,27 @@ def test_pages_are_what_follows_from_the_results(page):
 
 def test_marks_are_closed():
     for page, text in TEXT.items():
-        found = re.findall(r"<!-- (?:result|commands|criteria|verdicts)\b", text)
+        found = re.findall(r"<!-- (?:result|totals|commands|criteria|verdicts)\b", text)
         assert len(found) == len(pages.MARK.findall(text)), page
 
 
 @pytest.mark.parametrize("path", RESULTS, ids=lambda path: path.stem)
-def test_every_table_is_on_a_page(path):
+def test_every_result_is_on_a_page(path):
+    """Each table is there, as it is or added up; or the page names the file, where it is long."""
     whole = "".join(TEXT.values())
     found = report.decoded(path.read_text(encoding="utf-8"))
     assert {"command", "machine", "date", "commit", "notes", "tables"} == set(found)
+    patterns = re.findall(r"`bench/results/([\w*-]+)\.json`", whole)
+    is_named = any(fnmatch.fnmatch(path.stem, pattern) for pattern in patterns)
     for name, table in found["tables"].items():
-        assert f"<!-- result: {path.stem} {name} -->" in whole, name
+        added_up = re.search(rf"<!-- totals:.* {path.stem} .*{name} -->", whole)
+        assert is_named or added_up or f"<!-- result: {path.stem} {name} -->" in whole, name
         assert {len(row) for row in table["rows"]} == {len(table["columns"])}
+
+
+def test_totals_add_up_numbers_and_words():
+    assert pages._sum(("1", "2", "-3")) == "0"
+    assert pages._sum(("9 old, 21 new", "1 old", "old", "new")) == "11 old, 22 new"
 
 
 @pytest.mark.parametrize("path", RESULTS, ids=lambda path: path.stem)
