@@ -21,6 +21,8 @@ MAX_BLOCKS = 4
 MAX_BLOCK_DIFFERENCE = 0.03
 """Of linear light: overshoots of a filter at lines are cut off in files of bytes."""
 MAX_DRAWING_DIFFERENCE = 8 / 255
+RESVG_WIDTH = 1024
+"""About that of the picture that is compared, whose longer side this is by default."""
 Image.MAX_IMAGE_PIXELS = None
 _TURNS = {
     2: Image.Transpose.FLIP_LEFT_RIGHT,
@@ -203,7 +205,7 @@ def _by_resvg(path: Path) -> Floats | None:
     except ImportError:
         return None
     try:
-        drawn = bytes(resvg_py.svg_to_bytes(svg_path=str(path)))
+        drawn = bytes(resvg_py.svg_to_bytes(svg_path=str(path), width=RESVG_WIDTH))
         return np.asarray(Image.open(io.BytesIO(drawn)).convert("RGBA"), float) / 255
     except Exception:  # What another renderer refuses is no reference.
         return None
