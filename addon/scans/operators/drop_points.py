@@ -2,9 +2,11 @@
 
 """`prefilter.drop_points`: asks what to make of files of points that are dropped."""
 
+import os
+
 import bpy
 
-from ...core.translations import marked, tr
+from ...core.translations import marked, reported, tr
 from ..choices import EXTENSIONS
 from ..properties import FilesProperties
 from .import_points import PREFILTER_OT_import_points
@@ -54,7 +56,11 @@ class PREFILTER_OT_drop_points(FilesProperties, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Imports the files."""
         del context
-        return set(bpy.ops.prefilter.import_points(**self.named_files()))
+        try:
+            return set(bpy.ops.prefilter.import_points(**self.named_files()))
+        except RuntimeError as error:
+            self.report({"ERROR"}, reported(error))
+            return {"CANCELLED"}
 
 
 class PREFILTER_FH_points(bpy.types.FileHandler):
@@ -63,7 +69,10 @@ class PREFILTER_FH_points(bpy.types.FileHandler):
     bl_idname = "PREFILTER_FH_points"
     bl_label = "Point Cloud"
     bl_import_operator = PREFILTER_OT_drop_points.bl_idname
-    bl_file_extensions = ";".join(ending for ending in EXTENSIONS if ending not in _OTHERS)
+    # Blender compares the last extension of a name: ".gz" of ".ply.gz".
+    bl_file_extensions = ";".join(
+        os.path.splitext(f"a{ending}")[1] for ending in EXTENSIONS if ending not in _OTHERS
+    )
 
     @classmethod
     def poll_drop(cls, context: bpy.types.Context) -> bool:

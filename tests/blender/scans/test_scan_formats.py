@@ -2,16 +2,13 @@
 
 """Files of points in formats whose readers the extension brings along."""
 
-import io
-
 import bpy
 import clouds
 import numpy as np
 import pytest
 from e57_files import Floating, e57
 from las_files import OFFSETS, SCALES, las
-
-COUNT = 3000
+from scan_files import COUNT, packed_las
 
 
 @pytest.fixture
@@ -21,32 +18,11 @@ def steps():
     return np.round(positions / (SCALES[0], SCALES[1], 0.01)).astype(int)
 
 
-def packed(contents: bytes, count: int) -> bytes:
-    """A LAZ file of a LAS file's points of format 6, which the extension's lazrs packs."""
-    import lazrs
-
-    record = lazrs.LazVlr.new_for_compression(6, 0)
-    data = record.record_data()
-    data = data.tobytes() if hasattr(data, "tobytes") else bytes(data)
-    head = bytearray(contents[:375])
-    head[104] |= 0x80
-    listed = bytes(2) + b"laszip encoded".ljust(16, b"\0")
-    listed += (22204).to_bytes(2, "little") + len(data).to_bytes(2, "little") + bytes(32) + data
-    head[96:100] = (375 + len(listed)).to_bytes(4, "little")
-    head[100:104] = (1).to_bytes(4, "little")
-    target = io.BytesIO(bytes(head) + listed)
-    target.seek(0, io.SEEK_END)
-    compressor = lazrs.LasZipCompressor(target, record)
-    compressor.compress_many(np.frombuffer(contents[375:], np.uint8))
-    compressor.done()
-    return target.getvalue()
-
-
 @pytest.mark.parametrize("ending", [".las", ".laz"])
 def test_airborne_scans_open_as_installed(tmp_path, steps, ending, capfd):
     path = tmp_path / f"tile{ending}"
     contents = las([{"xyz": row} for row in steps.tolist()], 6)
-    path.write_bytes(contents if ending == ".las" else packed(contents, COUNT))
+    path.write_bytes(contents if ending == ".las" else packed_las(contents, COUNT))
     assert bpy.ops.prefilter.import_points(filepath=str(path)) == {"FINISHED"}
     made = bpy.context.object
     found = clouds.points(made) + np.array(made["scan_offset"])
