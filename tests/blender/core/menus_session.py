@@ -16,9 +16,21 @@ import bpy
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 sys.path.append(str(Path(__file__).resolve().parents[2] / "python"))
 
+import bodies
 import entries
 from entries import Call, Case
-from window import PACKAGE, Stage, begun, browser, chosen_in_browser, idle, moved, play, until
+from window import (
+    PACKAGE,
+    Stage,
+    begun,
+    browser,
+    chosen_in_browser,
+    idle,
+    moved,
+    play,
+    until,
+    working_on,
+)
 
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
 KINDS = ("VIEW_3D", "IMAGE_EDITOR", "PROPERTIES", "TEXT_EDITOR")
@@ -36,17 +48,17 @@ def session() -> Iterator[None]:
     yield
     for call in offered:
         yield from called(stage, reports, call)
-    yield from dropped(stage, reports)
+    yield from dropped(stage)
     yield from menus(stage)
     yield from panels(stage)
-    found["errors"] = reports.taken("error")
     RESULT.write_text(json.dumps(found))
 
 
 class Reports:
-    """What Blender's Info editor lists: the reports of all operators."""
+    """What Blender's Info editor lists: the reports of all operators.
 
-    KINDS = ("info", "operator", "warning", "error", "debug")
+    It does not tell errors from others; Blender prints those, and `in_window` finds them.
+    """
 
     def __init__(self, stage: Stage) -> None:
         """Makes the smallest area the editor."""
@@ -54,22 +66,19 @@ class Reports:
         areas = [area for area in stage.window.screen.areas if area != stage.area]
         self._area = min(areas, key=lambda area: area.width * area.height)
         self._area.type = "INFO"
-        self._seen = dict.fromkeys(self.KINDS, 0)
+        self._seen = 0
 
-    def taken(self, kind: str) -> list[str]:
-        """Returns the reports of a kind since the last call."""
-        space = self._area.spaces.active
-        for other in self.KINDS:
-            setattr(space, f"show_report_{other}", other == kind)
+    def taken(self) -> list[str]:
+        """Returns the reports since the last call."""
         region = next(one for one in self._area.regions if one.type == "WINDOW")
         manager = bpy.context.window_manager
         manager.clipboard = ""
         with bpy.context.temp_override(window=self._window, area=self._area, region=region):
             bpy.ops.info.select_all(action="SELECT")
             bpy.ops.info.report_copy()
-        lines = manager.clipboard.splitlines()
-        new = lines[self._seen[kind] :]
-        self._seen[kind] = len(lines)
+        # Calls of operators are listed, too.
+        lines = [one for one in manager.clipboard.splitlines() if not one.startswith("bpy.")]
+        new, self._seen = lines[self._seen :], len(lines)
         return new
 
 
@@ -79,8 +88,7 @@ def called(stage: Stage, reports: Reports, call: Call) -> Iterator[None]:
     entries.clear()
     yield
     shown = case.scene()
-    for kind in ("info", "error"):
-        reports.taken(kind)
+    reports.taken()
     operator = entries.operator_of(call.operator)
     note: dict[str, Any] = {"menu": call.menu, "operator": call.operator}
     found["calls"].append(note)
@@ -94,8 +102,7 @@ def called(stage: Stage, reports: Reports, call: Call) -> Iterator[None]:
             note["problem"] = str(error)
             return
     yield from answered(stage, case)
-    note["done"] = reports.taken("info")
-    note["errors"] = reports.taken("error")
+    note["done"] = reports.taken()
     note["browses"] = browser() is not None
 
 
@@ -120,7 +127,7 @@ def answered(stage: Stage, case: Case) -> Iterator[None]:
     yield
 
 
-def dropped(stage: Stage, reports: Reports) -> Iterator[None]:
+def dropped(stage: Stage) -> Iterator[None]:
     """Does what Blender does when a file of each extension is dropped that a handler names."""
     for handler in entries.handlers():
         operator = entries.operator_of(handler.bl_import_operator)
@@ -145,7 +152,6 @@ def dropped(stage: Stage, reports: Reports) -> Iterator[None]:
             yield
             note["vertices"] = [len(obj.data.vertices) for obj in bpy.data.objects]
             note["images"] = [list(image.size) for image in bpy.data.images]
-            note["errors"] = reports.taken("error")
 
 
 def menus(stage: Stage) -> Iterator[None]:
@@ -192,6 +198,8 @@ def panels(stage: Stage) -> Iterator[None]:
     drawn: set[str] = set()
     unfold(drawn)
     for scene in entries.PANEL_SCENES:
+        stage.area.type = "VIEW_3D"
+        yield from until(lambda: not bpy.app.is_job_running("RENDER_PREVIEW"))
         entries.clear()
         yield
         shown = scene()
@@ -203,6 +211,7 @@ def panels(stage: Stage) -> Iterator[None]:
             elif not (scene is entries.sculpted and kind != "VIEW_3D"):
                 yield from stage.open_tab()
             yield from stage.redrawn()
+    yield from queued(stage)
     entries.clear()
     stage.area.type = "VIEW_3D"
     yield
@@ -218,9 +227,24 @@ def panels(stage: Stage) -> Iterator[None]:
     found["panels"] = sorted(panel.__name__ for panel in entries.panels())
 
 
+def queued(stage: Stage) -> Iterator[None]:
+    """Shows the queue while a job runs and another one waits."""
+    entries.clear()
+    bodies.cube()
+    with working_on("voxels.voxelization", "Voxelization", until_cancelled=False):
+        for _ in range(2):
+            with entries.editor(stage.area, "VIEW_3D", None):
+                bpy.ops.prefilter.voxelize("INVOKE_DEFAULT")
+        for kind in ("VIEW_3D", "IMAGE_EDITOR"):
+            stage.area.type = kind
+            yield from stage.open_tab()
+            yield from stage.redrawn()
+    yield from until(idle)
+
+
 def properties(stage: Stage) -> Iterator[None]:
     """Shows the tabs of the Properties editor that the scene has."""
-    for tab in ("RENDER", "DATA", "MATERIAL"):
+    for tab in ("RENDER", "DATA"):
         try:
             stage.area.spaces.active.context = tab
         except TypeError:

@@ -15,24 +15,22 @@ NEEDS_CACHE = set() if entries.HAS_CACHE else {"prefilter.bake_texture_cache"}
 
 
 def test_menu_entries_work_in_a_window(found):
-    """Each ends with a report of what it has done, or at once, and without an error."""
+    """Each ends with a report, or at once; errors, which Blender prints, end the session badly."""
     assert not found["silent"]
     assert len(found["calls"]) > 60
     bad = [one for one in found["calls"] if not ended_well(one)]
     assert not bad, bad
-    assert not found["errors"]
 
 
 def ended_well(call):
     if call["operator"] in NEEDS_CACHE:
         return not call["polls"]
     is_done = "FINISHED" in call.get("begun", ()) or call.get("done")
-    return call["polls"] and is_done and not call["errors"] and not call["browses"]
+    return call["polls"] and is_done and not call["browses"]
 
 
 def test_menus_open_in_a_window(found):
-    """All but the one of a button, which needs a button under the mouse; see test_keys.py."""
-    assert set(found["entries"]) - set(found["drawn_entries"]) == {"UI_MT_button_context_menu"}
+    assert set(found["entries"]) == set(found["drawn_entries"])
 
 
 def test_panels_open_in_a_window(found):
@@ -44,7 +42,6 @@ def test_file_handlers_work_in_a_window(found):
         handler.__name__ for handler in entries.handlers()
     }
     for one in found["dropped"]:
-        assert not one["errors"], one
         assert len(one["editors"]) == 1, one
         if one["editors"] == ["VIEW_3D"]:
             assert one["vertices"] == [scan_files.COUNT], one
