@@ -189,7 +189,7 @@ def in_window(display: dict[str, str]) -> Callable[[Path, Path], None]:
         output = result.stdout + result.stderr
         assert result.returncode == 0, output
         assert "Traceback" not in output, output
-        assert "Error" not in output, output
+        assert "Error:" not in output, output
 
     return run
 
