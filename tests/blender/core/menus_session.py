@@ -17,6 +17,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 sys.path.append(str(Path(__file__).resolve().parents[2] / "python"))
 
 import bodies
+import clouds
 import entries
 from entries import Call, Case
 from window import (
@@ -150,7 +151,7 @@ def dropped(stage: Stage) -> Iterator[None]:
                 stage.window.event_simulate(type="I", value="PRESS", unicode="i")
             yield from until(lambda: idle() and bool(bpy.data.objects or bpy.data.images))
             yield
-            note["vertices"] = [len(obj.data.vertices) for obj in bpy.data.objects]
+            note["points"] = [len(clouds.points(obj)) for obj in bpy.data.objects]
             note["images"] = [list(image.size) for image in bpy.data.images]
 
 

@@ -46,7 +46,7 @@ def test_file_handlers_work_in_a_window(found):
     for one in found["dropped"]:
         assert len(one["editors"]) == 1, one
         if one["editors"] == ["VIEW_3D"]:
-            assert one["vertices"] == [scan_files.COUNT], one
+            assert one["points"] == [scan_files.COUNT], one
         else:
             assert len(one["images"]) == 1, one
 
