@@ -36,13 +36,20 @@ from window import (
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
 KINDS = ("VIEW_3D", "IMAGE_EDITOR", "PROPERTIES", "TEXT_EDITOR")
 
-found: dict[str, Any] = {"calls": [], "dropped": [], "drawn_entries": [], "drawn": []}
+found: dict[str, Any] = {
+    "problems": [],
+    "calls": [],
+    "dropped": [],
+    "drawn_entries": [],
+    "drawn": [],
+}
 
 
 def session() -> Iterator[None]:
     """Yields whenever Blender should draw and handle events before going on."""
     stage = begun()
     reports = Reports(stage)
+    note_problems()
     entries.clear()
     offered, silent = entries.calls(stage.area)
     found["silent"] = sorted(silent)
@@ -55,11 +62,20 @@ def session() -> Iterator[None]:
     RESULT.write_text(json.dumps(found))
 
 
-class Reports:
-    """What Blender's Info editor lists: the reports of all operators.
+def note_problems() -> None:
+    """Has operators that work in the background note why they fail."""
+    owner = sys.modules[f"{PACKAGE}.core.operator"].BackgroundOperator
+    fail = owner._fail
 
-    It does not tell errors from others; Blender prints those, and `in_window` finds them.
-    """
+    def noting(self: Any, problem: BaseException | str) -> set[str]:
+        found["problems"].append(f"{self.bl_idname}: {problem}")
+        return fail(self, problem)
+
+    owner._fail = noting
+
+
+class Reports:
+    """What Blender's Info editor lists: the reports of all operators, errors or not."""
 
     def __init__(self, stage: Stage) -> None:
         """Makes the smallest area the editor."""
