@@ -11,9 +11,13 @@ import pytest
 import scan_files
 
 SESSION = Path(__file__).with_name("menus_session.py")
+LONG = pytest.mark.skipif(
+    not os.environ.get("PREFILTER_TEST_ALL"), reason="minutes: run with PREFILTER_TEST_ALL only"
+)
 NEEDS_CACHE = set() if entries.HAS_CACHE else {"prefilter.bake_texture_cache"}
 
 
+@LONG
 def test_menu_entries_work_in_a_window(found):
     """Each ends with a report, or at once, and none fails."""
     assert not found["silent"]
@@ -32,14 +36,17 @@ def ended_well(call):
     return call["polls"] and is_done and not call["browses"]
 
 
+@LONG
 def test_menus_open_in_a_window(found):
     assert set(found["entries"]) == set(found["drawn_entries"])
 
 
+@LONG
 def test_panels_open_in_a_window(found):
     assert set(found["panels"]) == set(found["drawn"])
 
 
+@LONG
 def test_file_handlers_work_in_a_window(found):
     assert {one["handler"] for one in found["dropped"]} == {
         handler.__name__ for handler in entries.handlers()
@@ -57,6 +64,7 @@ def area():
     return bpy.context.window_manager.windows[0].screen.areas[0]
 
 
+@LONG
 def test_menu_entries_work(area, tmp_path):
     """Without a window, too."""
     offered, silent = entries.calls(area)
