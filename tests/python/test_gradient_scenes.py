@@ -178,3 +178,39 @@ def test_a_gradient_that_is_nothing_outside_of_a_cone():
     across = np.abs((y - 4.0) * np.cos(turn) - (x - 4.0) * np.sin(turn))
     expected = (across <= 1.0).reshape(SIDE, 96, SIDE, 96).mean(axis=(1, 3))
     np.testing.assert_allclose(found, expected, atol=1.0 / 255.0)
+
+
+@pytest.mark.parametrize("filter_", ["box", "tent"])
+@pytest.mark.parametrize("period", [0.13, 0.5, 1.7, 3.5])
+def test_fine_rings_are_what_points_show(filter_, period):
+    """A triangle of them over gray, one of its sides across pixels."""
+    center, count = np.array([3.3, 3.8]), 96
+    stops = [(0.0, (0.0, 0.0, 0.0, 1.0)), (0.5, (0.5, 0.0, 0.0, 0.5)), (1.0, (1.0,) * 4)]
+    points = np.array([[0.0, 0.0], [SIDE, 0.0], [0.0, 0.9 * SIDE]])
+    scene = Scene(0, ("color",), ("pad",))
+    square = np.array([[0.0, 0.0], [SIDE, 0.0], [SIDE, SIDE], [0.0, SIDE]])
+    gray = (0.5, 0.5, 0.5, 1.0)
+    scene.layers = [
+        (square, ("color", gray)),
+        (points, ("radial", stops, "repeat", center, None, period)),
+    ]
+    back, front = prefilter.Shape(color=gray), prefilter.Shape(color=gray)
+    back.add_polygon(square)
+    front.add_polygon(points)
+    front.radial_gradient(tuple(center), period, stops, spread="repeat")
+    found = prefilter.rasterize([back, front], SIDE, SIDE, filter=filter_, threads=1)
+    assert found.min() >= -1e-6
+    assert found.max() <= 1.0 + 1e-6
+    if filter_ == "box":
+        np.testing.assert_allclose(found, scene.means(count), atol=4.0 / 255.0)
+    else:
+        # The tent over two pixels, by points.
+        at = (np.arange(SIDE * count) + 0.5) / count
+        x, y = np.meshgrid(at, at)
+        color = colors_at(scene.layers[1][1], x, y)
+        over = color + (1.0 - color[..., 3:]) * np.array(gray)
+        value = np.where(inside(points, x, y)[..., None], over, np.array(gray))
+        weights = np.maximum(1.0 - np.abs(at[None] - np.arange(1, SIDE - 1)[:, None] - 0.5), 0.0)
+        weights /= weights.sum(axis=1, keepdims=True)
+        expected = np.einsum("ai,bj,ijc->abc", weights, weights, value)
+        np.testing.assert_allclose(found[1:-1, 1:-1], expected, atol=4.0 / 255.0)

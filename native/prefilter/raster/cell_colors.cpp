@@ -2,6 +2,8 @@
 
 #include "prefilter/raster/cell_colors.h"
 
+#include <algorithm>
+
 #include "prefilter/raster/paint_bounds.h"
 
 namespace prefilter {
@@ -29,6 +31,12 @@ CellColors::CellColors(const LayerStack& stack, const CellFilter& filter,
       most_passing_.push_back(prefilter::most_passing(*layer.paint, channels));
       round_.push_back(RoundGradient::of(*layer.paint, 1.0));
     }
+  }
+  for (std::size_t i = 0; i < stack.layers.size(); ++i) {
+    const StackLayer& layer = stack.layers[i];
+    if (layer.is_cutter || !prefilter::has_fine_stops(*layer.paint)) continue;
+    fine_.resize(stack.layers.size());
+    fine_[i].emplace(*layer.paint);
   }
 }
 
@@ -109,10 +117,20 @@ void CellColors::compose(std::uint64_t present, ChannelValues* out) const {
   for (int c = 0; c < channels_; ++c) (*out)[c] -= (1.0 - veil.passing) * background_[c];
 }
 
-ChannelValues CellColors::color_at(std::uint32_t layer, const Point2& point) const {
+bool CellColors::has_fine_stops() const {
+  return !fine_.empty() &&
+         std::any_of(seen_layers_.begin(), seen_layers_.end(),
+                     [&](const SeenLayer& seen) { return fine_[seen.layer].has_value(); });
+}
+
+ChannelValues CellColors::color_at(std::uint32_t layer, const Spot& spot) const {
   const Paint& paint = *stack_.layers[layer].paint;
   if (paint.kind == Paint::Kind::kConstant) return paint.constant;
-  const Point2 place = center_ + pixels_per_cell_ * point;
+  const Point2 place = center_ + pixels_per_cell_ * spot.point;
+  if (!fine_.empty() && fine_[layer] && !(spot.side == Point2{})) {
+    return fine_[layer]->over(place, pixels_per_cell_ * spot.side,
+                              pixels_per_cell_ * spot.other_side);
+  }
   return round_[layer] ? round_[layer]->at(place) : paint.at(place);
 }
 
@@ -125,11 +143,11 @@ bool CellColors::is_constant_where(std::uint64_t present) const {
   return true;
 }
 
-ChannelValues CellColors::compose_at(std::uint64_t present, const Point2& point) const {
+ChannelValues CellColors::compose_at(std::uint64_t present, const Spot& spot) const {
   Veil veil;
   for (const SeenLayer& seen : seen_layers_) {
     if (seen.place != SeenLayer::kFull && (present >> seen.place & 1) == 0) continue;
-    const ChannelValues color = color_at(seen.layer, point);
+    const ChannelValues color = color_at(seen.layer, spot);
     veil.put_behind(color, opacity(color), channels_);
     if (veil.passing < kLeastPassing) break;
   }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "prefilter/raster/cell_filter.h"
+#include "prefilter/raster/gradient_means.h"
 #include "prefilter/raster/round_gradient.h"
 #include "prefilter/raster/row_layers.h"
 
@@ -73,12 +74,21 @@ class CellColors {
 
   /// Of other colors: all layers that were looked at, from the highest.
   std::span<const SeenLayer> seen_layers() const { return seen_layers_; }
-  /// The value of a layer at a point, from the cell's center in cells.
-  ChannelValues color_at(std::uint32_t layer, const Point2& point) const;
+  /// A point of a cell, from its center in cells, and the parallelogram around it over which the
+  /// mean counts where stops are fine; without sides it is the value at the point.
+  struct Spot {
+    Point2 point;
+    Point2 side;
+    Point2 other_side;
+  };
+  /// Whether a layer that was looked at has fine stops, so that spots must be given.
+  bool has_fine_stops() const;
+  /// The value of a layer at a spot.
+  ChannelValues color_at(std::uint32_t layer, const Spot& spot) const;
   /// Whether what shows where these layers are present is the same all over the cell.
   bool is_constant_where(std::uint64_t present) const;
-  /// As compose(), at a point.
-  ChannelValues compose_at(std::uint64_t present, const Point2& point) const;
+  /// As compose(), at a spot.
+  ChannelValues compose_at(std::uint64_t present, const Spot& spot) const;
 
  private:
   bool append_full(std::uint32_t end, std::uint32_t behind, const LayerSet& full);
@@ -95,6 +105,7 @@ class CellColors {
   bool is_gentle_ = true;
   std::vector<double> most_passing_;
   std::vector<std::optional<RoundGradient>> round_;
+  std::vector<std::optional<GradientMeans>> fine_;  // by layers, or none at all
   Point2 center_;
   std::span<const CellLayer> layers_;
   const LayerSet* all_full_ = nullptr;

@@ -3,11 +3,20 @@
 #include "prefilter/raster/cell_quadrature.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "prefilter/base/gauss_rule.h"
 #include "prefilter/filters/kernel.h"
 
 namespace prefilter {
+namespace {
+
+// Parallelograms over which fine stops have a mean are this many to a cell's side; filters weigh
+// one as its center.
+constexpr double kFinePartsOfBox = 4.0;
+constexpr double kFinePartsOfOthers = 8.0;
+
+}  // namespace
 
 CellQuadrature::Rule CellQuadrature::rule_of(int points) {
   const auto of = [](const auto& rule) { return Rule{rule.nodes, rule.weights}; };
@@ -38,6 +47,7 @@ CellQuadrature::CellQuadrature(int degree)
 
 void CellQuadrature::begin(const CellColors& colors) {
   channels_ = colors.channels();
+  has_fine_stops_ = colors.has_fine_stops();
   const auto count = static_cast<std::size_t>(degree_ + 1) * (degree_ + 1);
   for (int c = 0; c < channels_; ++c) sums_[c].assign(count, 0.0);
   const bool takes_few = degree_ == 0 && colors.is_gentle();
@@ -67,7 +77,8 @@ void CellQuadrature::add_row(const CellColors& colors, std::uint64_t present, do
                              double width, double y, double weight) {
   for (std::size_t i = 0; i < own_along_.nodes.size(); ++i) {
     const Point2 point{left + width * own_along_.nodes[i], y};
-    add_value(colors.compose_at(present, point), point, weight * width * own_along_.weights[i]);
+    add_value(colors.compose_at(present, {point, {}, {}}), point,
+              weight * width * own_along_.weights[i]);
   }
 }
 
@@ -78,6 +89,10 @@ void CellQuadrature::add_slab(std::span<const CellLayer> layers, const CellColor
     present_.push_back(slabs_.cross(slabs_.arc(i), layers, present_.back()));
   }
   if (degree_ == 0 && add_constant_slab(colors, low, high)) return;
+  if (has_fine_stops_) {
+    add_fine_slab(colors, low, high);
+    return;
+  }
   const double height = high - low;
   for (std::size_t j = 0; j < own_across_.nodes.size(); ++j) {
     const double y = low + height * own_across_.nodes[j];
@@ -91,6 +106,50 @@ void CellQuadrature::add_slab(std::span<const CellLayer> layers, const CellColor
       if (right > left) add_row(colors, present_[k], left, right - left, y, weight);
       left = right;
     }
+  }
+}
+
+void CellQuadrature::add_fine_slab(const CellColors& colors, double low, double high) {
+  const double parts = degree_ == 0 ? kFinePartsOfBox : kFinePartsOfOthers;
+  const double rows = std::ceil(parts * (high - low));
+  const double height = (high - low) / rows;
+  for (double row = 0.0; row < rows; row += 1.0) {
+    add_fine_row(colors, low + row * height, low + (row + 1.0) * height);
+  }
+}
+
+void CellQuadrature::add_fine_row(const CellColors& colors, double low, double high) {
+  // Where an arc is in the middle of the row, and what it moves along the row's height.
+  double left = -0.5;
+  double left_shift = 0.0;
+  for (std::size_t k = 0; k < present_.size(); ++k) {
+    double right = 0.5;
+    double right_shift = 0.0;
+    if (k < slabs_.order().size()) {
+      const CellSlabs::Arc& arc = slabs_.arc(slabs_.order()[k]);
+      right = std::clamp(arc.x_at(0.5 * (low + high)), left, 0.5);
+      right_shift = std::clamp(arc.x_at(high), -0.5, 0.5) - std::clamp(arc.x_at(low), -0.5, 0.5);
+    }
+    if (right > left) {
+      add_parallelograms(colors, present_[k], {left, left_shift}, {right, right_shift}, low, high);
+    }
+    left = right;
+    left_shift = right_shift;
+  }
+}
+
+void CellQuadrature::add_parallelograms(const CellColors& colors, std::uint64_t present,
+                                        const FineSide& left, const FineSide& right, double low,
+                                        double high) {
+  const double parts = degree_ == 0 ? kFinePartsOfBox : kFinePartsOfOthers;
+  const double count = std::ceil(parts * (right.x - left.x));
+  const double width = (right.x - left.x) / count;
+  const double height = high - low;
+  for (double i = 0.5; i < count; i += 1.0) {
+    const double shift = left.shift + (right.shift - left.shift) * (i / count);
+    const Point2 center{left.x + i * width, 0.5 * (low + high)};
+    const CellColors::Spot spot{center, {width, 0.0}, {shift, height}};
+    add_value(colors.compose_at(present, spot), center, width * height);
   }
 }
 
@@ -109,7 +168,7 @@ bool CellQuadrature::add_constant_slab(const CellColors& colors, double low, dou
       right = std::clamp(arc.x + arc.bend * height * height / 12.0, left, 0.5);
     }
     if (right > left) {
-      add_value(colors.compose_at(present_[k], {left, low}), {}, height * (right - left));
+      add_value(colors.compose_at(present_[k], {{left, low}, {}, {}}), {}, height * (right - left));
     }
     left = right;
   }
@@ -125,6 +184,14 @@ bool CellQuadrature::find(std::span<const CellLayer> layers, const CellColors& c
 
 void CellQuadrature::find_full(const CellColors& colors) {
   begin(colors);
+  if (has_fine_stops_) {
+    const double parts = degree_ == 0 ? kFinePartsOfBox : kFinePartsOfOthers;
+    for (double row = 0.0; row < parts; row += 1.0) {
+      add_parallelograms(colors, 0, {-0.5, 0.0}, {0.5, 0.0}, row / parts - 0.5,
+                         (row + 1.0) / parts - 0.5);
+    }
+    return;
+  }
   for (std::size_t j = 0; j < own_along_.nodes.size(); ++j) {
     add_row(colors, 0, -0.5, 1.0, own_along_.nodes[j] - 0.5, own_along_.weights[j]);
   }

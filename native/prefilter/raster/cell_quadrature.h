@@ -16,7 +16,8 @@ namespace prefilter {
 
 /// Gauss's rule on each part of a cell between two heights and two arcs. Weights are not below 0,
 /// and those of a cell add up to its area however arcs are rounded: what the cell shows is a mean
-/// of values that the layers show at points.
+/// of values that the layers show at points. Where stops are fine it is one of means over small
+/// parallelograms, of which a cell has about as many however fine they are.
 class CellQuadrature {
  public:
   /// For integrals of values times x^a y^b, of powers up to `degree`.
@@ -38,6 +39,11 @@ class CellQuadrature {
     std::span<const double> nodes;  // on [0, 1]
     std::span<const double> weights;
   };
+  // Where a side of a part is halfway up a row, and what it moves along the row's height.
+  struct FineSide {
+    double x = 0.0;
+    double shift = 0.0;
+  };
   static Rule rule_of(int points);
 
   void begin(const CellColors& colors);
@@ -46,6 +52,10 @@ class CellQuadrature {
   bool add_constant_slab(const CellColors& colors, double low, double high);
   void add_row(const CellColors& colors, std::uint64_t present, double left, double width, double y,
                double weight);
+  void add_fine_slab(const CellColors& colors, double low, double high);
+  void add_fine_row(const CellColors& colors, double low, double high);
+  void add_parallelograms(const CellColors& colors, std::uint64_t present, const FineSide& left,
+                          const FineSide& right, double low, double high);
   void add_value(const ChannelValues& value, const Point2& point, double weight);
 
   int degree_;
@@ -55,6 +65,7 @@ class CellQuadrature {
   // Of the cell in hand.
   Rule own_along_;
   Rule own_across_;
+  bool has_fine_stops_ = false;
   CellSlabs slabs_;
   std::vector<std::uint64_t> present_;  // between the arcs of a slab
   std::array<std::vector<double>, kMaxChannels> sums_;

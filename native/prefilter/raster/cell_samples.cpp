@@ -229,7 +229,7 @@ void CellSamples::put_varying_behind(const SampleRows& filled, std::uint32_t lay
     for (std::uint64_t bits = filled_blocks_[block]; bits != 0; bits &= bits - 1) {
       const int sample = std::countr_zero(bits);
       const int i = block * kBlockCount + sample;
-      const ChannelValues color = colors.color_at(layer, place_of(block, sample));
+      const ChannelValues color = colors.color_at(layer, {place_of(block, sample), {}, {}});
       for (int c = 0; c < channels_; ++c) {
         values_[c][i] += passing_[i] * static_cast<float>(color[c]);
       }

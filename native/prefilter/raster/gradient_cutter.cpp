@@ -51,12 +51,7 @@ class Cutter {
         growth_(paint.end_radius - paint.start_radius) {}
 
   Outline make() {
-    find_kinks();
-    if (paint_.spread == Spread::kPad) {
-      for (const double kink : kinks_) add_circle(kink);
-    } else {
-      add_periods();
-    }
+    if (!has_fine_stops(paint_)) add_circles();
     if (is_cone(paint_)) add_cone();
     return std::move(outline_);
   }
@@ -67,6 +62,15 @@ class Cutter {
     const double reach =
         disc_.radius + length(paint_.start - disc_.center) + std::abs(paint_.start_radius);
     return reach / std::abs(std::abs(growth_) - length(axis_));
+  }
+
+  void add_circles() {
+    find_kinks();
+    if (paint_.spread == Spread::kPad) {
+      for (const double kink : kinks_) add_circle(kink);
+    } else {
+      add_periods();
+    }
   }
 
   // The offsets from 0 to 1 at which the color jumps, or its slope does.
@@ -105,16 +109,14 @@ class Cutter {
       add(stretches[i], stretches[i + 1]);
     }
     if (paint_.spread == Spread::kPad) return;
-    // Where periods meet, whatever stretches of no width are there.
-    kinks_.push_back(0.0);
+    // Where periods meet there is one circle for both.
+    std::erase_if(kinks_, [](double kink) { return !(kink > 0.0 && kink < 1.0); });
   }
 
   void add_periods() {
-    // Points tell as much of more periods in a pixel.
-    constexpr double kMostPeriodsPerPixel = 8.0;
-    if (!is_cone(paint_) && offset_per_pixel(paint_) > kMostPeriodsPerPixel) return;
     const double most = std::min(std::ceil(farthest_offset()), kMostPeriods);
     for (double period = -most; period <= most; period += 1.0) {
+      add_circle(period);
       const bool turned = paint_.spread == Spread::kReflect && std::fmod(period, 2.0) != 0.0;
       for (const double kink : kinks_) add_circle(period + (turned ? 1.0 - kink : kink));
     }

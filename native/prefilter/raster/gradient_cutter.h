@@ -8,9 +8,9 @@
 
 namespace prefilter {
 
-/// The circles of the stops of a kRadialStops paint, and the sides of its cone, as far as they may
-/// pass a box; nothing for other paints. Between these curves the color is smooth. Fill rules and
-/// orientation do not count.
+/// The circles of the stops of a kRadialStops paint, where these are not fine, and the sides of its
+/// cone, as far as they may pass a box; nothing for other paints. Between these curves the color is
+/// smooth. Fill rules and orientation do not count.
 Outline gradient_cutter(const Paint& paint, const Box2& box);
 
 }  // namespace prefilter

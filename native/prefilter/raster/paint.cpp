@@ -62,6 +62,16 @@ ChannelValues value_of_stops(const std::vector<GradientStop>& stops, double offs
 
 }  // namespace
 
+std::optional<double> Paint::offset_at(const Point2& point) const {
+  const Point2 from_origin = point - to_shape.origin;
+  const double determinant = cross(to_shape.x_axis, to_shape.y_axis);
+  const Point2 p{cross(from_origin, to_shape.y_axis) / determinant,
+                 cross(to_shape.x_axis, from_origin) / determinant};
+  if (kind == Kind::kRadialStops) return radial_offset(*this, p);
+  const Point2 axis = end - start;
+  return dot(p - start, axis) / dot(axis, axis);
+}
+
 ChannelValues Paint::at(const Point2& point) const {
   if (kind == Kind::kConstant || kind == Kind::kLinear) {
     ChannelValues value;
@@ -70,13 +80,7 @@ ChannelValues Paint::at(const Point2& point) const {
     }
     return value;
   }
-  const Point2 from_origin = point - to_shape.origin;
-  const double determinant = cross(to_shape.x_axis, to_shape.y_axis);
-  const Point2 p{cross(from_origin, to_shape.y_axis) / determinant,
-                 cross(to_shape.x_axis, from_origin) / determinant};
-  const Point2 axis = end - start;
-  const std::optional<double> offset =
-      kind == Kind::kRadialStops ? radial_offset(*this, p) : dot(p - start, axis) / dot(axis, axis);
+  const std::optional<double> offset = offset_at(point);
   if (offset) return value_of_stops(stops, spread_offset(spread, *offset));
   return channels == kMaxChannels ? ChannelValues{} : stops.back().value;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace prefilter {
 namespace {
@@ -19,8 +20,8 @@ bool is_cone(const Paint& paint) {
   return dot(axis, axis) >= growth * growth;
 }
 
-// Along a ray from the apex of the circles the
-// radius grows by |growth| - |axis| for each unit of the offset at least.
+// Along a ray from the apex of the circles the radius grows by |growth| - |axis| for each unit of
+// the offset at least.
 double offset_per_pixel(const Paint& paint) {
   const Point2 axis = paint.end - paint.start;
   const AffineMap2& map = paint.to_shape;
@@ -35,6 +36,32 @@ double offset_per_pixel(const Paint& paint) {
   if (paint.kind == Paint::Kind::kLinearStops) return pixel / length(axis);
   if (is_cone(paint)) return HUGE_VAL;
   return pixel / (std::abs(paint.end_radius - paint.start_radius) - length(axis));
+}
+
+bool has_fine_stops(const Paint& paint) {
+  // Where circles are that far apart, few pixels are cut by several.
+  constexpr double kFinePixels = 4.0;
+  // The circles of a cone are as close as one likes near its sides.
+  constexpr std::size_t kMostStopsOfCone = 16;
+  if (paint.kind != Paint::Kind::kRadialStops) return false;
+  const bool repeats = paint.spread != Spread::kPad;
+  if (is_cone(paint)) return repeats || paint.stops.size() > kMostStopsOfCone;
+  const double pixels = kFinePixels * offset_per_pixel(paint);
+  if (repeats && pixels >= 1.0) return true;
+  // Three in so many pixels, those of the next period included.
+  std::vector<double> offsets;
+  for (const GradientStop& stop : paint.stops) {
+    if (offsets.empty() || offsets.back() < stop.offset) offsets.push_back(stop.offset);
+  }
+  if (repeats) {
+    if (offsets.front() > 0.0) offsets.insert(offsets.begin(), 0.0);
+    if (offsets.back() < 1.0) offsets.push_back(1.0);
+    offsets.push_back(1.0 + offsets[1]);
+  }
+  for (std::size_t i = 0; i + 2 < offsets.size(); ++i) {
+    if (offsets[i + 2] - offsets[i] < pixels) return true;
+  }
+  return false;
 }
 
 double most_passing(const Paint& paint, int channels) {

@@ -20,6 +20,10 @@ double most_passing(const Paint& paint, int channels);
 /// How much the offset of a gradient changes along a pixel's side at most; infinite for cones.
 double offset_per_pixel(const Paint& paint);
 
+/// Whether stops of a gradient between two circles are so close that pixels are not cut along their
+/// circles: GradientMeans says what pixels show, in as much time however close stops are.
+bool has_fine_stops(const Paint& paint);
+
 /// Bounds on the difference of a value between opposite corners of a pixel, jumps at stops left
 /// out.
 struct PaintVariation {

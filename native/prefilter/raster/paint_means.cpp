@@ -5,10 +5,13 @@
 #include <algorithm>
 
 #include "prefilter/base/gauss_rule.h"
+#include "prefilter/raster/paint_bounds.h"
 
 namespace prefilter {
 
-PaintMeans::PaintMeans(const Paint& paint) : paint_(paint), round_(RoundGradient::of(paint, 1.0)) {}
+PaintMeans::PaintMeans(const Paint& paint) : paint_(paint), round_(RoundGradient::of(paint, 1.0)) {
+  if (has_fine_stops(paint)) fine_.emplace(paint);
+}
 
 ChannelValues PaintMeans::mean_of_points(const Point2& center) const {
   const GaussRule<3>& rule = gauss_rule<3>();
@@ -45,7 +48,8 @@ void PaintMeans::find(int begin, int end, int row, double* out) const {
       x += done;
       if (x == end) return;
     }
-    const ChannelValues mean = mean_of_points({x + 0.5, row + 0.5});
+    const Point2 pixel{x + 0.5, row + 0.5};
+    const ChannelValues mean = fine_ ? fine_->over_pixel(pixel) : mean_of_points(pixel);
     out = std::copy_n(mean.begin(), channels, out);
     ++x;
   }

@@ -5,13 +5,15 @@
 
 #include <optional>
 
+#include "prefilter/raster/gradient_means.h"
 #include "prefilter/raster/paint.h"
 #include "prefilter/raster/round_gradient.h"
 
 namespace prefilter {
 
-/// Exact for constant and linear paints. Others are told by nine points of a pixel, or by slope and
-/// curvature where they are smooth, so that means are within the range of the values.
+/// Exact for constant and linear paints. Others are told by slope and curvature where they are
+/// smooth, by GradientMeans where stops are fine, or by nine points of a pixel, so that means are
+/// within the range of the values.
 class PaintMeans {
  public:
   /// The paint, of any kind but kLinearStops, must outlive it.
@@ -25,6 +27,7 @@ class PaintMeans {
 
   const Paint& paint_;
   std::optional<RoundGradient> round_;
+  std::optional<GradientMeans> fine_;  // of a paint with fine stops
 };
 
 }  // namespace prefilter

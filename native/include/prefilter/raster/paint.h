@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "prefilter/base/image.h"
@@ -48,6 +49,10 @@ struct Paint {
   double start_radius = 0.0;
   double end_radius = 0.0;
   AffineMap2 to_shape;
+
+  /// The offset at a point of the shape of a paint with stops, before `spread`; nothing outside of
+  /// the cone of circles.
+  std::optional<double> offset_at(const Point2& point) const;
 
   /// The value at a point of the shape.
   ChannelValues at(const Point2& point) const;
