@@ -134,6 +134,12 @@ ChannelValues CellColors::color_at(std::uint32_t layer, const Spot& spot) const 
   return round_[layer] ? round_[layer]->at(place) : paint.at(place);
 }
 
+bool CellColors::is_anything_where(std::uint64_t present) const {
+  return std::any_of(seen_layers_.begin(), seen_layers_.end(), [&](const SeenLayer& seen) {
+    return seen.place == SeenLayer::kFull || (present >> seen.place & 1) != 0;
+  });
+}
+
 bool CellColors::is_constant_where(std::uint64_t present) const {
   for (const SeenLayer& seen : seen_layers_) {
     if (seen.place != SeenLayer::kFull && (present >> seen.place & 1) == 0) continue;

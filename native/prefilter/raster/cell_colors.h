@@ -85,6 +85,8 @@ class CellColors {
   bool has_fine_stops() const;
   /// The value of a layer at a spot.
   ChannelValues color_at(std::uint32_t layer, const Spot& spot) const;
+  /// Whether anything shows where these layers are present.
+  bool is_anything_where(std::uint64_t present) const;
   /// Whether what shows where these layers are present is the same all over the cell.
   bool is_constant_where(std::uint64_t present) const;
   /// As compose(), at a spot.

@@ -82,12 +82,21 @@ void CellQuadrature::add_row(const CellColors& colors, std::uint64_t present, do
   }
 }
 
+void CellQuadrature::set_parts(std::span<const CellLayer> layers, const CellColors& colors) {
+  parts_.clear();
+  const auto add = [&](std::uint64_t present) {
+    parts_.push_back(
+        {present, colors.is_anything_where(present), !colors.is_constant_where(present)});
+  };
+  add(slabs_.left_side());
+  for (const std::uint32_t i : slabs_.order()) {
+    add(slabs_.cross(slabs_.arc(i), layers, parts_.back().present));
+  }
+}
+
 void CellQuadrature::add_slab(std::span<const CellLayer> layers, const CellColors& colors,
                               double low, double high) {
-  present_.assign(1, slabs_.left_side());
-  for (const std::uint32_t i : slabs_.order()) {
-    present_.push_back(slabs_.cross(slabs_.arc(i), layers, present_.back()));
-  }
+  set_parts(layers, colors);
   if (degree_ == 0 && add_constant_slab(colors, low, high)) return;
   if (has_fine_stops_) {
     add_fine_slab(colors, low, high);
@@ -98,12 +107,20 @@ void CellQuadrature::add_slab(std::span<const CellLayer> layers, const CellColor
     const double y = low + height * own_across_.nodes[j];
     const double weight = height * own_across_.weights[j];
     double left = -0.5;
-    for (std::size_t k = 0; k < present_.size(); ++k) {
+    for (std::size_t k = 0; k < parts_.size(); ++k) {
       // Not left of the arc before, so that the widths add up to 1 in whatever order arcs are.
       const double right = k < slabs_.order().size()
                                ? std::clamp(slabs_.arc(slabs_.order()[k]).x_at(y), left, 0.5)
                                : 0.5;
-      if (right > left) add_row(colors, present_[k], left, right - left, y, weight);
+      const Part& part = parts_[k];
+      if (right > left && part.is_anything) {
+        if (part.varies || degree_ > 0) {
+          add_row(colors, part.present, left, right - left, y, weight);
+        } else {
+          add_value(colors.compose_at(part.present, {{left, y}, {}, {}}), {},
+                    weight * (right - left));
+        }
+      }
       left = right;
     }
   }
@@ -122,7 +139,7 @@ void CellQuadrature::add_fine_row(const CellColors& colors, double low, double h
   // Where an arc is in the middle of the row, and what it moves along the row's height.
   double left = -0.5;
   double left_shift = 0.0;
-  for (std::size_t k = 0; k < present_.size(); ++k) {
+  for (std::size_t k = 0; k < parts_.size(); ++k) {
     double right = 0.5;
     double right_shift = 0.0;
     if (k < slabs_.order().size()) {
@@ -130,8 +147,9 @@ void CellQuadrature::add_fine_row(const CellColors& colors, double low, double h
       right = std::clamp(arc.x_at(0.5 * (low + high)), left, 0.5);
       right_shift = std::clamp(arc.x_at(high), -0.5, 0.5) - std::clamp(arc.x_at(low), -0.5, 0.5);
     }
-    if (right > left) {
-      add_parallelograms(colors, present_[k], {left, left_shift}, {right, right_shift}, low, high);
+    if (right > left && parts_[k].is_anything) {
+      add_parallelograms(colors, parts_[k].present, {left, left_shift}, {right, right_shift}, low,
+                         high);
     }
     left = right;
     left_shift = right_shift;
@@ -155,20 +173,21 @@ void CellQuadrature::add_parallelograms(const CellColors& colors, std::uint64_t 
 
 // A slab in which no color varies, where areas are all that is asked for.
 bool CellQuadrature::add_constant_slab(const CellColors& colors, double low, double high) {
-  for (const std::uint64_t present : present_) {
-    if (!colors.is_constant_where(present)) return false;
+  if (std::any_of(parts_.begin(), parts_.end(), [](const Part& part) { return part.varies; })) {
+    return false;
   }
   const double height = high - low;
   double left = -0.5;
-  for (std::size_t k = 0; k < present_.size(); ++k) {
+  for (std::size_t k = 0; k < parts_.size(); ++k) {
     double right = 0.5;
     if (k < slabs_.order().size()) {
       // A parabola's mean is that in the middle, and a twelfth of what it bends.
       const CellSlabs::Arc& arc = slabs_.arc(slabs_.order()[k]);
       right = std::clamp(arc.x + arc.bend * height * height / 12.0, left, 0.5);
     }
-    if (right > left) {
-      add_value(colors.compose_at(present_[k], {{left, low}, {}, {}}), {}, height * (right - left));
+    if (right > left && parts_[k].is_anything) {
+      add_value(colors.compose_at(parts_[k].present, {{left, low}, {}, {}}), {},
+                height * (right - left));
     }
     left = right;
   }

@@ -49,6 +49,7 @@ class CellQuadrature {
   void begin(const CellColors& colors);
   void add_slab(std::span<const CellLayer> layers, const CellColors& colors, double low,
                 double high);
+  void set_parts(std::span<const CellLayer> layers, const CellColors& colors);
   bool add_constant_slab(const CellColors& colors, double low, double high);
   void add_row(const CellColors& colors, std::uint64_t present, double left, double width, double y,
                double weight);
@@ -67,7 +68,13 @@ class CellQuadrature {
   Rule own_across_;
   bool has_fine_stops_ = false;
   CellSlabs slabs_;
-  std::vector<std::uint64_t> present_;  // between the arcs of a slab
+  // Between the arcs of a slab: layers, whether they show anything, and whether that varies.
+  struct Part {
+    std::uint64_t present = 0;
+    bool is_anything = false;
+    bool varies = false;
+  };
+  std::vector<Part> parts_;
   std::array<std::vector<double>, kMaxChannels> sums_;
 };
 

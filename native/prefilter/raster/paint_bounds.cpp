@@ -64,6 +64,16 @@ bool has_fine_stops(const Paint& paint) {
   return false;
 }
 
+bool has_jumps(const Paint& paint) {
+  const auto& stops = paint.stops;
+  for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
+    if (!(stops[i].offset < stops[i + 1].offset) && stops[i].value != stops[i + 1].value) {
+      return true;
+    }
+  }
+  return paint.spread == Spread::kRepeat && stops.front().value != stops.back().value;
+}
+
 double most_passing(const Paint& paint, int channels) {
   if (channels < kMaxChannels) return 0.0;
   if (is_cone(paint)) return 1.0;

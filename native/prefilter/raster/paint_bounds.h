@@ -24,6 +24,9 @@ double offset_per_pixel(const Paint& paint);
 /// circles: GradientMeans says what pixels show, in as much time however close stops are.
 bool has_fine_stops(const Paint& paint);
 
+/// Whether the value of a gradient jumps at an offset.
+bool has_jumps(const Paint& paint);
+
 /// Bounds on the difference of a value between opposite corners of a pixel, jumps at stops left
 /// out.
 struct PaintVariation {

@@ -10,7 +10,10 @@
 namespace prefilter {
 
 PaintMeans::PaintMeans(const Paint& paint) : paint_(paint), round_(RoundGradient::of(paint, 1.0)) {
-  if (has_fine_stops(paint)) fine_.emplace(paint);
+  if (paint.kind != Paint::Kind::kRadialStops) return;
+  // A pixel that no jump cuts must not see beyond it, as it may where circles are taken as
+  // straight.
+  if (has_fine_stops(paint) || !has_jumps(paint)) gradient_.emplace(paint);
 }
 
 ChannelValues PaintMeans::mean_of_points(const Point2& center) const {
@@ -49,7 +52,7 @@ void PaintMeans::find(int begin, int end, int row, double* out) const {
       if (x == end) return;
     }
     const Point2 pixel{x + 0.5, row + 0.5};
-    const ChannelValues mean = fine_ ? fine_->over_pixel(pixel) : mean_of_points(pixel);
+    const ChannelValues mean = gradient_ ? gradient_->over_pixel(pixel) : mean_of_points(pixel);
     out = std::copy_n(mean.begin(), channels, out);
     ++x;
   }

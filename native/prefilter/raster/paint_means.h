@@ -12,8 +12,8 @@
 namespace prefilter {
 
 /// Exact for constant and linear paints. Others are told by slope and curvature where they are
-/// smooth, by GradientMeans where stops are fine, or by nine points of a pixel, so that means are
-/// within the range of the values.
+/// smooth, and else by GradientMeans, or by nine points of a pixel where they jump between stops
+/// that are not fine, so that means are within the range of the values.
 class PaintMeans {
  public:
   /// The paint, of any kind but kLinearStops, must outlive it.
@@ -27,7 +27,7 @@ class PaintMeans {
 
   const Paint& paint_;
   std::optional<RoundGradient> round_;
-  std::optional<GradientMeans> fine_;  // of a paint with fine stops
+  std::optional<GradientMeans> gradient_;
 };
 
 }  // namespace prefilter

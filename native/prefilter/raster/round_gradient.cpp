@@ -54,8 +54,8 @@ std::optional<RoundGradient> RoundGradient::of(const Paint& paint, double side) 
 void RoundGradient::add_stretch(double low, double high, const ChannelValues& before,
                                 const ChannelValues& after) {
   if (!(low < high)) return;
-  Stretch stretch{low, high, before, {}};
-  for (int c = 0; c < channels_ && !(before == after); ++c) {
+  Stretch stretch{low, high, before, {}, before == after};
+  for (int c = 0; c < channels_ && !stretch.is_constant; ++c) {
     stretch.slope[c] = (after[c] - before[c]) / (high - low);
     stretch.constant[c] = before[c] - low * stretch.slope[c];
   }
@@ -76,7 +76,7 @@ ChannelValues RoundGradient::at(const Point2& point) const {
   const double offset = (std::sqrt(dot(q, q)) - start_radius_) * per_radius_;
   const auto stretch = std::find_if(stretches_.begin(), stretches_.end() - 1,
                                     [&](const Stretch& each) { return offset < each.high; });
-  if (stretch->slope == ChannelValues{}) return stretch->constant;
+  if (stretch->is_constant) return stretch->constant;
   ChannelValues value;
   for (std::size_t c = 0; c < value.size(); ++c) {
     value[c] = stretch->constant[c] + offset * stretch->slope[c];

@@ -33,6 +33,7 @@ class RoundGradient {
     double high = 0.0;
     ChannelValues constant{};
     ChannelValues slope{};
+    bool is_constant = true;
   };
   void add_stretch(double low, double high, const ChannelValues& before,
                    const ChannelValues& after);
