@@ -39,6 +39,10 @@ MAX_MEBIBYTES = 12_288
 def main() -> None:
     """Runs and reports."""
     options = _arguments()
+    if options.kept:
+        report = _report([one for folder in options.kept for one in _kept(folder)], options.allow)
+        report.finish(options.json)
+        return
     with tempfile.TemporaryDirectory() as scratch:
         folder = options.keep or Path(scratch)
         folder.mkdir(parents=True, exist_ok=True)
@@ -49,8 +53,7 @@ def main() -> None:
         runs = _run_all(tasks, folder, options)
         if options.sheet:
             sheet.write(options.sheet, [one for one in runs if one.has_result])
-    report = _report(runs, set(options.allow))
-    report.finish(options.json)
+    _report(runs, options.allow).finish(options.json)
 
 
 def _arguments() -> argparse.Namespace:
@@ -66,6 +69,9 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--jobs", type=int, default=1, help="processes at a time (default: 1)")
     parser.add_argument("--seconds", type=float, default=MAX_SECONDS, help="that a run may take")
     parser.add_argument("--allow", nargs="*", default=[], metavar="CLASS", help="of findings")
+    parser.add_argument(
+        "--kept", type=Path, nargs="*", metavar="FOLDER", help="run nothing; report what was kept"
+    )
     parser.add_argument("--keep", type=Path, metavar="FOLDER", help="keep results and findings")
     parser.add_argument("--sheet", type=Path, metavar="FILE.png", help="draw all results")
     add_json_option(parser)
@@ -132,7 +138,23 @@ def _keep(path: Path, done: Run, *, is_first: bool) -> None:
         file.write(json.dumps(line, ensure_ascii=False) + "\n")
 
 
-def _report(runs: Sequence[Run], allowed: set[str]) -> Report:
+def _kept(folder: Path) -> Iterable[Run]:
+    """Yields the runs of an earlier call with --keep."""
+    for line in (folder / "runs.jsonl").read_text(encoding="utf-8").splitlines():
+        kept = json.loads(line)
+        yield Run(
+            entry_point=kept["entry_point"],
+            source=Path(kept["source"]),
+            target=folder / kept["result"],
+            status=kept["status"],
+            seconds=kept["seconds"],
+            mebibytes=kept["mebibytes"],
+            output=kept["output"],
+            findings=kept["findings"],
+        )
+
+
+def _report(runs: Sequence[Run], allowed: Sequence[str]) -> Report:
     report = Report()
     names = [entry_point.name for entry_point in ENTRY_POINTS]
     names = [name for name in names if any(one.entry_point == name for one in runs)]
@@ -149,7 +171,7 @@ def _report(runs: Sequence[Run], allowed: set[str]) -> Report:
             [[kind, name, str(count)] for (kind, name), count in sorted(classes.items())],
             "findings",
         )
-    wrong = {kind for kind, _ in classes} - allowed
+    wrong = {kind for kind, _ in classes} - set(allowed)
     text = f"of {len(runs)} runs none has a finding that is not allowed"
     report.verdict(not wrong, text if not wrong else f"{text}: {', '.join(sorted(wrong))}")
     return report

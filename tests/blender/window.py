@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 PACKAGE = "bl_ext.user_default.prefilter"
 
 SECONDS_PER_STEP = 0.05
+NEVER_TOO_LONG = 1e6
 LONGEST_WAIT = 240.0
 """Seconds after which an event that a session waits for counts as missing, on a busy machine."""
 
@@ -314,11 +315,15 @@ class Stage:
 def begun(kind: str = "", *, opened: str = "") -> Stage:
     """Enables the add-on, and returns the largest editor.
 
+    Redo is never too slow to be done at once, and Esc never asks: on a busy machine all is slow.
+
     Args:
         kind: What editor it is to be; empty for the one that it is.
         opened: A panel that is to be open, as one that is closed is not drawn.
     """
     assert addon_utils.enable(PACKAGE, default_set=True) is not None
+    importlib.import_module(f"{PACKAGE}.core.redo").QUICK_SECONDS = NEVER_TOO_LONG
+    importlib.import_module(f"{PACKAGE}.core.running").ASKING_SECONDS = NEVER_TOO_LONG
     panel = getattr(bpy.types, opened, None)
     if panel is not None and "DEFAULT_CLOSED" in getattr(panel, "bl_options", ()):
         bpy.utils.unregister_class(panel)
