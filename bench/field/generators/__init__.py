@@ -40,6 +40,8 @@ def generate(folder: Path, count: int, seed: int) -> list[Path]:
         for number in range(max(1, round(count * share))):
             random = np.random.default_rng([seed, order, number])
             stem = folder / f"{kind}_{number:04}"
+            for earlier in folder.glob(f"{stem.name}.*"):
+                earlier.unlink()
             truth = write(stem, random)
             path = next(p for p in folder.glob(f"{stem.name}.*") if not p.name.endswith(_TRUTH))
             Path(f"{path}{_TRUTH}").write_text(json.dumps(truth), encoding="utf-8")

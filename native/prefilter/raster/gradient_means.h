@@ -14,7 +14,9 @@ namespace prefilter {
 class GradientMeans {
  public:
   /// The paint, of kind kRadialStops, must outlive it.
+  /// Keeps a reference to the paint, which must outlive this.
   explicit GradientMeans(const Paint& paint);
+  explicit GradientMeans(Paint&&) = delete;
 
   /// The mean over a parallelogram with these sides around a point. It should be so small that
   /// circles are nearly straight in it.

@@ -61,7 +61,8 @@ TEST(GradientMeans, ArePointsOnAverage) {
 // 1/8 + 3/16 and 3/32 + 21/32 of a period.
 TEST(GradientMeans, TinyPeriodsHaveTheirMean) {
   for (const double period : {1e-3, 1e-7, 1e-14, 1e-100}) {
-    const GradientMeans means(rings(period, Spread::kRepeat));
+    const Paint paint = rings(period, Spread::kRepeat);
+    const GradientMeans means(paint);
     const ChannelValues found = means.over_pixel({12.5, 7.25});
     EXPECT_NEAR(found[0], 0.3125, 1e-3) << period;
     EXPECT_NEAR(found[1], 0.75, 1e-3) << period;

@@ -262,7 +262,7 @@ TEST(Reconstruct, RefusesWhatIsOutOfRange) {
     }
     EXPECT_TRUE(message({}, scaled).starts_with("points: "));
   }
-  EXPECT_TRUE(message({}, {}).starts_with("points: 0"));
+  EXPECT_TRUE(message({}, {}).starts_with("points: none"));
 }
 
 TEST(Reconstruct, OfPointsThatBoundNothingIsClosed) {

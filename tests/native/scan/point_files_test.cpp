@@ -110,7 +110,8 @@ TEST(OpenPoints, ReadsAllFormats) {
   const std::optional<RangeGrid> grid = read_range_grid(folder.path("binary.ply"), Progress());
   ASSERT_TRUE(grid.has_value());
   EXPECT_EQ(grid->points, (std::vector<std::int64_t>{1, -1}));
-  EXPECT_EQ(read_faces(folder.path("binary.ply"), Progress()).size(), 1U);
+  // Its one face has a corner twice, and so no triangle.
+  EXPECT_TRUE(read_faces(folder.path("binary.ply"), Progress()).empty());
   EXPECT_EQ(open_points(folder.path("binary.pcd"))->viewpoint(), (Vector3{1, 2, 3}));
 }
 
