@@ -14,7 +14,6 @@ namespace prefilter {
 class GradientMeans {
  public:
   /// The paint, of kind kRadialStops, must outlive it.
-  /// Keeps a reference to the paint, which must outlive this.
   explicit GradientMeans(const Paint& paint);
   explicit GradientMeans(Paint&&) = delete;
 
