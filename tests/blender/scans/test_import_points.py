@@ -2,12 +2,11 @@
 
 """`prefilter.import_points`: files of points as objects."""
 
+import os
 from pathlib import Path
 from types import SimpleNamespace
 
 import bodies
-import os
-
 import bpy
 import clouds
 import numpy as np
