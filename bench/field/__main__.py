@@ -182,7 +182,7 @@ def _row(name: str, runs: Sequence[Run]) -> list[str]:
     return [
         name,
         str(len(runs)),
-        str(sum(one.has_result for one in runs)),
+        str(sum(one.status == 0 for one in runs)),
         str(sum(one.status not in (0, None) for one in runs)),
         str(sum(bool(one.findings) for one in runs)),
         f"{seconds[len(seconds) // 2]:.1f}",

@@ -55,7 +55,8 @@ def test_commands_start_programs_that_are_there(path):
         for program in re.findall(r"(?<![\w/])(?:bench|tests|scripts)/[\w/]+(?:\.py)?", line):
             assert (ROOT / program).is_file() or program == "scripts/run", line
         for module in re.findall(r"-m (bench\.[\w.]+)", line):
-            assert (ROOT / f"{module.replace('.', '/')}.py").is_file(), line
+            path = ROOT / module.replace(".", "/")
+            assert path.with_suffix(".py").is_file() or (path / "__main__.py").is_file(), line
 
 
 def test_each_verdict_leads_to_a_place_and_a_command():
