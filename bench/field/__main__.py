@@ -19,6 +19,7 @@ import argparse
 import collections
 import concurrent.futures
 import fnmatch
+import importlib.util
 import json
 import sys
 import tempfile
@@ -43,6 +44,9 @@ def main() -> None:
         report = _report([one for folder in options.kept for one in _kept(folder)], options.allow)
         report.finish(options.json)
         return
+    for module in ("trimesh", "OpenImageIO", "PIL", "scipy"):
+        if importlib.util.find_spec(module) is None:
+            sys.exit(f"needs {module} (PyPI) on PYTHONPATH; scripts/decoders.txt lists versions")
     with tempfile.TemporaryDirectory() as scratch:
         folder = options.keep or Path(scratch)
         folder.mkdir(parents=True, exist_ok=True)
