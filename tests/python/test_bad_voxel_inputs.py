@@ -42,6 +42,10 @@ FUNCTIONS = {
         prefilter.measure_mesh,
         {"positions": BOX.positions, "triangles": BOX.triangles},
     ),
+    "self_intersections": (
+        prefilter.self_intersections,
+        {"positions": BOX.positions, "triangles": BOX.triangles},
+    ),
     "uv_charts": (
         prefilter.uv_charts,
         {
@@ -161,6 +165,7 @@ EMPTY_ROWS = [
         "voxelize",
         "nearest_points",
         "measure_mesh",
+        "self_intersections",
         "mesh_edges",
         "mesh_topology",
         "close_holes",

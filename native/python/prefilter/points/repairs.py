@@ -38,6 +38,7 @@ def run_until_sound(
     """
     faults: frozenset[str] = frozenset()
     done = 0.0
+    progress = as_progress(progress)
     while True:
         last = done
 
