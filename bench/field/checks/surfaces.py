@@ -59,7 +59,8 @@ def check_scan(run: Any, truth: Mapping[str, Any]) -> list[str]:
     if not len(triangles):
         return ["empty: the result has no triangles"]
     findings = _check_soundness(positions, triangles, must_be_closed=False)
-    if "shape" not in truth:
+    # Survey coordinates do not fit the single precision of Blender's importer; a warning says so.
+    if "shape" not in truth or "coordinates were rounded" in run.output:
         return findings
     shape = shapes.Shape.of(truth["shape"])
     spacing = truth["spacing"]
