@@ -20,7 +20,7 @@ import bpy
 PACKAGE = "bl_ext.user_default.prefilter"
 ROOT = Path(__file__).resolve().parents[1]
 ADDON = ROOT / "addon"
-SHARED = ROOT / "native/python/prefilter/_work"
+SHARED = ROOT / "native/python/prefilter/workflows"
 """What the add-on does as the package's command does it."""
 LABEL, TIP, TEXT, BUTTON = "label", "tip", "text", "button"
 _BASES = (

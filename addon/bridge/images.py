@@ -24,7 +24,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 from prefilter._border.claims import temporary_folder
-from prefilter._work.picture import (
+from prefilter.workflows.picture import (
     LINEAR_REC709_NAMES,
     Encoding,
     FloatArray,

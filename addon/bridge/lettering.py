@@ -8,7 +8,7 @@ from functools import lru_cache
 import bpy
 import numpy as np
 from numpy.typing import NDArray
-from prefilter._work.shapes.outlines import box_of
+from prefilter.workflows.shapes.outlines import box_of
 
 from .curves import read_curves
 

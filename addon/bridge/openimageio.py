@@ -8,7 +8,7 @@ source of crashes, so the add-on brings none.
 
 from types import ModuleType
 
-from prefilter._work.openimageio import (
+from prefilter.workflows.openimageio import (
     TILE_SIZE,
     Check,
     Contents,

@@ -5,7 +5,7 @@
 import bpy
 import numpy as np
 from numpy.typing import NDArray
-from prefilter._work.shapes.layouts import borders
+from prefilter.workflows.shapes.layouts import borders
 
 from . import attributes
 

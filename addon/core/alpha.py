@@ -2,6 +2,6 @@
 
 """Straight and associated alpha of texels."""
 
-from prefilter._work.alpha import associated, at_most_opaque, unassociated
+from prefilter.workflows.alpha import associated, at_most_opaque, unassociated
 
 __all__ = ("associated", "at_most_opaque", "unassociated")

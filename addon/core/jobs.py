@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from typing import Generic, TypeVar, cast
 
 import prefilter
-from prefilter._work.progress import Progress, Work, go_on, parts, share
+from prefilter.workflows.progress import Progress, Work, go_on, parts, share
 
 __all__ = ("Job", "Progress", "Work", "at_once", "go_on", "parts", "share")
 

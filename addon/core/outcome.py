@@ -2,6 +2,6 @@
 
 """What work ends with."""
 
-from prefilter._work.outcome import FAILURES, Outcome, reason
+from prefilter.workflows.outcome import FAILURES, Outcome, reason
 
 __all__ = ("FAILURES", "Outcome", "reason")

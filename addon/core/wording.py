@@ -2,6 +2,6 @@
 
 """Messages, and words that several of them share."""
 
-from prefilter._work.wording import Sentence, amount, counted, either, joined, listed, together
+from prefilter.workflows.wording import Sentence, amount, counted, either, joined, listed, together
 
 __all__ = ("Sentence", "amount", "counted", "either", "joined", "listed", "together")

@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Protocol
 
 import numpy as np
-from prefilter._work import outcome, up_to_date
-from prefilter._work.mipmaps import levels, stretching
-from prefilter._work.mipmaps.outputs import Outputs, made_of, staged, summary
+from prefilter.workflows import outcome, up_to_date
+from prefilter.workflows.mipmaps import levels, stretching
+from prefilter.workflows.mipmaps.outputs import Outputs, made_of, staged, summary
 
 from ..bridge.files.staging import StagedFile, commit_all
 from ..bridge.images import FloatArray, Picture

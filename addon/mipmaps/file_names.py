@@ -9,7 +9,7 @@ from pathlib import Path
 
 import bpy
 from prefilter._border.file_names import identities
-from prefilter._work.files import patterns, target_files
+from prefilter.workflows.files import patterns, target_files
 
 from ..bridge import images
 from ..core.file_names import clean_name

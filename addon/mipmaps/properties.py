@@ -189,7 +189,7 @@ def _draw_result(settings: Any, layout: bpy.types.UILayout) -> None:
 
 def _draw_compression(settings: Any, layout: bpy.types.UILayout) -> None:
     """Draws what some formats of files have a choice of."""
-    from prefilter._work.files import target_files
+    from prefilter.workflows.files import target_files
 
     ending = f".{settings.file_format}"
     if target_files.has_formats(ending):

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import bpy
-from prefilter._work.files import engines, target_files
-from prefilter._work.mipmaps import checks, contents
-from prefilter._work.mipmaps.checks import Rough
-from prefilter._work.mipmaps.outputs import Outputs
+from prefilter.workflows.files import engines, target_files
+from prefilter.workflows.mipmaps import checks, contents
+from prefilter.workflows.mipmaps.checks import Rough
+from prefilter.workflows.mipmaps.outputs import Outputs
 
 from ..bridge import image_roles, images, meshes
 from ..bridge.images import Picture

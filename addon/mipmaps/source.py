@@ -4,7 +4,7 @@
 
 from collections.abc import Sequence
 
-from prefilter._work.mipmaps.source import Source, reads_encoded, without_pixels
+from prefilter.workflows.mipmaps.source import Source, reads_encoded, without_pixels
 
 from ..bridge import materials, meshes
 from ..bridge.images import Picture

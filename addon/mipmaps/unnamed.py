@@ -6,7 +6,7 @@ import os
 from collections.abc import Sequence
 
 import bpy
-from prefilter._work.files import patterns
+from prefilter.workflows.files import patterns
 
 from ..bridge import image_roles, meshes
 from ..core.wording import listed

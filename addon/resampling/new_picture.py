@@ -3,7 +3,7 @@
 """Images that are made of others: what is read of Blender for that, and what becomes of it."""
 
 import bpy
-from prefilter._work.resampling.new_picture import NewPicture
+from prefilter.workflows.resampling.new_picture import NewPicture
 
 from ..bridge import derived, images
 from ..bridge.images import FloatArray, Picture

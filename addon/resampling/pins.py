@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from prefilter._work.resampling.placement import (
+from prefilter.workflows.resampling.placement import (
     Matrix,
     corners,
     frame,

@@ -3,7 +3,7 @@
 """Sampling tables as texts of Blender, or as files."""
 
 import bpy
-from prefilter._work.resampling import table_making
+from prefilter.workflows.resampling import table_making
 
 from ..core.outcome import Outcome
 from .choices import TableSettings

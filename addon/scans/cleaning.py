@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 import prefilter
 from numpy.typing import NDArray
-from prefilter._work.scans import labeled
+from prefilter.workflows.scans import labeled
 
 from ..bridge.kept_points import check_editable, keep_points, may_lose_points, world_positions
 from ..bridge.place import still_there

@@ -10,7 +10,7 @@ from typing import Any
 import bpy
 from prefilter._command import reconstruct
 from prefilter._command.program import COMMANDS
-from prefilter._work.scans import STREAMED_TARGET, Streaming
+from prefilter.workflows.scans import STREAMED_TARGET, Streaming
 
 from ..bridge.files import scenes
 from ..bridge.points import may_be_points

@@ -11,7 +11,7 @@ import numpy as np
 import prefilter
 from mathutils import Matrix
 from numpy.typing import NDArray
-from prefilter._work.scans import outcome
+from prefilter.workflows.scans import outcome
 
 from ..bridge.color_materials import show_attribute
 from ..bridge.files import scenes

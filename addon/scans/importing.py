@@ -9,7 +9,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 import prefilter
-from prefilter._work.scans import as_classes, has_connections, merged
+from prefilter.workflows.scans import as_classes, has_connections, merged
 
 from ..bridge.layers import ATTRIBUTE, NewLayer
 from ..bridge.new_points import Cloud, new_points, scene_offset, spacing

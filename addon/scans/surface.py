@@ -10,8 +10,8 @@ from typing import NamedTuple, TypeAlias, cast
 import numpy as np
 import prefilter
 from numpy.typing import NDArray
-from prefilter._work import scans
-from prefilter._work.scans import directions, labeled, openings, options
+from prefilter.workflows import scans
+from prefilter.workflows.scans import directions, labeled, openings, options
 
 from ..bridge.layers import ATTRIBUTE, COLOR, NewLayer
 from ..bridge.new_meshes import Contour

@@ -12,8 +12,8 @@ from prefilter._command import many, rasterize, tasks
 from prefilter._command.many import Pair
 from prefilter._command.program import COMMANDS
 from prefilter._command.rasterize import SVG
-from prefilter._work.files import pictures
-from prefilter._work.up_to_date import KEY, PICTURES
+from prefilter.workflows.files import pictures
+from prefilter.workflows.up_to_date import KEY, PICTURES
 
 from ..bridge.curves import is_curve
 from ..bridge.files import scenes

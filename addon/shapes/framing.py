@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Quaternion
 from numpy.typing import NDArray
-from prefilter._work.shapes.frames import Frame
+from prefilter.workflows.shapes.frames import Frame
 
 from ..core.wording import Sentence
 from .choices import RasterizeSettings

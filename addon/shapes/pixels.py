@@ -3,8 +3,8 @@
 """What image datablocks hold of shapes."""
 
 import numpy as np
-from prefilter._work.files import png
-from prefilter._work.shapes.pixels import Pixels
+from prefilter.workflows.files import png
+from prefilter.workflows.shapes.pixels import Pixels
 
 from ..bridge.drawn_images import Drawing
 from .choices import RasterizeSettings

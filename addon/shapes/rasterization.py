@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import bpy
-from prefilter._work.shapes import rasterizing
-from prefilter._work.shapes.layers import Source
-from prefilter._work.shapes.pixels import stage
+from prefilter.workflows.shapes import rasterizing
+from prefilter.workflows.shapes.layers import Source
+from prefilter.workflows.shapes.pixels import stage
 
 from ..bridge import drawn_images
 from ..bridge.files import staging

@@ -10,8 +10,8 @@ import bpy
 import numpy as np
 from mathutils import Quaternion
 from numpy.typing import NDArray
-from prefilter._work.shapes.frames import whole_frame
-from prefilter._work.shapes.layers import Layer, Layers, Source, svg_drawing, uv_layers
+from prefilter.workflows.shapes.frames import whole_frame
+from prefilter.workflows.shapes.layers import Layer, Layers, Source, svg_drawing, uv_layers
 
 from ..bridge.curves import Curves, read_curves
 from ..bridge.uv_layouts import read_layout

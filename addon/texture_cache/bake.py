@@ -17,7 +17,7 @@ import bpy
 import numpy as np
 import prefilter
 from numpy.typing import NDArray
-from prefilter._work import up_to_date
+from prefilter.workflows import up_to_date
 
 from ..bridge import materials, meshes, packed, rendered
 from ..bridge.files import tx

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import bpy
 import numpy as np
-from prefilter._work.voxels import booleans
+from prefilter.workflows.voxels import booleans
 
 from ..bridge import new_meshes, solids
 from ..bridge.kept_sources import keep_more

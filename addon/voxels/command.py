@@ -13,7 +13,7 @@ from prefilter._command import boolean, many, outputs, tasks, voxelize
 from prefilter._command.many import Pair
 from prefilter._command.program import COMMANDS
 from prefilter._command.voxelize import RESOLUTIONS
-from prefilter._work.up_to_date import KEY, MESHES
+from prefilter.workflows.up_to_date import KEY, MESHES
 
 from ..bridge.files import scenes
 from ..bridge.new_meshes import is_solid

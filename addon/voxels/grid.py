@@ -4,8 +4,8 @@
 
 from functools import partial
 
-from prefilter._work.voxels import grid
-from prefilter._work.voxels.grid import Box, Grid, cells_crossed, choose_grid
+from prefilter.workflows.voxels import grid
+from prefilter.workflows.voxels.grid import Box, Grid, cells_crossed, choose_grid
 
 from ..core.memory import usable_memory
 

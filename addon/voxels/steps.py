@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import prefilter
 from numpy.typing import NDArray
-from prefilter._work.voxels import surfaces
-from prefilter._work.voxels.nothing import NO_CELL, NothingLeftError
+from prefilter.workflows.voxels import surfaces
+from prefilter.workflows.voxels.nothing import NO_CELL, NothingLeftError
 
 from ..bridge import solids
 from ..bridge.files.staging import StagedFile

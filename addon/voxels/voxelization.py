@@ -11,8 +11,8 @@ from pathlib import Path
 
 import bpy
 from mathutils import Matrix
-from prefilter._work.up_to_date import arrays_of, fingerprint, fingerprint_of
-from prefilter._work.voxels.nothing import LeftOut, NothingLeftError, check_area
+from prefilter.workflows.up_to_date import arrays_of, fingerprint, fingerprint_of
+from prefilter.workflows.voxels.nothing import LeftOut, NothingLeftError, check_area
 
 from ..bridge import new_meshes, solids
 from ..bridge.armatures import at_rest

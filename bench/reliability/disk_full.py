@@ -116,7 +116,7 @@ def is_whole(name: str, data: bytes) -> bool:
     if data == EARLIER:
         return False
     if name.endswith((".exr", ".tif", ".tx")):
-        from prefilter._work import openimageio
+        from prefilter.workflows import openimageio
 
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / Path(name).name

@@ -284,7 +284,7 @@ def _solid() -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
 
 def make_sources(folder: Path) -> None:
     """Writes what is read; the scene is made by Blender."""
-    from prefilter._work.files import png
+    from prefilter.workflows.files import png
 
     noise = np.random.default_rng(3)
     for name in ("paint.png", "other.png"):

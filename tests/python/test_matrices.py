@@ -4,7 +4,7 @@
 
 import numpy as np
 import pytest
-from prefilter._work import matrices
+from prefilter.workflows import matrices
 
 
 @pytest.mark.parametrize(

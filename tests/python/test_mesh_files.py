@@ -9,7 +9,7 @@ import struct
 
 import numpy as np
 import pytest
-from prefilter._work import mesh_files
+from prefilter.workflows import mesh_files
 
 U = [(1, 1), (1, 3), (0, 3), (0, 0), (3, 0), (3, 3), (2, 3), (2, 1)]
 """The outline of a letter; its area is 3 x 3 less 1 x 2."""

@@ -11,8 +11,8 @@ import prefilter
 import pytest
 from command_files import fails, noise, run, write_picture, write_quad
 from prefilter._options.mipmaps import FILTERS, TEXTURE_SPACE_FILTERS
-from prefilter._work import mesh_files
-from prefilter._work.up_to_date import fingerprint
+from prefilter.workflows import mesh_files
+from prefilter.workflows.up_to_date import fingerprint
 from texture_readers import read_dds, read_ktx2
 
 pytest.importorskip("OpenImageIO", reason="scripts/decoders.txt is not installed")

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from command_files import write_picture
 from prefilter._border import staging
-from prefilter._work import openimageio
+from prefilter.workflows import openimageio
 
 pytest.importorskip("resource", reason="Windows has no such limits")
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))

@@ -6,7 +6,7 @@ import numpy as np
 import prefilter
 import pytest
 from command_files import fails, noise, run, write_picture
-from prefilter._work import openimageio
+from prefilter.workflows import openimageio
 
 oiio = pytest.importorskip("OpenImageIO", reason="scripts/decoders.txt is not installed")
 

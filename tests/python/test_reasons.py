@@ -5,7 +5,7 @@
 import errno
 
 import pytest
-from prefilter._work.outcome import reason
+from prefilter.workflows.outcome import reason
 
 FULL = "No space left on device"
 

@@ -13,7 +13,7 @@ import prefilter
 import pytest
 from prefilter._border import staging, stopping
 from prefilter._command.program import ended
-from prefilter._work.files import png
+from prefilter.workflows.files import png
 
 STATUS = {signal.SIGINT: 130, signal.SIGTERM: 143}
 

@@ -23,7 +23,7 @@ from fontTools.ttLib.tables.E_B_L_C_ import (
 )
 from fontTools.ttLib.tables.sbixGlyph import Glyph
 from fontTools.ttLib.tables.sbixStrike import Strike as SbixStrike
-from prefilter._work.files import png
+from prefilter.workflows.files import png
 
 # The letter A is 600 x 500 units, V 400 x 500, and i 200 x 500. A unit is 0.1 with a size of 100.
 A, V, SMALL_I = "uni0041", "uni0056", "uni0069"

@@ -9,8 +9,8 @@ import numpy as np
 import prefilter
 import pytest
 from drawings import GREEN, RED, SIZE, box, by_hand, same, svg, whole
-from prefilter._work.files import png
 from prefilter.shapes._svg.pictures import size_of
+from prefilter.workflows.files import png
 
 
 def data_url(texels, kind="png"):

@@ -10,9 +10,10 @@ import numpy as np
 import prefilter
 import pytest
 from command_files import fails, noise, run, write_picture, write_quad
-from prefilter._work import mesh_files
-from prefilter._work.files import png
-from prefilter._work.up_to_date import (
+from prefilter.shapes._svg.document import MOST_UNPACKED
+from prefilter.workflows import mesh_files
+from prefilter.workflows.files import png
+from prefilter.workflows.up_to_date import (
     KEY,
     arrays_of,
     fingerprint_of,
@@ -20,7 +21,6 @@ from prefilter._work.up_to_date import (
     kept,
     stands_alone,
 )
-from prefilter.shapes._svg.document import MOST_UNPACKED
 
 oiio = pytest.importorskip("OpenImageIO", reason="scripts/decoders.txt is not installed")
 

@@ -8,7 +8,7 @@ import numpy as np
 import prefilter
 import pytest
 from prefilter._options.shapes import RasterizeSettings
-from prefilter._work.shapes.layers import uv_layers
+from prefilter.workflows.shapes.layers import uv_layers
 
 SIDE = 32
 FINE = 16  # Places along a side of a pixel at which the distance is known.

@@ -9,8 +9,8 @@ import os
 from pathlib import Path
 
 from prefilter import _native
-from prefilter._work.damage import damaged
-from prefilter._work.up_to_date import referred_files
+from prefilter.workflows.damage import damaged
+from prefilter.workflows.up_to_date import referred_files
 
 _MOST_HEADER = 1 << 16
 _STL_HEADER, _STL_TRIANGLE = 84, 50

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import bpy
-from prefilter._work.files.mesh_notes import with_note
+from prefilter.workflows.files.mesh_notes import with_note
 
 from ...core.outcome import reason
 from ...core.wording import listed

@@ -22,7 +22,7 @@ from typing import Any
 
 import bpy
 import numpy as np
-from prefilter._work.up_to_date import IN_DESCRIPTION, KEY
+from prefilter.workflows.up_to_date import IN_DESCRIPTION, KEY
 
 from .. import images, openimageio
 from ..images import FloatArray

@@ -12,8 +12,8 @@ from typing import Any
 
 import bpy
 from prefilter._command import outputs, tasks
-from prefilter._work.files import patterns, target_files
-from prefilter._work.up_to_date import LEVELS
+from prefilter.workflows.files import patterns, target_files
+from prefilter.workflows.up_to_date import LEVELS
 
 from ...bridge import images
 from ...bridge.files import scenes, staging

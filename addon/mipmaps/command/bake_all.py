@@ -9,8 +9,8 @@ from pathlib import Path
 
 import bpy
 from prefilter._command import tasks
-from prefilter._work.files import target_files
-from prefilter._work.up_to_date import LEVELS
+from prefilter.workflows.files import target_files
+from prefilter.workflows.up_to_date import LEVELS
 
 from ...bridge import meshes
 from ...bridge.files import scenes, staging

@@ -10,7 +10,7 @@ from typing import Any
 
 import bpy
 from prefilter._command import tasks
-from prefilter._work.files import target_files
+from prefilter.workflows.files import target_files
 
 from ...core import command
 from ...core.doing import read_at_once

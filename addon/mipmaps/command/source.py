@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import bpy
-from prefilter._work.files import target_files
+from prefilter.workflows.files import target_files
 
 from ...bridge import images, meshes
 from ...bridge.files import scenes

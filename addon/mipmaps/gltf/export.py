@@ -14,10 +14,10 @@ import numpy as np
 import prefilter
 from numpy.typing import NDArray
 from prefilter._border.claims import temporary_folder
-from prefilter._work.files import png
-from prefilter._work.mipmaps import contents, lookups
-from prefilter._work.mipmaps.outputs import Outputs
-from prefilter._work.picture import scene_linear
+from prefilter.workflows.files import png
+from prefilter.workflows.mipmaps import contents, lookups
+from prefilter.workflows.mipmaps.outputs import Outputs
+from prefilter.workflows.picture import scene_linear
 
 from ...bridge import images, meshes
 from ...bridge.files.staging import commit_all

@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 import prefilter
 from numpy.typing import NDArray
-from prefilter._work.files import png
+from prefilter.workflows.files import png
 
 from ...bridge import images, level_images
 from ...core.outcome import FAILURES, reason

@@ -13,7 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import bpy
-from prefilter._work.files import engines
+from prefilter.workflows.files import engines
 
 from ...core.jobs import Progress, go_on, share
 from ...core.outcome import FAILURES, Outcome

@@ -5,9 +5,9 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from prefilter._work.files import target_files
-from prefilter._work.mipmaps import blocks
-from prefilter._work.mipmaps.blocks import is_gray
+from prefilter.workflows.files import target_files
+from prefilter.workflows.mipmaps import blocks
+from prefilter.workflows.mipmaps.blocks import is_gray
 
 from ...bridge.images import Picture
 from ..choices import TEXTURE_FORMATS

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from prefilter._work.files import target_files
+from prefilter.workflows.files import target_files
 
 from ...bridge.files import staging
 from ...bridge.files.staging import StagedFile

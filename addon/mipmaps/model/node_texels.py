@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import bpy
 import numpy as np
 from numpy.typing import NDArray
-from prefilter._work.picture import Picture, encoded, scene_linear
+from prefilter.workflows.picture import Picture, encoded, scene_linear
 
 from ...bridge import image_roles
 from ...bridge.nodes import Groups

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import bpy
-from prefilter._work.mipmaps import contents, lookups, stretching
+from prefilter.workflows.mipmaps import contents, lookups, stretching
 
 from ...bridge import images
 from ...bridge.images import Picture

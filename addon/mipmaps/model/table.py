@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from prefilter._work.files import textures
+from prefilter.workflows.files import textures
 
 from ..choices import CONTENTS
 

@@ -101,7 +101,7 @@ class PREFILTER_OT_bake_mipmaps(
 
     def _with_files(self, image: bpy.types.Image, settings: Settings) -> Settings:
         """Returns settings whose files have names, beside the .blend file where none is given."""
-        from prefilter._work.files import patterns
+        from prefilter.workflows.files import patterns
 
         from ...bridge import images
         from .. import file_names

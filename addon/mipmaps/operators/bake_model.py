@@ -100,7 +100,7 @@ class PREFILTER_OT_bake_model(
         return self._model.discard if self._model is not None else super().releaser()
 
     def _planned(self, context: bpy.types.Context) -> "ModelBake":
-        from prefilter._work.files import target_files
+        from prefilter.workflows.files import target_files
 
         from .. import file_names
         from ..model.bake import ModelBake

@@ -111,7 +111,7 @@ def reading_source(
     Raises:
         ValueError: There is no such image, or no surface.
     """
-    from prefilter._work.mipmaps import lookups
+    from prefilter.workflows.mipmaps import lookups
 
     from ...bridge import images
     from .. import reading, users

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import prefilter
 from numpy.typing import ArrayLike, NDArray
-from prefilter._work.shapes.outlines import add_contour
+from prefilter.workflows.shapes.outlines import add_contour
 
 from ...bridge.images import FloatArray
 

@@ -102,7 +102,7 @@ class PreviewWork:
 
 def settings_for_preview(settings: Settings) -> Settings:
     """Returns settings without what does not change a level."""
-    from prefilter._work.mipmaps import lookups
+    from prefilter.workflows.mipmaps import lookups
 
     return replace(lookups.resolved(settings), levels=0, use_images=True, filepath="")
 

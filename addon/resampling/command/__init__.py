@@ -8,8 +8,8 @@ from typing import Any
 from prefilter._command import resample, resize, sampling_table
 from prefilter._command.host import Host
 from prefilter._command.program import COMMANDS
-from prefilter._work import picture_files
-from prefilter._work.space_names import AUTO
+from prefilter.workflows import picture_files
+from prefilter.workflows.space_names import AUTO
 
 from ...bridge import images
 from ...bridge.images import Picture

@@ -200,7 +200,7 @@ class PREFILTER_OT_drag_corners(bpy.types.Operator):
 
 def _seen(context: bpy.types.Context) -> tuple["Canvas", Any, tuple[int, int]]:
     """Returns where the image is, where its corners are, and the size of what they are in."""
-    from prefilter._work.resampling.placement import corners, frame
+    from prefilter.workflows.resampling.placement import corners, frame
 
     settings = context.scene.prefilter_resample.to_settings()
     size = tuple(context.space_data.image.size)

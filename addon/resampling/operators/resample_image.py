@@ -11,7 +11,7 @@ from ..properties import RESAMPLE, ResampleProperties
 from .new_image_operator import NewImageOperator
 
 if TYPE_CHECKING:
-    from prefilter._work.resampling.resampling import Resampling
+    from prefilter.workflows.resampling.resampling import Resampling
 
     from ...bridge.images import Picture
 
@@ -38,12 +38,12 @@ class PREFILTER_OT_resample_image(
 
     def work_on(self, picture: "Picture") -> "Resampling":
         """Returns what is to do to an image."""
-        from prefilter._work.resampling.resampling import Resampling
+        from prefilter.workflows.resampling.resampling import Resampling
 
         return Resampling(picture, self.to_settings(), keep=self.keep)
 
     def duration(self, load: tuple[int, int]) -> float:
         """Returns about how long it takes."""
-        from prefilter._work.resampling.resampling import effort
+        from prefilter.workflows.resampling.resampling import effort
 
         return effort(self.to_settings(), *load)

@@ -11,7 +11,7 @@ from ..properties import RESIZE, ResizeProperties
 from .new_image_operator import NewImageOperator
 
 if TYPE_CHECKING:
-    from prefilter._work.resampling.resizing import Resizing
+    from prefilter.workflows.resampling.resizing import Resizing
 
     from ...bridge.images import Picture
 
@@ -33,7 +33,7 @@ class PREFILTER_OT_resize_image(
 
     def work_on(self, picture: "Picture") -> "Resizing":
         """Returns what is to do to an image."""
-        from prefilter._work.resampling.resizing import Resizing
+        from prefilter.workflows.resampling.resizing import Resizing
 
         return Resizing(picture, self.to_settings(), keep=self.keep)
 

@@ -55,7 +55,7 @@ def _what_comes_out(
     settings: ResampleSettings, width: int, height: int
 ) -> Iterator[tuple[str, str]]:
     """Yields the size of the result, or what is wrong, each with an icon."""
-    from prefilter._work.resampling.placement import knows_proportions, placement
+    from prefilter.workflows.resampling.placement import knows_proportions, placement
 
     try:
         placed = placement(settings, width, height)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from prefilter._work.resampling.placement import Matrix
+    from prefilter.workflows.resampling.placement import Matrix
 
 _FOCAL_LENGTH = 1.0  # In heights of the picture.
 

@@ -18,7 +18,7 @@ from .camera import uv_of_picture
 from .kept import Plane
 
 if TYPE_CHECKING:
-    from prefilter._work.resampling.placement import Matrix
+    from prefilter.workflows.resampling.placement import Matrix
 
 _VERTEX = """
 void main()

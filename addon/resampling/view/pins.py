@@ -83,7 +83,7 @@ def canvas_of(region: bpy.types.Region, size: tuple[int, int]) -> "Canvas":
 
 
 def _draw() -> None:
-    from prefilter._work.resampling.placement import corners
+    from prefilter.workflows.resampling.placement import corners
 
     image = bpy.context.space_data.image
     if session is None or not is_on(image):
@@ -128,7 +128,7 @@ def _draw_pinned(
     places: "NDArray[np.float64]",
 ) -> None:
     """Draws the image between its corners, over all of the frame that they are places of."""
-    from prefilter._work.resampling.placement import frame, homography, rectangle
+    from prefilter.workflows.resampling.placement import frame, homography, rectangle
 
     from ..pins import uv_of_box
 
@@ -148,7 +148,7 @@ def _draw_rectified(
     places: "NDArray[np.float64]",
 ) -> None:
     """Draws the straightened image in a corner of the region, away from the active pin."""
-    from prefilter._work.resampling.placement import placement
+    from prefilter.workflows.resampling.placement import placement
 
     from ...bridge.drawing import draw_label, draw_lines
     from ..pins import uv_of_box

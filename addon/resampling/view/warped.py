@@ -10,7 +10,7 @@ import gpu
 from gpu_extras.batch import batch_for_shader
 
 if TYPE_CHECKING:
-    from prefilter._work.resampling.placement import Matrix
+    from prefilter.workflows.resampling.placement import Matrix
 
 _VERTEX = """
 void main()

@@ -7,7 +7,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 import scenes
-from prefilter._work import openimageio
+from prefilter.workflows import openimageio
 
 
 def read(addon, made):

@@ -8,7 +8,7 @@ import OpenImageIO as oiio
 import prefilter
 import pytest
 import scenes
-from prefilter._work import openimageio
+from prefilter.workflows import openimageio
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import OpenImageIO as oiio
 import pytest
 from command_line import run
 from prefilter._command import program
-from prefilter._work import mesh_files, picture_files
+from prefilter.workflows import mesh_files, picture_files
 
 BAKE = ("--wrap", "repeat")
 """What OpenImageIO puts into TIFF files."""

@@ -7,7 +7,7 @@ from pathlib import Path
 import bpy
 import pytest
 import scenes
-from prefilter._work.mipmaps import levels
+from prefilter.workflows.mipmaps import levels
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ import numpy as np
 import prefilter
 import pytest
 import scenes
-from prefilter._work.mipmaps import stretching
+from prefilter.workflows.mipmaps import stretching
 from texture_readers import read_dds, read_ktx2
 
 READERS = {"dds": read_dds, "ktx2": read_ktx2}

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 import pytest
-from prefilter._work.resampling import perspective as perspectives
-from prefilter._work.resampling import placement as placing
+from prefilter.workflows.resampling import perspective as perspectives
+from prefilter.workflows.resampling import placement as placing
 
 WIDTH, HEIGHT = 1500, 1100
 DIAGONAL = math.hypot(WIDTH, HEIGHT)

@@ -4,7 +4,7 @@
 
 import numpy as np
 import pytest
-from prefilter._work.resampling import placement as placing
+from prefilter.workflows.resampling import placement as placing
 
 SIZE = (60, 40)
 PLACES = np.array([(10.0, 5.0), (50.0, 8.0), (48.0, 35.0), (12.0, 30.0)])

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from prefilter._work.resampling import placement as placing
+from prefilter.workflows.resampling import placement as placing
 
 SQUARE = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
 

@@ -10,7 +10,7 @@ import pytest
 import scenes
 from command_line import assert_fails, run
 from picture_files import content, write
-from prefilter._work.resampling import placement as placing
+from prefilter.workflows.resampling import placement as placing
 
 CORNERS = (0.1, 0.0, 0.9, 0.2, 1.0, 1.0, 0.0, 0.7)
 

@@ -9,8 +9,8 @@ import numpy as np
 import prefilter
 import pytest
 import scenes
-from prefilter._work.resampling import placement as placing
-from prefilter._work.resampling import resampling as resamplings
+from prefilter.workflows.resampling import placement as placing
+from prefilter.workflows.resampling import resampling as resamplings
 
 CORNERS = {
     "lower_left": (0.1, 0.0),

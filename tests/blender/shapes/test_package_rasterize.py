@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from command_line import run
 from prefilter._command import program
-from prefilter._work import mesh_files
+from prefilter.workflows import mesh_files
 
 TIME = re.compile(rb"\d{4}:\d\d:\d\d \d\d:\d\d:\d\d")
 SVG = """<svg xmlns="http://www.w3.org/2000/svg" width="8" height="4">

@@ -15,15 +15,15 @@ import prefilter
 from .._border import staging
 from .._options.flags import add_flags, tables
 from .._options.voxels import BooleanSettings
-from .._work import mesh_endings, mesh_files
-from .._work.mesh_files import Part
-from .._work.outcome import Outcome
-from .._work.progress import Progress, go_on, parts, share
-from .._work.voxels import booleans, surfaces
-from .._work.voxels.grid import check_memory, choose_grid
-from .._work.voxels.nothing import NO_CELL, NothingLeftError
-from .._work.wording import amount, either, listed
 from ..meshes.measures import MeshMeasures, measure_mesh
+from ..workflows import mesh_endings, mesh_files
+from ..workflows.mesh_files import Part
+from ..workflows.outcome import Outcome
+from ..workflows.progress import Progress, go_on, parts, share
+from ..workflows.voxels import booleans, surfaces
+from ..workflows.voxels.grid import check_memory, choose_grid
+from ..workflows.voxels.nothing import NO_CELL, NothingLeftError
+from ..workflows.wording import amount, either, listed
 from . import outputs, telling, voxelize
 from .host import PLAIN
 

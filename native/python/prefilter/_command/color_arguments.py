@@ -6,10 +6,10 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .._work import space_names
+from ..workflows import space_names
 
 if TYPE_CHECKING:
-    from .._work.picture import Picture
+    from ..workflows.picture import Picture
 
 
 def add_flags(parser: argparse.ArgumentParser, thing: str) -> None:

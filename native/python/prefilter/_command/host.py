@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from .._options.flags import given
-from .._work import picture_files
-from .._work.picture import Picture
+from ..workflows import picture_files
+from ..workflows.picture import Picture
 
 
 def _nothing(parser: argparse.ArgumentParser) -> None:

@@ -11,9 +11,9 @@ from typing import Any
 
 from .._border.file_names import identities
 from .._border.staging import check_target
-from .._work.files import patterns
-from .._work.up_to_date import KEY, PICTURES, fingerprint
-from .._work.wording import listed
+from ..workflows.files import patterns
+from ..workflows.up_to_date import KEY, PICTURES, fingerprint
+from ..workflows.wording import listed
 from . import outputs, reports, tasks, telling
 
 

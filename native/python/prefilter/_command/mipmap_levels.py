@@ -10,15 +10,15 @@ from pathlib import Path
 
 from .._border.staging import StagedFile, commit_all
 from .._options.mipmaps import Settings
-from .._work import mesh_files, picture_files
-from .._work.files import engines, target_files, textures
-from .._work.mipmaps import checks, contents, levels, stretching
-from .._work.mipmaps.checks import Rough
-from .._work.mipmaps.outputs import Outputs, staged, summary
-from .._work.mipmaps.source import Source
-from .._work.outcome import Outcome
-from .._work.picture import Encoding, Picture
-from .._work.progress import Progress, go_on, share
+from ..workflows import mesh_files, picture_files
+from ..workflows.files import engines, target_files, textures
+from ..workflows.mipmaps import checks, contents, levels, stretching
+from ..workflows.mipmaps.checks import Rough
+from ..workflows.mipmaps.outputs import Outputs, staged, summary
+from ..workflows.mipmaps.source import Source
+from ..workflows.outcome import Outcome
+from ..workflows.picture import Encoding, Picture
+from ..workflows.progress import Progress, go_on, share
 from . import color_arguments
 
 _FILTERED = 0.9  # What the progress is once the levels are filtered.

@@ -9,10 +9,10 @@ from typing import Any
 
 from .._options.flags import add_flags, given, tables
 from .._options.mipmaps import FILTERS, TEXTURE_SPACE_FILTERS, Settings
-from .._work import mesh_endings
-from .._work.files import target_files
-from .._work.up_to_date import KEY, LEVELS, fingerprint
-from .._work.wording import either
+from ..workflows import mesh_endings
+from ..workflows.files import target_files
+from ..workflows.up_to_date import KEY, LEVELS, fingerprint
+from ..workflows.wording import either
 from . import color_arguments, outputs, telling
 
 FLAGS = (

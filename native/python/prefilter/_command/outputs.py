@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from .._border.file_names import check_windows_names, identities, stem_of
-from .._work.files import patterns
+from ..workflows.files import patterns
 
 NAME = "name"
 """The placeholder that stands for the name of what is read."""

@@ -6,9 +6,9 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from .._work.files import pictures
-from .._work.picture import Picture
-from .._work.wording import either
+from ..workflows.files import pictures
+from ..workflows.picture import Picture
+from ..workflows.wording import either
 from . import color_arguments, many, tasks, telling
 from .host import Host
 from .many import Pair

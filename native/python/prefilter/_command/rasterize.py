@@ -11,13 +11,13 @@ import numpy as np
 
 from .._options.flags import add_flags, given, tables
 from .._options.shapes import RasterizeSettings
-from .._work import mesh_endings, mesh_files
-from .._work.files import pictures
-from .._work.shapes.layers import Source, svg_drawing, uv_layers
-from .._work.shapes.layouts import borders
-from .._work.shapes.rasterizing import RasterFile
-from .._work.up_to_date import stands_alone
-from .._work.wording import either
+from ..workflows import mesh_endings, mesh_files
+from ..workflows.files import pictures
+from ..workflows.shapes.layers import Source, svg_drawing, uv_layers
+from ..workflows.shapes.layouts import borders
+from ..workflows.shapes.rasterizing import RasterFile
+from ..workflows.up_to_date import stands_alone
+from ..workflows.wording import either
 from . import many, tasks, telling
 from .host import PLAIN, Host
 from .many import Pair

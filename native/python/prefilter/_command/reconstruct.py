@@ -12,12 +12,12 @@ from typing import Any
 from .._border.staging import check_target
 from .._options.flags import add_flags, given, tables
 from .._options.scans import ScanSettings
-from .._work.outcome import up_to_date
-from .._work.scans import STREAMED_TARGET, Step, Streaming
-from .._work.scans import options as scan_options
-from .._work.wording import either, listed
 from ..points.scan_files import POINT_EXTENSIONS
 from ..points.steps import STEPS, Steps
+from ..workflows.outcome import up_to_date
+from ..workflows.scans import STREAMED_TARGET, Step, Streaming
+from ..workflows.scans import options as scan_options
+from ..workflows.wording import either, listed
 from . import outputs, tasks, telling
 from .host import PLAIN, Host
 

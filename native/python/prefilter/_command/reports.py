@@ -4,7 +4,7 @@
 
 import sys
 
-from .._work.damage import DEBUG, is_debugging, is_own
+from ..workflows.damage import DEBUG, is_debugging, is_own
 from . import streams
 
 _PAGE = "https://extensions.blender.org/add-ons/prefilter/"
@@ -12,7 +12,7 @@ _PAGE = "https://extensions.blender.org/add-ons/prefilter/"
 
 def told(error: BaseException) -> str:
     """Returns the line that says why work failed: our own reason, or that nobody foresaw it."""
-    from .._work.outcome import reason
+    from ..workflows.outcome import reason
 
     is_of_system = isinstance(error, OSError) and error.strerror is not None
     if not (is_of_system or is_own(error) or isinstance(error, MemoryError)):

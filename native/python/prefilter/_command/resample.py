@@ -11,8 +11,8 @@ import numpy as np
 from .._options.flags import add_flags, given, tables
 from .._options.options import check
 from .._options.resampling import CORNERS, ResampleSettings
-from .._work.resampling.resampling import Resampling
-from .._work.up_to_date import fingerprint
+from ..workflows.resampling.resampling import Resampling
+from ..workflows.up_to_date import fingerprint
 from . import many, picture_arguments, telling
 from .host import PLAIN, Host
 from .many import Pair

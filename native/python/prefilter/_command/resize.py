@@ -8,7 +8,7 @@ from typing import Any
 
 from .._options.flags import add_flags, given, tables
 from .._options.resampling import ResizeSettings
-from .._work.resampling.resizing import Resizing
+from ..workflows.resampling.resizing import Resizing
 from . import many, picture_arguments, telling
 from .host import PLAIN, Host
 from .many import Pair

@@ -11,8 +11,8 @@ from typing import Any
 from .._border.staging import check_target
 from .._options.flags import add_flags, given, tables
 from .._options.tables import TableSettings
-from .._work.resampling.table_making import ENDINGS, TableMaking
-from .._work.wording import either
+from ..workflows.resampling.table_making import ENDINGS, TableMaking
+from ..workflows.wording import either
 from . import outputs, telling
 from .host import PLAIN, Host
 

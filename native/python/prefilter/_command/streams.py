@@ -16,7 +16,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from typing import TextIO
 
-from .._work.damage import is_debugging
+from ..workflows.damage import is_debugging
 
 _NOBODY_READS = {errno.EPIPE, errno.EBADF, *([errno.EINVAL] if os.name == "nt" else [])}
 _NUMBERS = {"stdout": 1, "stderr": 2}

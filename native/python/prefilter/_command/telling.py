@@ -13,10 +13,10 @@ from typing import Any
 from .. import _native
 from .._border import stopping
 from .._options.flags import given
-from .._work import progress as works
-from .._work.outcome import Outcome, up_to_date
-from .._work.progress import Progress, Work, go_on
-from .._work.up_to_date import is_up_to_date
+from ..workflows import progress as works
+from ..workflows.outcome import Outcome, up_to_date
+from ..workflows.progress import Progress, Work, go_on
+from ..workflows.up_to_date import is_up_to_date
 from .voices import VOICES, Plain
 
 _NONE: Mapping[str, Any] = MappingProxyType({})

@@ -8,7 +8,7 @@ Warnings and errors are lines on standard error for all of them, which people re
 import json
 from typing import Any
 
-from .._work.outcome import Outcome
+from ..workflows.outcome import Outcome
 from . import streams
 
 

@@ -11,16 +11,16 @@ from typing import Any
 from .._border import staging
 from .._options.flags import add_flags, given, tables
 from .._options.voxels import VoxelizeSettings, VoxelSettings
-from .._work import mesh_endings, mesh_files
-from .._work.mesh_files import Part
-from .._work.outcome import Outcome
-from .._work.progress import Progress, go_on, parts, share
-from .._work.up_to_date import MESHES
-from .._work.voxels import surfaces
-from .._work.voxels.grid import check_memory, choose_grid
-from .._work.voxels.nothing import NO_CELL, LeftOut, NothingLeftError, check_area
-from .._work.wording import Sentence, amount, counted, either
 from ..meshes.measures import measure_mesh
+from ..workflows import mesh_endings, mesh_files
+from ..workflows.mesh_files import Part
+from ..workflows.outcome import Outcome
+from ..workflows.progress import Progress, go_on, parts, share
+from ..workflows.up_to_date import MESHES
+from ..workflows.voxels import surfaces
+from ..workflows.voxels.grid import check_memory, choose_grid
+from ..workflows.voxels.nothing import NO_CELL, LeftOut, NothingLeftError, check_area
+from ..workflows.wording import Sentence, amount, counted, either
 from . import many, tasks, telling
 from .host import PLAIN, Host
 from .many import Pair

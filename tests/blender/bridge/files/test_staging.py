@@ -8,7 +8,7 @@ import stat
 import numpy as np
 import pytest
 import scenes
-from prefilter._work.files import target_files
+from prefilter.workflows.files import target_files
 
 
 def make_pipe(path):

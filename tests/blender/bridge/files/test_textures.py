@@ -8,8 +8,8 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 import scenes
-from prefilter._work import openimageio
-from prefilter._work.files import target_files
+from prefilter.workflows import openimageio
+from prefilter.workflows.files import target_files
 
 
 def written(bake, tmp_path, file_name, values, **options):

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from ..._border.claims import temporary_folder
 
 if TYPE_CHECKING:
-    from ..._work.openimageio import Stated
+    from ...workflows.openimageio import Stated
 
 Texels = npt.NDArray[np.uint8]
 
@@ -48,7 +48,7 @@ def read_picture(data: bytes) -> Texels:
 
 
 def _by_pillow(pillow: Any, data: bytes) -> "tuple[Texels, Stated, bool]":
-    from ..._work.openimageio import Stated
+    from ...workflows.openimageio import Stated
 
     try:
         with pillow.open(io.BytesIO(data), formats=("PNG", "JPEG", "GIF", "WEBP")) as file:
@@ -65,7 +65,7 @@ def _by_pillow(pillow: Any, data: bytes) -> "tuple[Texels, Stated, bool]":
 
 
 def _by_openimageio(data: bytes) -> "tuple[Texels, Stated, bool]":
-    from ..._work import openimageio
+    from ...workflows import openimageio
 
     try:
         with temporary_folder() as folder:
@@ -81,8 +81,8 @@ def _by_openimageio(data: bytes) -> "tuple[Texels, Stated, bool]":
 
 def _upright_in_srgb(texels: Texels, data: bytes, stated: "Stated", *, is_gray: bool) -> Texels:
     """Texels as a browser shows them: turned as EXIF says, in the colors that the file names."""
-    from ..._work import color_spaces, orientation, picture_colors
-    from ..._work.files.embedded import embedded_in
+    from ...workflows import color_spaces, orientation, picture_colors
+    from ...workflows.files.embedded import embedded_in
 
     found = embedded_in(io.BytesIO(data))
     try:
