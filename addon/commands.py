@@ -38,14 +38,14 @@ class Commands:
             The exit status: 0, 1 for a failure that was told on stderr, 2 for wrong arguments, 130
             after Ctrl-C, 143 after SIGTERM.
         """
-        from prefilter._command.program import ended, execute, parse
+        from prefilter.commands.program import ended, execute, parse
 
         return ended(lambda: execute(parse(self.parser(), arguments)), is_end=True)
 
     def parser(self) -> "argparse.ArgumentParser":
         """Returns what reads the arguments."""
-        from prefilter._command.program import Parser
-        from prefilter._command.telling import add_progress
+        from prefilter.commands.program import Parser
+        from prefilter.commands.telling import add_progress
 
         parser = Parser(
             prog=_PROGRAM,

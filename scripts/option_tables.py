@@ -32,7 +32,7 @@ def table(name: str) -> str:
         return command_table(addon.Commands(addon.SUBJECTS).parser(), command)
     if kind == "program":
         return command_table(
-            importlib.import_module("prefilter._command.program").parser(), command
+            importlib.import_module("prefilter.commands.program").parser(), command
         )
     module, _, settings = name.rpartition(".")
     options = importlib.import_module(f"{PACKAGE}.core.options")

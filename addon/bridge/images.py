@@ -23,7 +23,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 from numpy.typing import NDArray
-from prefilter._border.claims import temporary_folder
+from prefilter.files.claims import temporary_folder
 from prefilter.workflows.picture import (
     LINEAR_REC709_NAMES,
     Encoding,

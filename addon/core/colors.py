@@ -2,6 +2,6 @@
 
 """Colors as users of commands write them; the package reads them."""
 
-from prefilter._options.colors import Color, from_hex, to_hex
+from prefilter.options.colors import Color, from_hex, to_hex
 
 __all__ = ("Color", "from_hex", "to_hex")

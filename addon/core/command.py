@@ -2,7 +2,7 @@
 
 """What the commands share: options, progress, messages."""
 
-from prefilter._command.telling import (
+from prefilter.commands.telling import (
     add_command,
     add_skipping,
     are_up_to_date,

@@ -6,7 +6,7 @@ import unicodedata
 from collections.abc import Sequence
 
 import bpy
-from prefilter._border.file_names import portable
+from prefilter.files.file_names import portable
 
 
 def clean_name(name: str) -> str:

@@ -2,6 +2,6 @@
 
 """The filters of the library as choices."""
 
-from prefilter._options.filters import LABELS, filters_for
+from prefilter.options.filters import LABELS, filters_for
 
 __all__ = ("LABELS", "filters_for")

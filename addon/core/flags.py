@@ -6,8 +6,8 @@ import argparse
 from functools import partial
 from typing import Any, TypeVar
 
-from prefilter._options import flags
-from prefilter._options.flags import given, tables
+from prefilter.options import flags
+from prefilter.options.flags import given, tables
 
 from .preferences import preferred
 

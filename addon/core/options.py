@@ -2,7 +2,7 @@
 
 """Options; the package declares those that its command has too."""
 
-from prefilter._options.options import (
+from prefilter.options.options import (
     Option,
     check,
     declared,

@@ -166,7 +166,7 @@ class PREFILTER_OT_import_preset(_PresetFile, bpy.types.Operator):
 
 def _write(target: Path, data: bytes) -> None:
     """Replaces a file, or makes a new one."""
-    from prefilter._border.staging import write_output
+    from prefilter.files.staging import write_output
 
     write_output(target, lambda file: file.write(data))
 

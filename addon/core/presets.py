@@ -24,7 +24,7 @@ from .wording import listed
 if TYPE_CHECKING:
     import argparse
 
-    from prefilter._command.host import Host
+    from prefilter.commands.host import Host
 
 Settings = TypeVar("Settings")
 
@@ -239,7 +239,7 @@ def host(kind: Kind, **more: Any) -> "Host":
         kind: That of the presets.
         more: More of it, such as `read`.
     """
-    from prefilter._command.host import Host
+    from prefilter.commands.host import Host
 
     from .flags import PREFERRED
 

@@ -4,7 +4,7 @@
 
 from dataclasses import dataclass
 
-from prefilter._options.mipmaps import (
+from prefilter.options.mipmaps import (
     BOUNDS,
     CONTENTS,
     EFFORTS,

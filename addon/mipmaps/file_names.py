@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import bpy
-from prefilter._border.file_names import identities
+from prefilter.files.file_names import identities
 from prefilter.workflows.files import patterns, target_files
 
 from ..bridge import images

@@ -4,7 +4,7 @@
 
 from dataclasses import dataclass
 
-from prefilter._options.resampling import (
+from prefilter.options.resampling import (
     CORNERS,
     FILTERS,
     LONGEST_SIDE,
@@ -19,7 +19,7 @@ from prefilter._options.resampling import (
     ResampleSettings,
     ResizeSettings,
 )
-from prefilter._options.tables import LANGUAGES, SPECTRA, TARGETS, TableSettings
+from prefilter.options.tables import LANGUAGES, SPECTRA, TARGETS, TableSettings
 
 from ..core.options import one_of
 

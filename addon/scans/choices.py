@@ -4,8 +4,8 @@
 
 from dataclasses import dataclass
 
-from prefilter._options.choices import Choice
-from prefilter._options.scans import (
+from prefilter.options.choices import Choice
+from prefilter.options.scans import (
     AGAINST,
     CLASSES,
     DIRECTIONS,

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 import bpy
-from prefilter._command import reconstruct
-from prefilter._command.program import COMMANDS
+from prefilter.commands import reconstruct
+from prefilter.commands.program import COMMANDS
 from prefilter.workflows.scans import STREAMED_TARGET, Streaming
 
 from ..bridge.files import scenes

@@ -4,7 +4,7 @@
 
 from dataclasses import dataclass
 
-from prefilter._options.shapes import (
+from prefilter.options.shapes import (
     ALPHAS,
     BACKGROUNDS,
     COLORS,

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 import bpy
-from prefilter._command import many, rasterize, tasks
-from prefilter._command.many import Pair
-from prefilter._command.program import COMMANDS
-from prefilter._command.rasterize import SVG
+from prefilter.commands import many, rasterize, tasks
+from prefilter.commands.many import Pair
+from prefilter.commands.program import COMMANDS
+from prefilter.commands.rasterize import SVG
 from prefilter.workflows.files import pictures
 from prefilter.workflows.up_to_date import KEY, PICTURES
 

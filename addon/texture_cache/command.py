@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import bpy
-from prefilter._command import tasks
+from prefilter.commands import tasks
 
 from ..bridge import meshes
 from ..bridge.files import scenes, staging

@@ -2,7 +2,7 @@
 
 """What a user may set for voxels and booleans."""
 
-from prefilter._options.voxels import (
+from prefilter.options.voxels import (
     FACES,
     HOLES,
     INTERPOLANTS,

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 import bpy
-from prefilter._command import boolean, many, outputs, tasks, voxelize
-from prefilter._command.many import Pair
-from prefilter._command.program import COMMANDS
-from prefilter._command.voxelize import RESOLUTIONS
+from prefilter.commands import boolean, many, outputs, tasks, voxelize
+from prefilter.commands.many import Pair
+from prefilter.commands.program import COMMANDS
+from prefilter.commands.voxelize import RESOLUTIONS
 from prefilter.workflows.up_to_date import KEY, MESHES
 
 from ..bridge.files import scenes

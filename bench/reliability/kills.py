@@ -69,7 +69,7 @@ class Found:
 
     def add(self, trial: Trial, out: Path) -> None:
         """Looks at a folder, as it is after the next run."""
-        from prefilter._border import replacing
+        from prefilter.files import replacing
 
         self.left += any(is_left(name) for name in contents(out))
         for folder in [out, *(path for path in out.iterdir() if path.is_dir())]:
@@ -263,7 +263,7 @@ def begin_quickly(writer: Writer) -> Begin:
     if writer.is_blenders:
         return the_blender().begin
     import prefilter
-    from prefilter._command import program
+    from prefilter.commands import program
 
     with contextlib.suppress(SystemExit), contextlib.redirect_stdout(io.StringIO()):
         program.parser()

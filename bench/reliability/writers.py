@@ -91,7 +91,7 @@ class Writer:
             import bl_ext.user_default.prefilter as addon
 
             return int(addon.Commands(addon.SUBJECTS).run(words))
-        from prefilter._command import program
+        from prefilter.commands import program
 
         return program.main(words)
 

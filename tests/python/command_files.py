@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from prefilter._command import program
+from prefilter.commands import program
 
 
 def run(*arguments: object) -> int:

@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 import pytest
-from prefilter._command import program
+from prefilter.commands import program
 
 
 def run(*arguments):
@@ -67,7 +67,7 @@ def test_wrong_arguments_end_with_2(arguments, capsys):
 
 def test_neither_pictures_nor_meshes_are_loaded_for_help():
     code = (
-        "import sys; from prefilter._command.program import main; main(['mipmaps', '--help']);"
+        "import sys; from prefilter.commands.program import main; main(['mipmaps', '--help']);"
         "print('LOADED', *sys.modules)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -3,7 +3,7 @@
 """Names of files that every system can write."""
 
 import pytest
-from prefilter._border.file_names import check_windows_names, identities, portable
+from prefilter.files.file_names import check_windows_names, identities, portable
 
 DEVICES = ("CON", "nul", "PRN", "Aux", "COM1", "com9", "LPT0", "COM\u00b2", "CONIN$", "conout$")
 

@@ -9,7 +9,7 @@ import time
 
 import pytest
 from prefilter import _native
-from prefilter._border import claims, replacing, staging
+from prefilter.files import claims, replacing, staging
 
 resource = pytest.importorskip("resource", reason="Windows has no such limits")
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="the signal is that of other systems")

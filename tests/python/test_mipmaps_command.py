@@ -10,7 +10,7 @@ import numpy as np
 import prefilter
 import pytest
 from command_files import fails, noise, run, write_picture, write_quad
-from prefilter._options.mipmaps import FILTERS, TEXTURE_SPACE_FILTERS
+from prefilter.options.mipmaps import FILTERS, TEXTURE_SPACE_FILTERS
 from prefilter.workflows import mesh_files
 from prefilter.workflows.up_to_date import fingerprint
 from texture_readers import read_dds, read_ktx2
@@ -213,7 +213,7 @@ def test_a_failure_leaves_the_file_as_it_was(texture, tmp_path, capsys, monkeypa
     def full(*_, **__):
         raise OSError("no space left")
 
-    monkeypatch.setattr("prefilter._border.staging.os.replace", full)
+    monkeypatch.setattr("prefilter.files.staging.os.replace", full)
     assert "no space left" in fails(capsys, 1, "mipmaps", texture, "-o", out)
     assert out.read_bytes() == b"before"
     assert sorted(path.name for path in tmp_path.iterdir()) == ["out.ktx2", "paint.png"]
@@ -303,7 +303,7 @@ def test_finding_all_up_to_date_loads_nothing_slow(texture, tmp_path):
     arguments = ["mipmaps", str(texture), "-o", str(tmp_path / "l.ktx2"), "--skip-up-to-date"]
     assert run(*arguments) == 0
     program = (
-        f"import sys; from prefilter._command import program; program.main({arguments})\n"
+        f"import sys; from prefilter.commands import program; program.main({arguments})\n"
         "print(*sys.modules)"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)

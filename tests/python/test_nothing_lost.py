@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from command_files import write_picture
-from prefilter._border import staging
+from prefilter.files import staging
 from prefilter.workflows import openimageio
 
 pytest.importorskip("resource", reason="Windows has no such limits")

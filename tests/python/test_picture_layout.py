@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 from command_files import fails, noise, run, write_picture, write_quad
-from prefilter._command import program
+from prefilter.commands import program
 from prefilter.workflows import memory, openimageio
 
 oiio = pytest.importorskip("OpenImageIO", reason="scripts/decoders.txt is not installed")

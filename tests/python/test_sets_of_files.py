@@ -12,7 +12,7 @@ import time
 from pathlib import Path
 
 import pytest
-from prefilter._border import replacing, staging
+from prefilter.files import replacing, staging
 
 COUNT = 6
 
@@ -20,7 +20,7 @@ COUNT = 6
 WRITER = """
 import sys
 from pathlib import Path
-from prefilter._border import staging
+from prefilter.files import staging
 
 folders = [Path(one) for one in sys.argv[2:]]
 for number in range(int(sys.argv[1]), 1 << 30):
@@ -40,7 +40,7 @@ import os
 import signal
 import sys
 from pathlib import Path
-from prefilter._border import claims, staging
+from prefilter.files import claims, staging
 
 count, stage, calls = int(sys.argv[1]), sys.argv[2], 0
 
@@ -180,7 +180,7 @@ def test_one_who_lives_is_left_alone(quick_path):
         run = subprocess.run(
             [
                 *(sys.executable, "-c"),
-                "import sys; from pathlib import Path; from prefilter._border import replacing;"
+                "import sys; from pathlib import Path; from prefilter.files import replacing;"
                 "replacing.recover(Path(sys.argv[1]))",
                 str(quick_path),
             ],

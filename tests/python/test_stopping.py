@@ -11,8 +11,9 @@ import threading
 import numpy as np
 import prefilter
 import pytest
-from prefilter._border import staging, stopping
-from prefilter._command.program import ended
+from prefilter._border import stopping
+from prefilter.commands.program import ended
+from prefilter.files import staging
 from prefilter.workflows.files import png
 
 STATUS = {signal.SIGINT: 130, signal.SIGTERM: 143}

@@ -8,7 +8,7 @@ import sys
 
 import pytest
 from command_files import fails, noise, run, write_picture, write_quad
-from prefilter._command.tasks import Part
+from prefilter.commands.tasks import Part
 
 pytest.importorskip("OpenImageIO", reason="scripts/decoders.txt is not installed")
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import prefilter
 import pytest
-from prefilter._options.shapes import RasterizeSettings
+from prefilter.options.shapes import RasterizeSettings
 from prefilter.workflows.shapes.layers import uv_layers
 
 SIDE = 32

@@ -11,7 +11,7 @@ import tempfile
 
 import pytest
 from command_files import noise, run, write_picture
-from prefilter._command import program
+from prefilter.commands import program
 
 pytest.importorskip("OpenImageIO", reason="scripts/decoders.txt is not installed")
 
@@ -67,7 +67,7 @@ def test_people_get_a_line_each_quarter_of_all_files(pictures, capsys):
 def test_a_program_that_ends_early_says_so(tmp_path):
     """As from a farm: what the voice of one run says is gone in the next."""
     code = (
-        "from prefilter._command import program, telling\n"
+        "from prefilter.commands import program, telling\n"
         "def stop(): raise KeyboardInterrupt\n"
         "telling.speak('json')\n"
         "telling.share(1, 3).__enter__()\n"
@@ -79,7 +79,7 @@ def test_a_program_that_ends_early_says_so(tmp_path):
 
 OTHERS = (
     "import logging, os, sys, warnings\n"
-    "from prefilter._command import program, telling\n"
+    "from prefilter.commands import program, telling\n"
     "def run():\n"
     "    print('an importer')\n"
     "    os.write(1, b'a library\\n')\n"

@@ -78,7 +78,7 @@ def test_a_wheel_holds_subpackages_and_licenses(package: Path, tmp_path: Path) -
     }
     assert metadata.count("\nLicense-File: ") == len(texts()) + 1
     assert "\nProvides-Extra: command\nRequires-Dist: openimageio" in metadata
-    assert commands == "[console_scripts]\nprefilter = prefilter._command.program:main\n"
+    assert commands == "[console_scripts]\nprefilter = prefilter.commands.program:main\n"
 
 
 def test_the_same_package_gives_the_same_bytes(package: Path, tmp_path: Path) -> None:

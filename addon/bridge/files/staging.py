@@ -5,7 +5,7 @@
 import os
 from pathlib import Path
 
-from prefilter._border.staging import (
+from prefilter.files.staging import (
     StagedFile,
     StagedFolder,
     check_target,

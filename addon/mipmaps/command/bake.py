@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import bpy
-from prefilter._command import outputs, tasks
+from prefilter.commands import outputs, tasks
 from prefilter.workflows.files import patterns, target_files
 from prefilter.workflows.up_to_date import LEVELS
 

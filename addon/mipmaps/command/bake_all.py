@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import bpy
-from prefilter._command import tasks
+from prefilter.commands import tasks
 from prefilter.workflows.files import target_files
 from prefilter.workflows.up_to_date import LEVELS
 

@@ -6,7 +6,7 @@ import argparse
 import os
 from pathlib import Path
 
-from prefilter._command import outputs
+from prefilter.commands import outputs
 
 from ...bridge import meshes
 from ...bridge.files import scenes

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import bpy
-from prefilter._command import tasks
+from prefilter.commands import tasks
 from prefilter.workflows.files import target_files
 
 from ...core import command

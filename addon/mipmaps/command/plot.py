@@ -7,7 +7,7 @@ from functools import partial
 from typing import Any
 
 import bpy
-from prefilter._command import outputs
+from prefilter.commands import outputs
 
 from ...bridge import images, new_images
 from ...bridge.files import scenes, staging

@@ -13,7 +13,7 @@ import bpy
 import numpy as np
 import prefilter
 from numpy.typing import NDArray
-from prefilter._border.claims import temporary_folder
+from prefilter.files.claims import temporary_folder
 from prefilter.workflows.files import png
 from prefilter.workflows.mipmaps import contents, lookups
 from prefilter.workflows.mipmaps.outputs import Outputs

@@ -5,9 +5,9 @@
 from dataclasses import replace
 from typing import Any
 
-from prefilter._command import resample, resize, sampling_table
-from prefilter._command.host import Host
-from prefilter._command.program import COMMANDS
+from prefilter.commands import resample, resize, sampling_table
+from prefilter.commands.host import Host
+from prefilter.commands.program import COMMANDS
 from prefilter.workflows import picture_files
 from prefilter.workflows.space_names import AUTO
 

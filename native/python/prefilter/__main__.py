@@ -4,6 +4,6 @@
 
 import sys
 
-from ._command.program import main
+from .commands.program import main
 
 sys.exit(main())

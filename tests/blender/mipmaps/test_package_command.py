@@ -6,7 +6,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from command_line import run
-from prefilter._command import program
+from prefilter.commands import program
 from prefilter.workflows import mesh_files, picture_files
 
 BAKE = ("--wrap", "repeat")

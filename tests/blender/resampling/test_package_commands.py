@@ -8,7 +8,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from command_line import run
-from prefilter._command import program
+from prefilter.commands import program
 
 CORNERS = ("0.1", "0", "1", "0.1", "0.9", "0.9", "0", "1")
 

@@ -11,7 +11,7 @@ import clouds
 import numpy as np
 import pytest
 from command_line import assert_fails, loaded, run
-from prefilter._command import voices
+from prefilter.commands import voices
 
 DEPTH = ("--depth", 6)
 

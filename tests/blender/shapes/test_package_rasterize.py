@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 from command_line import run
-from prefilter._command import program
+from prefilter.commands import program
 from prefilter.workflows import mesh_files
 
 TIME = re.compile(rb"\d{4}:\d\d:\d\d \d\d:\d\d:\d\d")

@@ -1,3 +1,3 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The border to callers: their arguments checked, and files written, the same way everywhere."""
+"""Checks of the arguments of public functions, the same everywhere."""

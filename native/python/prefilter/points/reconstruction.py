@@ -24,8 +24,8 @@ from .._border.arguments import (
 )
 from .._border.arrays import as_threads
 from .._border.names import Direction, Returns, Wavelet
-from .._border.replacing import recover
-from .._border.staging import as_target
+from ..files.replacing import recover
+from ..files.staging import as_target
 from .alignment import ScanAlignment
 from .choice import Classes, as_choice
 from .clouds import AGAINST, SCANS

@@ -12,8 +12,8 @@ from typing import Any
 
 from .. import _native
 from .._border.arguments import ProgressCallback, as_progress, set_options
-from .._border.replacing import recover
-from .._border.staging import as_target
+from ..files.replacing import recover
+from ..files.staging import as_target
 from .choice import as_choice
 from .directions import as_wanted
 from .reconstruction import CHECKS, ReconstructionReport, fill_in

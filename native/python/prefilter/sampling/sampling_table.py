@@ -25,7 +25,7 @@ from .._border.arguments import (
 from .._border.arrays import as_threads
 from .._border.input import as_path, open_file
 from .._border.names import Kernel
-from .._border.staging import as_target, write_output
+from ..files.staging import as_target, write_output
 from ._shaders import gpu, osl
 from .levels import SAMPLING_FILTERS
 

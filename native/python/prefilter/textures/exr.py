@@ -14,7 +14,7 @@ from .. import _native
 from .._border.arguments import ProgressCallback, as_one_of, as_progress, is_srgb
 from .._border.arrays import as_threads
 from .._border.names import Alpha, Encoding, ExrFormat
-from .._border.staging import Output, as_output, write_output
+from ..files.staging import Output, as_output, write_output
 from .texel_formats import ALPHAS
 from .texels import halving_levels
 

@@ -21,7 +21,7 @@ from .._border.names import (
     Ktx2Format,
     Supercompression,
 )
-from .._border.staging import Output, as_output, write_output
+from ..files.staging import Output, as_output, write_output
 from . import dds, etc1s
 from .ktx2 import KTX2, as_metadata
 from .texel_formats import ALPHAS, EFFORTS, SUPERCOMPRESSIONS, Container, TexelFormat, Texture

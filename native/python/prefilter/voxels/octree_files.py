@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from .. import _native
 from .._border.input import as_path, open_file
-from .._border.staging import as_target, write_output
+from ..files.staging import as_target, write_output
 
 if TYPE_CHECKING:
     import zipfile

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 import prefilter
 
 from .. import _native
-from .._border.file_names import portable
-from .._border.odd_names import is_text, readable_name
-from .._border.staging import StagedFile, stage_bytes, stage_data
+from ..files.file_names import portable
+from ..files.odd_names import is_text, readable_name
+from ..files.staging import StagedFile, stage_bytes, stage_data
 from .damage import why_unreadable
 from .files.gltf import read_gltf
 from .files.mesh_notes import with_note

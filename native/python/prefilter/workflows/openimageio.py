@@ -15,8 +15,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .._border.claims import temporary_folder
-from .._border.odd_names import reads_any_name, writes_any_name
+from ..files.claims import temporary_folder
+from ..files.odd_names import reads_any_name, writes_any_name
 from .damage import damaged
 from .files.tiff import NO_DATE, remove_dates
 from .memory import free_memory

@@ -9,7 +9,7 @@ from typing import Any
 
 import prefilter
 
-from .._options.scans import ScanSettings
+from ..options.scans import ScanSettings
 from ..points.scan_files import is_ply
 from ..points.steps import Steps
 from .outcome import Outcome

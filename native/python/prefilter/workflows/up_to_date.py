@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from urllib.parse import unquote
 
-from .._border.replacing import recover
 from .._native import VERSION
+from ..files.replacing import recover
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

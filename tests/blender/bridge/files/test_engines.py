@@ -9,7 +9,7 @@ import OpenImageIO as oiio
 import prefilter
 import pytest
 import scenes
-from prefilter._border import staging
+from prefilter.files import staging
 from texture_readers import read_dds, read_ktx2
 
 READERS = {"dds": read_dds, "ktx2": read_ktx2}

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from ..._border.claims import temporary_folder
+from ...files.claims import temporary_folder
 
 if TYPE_CHECKING:
     from ...workflows.openimageio import Stated

@@ -20,8 +20,8 @@ import numpy as np
 import prefilter
 from prefilter import TexelFormat
 
-from ..._border import staging
-from ..._border.staging import StagedFile
+from ...files import staging
+from ...files.staging import StagedFile
 from ..alpha import unassociated
 from ..openimageio import Check
 from ..picture import Encoding, FloatArray, Picture

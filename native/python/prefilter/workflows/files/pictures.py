@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..._border import staging
+from ...files import staging
 from ...textures.exr import write_exr_picture
 from .. import space_names
 from . import png

@@ -8,7 +8,7 @@ A command that finds its files up to date needs no more of them, so this loads n
 import os
 from pathlib import Path
 
-from ..._border import staging
+from ...files import staging
 
 _OF_RENDERERS = (".exr", ".tif", ".tiff", ".tx")
 # Those that `engines` writes; the last one gets a file a level.

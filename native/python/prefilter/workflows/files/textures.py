@@ -19,7 +19,7 @@ import numpy as np
 
 import prefilter
 
-from ..._border.staging import StagedFile, stage_bytes, stage_with
+from ...files.staging import StagedFile, stage_bytes, stage_with
 from .. import alpha, openimageio, space_names
 from .. import picture as images
 from ..picture import FloatArray, Picture

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import prefilter
 
-from ..._options.mipmaps import Settings
+from ...options.mipmaps import Settings
 from ..files import target_files
 from ..picture import Picture, scene_linear
 from ..wording import Sentence

@@ -10,7 +10,7 @@ import numpy as np
 
 import prefilter
 
-from ..._options.mipmaps import TEXTURE_SPACE_FILTERS
+from ...options.mipmaps import TEXTURE_SPACE_FILTERS
 from ..picture import Encoding, FloatArray, Picture, Texels, as_srgb, automatic_bounds
 from ..progress import Progress, share
 

@@ -7,7 +7,7 @@ from typing import Any, cast
 
 import prefilter
 
-from ..._options.mipmaps import SEAM_FILTERS
+from ...options.mipmaps import SEAM_FILTERS
 from .. import picture as images
 from ..picture import FloatArray
 from ..progress import Progress, go_on, share

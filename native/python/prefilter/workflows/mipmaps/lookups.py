@@ -5,7 +5,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from ..._options.mipmaps import FITTED_FILTERS, Settings
+from ...options.mipmaps import FITTED_FILTERS, Settings
 from ..files import target_files
 from ..wording import Sentence
 

@@ -7,8 +7,8 @@ from dataclasses import asdict, dataclass, fields
 from functools import partial
 from pathlib import Path
 
-from ..._border.staging import StagedFile
-from ..._options.mipmaps import CONTENTS, FILTERS, Settings
+from ...files.staging import StagedFile
+from ...options.mipmaps import CONTENTS, FILTERS, Settings
 from ..files import engines, textures
 from ..picture import FloatArray, Picture, encoded, in_rec709, scene_linear
 from ..up_to_date import fingerprint_of

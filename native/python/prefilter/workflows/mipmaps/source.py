@@ -13,7 +13,7 @@ import numpy as np
 
 import prefilter
 
-from ..._options.mipmaps import Settings
+from ...options.mipmaps import Settings
 from .. import picture as images
 from ..picture import FloatArray, Picture
 from ..progress import Progress, go_on, share

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 import prefilter
 
-from ..._border import staging
+from ...files import staging
 from .. import alpha
 from ..files import pictures
 from ..outcome import Outcome

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ... import _native
-from ..._options.resampling import CORNERS, LONGEST_SIDE, ResampleSettings
+from ...options.resampling import CORNERS, LONGEST_SIDE, ResampleSettings
 from ..matrices import inverse, product
 from .perspective import proportions
 

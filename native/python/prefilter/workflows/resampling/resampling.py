@@ -7,7 +7,7 @@ from typing import Any, cast
 
 import prefilter
 
-from ..._options.resampling import METHODS, SUFFIXES, TABLE_FILTERS, ResampleSettings
+from ...options.resampling import METHODS, SUFFIXES, TABLE_FILTERS, ResampleSettings
 from ..picture import FloatArray, Picture, with_coverage
 from ..progress import Progress
 from ..wording import Sentence, joined

@@ -7,7 +7,7 @@ from typing import Any, cast
 
 import prefilter
 
-from ..._options.resampling import FILTERS, ResizeSettings
+from ...options.resampling import FILTERS, ResizeSettings
 from ..picture import FloatArray, Picture, Texels, light_or_bytes
 from ..progress import Progress
 from ..wording import Sentence

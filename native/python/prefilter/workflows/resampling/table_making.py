@@ -8,10 +8,10 @@ from typing import Any, cast
 
 import prefilter
 
-from ..._border import staging
-from ..._border.claims import temporary_folder
-from ..._options.resampling import METHODS, TABLE_FILTERS
-from ..._options.tables import LANGUAGES, TableSettings
+from ...files import staging
+from ...files.claims import temporary_folder
+from ...options.resampling import METHODS, TABLE_FILTERS
+from ...options.tables import LANGUAGES, TableSettings
 from ...sampling.sampling_table import STANDARD_TARGETS
 from ..outcome import Outcome
 from ..progress import Progress, go_on, share

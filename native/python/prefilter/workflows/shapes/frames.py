@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..._options.shapes import LARGEST_SIDE, RasterizeSettings
+from ...options.shapes import LARGEST_SIDE, RasterizeSettings
 from ..memory import Memory
 from ..wording import Sentence
 

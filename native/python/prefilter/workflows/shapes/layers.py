@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 import prefilter
 
-from ..._options.colors import Color
-from ..._options.shapes import RasterizeSettings
+from ...options.colors import Color
+from ...options.shapes import RasterizeSettings
 from ...shapes.svg_image import SvgPicture
 from ..matrices import product
 from ..memory import Memory, free_memory

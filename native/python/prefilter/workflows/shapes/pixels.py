@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 import prefilter
 
-from ..._border import staging
-from ..._options.colors import Color
-from ..._options.shapes import RasterizeSettings
+from ...files import staging
+from ...options.colors import Color
+from ...options.shapes import RasterizeSettings
 from ..alpha import associated, at_most_opaque, unassociated
 from ..files import pictures
 from ..progress import Progress, go_on, share

@@ -10,9 +10,9 @@ import numpy as np
 
 import prefilter
 
-from ..._border import staging
-from ..._options.options import check
-from ..._options.shapes import RasterizeSettings
+from ...files import staging
+from ...options.options import check
+from ...options.shapes import RasterizeSettings
 from ..outcome import Outcome
 from ..progress import Progress, go_on, share
 from ..wording import Sentence

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 import prefilter
 
-from ..._options.voxels import VoxelSettings
+from ...options.voxels import VoxelSettings
 from ..memory import Memory, free_memory
 from ..wording import amount
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 import prefilter
 
-from ..._options.voxels import VoxelSettings
+from ...options.voxels import VoxelSettings
 from ..progress import Progress, share
 from ..wording import Sentence, counted, joined
 from .grid import Grid

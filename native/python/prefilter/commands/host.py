@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from .._options.flags import given
+from ..options.flags import given
 from ..workflows import picture_files
 from ..workflows.picture import Picture
 

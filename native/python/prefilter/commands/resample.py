@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from .._options.flags import add_flags, given, tables
-from .._options.options import check
-from .._options.resampling import CORNERS, ResampleSettings
+from ..options.flags import add_flags, given, tables
+from ..options.options import check
+from ..options.resampling import CORNERS, ResampleSettings
 from ..workflows.resampling.resampling import Resampling
 from ..workflows.up_to_date import fingerprint
 from . import many, picture_arguments, telling

@@ -12,10 +12,10 @@ import numpy as np
 
 import prefilter
 
-from .._border import staging
-from .._options.flags import add_flags, tables
-from .._options.voxels import BooleanSettings
+from ..files import staging
 from ..meshes.measures import MeshMeasures, measure_mesh
+from ..options.flags import add_flags, tables
+from ..options.voxels import BooleanSettings
 from ..workflows import mesh_endings, mesh_files
 from ..workflows.mesh_files import Part
 from ..workflows.outcome import Outcome

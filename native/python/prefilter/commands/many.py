@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from .._border.file_names import identities
-from .._border.staging import check_target
+from ..files.file_names import identities
+from ..files.staging import check_target
 from ..workflows.files import patterns
 from ..workflows.up_to_date import KEY, PICTURES, fingerprint
 from ..workflows.wording import listed

@@ -7,8 +7,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from .._options.flags import add_flags, given, tables
-from .._options.mipmaps import FILTERS, TEXTURE_SPACE_FILTERS, Settings
+from ..options.flags import add_flags, given, tables
+from ..options.mipmaps import FILTERS, TEXTURE_SPACE_FILTERS, Settings
 from ..workflows import mesh_endings
 from ..workflows.files import target_files
 from ..workflows.up_to_date import KEY, LEVELS, fingerprint

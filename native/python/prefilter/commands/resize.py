@@ -6,8 +6,8 @@ import argparse
 from functools import partial
 from typing import Any
 
-from .._options.flags import add_flags, given, tables
-from .._options.resampling import ResizeSettings
+from ..options.flags import add_flags, given, tables
+from ..options.resampling import ResizeSettings
 from ..workflows.resampling.resizing import Resizing
 from . import many, picture_arguments, telling
 from .host import PLAIN, Host

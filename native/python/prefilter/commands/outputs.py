@@ -7,7 +7,7 @@ import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from .._border.file_names import check_windows_names, identities, stem_of
+from ..files.file_names import check_windows_names, identities, stem_of
 from ..workflows.files import patterns
 
 NAME = "name"

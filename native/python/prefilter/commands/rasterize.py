@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from .._options.flags import add_flags, given, tables
-from .._options.shapes import RasterizeSettings
+from ..options.flags import add_flags, given, tables
+from ..options.shapes import RasterizeSettings
 from ..workflows import mesh_endings, mesh_files
 from ..workflows.files import pictures
 from ..workflows.shapes.layers import Source, svg_drawing, uv_layers

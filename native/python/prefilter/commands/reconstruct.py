@@ -9,9 +9,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from .._border.staging import check_target
-from .._options.flags import add_flags, given, tables
-from .._options.scans import ScanSettings
+from ..files.staging import check_target
+from ..options.flags import add_flags, given, tables
+from ..options.scans import ScanSettings
 from ..points.scan_files import POINT_EXTENSIONS
 from ..points.steps import STEPS, Steps
 from ..workflows.outcome import up_to_date

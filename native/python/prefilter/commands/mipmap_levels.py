@@ -8,8 +8,8 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from .._border.staging import StagedFile, commit_all
-from .._options.mipmaps import Settings
+from ..files.staging import StagedFile, commit_all
+from ..options.mipmaps import Settings
 from ..workflows import mesh_files, picture_files
 from ..workflows.files import engines, target_files, textures
 from ..workflows.mipmaps import checks, contents, levels, stretching

@@ -8,9 +8,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from .._border.staging import check_target
-from .._options.flags import add_flags, given, tables
-from .._options.tables import TableSettings
+from ..files.staging import check_target
+from ..options.flags import add_flags, given, tables
+from ..options.tables import TableSettings
 from ..workflows.resampling.table_making import ENDINGS, TableMaking
 from ..workflows.wording import either
 from . import outputs, telling

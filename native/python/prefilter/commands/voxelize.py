@@ -8,10 +8,10 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from .._border import staging
-from .._options.flags import add_flags, given, tables
-from .._options.voxels import VoxelizeSettings, VoxelSettings
+from ..files import staging
 from ..meshes.measures import measure_mesh
+from ..options.flags import add_flags, given, tables
+from ..options.voxels import VoxelizeSettings, VoxelSettings
 from ..workflows import mesh_endings, mesh_files
 from ..workflows.mesh_files import Part
 from ..workflows.outcome import Outcome

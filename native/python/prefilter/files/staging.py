@@ -14,9 +14,10 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO, cast
 
+from .._border import stopping
+from .._border.input import as_path
 from .._native import random_name
-from . import claims, stopping
-from .input import as_path
+from . import claims
 from .replacing import link_or_copy, recover, rename, sync, undone_on_failure
 
 Output = str | os.PathLike[str] | BinaryIO

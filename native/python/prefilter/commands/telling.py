@@ -12,7 +12,7 @@ from typing import Any
 
 from .. import _native
 from .._border import stopping
-from .._options.flags import given
+from ..options.flags import given
 from ..workflows import progress as works
 from ..workflows.outcome import Outcome, up_to_date
 from ..workflows.progress import Progress, Work, go_on
