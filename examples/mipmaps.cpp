@@ -4,7 +4,7 @@
 //
 // The mesh is a globe, the texture bright at its poles. These take up much of the image and little
 // of the globe: a filter that does not know the mesh makes coarse levels too bright.
-#include "prefilter/mipmap/mipmaps.h"
+#include "prefilter/textures/mipmaps.h"
 
 #include <array>
 #include <cmath>
@@ -13,8 +13,8 @@
 #include <numbers>
 #include <vector>
 
-#include "prefilter/mipmap/mipmap_error.h"
-#include "prefilter/surface/surface.h"
+#include "prefilter/geometry/surface.h"
+#include "prefilter/textures/mipmap_error.h"
 
 namespace {
 

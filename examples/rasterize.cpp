@@ -3,7 +3,7 @@
 // A path of curves, filled and outlined, as a PPM image.
 //
 // usage: rasterize OUT.ppm
-#include "prefilter/raster/rasterize.h"
+#include "prefilter/shapes/rasterize.h"
 
 #include <array>
 #include <cstdint>
@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "prefilter/base/error.h"
-#include "prefilter/color/transfer.h"
-#include "prefilter/outline/stroke.h"
+#include "prefilter/images/transfer.h"
+#include "prefilter/shapes/stroke.h"
 
 namespace {
 

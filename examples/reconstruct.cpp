@@ -4,14 +4,14 @@
 // to fit into memory.
 //
 // usage: reconstruct IN OUT.ply
-#include "prefilter/reconstruct/reconstruct.h"
+#include "prefilter/points/reconstruct.h"
 
 #include <cstdio>
 #include <memory>
 
 #include "prefilter/base/error.h"
-#include "prefilter/mesh/ply_mesh_writer.h"
-#include "prefilter/scan/open_points.h"
+#include "prefilter/points/open_points.h"
+#include "prefilter/points/ply_mesh_writer.h"
 
 int main(int argc, char** argv) {
   if (argc != 3) {

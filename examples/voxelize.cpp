@@ -3,7 +3,7 @@
 // Two meshes voxelized, united, and the surface of both written to a PLY file.
 //
 // usage: voxelize OUT.ply
-#include "prefilter/voxel/voxelize.h"
+#include "prefilter/voxels/voxelize.h"
 
 #include <array>
 #include <cstdint>
@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "prefilter/base/error.h"
-#include "prefilter/contour/tree_contour.h"
-#include "prefilter/mesh/ply_mesh_writer.h"
-#include "prefilter/voxel/combine.h"
-#include "prefilter/voxel/queries.h"
+#include "prefilter/points/ply_mesh_writer.h"
+#include "prefilter/voxels/combine.h"
+#include "prefilter/voxels/queries.h"
+#include "prefilter/voxels/tree_contour.h"
 
 namespace {
 

@@ -19,9 +19,9 @@
 #include <string>
 #include <vector>
 
-#include "prefilter/color/transfer.h"
-#include "prefilter/mipmap/mipmaps.h"
-#include "prefilter/surface/surface.h"
+#include "prefilter/geometry/surface.h"
+#include "prefilter/images/transfer.h"
+#include "prefilter/textures/mipmaps.h"
 
 namespace {
 

@@ -12,8 +12,8 @@
 
 #include "bench/mipmaps/scene.h"
 #include "bench/peak_memory.h"
-#include "prefilter/mipmap/mipmap_error.h"
-#include "prefilter/mipmap/mipmaps.h"
+#include "prefilter/textures/mipmap_error.h"
+#include "prefilter/textures/mipmaps.h"
 
 namespace prefilter::bench {
 namespace {

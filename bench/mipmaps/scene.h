@@ -4,7 +4,7 @@
 #pragma once
 
 #include "prefilter/base/image.h"
-#include "prefilter/surface/surface.h"
+#include "prefilter/geometry/surface.h"
 
 namespace prefilter::bench {
 

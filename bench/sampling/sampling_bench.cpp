@@ -20,8 +20,8 @@
 #include "bench/peak_memory.h"
 #include "bench/sampling/peers.h"
 #include "bench/sampling/scenes.h"
+#include "prefilter/sampling/build_table.h"
 #include "prefilter/sampling/sample.h"
-#include "prefilter/tables/build_table.h"
 
 namespace prefilter::bench {
 namespace {

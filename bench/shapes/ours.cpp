@@ -5,9 +5,9 @@
 #include <span>
 
 #include "bench/shapes/rasterizers.h"
-#include "prefilter/outline/resolve.h"
-#include "prefilter/raster/box_coverage.h"
-#include "prefilter/raster/rasterize.h"
+#include "prefilter/shapes/raster/box_coverage.h"
+#include "prefilter/shapes/rasterize.h"
+#include "prefilter/shapes/resolve.h"
 
 namespace prefilter::bench {
 namespace {

@@ -53,9 +53,9 @@
 #include "prefilter/base/elementary.h"
 #include "prefilter/base/error.h"
 #include "prefilter/base/parallel.h"
-#include "prefilter/blocks/compress_etc1s.h"
-#include "prefilter/blocks/decoders.h"
-#include "prefilter/blocks/encoders.h"
+#include "prefilter/textures/compress_etc1s.h"
+#include "prefilter/textures/blocks/decoders.h"
+#include "prefilter/textures/blocks/encoders.h"
 
 // clang-format off: behind all headers that are not the library's.
 #include <in_place_of_std.h>
@@ -86,6 +86,6 @@ namespace basisu = linked::basisu;
 
 #include <names_of_std.h>
 
-#include "prefilter/blocks/basis_decoder.cpp"
-#include "prefilter/blocks/etc1s_encoder.cpp"
-#include "prefilter/blocks/uastc_encoder.cpp"
+#include "prefilter/textures/blocks/basis_decoder.cpp"
+#include "prefilter/textures/blocks/etc1s_encoder.cpp"
+#include "prefilter/textures/blocks/uastc_encoder.cpp"

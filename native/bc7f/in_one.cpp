@@ -32,7 +32,7 @@
 #include <utility>
 #include <vector>
 
-#include "prefilter/blocks/encoders.h"
+#include "prefilter/textures/blocks/encoders.h"
 
 // clang-format off: behind all headers that are not the library's.
 #include <in_place_of_std.h>
@@ -52,4 +52,4 @@ namespace basist = linked::basist;
 
 #include <names_of_std.h>
 
-#include "prefilter/blocks/bc7f_encoder.cpp"
+#include "prefilter/textures/blocks/bc7f_encoder.cpp"

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "convert.h"
-#include "prefilter/blocks/compress_blocks.h"
-#include "prefilter/blocks/compress_etc1s.h"
-#include "prefilter/blocks/decode_blocks.h"
-#include "prefilter/blocks/supercompress.h"
+#include "prefilter/textures/compress_blocks.h"
+#include "prefilter/textures/compress_etc1s.h"
+#include "prefilter/textures/decode_blocks.h"
+#include "prefilter/textures/supercompress.h"
 
 namespace py = pybind11;
 

@@ -10,11 +10,11 @@
 
 #include "convert.h"
 #include "prefilter/base/names.h"
-#include "prefilter/cloud/align_scans.h"
-#include "prefilter/cloud/align_to_surface.h"
-#include "prefilter/cloud/outliers.h"
-#include "prefilter/cloud/paint_texture.h"
-#include "prefilter/cloud/subsample.h"
+#include "prefilter/points/align_scans.h"
+#include "prefilter/points/align_to_surface.h"
+#include "prefilter/points/outliers.h"
+#include "prefilter/points/paint_texture.h"
+#include "prefilter/points/subsample.h"
 
 namespace py = pybind11;
 

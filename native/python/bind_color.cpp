@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "convert.h"
-#include "prefilter/color/transfer.h"
+#include "prefilter/images/transfer.h"
 
 namespace py = pybind11;
 

@@ -14,11 +14,11 @@
 #include "instances.h"
 #include "prefilter/base/error.h"
 #include "prefilter/base/names.h"
-#include "prefilter/contour/grid_contour.h"
-#include "prefilter/contour/outlines.h"
-#include "prefilter/contour/quad_contour.h"
-#include "prefilter/contour/tree_contour.h"
-#include "prefilter/voxel/octree.h"
+#include "prefilter/voxels/grid_contour.h"
+#include "prefilter/voxels/octree.h"
+#include "prefilter/voxels/outlines.h"
+#include "prefilter/voxels/quad_contour.h"
+#include "prefilter/voxels/tree_contour.h"
 
 namespace py = pybind11;
 

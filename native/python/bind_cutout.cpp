@@ -8,7 +8,7 @@
 #include "bind_options.h"
 #include "convert.h"
 #include "instances.h"
-#include "prefilter/mipmap/keep_coverage.h"
+#include "prefilter/textures/keep_coverage.h"
 
 namespace py = pybind11;
 

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "convert.h"
-#include "prefilter/color/transfer.h"
-#include "prefilter/exr/exr_tiles.h"
+#include "prefilter/images/exr_tiles.h"
+#include "prefilter/images/transfer.h"
 
 namespace py = pybind11;
 

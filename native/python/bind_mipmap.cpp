@@ -14,11 +14,11 @@
 #include "instances.h"
 #include "prefilter/base/error.h"
 #include "prefilter/base/names.h"
-#include "prefilter/color/transfer.h"
-#include "prefilter/mipmap/mipmap_error.h"
-#include "prefilter/mipmap/mipmaps.h"
-#include "prefilter/mipmap/seams.h"
-#include "prefilter/mipmap/texture_use.h"
+#include "prefilter/images/transfer.h"
+#include "prefilter/textures/mipmap_error.h"
+#include "prefilter/textures/mipmaps.h"
+#include "prefilter/textures/seams.h"
+#include "prefilter/textures/texture_use.h"
 
 namespace py = pybind11;
 

@@ -8,7 +8,7 @@
 #include "bind_options.h"
 #include "convert.h"
 #include "instances.h"
-#include "prefilter/mipmap/normal_mipmaps.h"
+#include "prefilter/textures/normal_mipmaps.h"
 
 namespace py = pybind11;
 

@@ -13,7 +13,7 @@
 #include "convert.h"
 #include "prefilter/base/names.h"
 #include "prefilter/base/wrap.h"
-#include "prefilter/filters/kernel.h"
+#include "prefilter/images/kernel.h"
 
 namespace prefilter::python {
 

@@ -13,12 +13,12 @@
 #include "instances.h"
 #include "prefilter/base/error.h"
 #include "prefilter/base/names.h"
-#include "prefilter/outline/set_operations.h"
-#include "prefilter/outline/stroke.h"
-#include "prefilter/raster/half_plane.h"
-#include "prefilter/raster/path_data.h"
-#include "prefilter/raster/pixel_outline.h"
-#include "prefilter/raster/rasterize.h"
+#include "prefilter/shapes/half_plane.h"
+#include "prefilter/shapes/path_data.h"
+#include "prefilter/shapes/pixel_outline.h"
+#include "prefilter/shapes/rasterize.h"
+#include "prefilter/shapes/set_operations.h"
+#include "prefilter/shapes/stroke.h"
 
 namespace py = pybind11;
 

@@ -17,14 +17,14 @@
 #include "instances.h"
 #include "prefilter/base/error.h"
 #include "prefilter/base/names.h"
-#include "prefilter/mesh/array_sink.h"
-#include "prefilter/mesh/ply_mesh_writer.h"
-#include "prefilter/reconstruct/phantoms.h"
-#include "prefilter/reconstruct/reconstruct.h"
-#include "prefilter/reconstruct/steps.h"
-#include "prefilter/scan/array_source.h"
-#include "prefilter/scan/joined_points.h"
-#include "prefilter/scan/turned_points.h"
+#include "prefilter/points/array_sink.h"
+#include "prefilter/points/array_source.h"
+#include "prefilter/points/joined_points.h"
+#include "prefilter/points/phantoms.h"
+#include "prefilter/points/ply_mesh_writer.h"
+#include "prefilter/points/reconstruct.h"
+#include "prefilter/points/steps.h"
+#include "prefilter/points/turned_points.h"
 
 namespace py = pybind11;
 

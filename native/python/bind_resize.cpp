@@ -7,9 +7,9 @@
 
 #include "bind_options.h"
 #include "convert.h"
-#include "prefilter/color/transfer.h"
-#include "prefilter/filters/pixel_filter.h"
-#include "prefilter/resize/resize.h"
+#include "prefilter/images/pixel_filter.h"
+#include "prefilter/images/resize.h"
+#include "prefilter/images/transfer.h"
 
 namespace py = pybind11;
 

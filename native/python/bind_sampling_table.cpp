@@ -13,9 +13,9 @@
 #include "bind_options.h"
 #include "convert.h"
 #include "instances.h"
-#include "prefilter/tables/build_table.h"
-#include "prefilter/tables/jumps.h"
-#include "prefilter/tables/sampling_table.h"
+#include "prefilter/sampling/build_table.h"
+#include "prefilter/sampling/jumps.h"
+#include "prefilter/sampling/sampling_table.h"
 
 namespace py = pybind11;
 

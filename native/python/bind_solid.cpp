@@ -13,10 +13,10 @@
 #include "convert.h"
 #include "prefilter/base/error.h"
 #include "prefilter/base/names.h"
-#include "prefilter/solid/as_solid.h"
-#include "prefilter/solid/close_holes.h"
-#include "prefilter/solid/mesh_edges.h"
-#include "prefilter/solid/mesh_topology.h"
+#include "prefilter/voxels/as_solid.h"
+#include "prefilter/voxels/close_holes.h"
+#include "prefilter/voxels/mesh_edges.h"
+#include "prefilter/voxels/mesh_topology.h"
 
 namespace py = pybind11;
 

@@ -10,10 +10,10 @@
 
 #include "convert.h"
 #include "instances.h"
-#include "prefilter/remesh/self_intersections.h"
-#include "prefilter/spatial/corner_points.h"
-#include "prefilter/spatial/measure_mesh.h"
-#include "prefilter/spatial/nearest.h"
+#include "prefilter/geometry/corner_points.h"
+#include "prefilter/geometry/measure_mesh.h"
+#include "prefilter/geometry/nearest.h"
+#include "prefilter/voxels/self_intersections.h"
 
 namespace py = pybind11;
 

@@ -12,11 +12,11 @@
 #include "convert.h"
 #include "instances.h"
 #include "prefilter/base/names.h"
-#include "prefilter/surface/charts.h"
-#include "prefilter/surface/polygon_triangles.h"
-#include "prefilter/surface/subdivision.h"
-#include "prefilter/surface/surface.h"
-#include "prefilter/surface/udim_tile.h"
+#include "prefilter/geometry/charts.h"
+#include "prefilter/geometry/polygon_triangles.h"
+#include "prefilter/geometry/subdivision.h"
+#include "prefilter/geometry/surface.h"
+#include "prefilter/geometry/udim_tile.h"
 
 namespace py = pybind11;
 

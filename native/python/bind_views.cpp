@@ -7,8 +7,8 @@
 
 #include "bind_options.h"
 #include "convert.h"
-#include "prefilter/surface/surface.h"
-#include "prefilter/views/fit_to_views.h"
+#include "prefilter/geometry/surface.h"
+#include "prefilter/textures/fit_to_views.h"
 
 namespace py = pybind11;
 

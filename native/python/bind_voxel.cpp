@@ -17,10 +17,10 @@
 #include "instances.h"
 #include "prefilter/base/error.h"
 #include "prefilter/base/names.h"
-#include "prefilter/voxel/combine.h"
-#include "prefilter/voxel/octree.h"
-#include "prefilter/voxel/queries.h"
-#include "prefilter/voxel/voxelize.h"
+#include "prefilter/voxels/combine.h"
+#include "prefilter/voxels/octree.h"
+#include "prefilter/voxels/queries.h"
+#include "prefilter/voxels/voxelize.h"
 
 namespace py = pybind11;
 

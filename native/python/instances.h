@@ -12,13 +12,13 @@
 #include <utility>
 
 #include "prefilter/base/outline.h"
-#include "prefilter/raster/paint.h"
-#include "prefilter/reconstruct/reconstruct.h"
-#include "prefilter/scan/point_source.h"
-#include "prefilter/spatial/nearest.h"
-#include "prefilter/surface/surface.h"
-#include "prefilter/tables/sampling_table.h"
-#include "prefilter/voxel/octree.h"
+#include "prefilter/geometry/nearest.h"
+#include "prefilter/geometry/surface.h"
+#include "prefilter/points/point_source.h"
+#include "prefilter/points/reconstruct.h"
+#include "prefilter/sampling/sampling_table.h"
+#include "prefilter/shapes/paint.h"
+#include "prefilter/voxels/octree.h"
 
 namespace prefilter::python {
 

@@ -11,7 +11,7 @@
 #include "prefilter/base/error.h"
 #include "prefilter/base/memory.h"
 #include "prefilter/base/names.h"
-#include "prefilter/io/random_name.h"
+#include "prefilter/base/random_name.h"
 
 namespace py = pybind11;
 

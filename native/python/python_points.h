@@ -7,7 +7,7 @@
 
 #include <memory>
 
-#include "prefilter/scan/point_source.h"
+#include "prefilter/points/point_source.h"
 
 namespace prefilter::python {
 

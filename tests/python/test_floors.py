@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The C++ library stands on floors, and what is public is apart from what is internal.
+"""The C++ library's wings stand on floors, and public headers are apart from internal ones.
 
-A folder includes only itself and what stands below it. Public headers, in native/include, include
-no internal ones, and the bindings, like every other program that uses the library, include public
-ones alone.
+A wing is a folder of native/prefilter, with the public headers in the folder of that name in
+native/include; its rooms are the folders in it. A wing includes only itself and wings on lower
+floors, and the rooms of a wing include each other without a cycle. Public headers include no
+internal ones, and the bindings, like every other program that uses the library, include public
+headers alone.
 """
 
 import re
 from collections.abc import Iterable, Iterator
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -18,35 +21,35 @@ INTERNAL = NATIVE / "prefilter"
 PUBLIC = NATIVE / "include/prefilter"
 FLOORS = (
     {"base"},
-    {
-        "blocks",
-        "color",
-        "exr",
-        "filters",
-        "io",
-        "moments",
-        "outline",
-        "solve",
-        "spatial",
-        "surface",
-    },
-    {"mesh", "remesh", "scan", "tables", "texels", "wavelet"},
-    {"cloud", "contour", "mipmap", "normals", "raster", "resize", "sampling", "voxel"},
-    {"reconstruct", "solid", "views"},
+    {"geometry", "images"},
+    {"wavelet"},
+    {"textures", "sampling", "shapes", "voxels"},
+    {"points"},
 )
-FLOOR_OF = {room: floor for floor, rooms in enumerate(FLOORS) for room in rooms}
-SOURCES = sorted([*INTERNAL.glob("*/*.*"), *PUBLIC.glob("*/*.*")])
-_INCLUDE = re.compile(r'^\s*#\s*include\s+["<]prefilter/((\w+)/[\w/]+\.h)[">]', re.MULTILINE)
+FLOOR_OF = {wing: floor for floor, wings in enumerate(FLOORS) for wing in wings}
+SOURCES = sorted(
+    path
+    for folder in (INTERNAL, PUBLIC)
+    for path in folder.rglob("*.*")
+    if path.suffix in {".h", ".cpp"}
+)
+_INCLUDE = re.compile(r'^\s*#\s*include\s+["<]prefilter/([\w/]+\.h)[">]', re.MULTILINE)
 
 
 def _includes(source: str) -> list[str]:
-    return [path for path, _ in _INCLUDE.findall(source)]
+    return _INCLUDE.findall(source)
 
 
-def _trespasses(room: str, source: str) -> Iterator[str]:
-    """Yields the rooms that a file of a room includes and must not."""
-    for _, included in _INCLUDE.findall(source):
-        if included != room and FLOOR_OF[included] >= FLOOR_OF[room]:
+def _wing(path: Path) -> str:
+    """Returns the wing that a source file belongs to."""
+    return path.relative_to(PUBLIC if path.is_relative_to(PUBLIC) else INTERNAL).parts[0]
+
+
+def _trespasses(wing: str, source: str) -> Iterator[str]:
+    """Yields the wings that a file of a wing includes although they are not on a lower floor."""
+    for header in _includes(source):
+        included = header.split("/")[0]
+        if included != wing and FLOOR_OF[included] >= FLOOR_OF[wing]:
             yield included
 
 
@@ -60,21 +63,32 @@ def _internal(paths: Iterable[Path]) -> list[str]:
     ]
 
 
-def test_every_room_has_a_floor() -> None:
-    assert {path.parent.name for path in SOURCES} == set(FLOOR_OF)
+def test_every_wing_has_a_floor() -> None:
+    assert {_wing(path) for path in SOURCES} == set(FLOOR_OF)
 
 
-def test_rooms_include_only_what_stands_below() -> None:
-    found = [
+def test_wings_include_only_lower_floors() -> None:
+    trespasses = [
         f"{path.relative_to(NATIVE)} includes {included}/"
         for path in SOURCES
-        for included in _trespasses(path.parent.name, path.read_text())
+        for included in _trespasses(_wing(path), path.read_text())
     ]
-    assert not found
+    assert not trespasses
+
+
+def test_rooms_of_a_wing_have_no_cycle() -> None:
+    # A wing's public headers belong to all of its rooms.
+    rooms: dict[Path, set[Path]] = {}
+    for path in INTERNAL.rglob("*.*"):
+        headers = (INTERNAL / header for header in _includes(path.read_text()))
+        included = {header.parent for header in headers if header.is_file()}
+        rooms.setdefault(path.parent, set()).update(included - {path.parent})
+    assert len(rooms) > len(FLOOR_OF)
+    TopologicalSorter(rooms).prepare()
 
 
 def test_public_headers_include_public_headers() -> None:
-    headers = sorted(PUBLIC.rglob("*.*"))
+    headers = sorted(path for path in PUBLIC.rglob("*") if path.is_file())
     assert headers
     assert {path.suffix for path in headers} == {".h"}
     assert not _internal(headers)
@@ -90,21 +104,21 @@ def test_a_header_is_public_or_internal() -> None:
 
 
 @pytest.mark.parametrize(
-    ("room", "included", "expected"),
+    ("wing", "included", "expected"),
     [
-        ("voxel", "wavelet", []),
-        ("voxel", "voxel", []),
-        ("wavelet", "voxel", ["voxel"]),
-        ("voxel", "contour", ["contour"]),
+        ("voxels", "wavelet", []),
+        ("voxels", "voxels", []),
+        ("wavelet", "voxels", ["voxels"]),
+        ("voxels", "shapes", ["shapes"]),
     ],
 )
-def test_trespasses_are_found(room: str, included: str, expected: list[str]) -> None:
+def test_trespasses_are_found(wing: str, included: str, expected: list[str]) -> None:
     source = f'#include <vector>\n#include "prefilter/{included}/octree.h"\n'
-    assert list(_trespasses(room, source)) == expected
+    assert list(_trespasses(wing, source)) == expected
 
 
 @pytest.mark.parametrize(
-    ("header", "expected"), [("voxel/octree.h", []), ("voxel/regrid.h", ["voxel/regrid.h"])]
+    ("header", "expected"), [("voxels/octree.h", []), ("voxels/regrid.h", ["voxels/regrid.h"])]
 )
 def test_internal_headers_are_found(header: str, expected: list[str]) -> None:
     source = f'#include <vector>\n#include "prefilter/{header}"\n'

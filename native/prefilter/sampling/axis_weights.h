@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "prefilter/base/wrap.h"
-#include "prefilter/filters/kernel.h"
+#include "prefilter/images/kernel.h"
 
 namespace prefilter {
 

@@ -9,8 +9,8 @@
 #include <span>
 
 #include "prefilter/base/wrap.h"
+#include "prefilter/sampling/sampling_table.h"
 #include "prefilter/sampling/wrapped_pyramid.h"
-#include "prefilter/tables/sampling_table.h"
 
 namespace prefilter {
 

@@ -15,7 +15,7 @@
 #include "prefilter/base/memory.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/text.h"
-#include "prefilter/filters/filtered_image.h"
+#include "prefilter/images/filters/filtered_image.h"
 #include "prefilter/sampling/elliptical.h"
 #include "prefilter/sampling/exact.h"
 #include "prefilter/sampling/footprint.h"

@@ -11,8 +11,8 @@
 #include "prefilter/base/error.h"
 #include "prefilter/base/filterable.h"
 #include "prefilter/base/memory.h"
-#include "prefilter/filters/filtered_image.h"
-#include "prefilter/filters/separable.h"
+#include "prefilter/images/filters/filtered_image.h"
+#include "prefilter/images/filters/separable.h"
 
 namespace prefilter {
 namespace {

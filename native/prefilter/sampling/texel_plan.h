@@ -11,7 +11,7 @@
 #include "prefilter/base/lanes.h"
 #include "prefilter/sampling/pairs.h"
 #include "prefilter/sampling/pyramid.h"
-#include "prefilter/tables/sampling_table.h"
+#include "prefilter/sampling/sampling_table.h"
 
 namespace prefilter {
 

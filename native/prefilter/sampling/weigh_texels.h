@@ -7,7 +7,7 @@
 
 #include "prefilter/base/wrap.h"
 #include "prefilter/sampling/pyramid.h"
-#include "prefilter/tables/sampling_table.h"
+#include "prefilter/sampling/sampling_table.h"
 
 namespace prefilter {
 

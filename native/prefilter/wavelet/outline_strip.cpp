@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "prefilter/moments/cell_cutter.h"
+#include "prefilter/geometry/moments/cell_cutter.h"
 
 namespace prefilter {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "prefilter/moments/monotone_polynomials.h"
+#include "prefilter/geometry/moments/monotone_polynomials.h"
 #include "prefilter/wavelet/plane_flux.h"
 
 namespace prefilter {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "prefilter/base/parallel.h"
-#include "prefilter/spatial/morton.h"
+#include "prefilter/geometry/spatial/morton.h"
 #include "prefilter/wavelet/boundary_flux.h"
 #include "prefilter/wavelet/cell_polygon.h"
 #include "prefilter/wavelet/root_mean.h"

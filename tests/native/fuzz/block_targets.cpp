@@ -6,8 +6,8 @@
 #include "fuzz/targets.h"
 #include "prefilter/base/error.h"
 #include "prefilter/base/progress.h"
-#include "prefilter/blocks/decode_blocks.h"
-#include "prefilter/blocks/supercompress.h"
+#include "prefilter/textures/decode_blocks.h"
+#include "prefilter/textures/supercompress.h"
 
 namespace prefilter {
 namespace {

@@ -7,10 +7,10 @@
 
 #include "fuzz/targets.h"
 #include "prefilter/base/error.h"
-#include "prefilter/outline/set_operations.h"
-#include "prefilter/outline/stroke.h"
-#include "prefilter/raster/path_data.h"
-#include "prefilter/raster/rasterize.h"
+#include "prefilter/shapes/path_data.h"
+#include "prefilter/shapes/rasterize.h"
+#include "prefilter/shapes/set_operations.h"
+#include "prefilter/shapes/stroke.h"
 
 namespace prefilter {
 namespace {

@@ -7,9 +7,9 @@
 
 #include "fuzz/targets.h"
 #include "prefilter/base/error.h"
-#include "prefilter/io/random_name.h"
-#include "prefilter/scan/open_points.h"
-#include "prefilter/scan/ply_faces.h"
+#include "prefilter/base/random_name.h"
+#include "prefilter/points/open_points.h"
+#include "prefilter/points/ply_faces.h"
 
 namespace prefilter {
 namespace {

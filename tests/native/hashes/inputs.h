@@ -12,8 +12,8 @@
 #include "prefilter/base/geometry.h"
 #include "prefilter/base/image.h"
 #include "prefilter/base/outline.h"
-#include "prefilter/scan/point_source.h"
-#include "prefilter/surface/surface.h"
+#include "prefilter/geometry/surface.h"
+#include "prefilter/points/point_source.h"
 
 namespace prefilter::hashes {
 

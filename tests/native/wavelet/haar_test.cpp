@@ -6,7 +6,7 @@
 
 #include <random>
 
-#include "prefilter/spatial/morton.h"
+#include "prefilter/geometry/spatial/morton.h"
 
 namespace prefilter {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "prefilter/spatial/morton.h"
+#include "prefilter/geometry/spatial/morton.h"
 #include "wavelet/random_tree.h"
 
 namespace prefilter {

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "prefilter/base/error.h"
-#include "prefilter/voxel/queries.h"
+#include "prefilter/voxels/queries.h"
 #include "wavelet/meshes.h"
 
 namespace prefilter {

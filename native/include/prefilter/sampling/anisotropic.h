@@ -8,7 +8,7 @@
 #include "prefilter/sampling/pyramid.h"
 #include "prefilter/sampling/sample.h"
 #include "prefilter/sampling/sample_places.h"
-#include "prefilter/tables/sampling_table.h"
+#include "prefilter/sampling/sampling_table.h"
 
 namespace prefilter {
 

@@ -8,7 +8,7 @@
 #include "prefilter/base/image.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/base/wrap.h"
-#include "prefilter/filters/kernel.h"
+#include "prefilter/images/kernel.h"
 #include "prefilter/sampling/sample_places.h"
 
 namespace prefilter {

@@ -8,9 +8,9 @@
 #include "prefilter/base/image.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/base/wrap.h"
-#include "prefilter/filters/kernel.h"
+#include "prefilter/images/kernel.h"
 #include "prefilter/sampling/sample_places.h"
-#include "prefilter/tables/sampling_table.h"
+#include "prefilter/sampling/sampling_table.h"
 
 namespace prefilter {
 

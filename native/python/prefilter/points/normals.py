@@ -12,7 +12,7 @@ from .._border.names import Upward
 
 _HUGE = 1e30
 _HUGE_PER_OTHER = 100
-"""As in native/prefilter/reconstruct/gather_samples.cpp."""
+"""As in native/prefilter/points/reconstruct/gather_samples.cpp."""
 
 
 def estimate_normals(

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "prefilter/geometry/cut_charts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <queue>
+#include <tuple>
+#include <utility>
+
+namespace prefilter {
+namespace {
+
+constexpr float kSeam = 1e-4F;
+// Slits that are left when so many times the triangles were reached are parted triangle by
+// triangle.
+constexpr std::size_t kMostWork = 40;
+
+Vector3 middle_of(const InputMesh& mesh, std::uint32_t triangle) {
+  const auto& [a, b, c] = mesh.triangles[triangle];
+  const auto at = [&](auto vertex) { return mesh.positions[static_cast<std::size_t>(vertex)]; };
+  return (1.0 / 3.0) * (at(a) + at(b) + at(c));
+}
+
+// Parts pieces at slits.
+class Halving {
+ public:
+  Halving(const InputMesh& mesh, const ChartLinks& links, std::vector<std::int32_t>* charts)
+      : mesh_(mesh),
+        links_(links),
+        charts_(*charts),
+        way_(charts->size(), std::numeric_limits<double>::infinity()),
+        side_(charts->size()) {
+    next_ = *std::max_element(charts_.begin(), charts_.end()) + 1;
+  }
+
+  void run(const Progress& progress) {
+    const std::size_t most = kMostWork * charts_.size();
+    for (const auto& [one, other] : links_.slits) {
+      if (charts_[one] != charts_[other]) continue;
+      if (work_ > most) break;
+      part(one, other);
+      progress.report(static_cast<double>(work_) / static_cast<double>(most));
+    }
+  }
+
+ private:
+  // What is nearer to `other` than to `one` gets a number of its own.
+  void part(std::uint32_t one, std::uint32_t other) {
+    reach(one, 0.0, 0);
+    reach(other, 0.0, 1);
+    while (!queue_.empty()) {
+      const auto [way, triangle, side] = queue_.top();
+      queue_.pop();
+      if (way != way_[triangle] || side != side_[triangle]) continue;
+      const Vector3 middle = middle_of(mesh_, triangle);
+      for (const std::int32_t beyond : links_.beyond[triangle]) {
+        if (beyond < 0) continue;
+        const auto to = static_cast<std::uint32_t>(beyond);
+        if (charts_[to] != charts_[triangle]) continue;
+        reach(to, way + length(middle_of(mesh_, to) - middle), side);
+      }
+    }
+    for (const std::uint32_t triangle : reached_) {
+      way_[triangle] = std::numeric_limits<double>::infinity();
+      if (side_[triangle] == 1) charts_[triangle] = next_;
+    }
+    ++next_;
+    work_ += reached_.size();
+    reached_.clear();
+  }
+
+  void reach(std::uint32_t triangle, double way, int side) {
+    if (way >= way_[triangle]) return;
+    if (std::isinf(way_[triangle])) reached_.push_back(triangle);
+    way_[triangle] = way;
+    side_[triangle] = side;
+    queue_.emplace(way, triangle, side);
+  }
+
+  using Step = std::tuple<double, std::uint32_t, int>;
+
+  const InputMesh& mesh_;
+  const ChartLinks& links_;
+  std::vector<std::int32_t>& charts_;
+  std::int32_t next_ = 0;
+  std::vector<double> way_;
+  std::vector<int> side_;
+  std::vector<std::uint32_t> reached_;
+  std::size_t work_ = 0;
+  std::priority_queue<Step, std::vector<Step>, std::greater<>> queue_;
+};
+
+// Grows pieces that have one pair of UVs at each vertex.
+class Growing {
+ public:
+  Growing(const InputMesh& mesh, std::span<const CornerUvs> maps,
+          std::span<const std::uint32_t> place, const ChartLinks& links)
+      : mesh_(mesh), maps_(maps), place_(place), links_(links), held_(place.size(), {-1, 0}) {}
+
+  std::vector<std::int32_t> run(std::span<const std::int32_t> charts) {
+    std::vector<std::int32_t> pieces(charts.size(), -1);
+    for (std::uint32_t first = 0; first < charts.size(); ++first) {
+      if (pieces[first] >= 0) continue;
+      std::vector<std::uint32_t> found{first};
+      pieces[first] = next_;
+      hold(first);
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        for (const std::int32_t beyond : links_.beyond[found[i]]) {
+          if (beyond < 0) continue;
+          const auto to = static_cast<std::uint32_t>(beyond);
+          if (pieces[to] >= 0 || charts[to] != charts[first] || !fits(to)) continue;
+          pieces[to] = next_;
+          hold(to);
+          found.push_back(to);
+        }
+      }
+      ++next_;
+    }
+    return pieces;
+  }
+
+ private:
+  std::size_t vertex(std::uint32_t triangle, std::size_t corner) const {
+    return place_[static_cast<std::size_t>(mesh_.triangles[triangle][corner])];
+  }
+
+  bool fits(std::uint32_t triangle) const {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto& [piece, corner] = held_[vertex(triangle, i)];
+      if (piece != next_) continue;
+      const std::size_t other = corner / 3;
+      const std::size_t at = corner % 3;
+      for (const CornerUvs& map : maps_) {
+        if (!are_near_uvs(map[triangle][i], map[other][at])) return false;
+      }
+    }
+    return true;
+  }
+
+  void hold(std::uint32_t triangle) {
+    for (std::size_t i = 0; i < 3; ++i) held_[vertex(triangle, i)] = {next_, 3 * triangle + i};
+  }
+
+  const InputMesh& mesh_;
+  std::span<const CornerUvs> maps_;
+  std::span<const std::uint32_t> place_;
+  const ChartLinks& links_;
+  std::int32_t next_ = 0;
+  std::vector<std::pair<std::int32_t, std::size_t>> held_;  // by vertex: a piece, and its corner
+};
+
+}  // namespace
+
+bool are_near_uvs(const std::array<float, 2>& a, const std::array<float, 2>& b) {
+  return std::abs(a[0] - b[0]) <= kSeam && std::abs(a[1] - b[1]) <= kSeam;
+}
+
+void cut_charts(const InputMesh& mesh, std::span<const CornerUvs> maps,
+                std::span<const std::uint32_t> place, const ChartLinks& links,
+                const Progress& progress, std::vector<std::int32_t>* charts) {
+  Halving(mesh, links, charts).run(progress);
+  *charts = Growing(mesh, maps, place, links).run(*charts);
+  progress.report(1.0);
+}
+
+}  // namespace prefilter

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Chen and Medioni, Object modelling by registration of multiple range images (1992): distances to
+// planes instead of points; all scans at once, as in Bergevin et al., Towards a general multi-view
+// registration technique (1996).
+#include "prefilter/points/align_scans.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+
+#include "prefilter/base/error.h"
+#include "prefilter/base/parallel.h"
+#include "prefilter/base/text.h"
+#include "prefilter/points/cloud/motion_system.h"
+#include "prefilter/points/cloud/moved_scan.h"
+
+namespace prefilter {
+namespace {
+
+constexpr double kReachShare = 0.05;  // of the diagonal
+constexpr double kShrinking = 0.7;    // of the reach, from one iteration to the next
+// Searches in all, and samples of a scan.
+constexpr std::size_t kPairs = 1'000'000;
+constexpr std::size_t kLeastSamples = 1'000;
+
+// What one scan finds in another.
+struct PairsOf {
+  std::size_t scan = 0;
+  std::size_t other = 0;
+  std::vector<MotionPair> pairs;
+};
+
+double median_distance(const std::vector<PairsOf>& all) {
+  std::vector<double> distances;
+  for (const PairsOf& found : all) add_distances(found.pairs, &distances);
+  return median_of(&distances);
+}
+
+// The pairs of a sample's scan and another one.
+std::vector<MotionPair> find_pairs(const MovedScan& scan, std::span<const std::uint32_t> samples,
+                                   const MovedScan& other, double reach) {
+  std::vector<MotionPair> pairs;
+  if (other.is_empty()) return pairs;
+  const Vector3 center = moved(scan.motion, scan.center());
+  const Vector3 other_center = moved(other.motion, other.center());
+  for (const std::uint32_t place : samples) {
+    const Vector3 point = moved(scan.motion, scan.position(place));
+    const Vector3 there = moved_back(other.motion, point);
+    const std::uint32_t near = other.search().nearest(there, reach * reach);
+    if (near == NeighborSearch::kNowhere) continue;
+    const Vector3 normal = turned(other.motion, other.normal(near));
+    if (std::abs(dot(normal, turned(scan.motion, scan.normal(place)))) < kAgreement) continue;
+    const Vector3 offset = there - other.position(near);
+    const double distance = dot(other.normal(near), offset);
+    const Vector3 aside = offset - distance * other.normal(near);
+    // On a border what is nearest lies aside.
+    if (length(aside) > other.spacing() + 0.5 * std::abs(distance)) continue;
+    const Vector3 at = moved(other.motion, other.position(near));
+    pairs.push_back({distance, derivative(normal, point - center),
+                     derivative(Vector3{} - normal, at - other_center)});
+  }
+  return pairs;
+}
+
+class Aligner {
+ public:
+  Aligner(std::span<const ScanView> scans, const AlignOptions& options)
+      : threads_(options.threads) {
+    const Box box = box_of(scans);
+    origin_ = middle_of(box);
+    reach_ = options.reach.value_or(kReachShare * length(box.high - box.low));
+    const double count = static_cast<double>(scans.size());
+    for (std::size_t s = 0; s < scans.size(); ++s) {
+      const Progress part = options.progress.part(kReading * static_cast<double>(s) / count,
+                                                  kReading * static_cast<double>(s + 1) / count);
+      scans_.emplace_back(scans[s], origin_, part, threads_);
+    }
+    const std::size_t each = kPairs / (scans.size() * (scans.size() - 1));
+    for (const MovedScan& scan : scans_) {
+      samples_.push_back(scan.samples(std::clamp(each, kLeastSamples, kMostSamples)));
+      spacing_ = std::max(spacing_, scan.spacing());
+    }
+    least_reach_ = std::min(reach_, kLeastReach * spacing_);
+  }
+
+  Alignment align(int iterations, const Progress& progress) {
+    Alignment result;
+    result.before = median_distance(pairs(least_reach_, progress.part(kReading, kFirst)));
+    double reach = reach_;
+    for (int k = 0; k < iterations; ++k) {
+      const double done = static_cast<double>(k) / iterations;
+      const Progress part = progress.part(kFirst + (kLast - kFirst) * done,
+                                          kFirst + (kLast - kFirst) * (done + 1.0 / iterations));
+      const double moved = step(pairs(reach, part));
+      if (reach <= least_reach_ && moved < kStill * spacing_) break;
+      reach = std::max(least_reach_, kShrinking * reach);
+    }
+    const std::vector<PairsOf> last = pairs(least_reach_, progress.part(kLast, 1.0));
+    result.after = median_distance(last);
+    result.pairs.resize(scans_.size());
+    for (const PairsOf& found : last) result.pairs[found.scan] += found.pairs.size();
+    for (const MovedScan& scan : scans_)
+      result.motions.push_back(about(scan.motion, Vector3{} - origin_));
+    progress.report(1.0);
+    return result;
+  }
+
+ private:
+  // Shares of the work: of reading the scans, and of the first and last look at pairs.
+  static constexpr double kReading = 0.2;
+  static constexpr double kFirst = 0.22;
+  static constexpr double kLast = 0.98;
+
+  std::vector<PairsOf> pairs(double reach, const Progress& progress) const {
+    std::vector<PairsOf> all;
+    for (std::size_t s = 0; s < scans_.size(); ++s) {
+      for (std::size_t o = 0; o < scans_.size(); ++o) {
+        if (s != o) all.push_back({s, o, {}});
+      }
+    }
+    parallel_for(static_cast<std::int64_t>(all.size()), threads_, progress, [&](std::int64_t i) {
+      PairsOf& found = all[static_cast<std::size_t>(i)];
+      found.pairs =
+          find_pairs(scans_[found.scan], samples_[found.scan], scans_[found.other], reach);
+    });
+    return all;
+  }
+
+  // Moves all scans; returns how far the farthest point of one went, about.
+  double step(const std::vector<PairsOf>& all) {
+    const double cutoff = cutoff_for(median_distance(all), kStill * spacing_);
+    MotionSystem system(scans_.size());
+    for (const PairsOf& found : all) system.add(found.scan, found.other, found.pairs, cutoff);
+    const std::vector<MotionStep> steps = system.solve();
+    double farthest = 0.0;
+    for (std::size_t s = 1; s < scans_.size(); ++s) {
+      MovedScan& scan = scans_[s];
+      if (scan.is_empty()) continue;
+      farthest = std::max(farthest, scan.move(steps[s]));
+    }
+    return farthest;
+  }
+
+  int threads_;
+  Vector3 origin_{};
+  double reach_ = 0.0;
+  double least_reach_ = 0.0;
+  double spacing_ = 0.0;
+  std::vector<MovedScan> scans_;
+  std::vector<std::vector<std::uint32_t>> samples_;
+};
+
+}  // namespace
+
+Alignment align_scans(std::span<const ScanView> scans, const AlignOptions& options) {
+  check_alignment(scans, options, 2);
+  return Aligner(scans, options).align(options.iterations, options.progress);
+}
+
+}  // namespace prefilter

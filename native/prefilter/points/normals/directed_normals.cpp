@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "prefilter/points/directed_normals.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "prefilter/base/error.h"
+#include "prefilter/base/parallel.h"
+#include "prefilter/geometry/spatial/nearest_neighbors.h"
+#include "prefilter/points/normals/local_plane.h"
+#include "prefilter/points/normals/orientation.h"
+
+namespace prefilter {
+namespace {
+
+constexpr std::int64_t kPointsPerTask = 256;
+constexpr std::size_t kLinks = 8;  // as many as estimate_normals has by default
+
+}  // namespace
+
+std::vector<Vector3> directed_normals(std::span<const Vector3> points,
+                                      std::span<const Vector3> normals, const Progress& progress,
+                                      int threads) {
+  if (points.empty()) throw_invalid("points: none; at least one is needed");
+  if (normals.size() != points.size()) {
+    throw_invalid("normals: found " + std::to_string(normals.size()) + " for " +
+                  std::to_string(points.size()) + " points; one for each is needed");
+  }
+  const NeighborSearch search(points, progress.part(0.0, 0.3), threads);
+  const std::span<const Vector3> positions = search.positions();
+  std::vector<Vector3> result(points.size());
+  if (positions.empty()) return result;
+  std::vector<Vector3> at_places(positions.size());
+  for (std::size_t i = points.size(); i-- > 0;) {
+    result[i] = unit_or_zero(normals[i]);
+    const std::uint32_t place = search.places()[i];
+    if (place == NeighborSearch::kNowhere) {
+      result[i] = {};
+    } else if (result[i] != Vector3{}) {
+      at_places[place] = result[i];  // at last of the first of several
+    }
+  }
+  std::vector<double> areas(positions.size());
+  std::vector<std::uint32_t> links(positions.size() * kLinks);
+  const auto link = [&](std::int64_t begin, std::int64_t end) {
+    Neighbors near;
+    for (auto place = static_cast<std::uint32_t>(begin); place < end; ++place) {
+      search.find(place, 2 * kLinks, &near);
+      areas[place] = near.squares().back();
+      for (std::size_t s = 0; s < kLinks; ++s) {
+        links[place * kLinks + s] = near.places()[std::min(s + 1, near.places().size() - 1)];
+      }
+    }
+  };
+  parallel_ranges(static_cast<std::int64_t>(positions.size()), kPointsPerTask, threads,
+                  progress.part(0.3, 0.6), link);
+  std::vector<Vector3> directed = at_places;
+  orient_normals({positions, areas, kLinks, links}, NormalSide::kOutward, progress.part(0.6, 1.0),
+                 threads, &directed);
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const std::uint32_t place = search.places()[i];
+    if (place == NeighborSearch::kNowhere) continue;
+    if (dot(result[i], directed[place]) < 0.0) result[i] = Vector3{} - result[i];
+  }
+  return result;
+}
+
+}  // namespace prefilter

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "prefilter/points/face_normals.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "prefilter/base/error.h"
+#include "prefilter/base/pulse.h"
+
+namespace prefilter {
+namespace {
+
+constexpr double kLongestEdge = 4.0;  // times the median
+constexpr int kBorder = 6;            // places over which weights fall
+
+using Triangle = std::array<std::int64_t, 3>;
+
+double distance(const Vector3& a, const Vector3& b) { return length(a - b); }
+
+Vector3 unit_or_none(const Vector3& v) {
+  const double size = length(v);
+  if (!(size > 0.0) || !std::isfinite(size)) return {};
+  return {v[0] / size, v[1] / size, v[2] / size};
+}
+
+// A grid of points that exist, and where its surface ends.
+class Grid {
+ public:
+  Grid(std::span<const Vector3> points, const RangeGrid& grid) : points_(points), grid_(grid) {
+    const bool is_whole =
+        grid.rows >= 0 && grid.columns >= 0 &&
+        static_cast<std::size_t>(grid.rows) * static_cast<std::size_t>(grid.columns) ==
+            grid.points.size();
+    if (!is_whole) {
+      throw_invalid("grid: found " + std::to_string(grid.points.size()) + " places for " +
+                    std::to_string(grid.rows) + " rows of " + std::to_string(grid.columns));
+    }
+    const auto count = static_cast<std::int64_t>(points.size());
+    for (std::size_t i = 0; i < grid.points.size(); ++i) {
+      if (grid.points[i] >= -1 && grid.points[i] < count) continue;
+      throw_invalid("grid: place " + std::to_string(i) + " names point " +
+                    std::to_string(grid.points[i]) + "; there are " + std::to_string(count) +
+                    ", numbered from 0, and -1 stands for none");
+    }
+  }
+
+  std::int64_t rows() const { return grid_.rows; }
+  std::int64_t columns() const { return grid_.columns; }
+  std::int64_t point(std::int64_t row, std::int64_t column) const {
+    return grid_.points[static_cast<std::size_t>(row * grid_.columns + column)];
+  }
+  const Vector3& position(std::int64_t point) const {
+    return points_[static_cast<std::size_t>(point)];
+  }
+
+  // The median distance of neighbors in rows and columns; 0 where there are none.
+  double spacing(const Progress& progress) const {
+    std::vector<double> lengths;
+    Pulse pulse(progress);
+    for (std::int64_t row = 0; row < rows(); ++row) {
+      for (std::int64_t column = 0; column < columns(); ++column) {
+        pulse.step();
+        if (column + 1 < columns())
+          add_length(point(row, column), point(row, column + 1), &lengths);
+        if (row + 1 < rows()) add_length(point(row, column), point(row + 1, column), &lengths);
+      }
+    }
+    if (lengths.empty()) return 0.0;
+    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+    std::nth_element(lengths.begin(), middle, lengths.end());
+    return *middle;
+  }
+
+  // The triangles of the cell whose first corner this is: two, or one where a corner is missing or
+  // far away, or none. They go round from columns to rows.
+  int triangles(std::int64_t row, std::int64_t column, double longest,
+                std::array<Triangle, 2>* found) const {
+    const std::array<std::int64_t, 4> corners = {point(row, column), point(row, column + 1),
+                                                 point(row + 1, column + 1),
+                                                 point(row + 1, column)};
+    // Along the shorter diagonal; where a corner is missing, beside it.
+    const double first = gap(corners[0], corners[2]);
+    const double second = gap(corners[1], corners[3]);
+    const std::size_t turn = first <= second ? 0 : 1;
+    int count = 0;
+    for (const std::size_t skipped : {turn + 3, turn + 1}) {
+      const Triangle triangle = {corners[(skipped + 1) % 4], corners[(skipped + 2) % 4],
+                                 corners[(skipped + 3) % 4]};
+      const bool is_near = gap(triangle[0], triangle[1]) <= longest &&
+                           gap(triangle[1], triangle[2]) <= longest &&
+                           gap(triangle[2], triangle[0]) <= longest;
+      if (is_near) (*found)[static_cast<std::size_t>(count++)] = triangle;
+    }
+    return count;
+  }
+
+ private:
+  // Infinite where a point is missing or not finite.
+  double gap(std::int64_t a, std::int64_t b) const {
+    if (a < 0 || b < 0) return std::numeric_limits<double>::infinity();
+    const double found = distance(position(a), position(b));
+    return std::isfinite(found) ? found : std::numeric_limits<double>::infinity();
+  }
+
+  void add_length(std::int64_t a, std::int64_t b, std::vector<double>* lengths) const {
+    const double found = gap(a, b);
+    if (std::isfinite(found)) lengths->push_back(found);
+  }
+
+  std::span<const Vector3> points_;
+  const RangeGrid& grid_;
+};
+
+// Of each place, how many steps it is from where the surface ends, up to kBorder.
+std::vector<std::int8_t> steps_to_end(std::int64_t rows, std::int64_t columns,
+                                      const std::vector<bool>& is_end, const Progress& progress) {
+  std::vector<std::int8_t> steps(is_end.size());
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    steps[i] = is_end[i] ? 0 : static_cast<std::int8_t>(kBorder);
+  }
+  Pulse pulse(progress);
+  const auto look = [&](std::int64_t row, std::int64_t column, std::int64_t along) {
+    pulse.step();
+    std::int8_t& own = steps[static_cast<std::size_t>(row * columns + column)];
+    // The neighbors that were visited before: one of this row, three of the last.
+    const std::array<std::array<std::int64_t, 2>, 4> before = {{{row, column - along},
+                                                                {row - along, column - 1},
+                                                                {row - along, column},
+                                                                {row - along, column + 1}}};
+    for (const auto& [r, c] : before) {
+      if (r < 0 || r >= rows || c < 0 || c >= columns) continue;
+      const int next = steps[static_cast<std::size_t>(r * columns + c)] + 1;
+      own = static_cast<std::int8_t>(std::min<int>(own, next));
+    }
+  };
+  for (std::int64_t row = 0; row < rows; ++row) {
+    for (std::int64_t column = 0; column < columns; ++column) look(row, column, 1);
+  }
+  for (std::int64_t row = rows; row-- > 0;) {
+    for (std::int64_t column = columns; column-- > 0;) look(row, column, -1);
+  }
+  return steps;
+}
+
+}  // namespace
+
+std::vector<Vector3> mesh_normals(const InputMesh& mesh, const Progress& progress) {
+  std::vector<Vector3> normals(mesh.positions.size());
+  const auto count = static_cast<std::int64_t>(mesh.positions.size());
+  Pulse pulse(progress);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    pulse.step();
+    for (const std::int64_t vertex : mesh.triangles[t]) {
+      if (vertex >= 0 && vertex < count) continue;
+      throw_no_vertex("triangles: triangle " + std::to_string(t), vertex, mesh.positions.size());
+    }
+    const auto& [a, b, c] = mesh.corners(t);
+    const Vector3 twice_area = cross(b - a, c - a);
+    for (const std::int64_t vertex : mesh.triangles[t]) {
+      Vector3& normal = normals[static_cast<std::size_t>(vertex)];
+      normal = normal + twice_area;
+    }
+  }
+  for (Vector3& normal : normals) {
+    pulse.step();
+    normal = unit_or_none(normal);
+  }
+  return normals;
+}
+
+GridNormals grid_normals(std::span<const Vector3> points, const RangeGrid& grid,
+                         const std::optional<Vector3>& viewpoint, const Progress& progress) {
+  if (viewpoint) check_points(std::span(&*viewpoint, 1), "viewpoint: row", kLargestCoordinate);
+  const Grid places(points, grid);
+  const double longest = kLongestEdge * places.spacing(progress);
+  std::vector<Triangle> triangles;
+  // A place is at the end where one of the cells around it is not whole.
+  std::vector<bool> is_end(grid.points.size(), true);
+  std::vector<std::uint8_t> whole_cells(grid.points.size());
+  Pulse pulse(progress);
+  for (std::int64_t row = 0; row + 1 < places.rows(); ++row) {
+    for (std::int64_t column = 0; column + 1 < places.columns(); ++column) {
+      pulse.step();
+      std::array<Triangle, 2> found;
+      const int count = places.triangles(row, column, longest, &found);
+      triangles.insert(triangles.end(), found.begin(), found.begin() + count);
+      if (count < 2) continue;
+      const auto first = static_cast<std::size_t>(row * places.columns() + column);
+      const auto below = first + static_cast<std::size_t>(places.columns());
+      for (const std::size_t place : {first, first + 1, below, below + 1}) {
+        is_end[place] = ++whole_cells[place] < 4;
+      }
+    }
+  }
+  GridNormals result;
+  result.normals = mesh_normals({points, triangles}, progress);
+  const auto toward = [&](std::size_t i) {
+    return viewpoint ? unit_or_none(*viewpoint - points[i]) : Vector3{0.0, 0.0, 1.0};
+  };
+  double shown = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    pulse.step();
+    if (result.normals[i] != Vector3{}) shown += dot(result.normals[i], toward(i));
+  }
+  if (shown < 0.0) {
+    for (Vector3& normal : result.normals) normal = Vector3{} - normal;
+  }
+  const std::vector<std::int8_t> steps =
+      steps_to_end(places.rows(), places.columns(), is_end, progress);
+  result.weights.resize(points.size());
+  for (std::size_t place = 0; place < grid.points.size(); ++place) {
+    pulse.step();
+    if (grid.points[place] < 0) continue;
+    const auto i = static_cast<std::size_t>(grid.points[place]);
+    if (result.normals[i] == Vector3{}) continue;
+    const double cosine = std::clamp(dot(result.normals[i], toward(i)), 0.0, 1.0);
+    result.weights[i] = static_cast<float>(cosine * (steps[place] + 1) / (kBorder + 1));
+  }
+  progress.report(1.0);
+  return result;
+}
+
+}  // namespace prefilter

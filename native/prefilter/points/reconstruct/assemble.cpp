@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "prefilter/points/reconstruct/assemble.h"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+#include "prefilter/geometry/spatial/morton.h"
+
+namespace prefilter {
+namespace {
+
+// Which blocks of a tree a slab needs.
+class Window {
+ public:
+  // In finest cells; `octants` wide around them, at least 2, but no more than `most` finest cells.
+  Window(int low, int high, int depth, int octants, int most)
+      : low_(low), high_(high), depth_(depth), octants_(octants), most_(most) {}
+  bool holds(std::uint64_t place, int node_depth) const {
+    const int shift = depth_ - node_depth;
+    const int margin = std::max(1 << shift, std::min(octants_ << shift >> 1, most_));
+    const int z = morton_cell(place)[2];
+    return z << shift < high_ + margin && (z + 1) << shift > low_ - margin;
+  }
+
+ private:
+  int low_;
+  int high_;
+  int depth_;
+  int octants_;
+  int most_;
+};
+
+CellTree assemble_within(const Window& window, const CoarseTree& coarse, const SlabTrees& trees,
+                         int slab, int depth, bool is_solved, BlockSources* sources) {
+  const int top = static_cast<int>(coarse.tree.levels.size());
+  CellTree result;
+  result.root = coarse.root;
+  result.levels.resize(static_cast<std::size_t>(depth));
+  const auto continued = [&](std::size_t number) {
+    const CoarseTree::Continuation& found = coarse.continuations[number];
+    const FluxTree* tree = trees[static_cast<std::size_t>(found.slab - slab + 1)];
+    return BlockSource{tree->levels.data(), found.block};
+  };
+  std::vector<BlockSource> blocks;
+  if (top > 0) {
+    blocks.push_back({coarse.tree.levels.data(), 0});
+  } else {
+    blocks.push_back(continued(0));
+  }
+  for (int k = 0; k < depth; ++k) {
+    TreeLevel& level = result.levels[static_cast<std::size_t>(k)];
+    level.blocks.reserve(blocks.size());
+    level.split.reserve(blocks.size());
+    std::vector<BlockSource> next;
+    for (const BlockSource& found : blocks) {
+      const TreeLevel& from = found.level->blocks;
+      const std::uint64_t place = found.level->places[found.block];
+      unsigned split = from.split[found.block];
+      std::size_t child = from.first[found.block];
+      for (unsigned bits = split; bits != 0U; bits &= bits - 1U, ++child) {
+        const int o = std::countr_zero(bits);
+        if (!window.holds(place << 3U | static_cast<std::uint64_t>(o), k + 1)) {
+          split &= ~(1U << o);
+        } else if (k + 1 == top) {
+          next.push_back(continued(child));
+        } else {
+          next.push_back({found.level + 1, child});
+        }
+      }
+      const std::vector<OctantValues>& solved = found.level->solved;
+      level.blocks.push_back(is_solved && !solved.empty() ? solved[found.block]
+                                                          : from.blocks[found.block]);
+      level.split.push_back(static_cast<std::uint8_t>(split));
+    }
+    link_blocks(&level);
+    if (sources != nullptr) sources->push_back(std::move(blocks));
+    blocks = std::move(next);
+  }
+  return result;
+}
+
+}  // namespace
+
+CellTree assemble(const CoarseTree& coarse, const SlabTrees& trees, int slab, int depth,
+                  int octants, float scale) {
+  const int shift = depth - static_cast<int>(coarse.tree.levels.size());
+  const Window window(slab << shift, (slab + 1) << shift, depth, octants, 1 << shift);
+  CellTree result = assemble_within(window, coarse, trees, slab, depth, true, nullptr);
+  result.root *= scale;
+  for (TreeLevel& level : result.levels) {
+    for (OctantValues& block : level.blocks) {
+      for (float& value : block) value *= scale;
+    }
+  }
+  return result;
+}
+
+CellTree assemble_unsolved(const CoarseTree& coarse, const SlabTrees& trees, int slab, int depth,
+                           BlockSources* sources) {
+  constexpr int kOctants = 8;
+  const int shift = depth - static_cast<int>(coarse.tree.levels.size());
+  const Window window(slab << shift, (slab + 1) << shift, depth, kOctants, 1 << shift);
+  return assemble_within(window, coarse, trees, slab, depth, false, sources);
+}
+
+}  // namespace prefilter

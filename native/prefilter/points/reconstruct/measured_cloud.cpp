@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "prefilter/points/reconstruct/measured_cloud.h"
+
+#include <numeric>
+#include <utility>
+
+#include "prefilter/points/reconstruct/reconstruct_checks.h"
+
+namespace prefilter {
+namespace {
+
+// To estimate normals, all points have to be in memory. Of so many points one in a thousand may
+// lack a normal, and is left out.
+constexpr std::size_t kManyPoints = 10'000'000;
+constexpr std::size_t kPointsPerMissing = 1000;
+
+}  // namespace
+
+MeasuredCloud::MeasuredCloud(PointSource* source, bool has_some, const Progress& progress,
+                             int threads)
+    : points_(source) {
+  RepeatedPositions repeated;
+  const auto measure = [&](const Progress& part, RepeatedPositions* all) {
+    some_ = ThinnedPoints();
+    extent_ = measure_cloud(points_, part, threads, has_some ? &some_ : nullptr, all);
+  };
+  measure(progress.part(0.0, 0.8), &repeated);
+  phantoms_ = find_phantoms(repeated, source, progress.part(0.8, 0.9), threads);
+  if (!phantoms_.empty()) {
+    points_ = &real_.emplace(source, phantoms_);
+    measure(progress.part(0.9, 1.0), nullptr);
+  }
+  extent_.settle_huge();
+}
+
+bool MeasuredCloud::lacks_normals() const {
+  const std::size_t missing = extent_.dropped.normalless;
+  return missing > 0 &&
+         (extent_.points < kManyPoints || missing > extent_.points / kPointsPerMissing);
+}
+
+void MeasuredCloud::leave_out_rest(const Progress& progress, int threads) {
+  check_cloud(extent_);
+  leave_out_strays(points_, progress, threads, &extent_);
+  if (extent_.strays == 0 && extent_.dropped.huge == 0) return;
+  points_ = &near_.emplace(points_, extent_.part.box);
+}
+
+std::size_t MeasuredCloud::phantom_points() const {
+  return std::accumulate(
+      phantoms_.begin(), phantoms_.end(), std::size_t{0},
+      [](std::size_t sum, const PhantomPlace& place) { return sum + place.points; });
+}
+
+}  // namespace prefilter

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "prefilter/points/reconstruct/surface_level.h"
+
+#include <cstddef>
+#include <vector>
+
+#include "prefilter/points/reconstruct/assemble.h"
+#include "prefilter/points/reconstruct/slab_walk.h"
+#include "prefilter/points/reconstruct/tree_leaf.h"
+#include "prefilter/wavelet/smooth.h"
+
+namespace prefilter {
+namespace {
+
+MeanSample mean_at_samples(float sign, const ReconstructOptions& options, const Progress& progress,
+                           Slabs* slabs) {
+  const int depth = slabs->depth();
+  const auto cells_of = [&](int s) -> const std::vector<SampleCell>& {
+    return slabs->samples(s)->at(depth).samples.cells;
+  };
+  std::vector<double> sums(static_cast<std::size_t>(slabs->count()));
+  MeanSample sum;
+  double weight = 0.0;
+  const auto add_up = [&](int s) {
+    CellTree tree = tree_around(*slabs, s, kContourOctants, sign);
+    if (options.smooth) smooth_leaves(&tree);
+    for (const SampleCell& cell : cells_of(s)) {
+      sums[static_cast<std::size_t>(s)] +=
+          static_cast<double>(cell.weight) *
+          static_cast<double>(leaf_value(tree, depth, cell_position(cell.key)));
+    }
+  };
+  const auto join = [&](int s) {
+    sum.value += sums[static_cast<std::size_t>(s)];
+    for (const SampleCell& cell : cells_of(s)) {
+      weight += static_cast<double>(cell.weight);
+      for (std::size_t a = 0; a < 3; ++a) sum.normal[a] += static_cast<double>(cell.normal[a]);
+    }
+  };
+  for_slabs({SlabStage::kSolved, 1}, progress, options.threads, slabs, add_up, join);
+  return {sum.value / weight, (1.0 / weight) * sum.normal};
+}
+
+}  // namespace
+
+SurfaceLevel find_surface_level(const ReconstructOptions& options, bool is_inward,
+                                const Progress& progress, Slabs* slabs) {
+  const bool is_flipped = is_inward && !options.are_sides_known;
+  const bool may_be_room = is_inward && options.are_sides_known;
+  MeanSample mean;
+  const bool is_solved = slabs->middle != 0.0F;
+  // Smoothing leaves little of shapes of a few cells.
+  constexpr int kLeastDepth = 4;
+  const bool is_known = is_solved && slabs->depth() >= kLeastDepth;
+  if ((options.isovalue == Isovalue::kMean && !is_known) || may_be_room) {
+    mean = mean_at_samples(is_flipped ? -1.0F : 1.0F, options, progress, slabs);
+  }
+  // Room is then what is inside, as it is what normals point to: there is no end to what is not.
+  // The solve wants the same at all samples, and so tells no room from a sheet.
+  const double before = is_solved ? slabs->unsolved_mean : mean.value;
+  const bool is_reversed = may_be_room && is_room({before, mean.normal});
+  if (is_reversed) mean.value = -mean.value;
+  const float sign = is_flipped || is_reversed ? -1.0F : 1.0F;
+  SurfaceLevel level;
+  if (options.isovalue == Isovalue::kMean && is_known) {
+    level = {sign, sign * slabs->middle};
+  } else if (options.isovalue == Isovalue::kMean) {
+    level = level_of_mean(mean.value, sign < 0.0F, options.are_sides_known);
+  } else {
+    level = {sign, options.isovalue == Isovalue::kHalf
+                       ? 0.5F
+                       : static_cast<float>(options.given_isovalue)};
+  }
+  level.is_reversed = is_reversed;
+  return level;
+}
+
+bool is_room(const MeanSample& mean) {
+  constexpr double kMostOfRoom = -0.15;
+  constexpr double kLeastOfSheet = 0.4;
+  return mean.value < kMostOfRoom && length(mean.normal) < kLeastOfSheet;
+}
+
+SurfaceLevel level_of_mean(double mean, bool is_flipped, bool are_sides_known) {
+  constexpr double kLeastOfClosed = 0.2;
+  const float sign = is_flipped ? -1.0F : 1.0F;
+  if (are_sides_known || mean < kLeastOfClosed) return {sign, static_cast<float>(mean)};
+  return {sign * static_cast<float>(0.5 / mean), 0.5F};
+}
+
+CellTree tree_around(const Slabs& slabs, int s, int octants, float scale) {
+  return assemble(slabs.coarse, {slabs.tree(s - 1), slabs.tree(s), slabs.tree(s + 1)}, s,
+                  slabs.depth(), octants, scale);
+}
+
+float leaf_value(const CellTree& tree, int depth, const CellPosition& at) {
+  return value_of(*cell_at(tree, depth, at), tree);
+}
+
+}  // namespace prefilter

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "prefilter/points/reconstruct/surface_parts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "prefilter/base/error.h"
+#include "prefilter/points/reconstruct/coarse_tree.h"
+#include "prefilter/points/reconstruct/d4_function.h"
+#include "prefilter/points/reconstruct/slab_walk.h"
+#include "prefilter/points/reconstruct/whole_samples.h"
+
+namespace prefilter {
+namespace {
+
+// What the function is like.
+struct FunctionFindings {
+  double left_out = 0.0;   // the weight of outliers
+  bool is_inward = false;  // most normals point inward
+};
+
+// Values of all slabs in the D4 basis.
+FunctionFindings find_d4_trees(PointSource* source, const SampleGrid& grid,
+                               const Progress& progress, int threads, Slabs* slabs) {
+  slabs->bring(0, slabs->count(), SlabStage::kLeaves);
+  D4Function made = make_d4_function(source, grid, *slabs, progress, threads);
+  for (int s = 0; s < slabs->count(); ++s) {
+    slabs->set_values(s, std::move(made.trees[static_cast<std::size_t>(s)]));
+  }
+  slabs->coarse = std::move(made.coarse);
+  return {made.left_out, made.is_flipped};
+}
+
+// Of flat boxes, which hold nothing.
+constexpr double kLeastBoxShare = 1e-3;
+
+// The function that is 1 inside and 0 outside: the tree above the slabs, and what these need to
+// make their own levels.
+FunctionFindings find_function(PointSource* source, const SampleGrid& grid,
+                               const ReconstructOptions& options, Slabs* slabs) {
+  FunctionFindings found;
+  if (options.basis == WaveletBasis::kD4) {
+    found = find_d4_trees(source, grid, options.progress.part(0.15, 0.4), options.threads, slabs);
+  } else {
+    found.left_out = find_coarse_tree(options.progress.part(0.15, 0.35), options.threads, slabs);
+    found.is_inward = slabs->coarse.root < 0.0F;
+    // What is inside, of the box around the points: their walls enclose most of it, or of
+    // themselves.
+    slabs->unsolved_mean =
+        static_cast<double>(slabs->coarse.root) / std::max(slabs->box_share, kLeastBoxShare);
+    slabs->middle = found.is_inward ? -0.5F : 0.5F;
+    solve_coarse_tree(slabs->middle, &slabs->coarse);
+  }
+  if (slabs->coarse.is_empty()) {
+    throw_invalid(
+        "normals: they contradict each other everywhere; recalculate them, or have them estimated");
+  }
+  return found;
+}
+
+// Of the root's volume, that of the box around the points.
+double box_share(const SampleGrid& grid, const Box& box) {
+  const double side = std::ldexp(grid.cell, grid.depth);
+  double share = 1.0;
+  for (int a = 0; a < 3; ++a) share *= box.size(a) / side;
+  return share;
+}
+
+}  // namespace
+
+int slab_bits(int depth) { return std::min({depth, 6, std::max(16 - depth, 4)}); }
+
+SurfaceParts::SurfaceParts(PointSource* source, std::size_t attribute_count, const SampleGrid& grid,
+                           const CloudExtent& extent, const ReconstructOptions& options,
+                           bool keeps_all, SampleStore* store)
+    : options_(options),
+      slabs_(store, grid.depth, grid.depth - slab_bits(grid.depth), attribute_count, keeps_all,
+             options.threads),
+      attribute_count_(attribute_count),
+      cell_(grid.cell) {
+  slabs_.mean_weight = extent.part.weight / static_cast<double>(extent.part.points);
+  slabs_.box_share = box_share(grid, extent.part.box);
+  const int largest =
+      find_whole(attribute_count, options.progress.part(0.0, 0.15), options.threads, &slabs_);
+  const FunctionFindings found = find_function(source, grid, options, &slabs_);
+  outliers_ = found.left_out / extent.part.weight;
+  is_flipped_ = found.is_inward && !options.are_sides_known;
+  level_ = find_surface_level(options, found.is_inward, options.progress.part(0.35, 0.6), &slabs_);
+  noise_ = find_noise(largest, &slabs_);
+}
+
+void SurfaceParts::make(int begin, int end, const Progress& progress,
+                        const std::function<void(const SlabMesh&)>& use) {
+  const SurfaceSamples surface = {slabs_, attribute_count_, noise_, cell_};
+  std::vector<SlabMesh> parts(static_cast<std::size_t>(slabs_.count()));
+  const auto make_part = [&](int s) {
+    SlabMesh part = mesh_of_slab(surface, options_, level_, s);
+    if (level_.is_reversed) {
+      for (auto& [a, b, c] : part.contour.mesh.triangles) std::swap(b, c);
+    }
+    parts[static_cast<std::size_t>(s)] = std::move(part);
+  };
+  const auto hand_on = [&](int s) {
+    use(std::exchange(parts[static_cast<std::size_t>(s)], SlabMesh()));
+  };
+  for_slabs({SlabStage::kSolved, 1, true, begin, end}, progress, options_.threads, &slabs_,
+            make_part, hand_on);
+}
+
+void SurfaceParts::describe(ReconstructReport* report) const {
+  report->outliers = outliers_;
+  report->is_flipped = is_flipped_;
+  report->is_room = level_.is_reversed;
+  report->residual = noise_.distance;
+}
+
+}  // namespace prefilter

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "prefilter/points/reconstruct/surface_simplifier.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "prefilter/points/reconstruct/cut_builder.h"
+#include "prefilter/points/trim_surface.h"
+#include "prefilter/voxels/remesh/patch.h"
+#include "prefilter/voxels/remesh/simplify_facets.h"
+
+namespace prefilter {
+namespace {
+
+using Triangle = std::array<std::int32_t, 3>;
+
+// Triangles wait that are in so many rings around an end that goes on.
+constexpr int kWaitingRings = 3;
+
+bool has_any(const Triangle& triangle, const std::vector<std::uint8_t>& flags) {
+  return (flags[as_index(triangle[0])] | flags[as_index(triangle[1])] |
+          flags[as_index(triangle[2])]) != 0;
+}
+
+// Vertices of edges that have not just two triangles.
+void find_open(std::span<const Triangle> triangles, std::vector<std::uint8_t>* is_open) {
+  std::vector<std::pair<std::int32_t, std::int32_t>> edges;
+  edges.reserve(3 * triangles.size());
+  for (const Triangle& triangle : triangles) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      edges.emplace_back(std::minmax({triangle[i], triangle[(i + 1) % 3]}));
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  for (auto first = edges.begin(); first != edges.end();) {
+    const auto end = std::find_if(first, edges.end(), [&](const auto& e) { return e != *first; });
+    if (end - first != 2) {
+      (*is_open)[as_index(first->first)] = 1;
+      (*is_open)[as_index(first->second)] = 1;
+    }
+    first = end;
+  }
+}
+
+// The vertices of triangles near some.
+void grow(std::span<const Triangle> triangles, std::vector<std::uint8_t>* is_near) {
+  const std::vector<std::uint8_t> before = *is_near;
+  for (const Triangle& triangle : triangles) {
+    if (!has_any(triangle, before)) continue;
+    for (const std::int32_t v : triangle) (*is_near)[as_index(v)] = 1;
+  }
+}
+
+// Facets that have not been simplified.
+void append_new(std::vector<Triangle>* triangles, Facets* facets) {
+  Facets some;
+  some.errors.assign(triangles->size(), 0.0F);
+  some.deviations.assign(triangles->size(), 0.0F);
+  some.point_ends.assign(triangles->size(), 0U);
+  some.triangles = std::exchange(*triangles, {});
+  append(&some, facets);
+}
+
+// The facets around vertices, simplified before.
+Facets facets_around(const Facets& facets, const std::vector<std::uint8_t>& is_chosen) {
+  Facets some;
+  std::uint32_t begin = 0;
+  for (std::size_t t = 0; t < facets.triangles.size(); ++t) {
+    const std::uint32_t end = facets.point_ends[t];
+    if (has_any(facets.triangles[t], is_chosen)) {
+      some.triangles.push_back(facets.triangles[t]);
+      some.errors.push_back(facets.errors[t]);
+      some.deviations.push_back(facets.deviations[t]);
+      some.points.insert(some.points.end(), facets.points.begin() + begin,
+                         facets.points.begin() + end);
+      some.point_ends.push_back(static_cast<std::uint32_t>(some.points.size()));
+    }
+    begin = end;
+  }
+  return some;
+}
+
+}  // namespace
+
+SurfaceSimplifier::SurfaceSimplifier(SimplifierOptions options, MeshSink* sink)
+    : options_(std::move(options)), sink_(sink) {}
+
+void SurfaceSimplifier::add_vertices(std::vector<Vector3> positions,
+                                     std::vector<float> attributes) {
+  Pending& all = pending_;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    all.places.emplace(next_number_, static_cast<std::int32_t>(all.numbers.size()));
+    all.numbers.push_back(next_number_++);
+  }
+  all.mesh.positions.insert(all.mesh.positions.end(), positions.begin(), positions.end());
+  all.attributes.insert(all.attributes.end(), attributes.begin(), attributes.end());
+  all.out_numbers.resize(all.numbers.size(), -1);
+}
+
+void SurfaceSimplifier::add_triangles(std::vector<std::array<std::int64_t, 3>> triangles) {
+  added_.reserve(added_.size() + triangles.size());
+  for (const auto& [a, b, c] : triangles) {
+    added_.push_back({pending_.places.at(a), pending_.places.at(b), pending_.places.at(c)});
+  }
+}
+
+void SurfaceSimplifier::end_part(std::span<const std::int64_t> shared) {
+  std::vector<std::uint8_t> is_waiting(pending_.numbers.size(), 0);
+  for (const std::int64_t number : shared) is_waiting[as_index(pending_.places.at(number))] = 1;
+  if (!added_.empty()) {
+    const SimplifyScale scale = scale_of(pending_.mesh.positions, added_, options_.tolerance);
+    append_new(&added_, &pending_.facets);
+    FixedVertices fixed{is_waiting, far_vertices()};
+    find_open(pending_.facets.triangles, &fixed.is_open);
+    simplify_facets(pending_.mesh, scale, std::move(fixed), options_.progress, options_.threads,
+                    &pending_.facets);
+  }
+  for (int ring = 1; ring < kWaitingRings; ++ring) grow(pending_.facets.triangles, &is_waiting);
+  hand_on(is_waiting);
+  keep(is_waiting, shared);
+}
+
+std::span<const float> SurfaceSimplifier::attributes_of(std::size_t vertex) const {
+  return std::span(pending_.attributes).subspan(vertex * options_.width, options_.width);
+}
+
+// What fills holes: only there the mesh can still be cut.
+std::vector<std::uint8_t> SurfaceSimplifier::far_vertices() const {
+  std::vector<std::uint8_t> is_far(pending_.numbers.size(), 0);
+  if (!options_.has_support) return is_far;
+  const double limit = TrimOptions().distance;
+  for (std::size_t v = 0; v < is_far.size(); ++v) {
+    const float distance = attributes_of(v)[options_.width - kSupportAttributes];
+    is_far[v] = static_cast<double>(distance) > limit ? 1 : 0;
+  }
+  return is_far;
+}
+
+// All triangles but those around vertices that wait.
+void SurfaceSimplifier::hand_on(const std::vector<std::uint8_t>& is_waiting) {
+  std::vector<Vector3> positions;
+  std::vector<float> attributes;
+  std::vector<std::array<std::int64_t, 3>> triangles;
+  const auto number_of = [&](std::size_t v) {
+    std::int64_t& number = pending_.out_numbers[v];
+    if (number >= 0) return number;
+    positions.push_back(pending_.mesh.positions[v]);
+    const std::span<const float> some = attributes_of(v);
+    attributes.insert(attributes.end(), some.begin(), some.end());
+    return number = static_cast<std::int64_t>(counts_.vertices++);
+  };
+  for (const Triangle& triangle : pending_.facets.triangles) {
+    if (has_any(triangle, is_waiting)) continue;
+    std::array<std::int64_t, 3> corners;
+    for (std::size_t i = 0; i < 3; ++i) corners[i] = number_of(as_index(triangle[i]));
+    triangles.push_back(corners);
+  }
+  counts_.triangles += triangles.size();
+  if (!positions.empty()) sink_->add_vertices(std::move(positions), std::move(attributes));
+  if (!triangles.empty()) sink_->add_triangles(std::move(triangles));
+}
+
+// Those, and the vertices that are to come again.
+void SurfaceSimplifier::keep(const std::vector<std::uint8_t>& is_waiting,
+                             std::span<const std::int64_t> shared) {
+  Pending rest;
+  rest.facets = facets_around(pending_.facets, is_waiting);
+  std::vector<std::uint8_t> is_kept(pending_.numbers.size(), 0);
+  for (const std::int64_t number : shared) is_kept[as_index(pending_.places.at(number))] = 1;
+  for (const Triangle& triangle : rest.facets.triangles) {
+    for (const std::int32_t v : triangle) is_kept[as_index(v)] = 1;
+  }
+  std::vector<std::int32_t> places(pending_.numbers.size(), -1);
+  for (std::size_t v = 0; v < is_kept.size(); ++v) {
+    if (is_kept[v] == 0) continue;
+    places[v] = static_cast<std::int32_t>(rest.numbers.size());
+    rest.places.emplace(pending_.numbers[v], places[v]);
+    rest.numbers.push_back(pending_.numbers[v]);
+    rest.out_numbers.push_back(pending_.out_numbers[v]);
+    rest.mesh.positions.push_back(pending_.mesh.positions[v]);
+    const std::span<const float> some = attributes_of(v);
+    rest.attributes.insert(rest.attributes.end(), some.begin(), some.end());
+  }
+  for (Triangle& triangle : rest.facets.triangles) {
+    for (std::int32_t& v : triangle) v = places[as_index(v)];
+  }
+  pending_ = std::move(rest);
+}
+
+}  // namespace prefilter

@@ -1,0 +1,456 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Leaps and bounds (Furnival and Wilson, "Regressions by Leaps and Bounds", 1974): sets without
+// some texels have an error of at least that of all other texels together.
+//
+// With all candidates in, let c be their weights and A the inverse of their products, bordered for
+// the weights' sum. Without the texels X the error is higher by c_X A_XX^-1 c_X. So a bound takes
+// the elimination of few texels, however many candidates there are. Of those that may still be in
+// or out, the one that raises the bound the most if it is out is next: with it in, and with it out.
+#include "prefilter/sampling/tables/certify.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "prefilter/base/parallel.h"
+#include "prefilter/sampling/tables/bordered_rows.h"
+
+namespace prefilter {
+namespace {
+
+constexpr double kEqual = 1e-9;     // of an error
+constexpr double kNoError = 1e-12;  // of the filter's square
+// Candidates that make up each other have no inverse. This share of a texel's square, the mean of
+// all, is added to each: that raises an error by no more than this times the sum of the squares of
+// its weights.
+constexpr double kRidge = 1e-10;
+constexpr double kMostWeight = 10.0;        // root mean square
+constexpr std::int64_t kNodesOfTask = 256;  // nodes that are visited depth first
+constexpr std::int64_t kTasksOfRound = 64;  // that are worked on side by side
+
+// The elimination of some texels from equations with one matrix and several right sides: what is
+// left for all other texels.
+struct Elimination {
+  std::size_t count = 0;
+  std::vector<double> sides;    // [polynomial][texel]
+  std::vector<double> squares;  // the diagonal
+  double error = 0.0;           // of what the right sides are products of
+
+  double side_square(int texel) const {
+    double sum = 0.0;
+    for (std::size_t i = texel; i < sides.size(); i += count) sum += sides[i] * sides[i];
+    return sum;
+  }
+};
+
+// Rows that were eliminated, one above another, each scaled by the root of its pivot.
+class Rows {
+ public:
+  std::size_t size() const { return rows_.size(); }
+  void resize(std::size_t size) { rows_.resize(size); }
+
+  // What is left of the row of a texel.
+  void reduce(int texel, std::vector<double>* row) const {
+    for (const std::vector<double>& above : rows_) {
+      const double factor = above[texel];
+      for (std::size_t i = 0; i < row->size(); ++i) (*row)[i] -= factor * above[i];
+    }
+  }
+
+  // The element of it in the column of another one.
+  double reduced(int texel, int column, double value) const {
+    for (const std::vector<double>& above : rows_) value -= above[texel] * above[column];
+    return value;
+  }
+
+  // Eliminates a texel. `sign` is that with which its part counts as an error.
+  void eliminate(int texel, std::vector<double> row, double sign, Elimination* left) {
+    reduce(texel, &row);
+    const double scale = 1.0 / std::sqrt(left->squares[texel]);
+    for (double& value : row) value *= scale;
+    for (std::size_t i = 0; i < row.size(); ++i) left->squares[i] -= row[i] * row[i];
+    left->error += sign * left->side_square(texel) * scale * scale;
+    for (std::size_t first = 0; first < left->sides.size(); first += left->count) {
+      double* const side = left->sides.data() + first;
+      const double factor = side[texel] * scale;
+      for (std::size_t i = 0; i < row.size(); ++i) side[i] -= factor * row[i];
+    }
+    rows_.push_back(std::move(row));
+  }
+
+ private:
+  std::vector<std::vector<double>> rows_;
+};
+
+// Cholesky's factor of the candidates' products, with `ridge` on their diagonal: by rows, below the
+// diagonal.
+std::vector<double> cholesky_factor(const SubdomainSystem& system, double ridge,
+                                    const Progress& progress) {
+  const auto count = static_cast<std::size_t>(system.candidates());
+  std::vector<double> factor(count * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::copy_n(system.products_of(static_cast<int>(i)), i + 1, factor.data() + i * count);
+    factor[i * count + i] += ridge;
+  }
+  std::vector<double> column(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    progress.report(0.0);
+    const double pivot = std::sqrt(factor[k * count + k]);
+    factor[k * count + k] = pivot;
+    for (std::size_t i = k + 1; i < count; ++i) {
+      factor[i * count + k] /= pivot;
+      column[i] = factor[i * count + k];
+    }
+    for (std::size_t i = k + 1; i < count; ++i) {
+      double* const row = factor.data() + i * count;
+      const double at_k = column[i];
+      if (at_k == 0.0) continue;
+      for (std::size_t j = k + 1; j <= i; ++j) row[j] -= at_k * column[j];
+    }
+  }
+  return factor;
+}
+
+// The inverse of what has this factor: that of the factor, and the products of its columns.
+std::vector<double> inverse_of_factor(const std::vector<double>& factor, std::size_t count,
+                                      const Progress& progress) {
+  std::vector<double> factor_inverse(count * count);
+  std::vector<double> inverse(count * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    progress.report(0.0);
+    double* const row = factor_inverse.data() + i * count;
+    row[i] = 1.0;
+    for (std::size_t k = 0; k < i; ++k) {
+      const double at_k = factor[i * count + k];
+      if (at_k == 0.0) continue;
+      const double* const above = factor_inverse.data() + k * count;
+      for (std::size_t j = 0; j <= k; ++j) row[j] -= at_k * above[j];
+    }
+    const double scale = 1.0 / factor[i * count + i];
+    for (std::size_t j = 0; j <= i; ++j) row[j] *= scale;
+    for (std::size_t k = 0; k <= i; ++k) {
+      double* const sum = inverse.data() + k * count;
+      for (std::size_t j = 0; j <= k; ++j) sum[j] += row[k] * row[j];
+    }
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = 0; j < i; ++j) inverse[j * count + i] = inverse[i * count + j];
+  }
+  return inverse;
+}
+
+// The inverse of all candidates' products with the weights' sum fixed, and their weights.
+struct AllTexels {
+  AllTexels(const SubdomainSystem& system, const Progress& progress);
+
+  const double* inverse_of(int i) const { return inverse.data() + i * weights.count; }
+
+  std::vector<double> inverse;
+  Elimination weights;
+  double slack = 0.0;  // for each texel of a set: how much the ridge raises errors at the most
+
+ private:
+  // Of one polynomial, by the inverse as it is without the weights' sum. `of_ones` are its rows'
+  // sums, and `sum_of_ones` the sum of these.
+  void add_weights(const SubdomainSystem& system, std::size_t polynomial,
+                   const std::vector<double>& of_ones, double sum_of_ones);
+};
+
+AllTexels::AllTexels(const SubdomainSystem& system, const Progress& progress) {
+  const auto count = static_cast<std::size_t>(system.candidates());
+  const auto polynomials = static_cast<std::size_t>(system.polynomials());
+  double trace = 0.0;
+  for (std::size_t i = 0; i < count; ++i) trace += system.products_of(static_cast<int>(i))[i];
+  const double ridge = kRidge * trace / static_cast<double>(count);
+  slack = ridge * system.unit * system.unit * kMostWeight * kMostWeight;
+  inverse = inverse_of_factor(cholesky_factor(system, ridge, progress), count, progress);
+
+  std::vector<double> of_ones(count);
+  double sum_of_ones = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = 0; j < count; ++j) of_ones[i] += inverse[i * count + j];
+    sum_of_ones += of_ones[i];
+  }
+  weights.count = count;
+  weights.error = system.filter_square;
+  weights.sides.assign(polynomials * count, 0.0);
+  for (std::size_t p = 0; p < polynomials; ++p) add_weights(system, p, of_ones, sum_of_ones);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double share = of_ones[i] / sum_of_ones;
+    double* const row = inverse.data() + i * count;
+    for (std::size_t j = 0; j < count; ++j) row[j] -= share * of_ones[j];
+    weights.squares.push_back(row[i]);
+  }
+}
+
+void AllTexels::add_weights(const SubdomainSystem& system, std::size_t polynomial,
+                            const std::vector<double>& of_ones, double sum_of_ones) {
+  const std::size_t count = weights.count;
+  double* const of_polynomial = weights.sides.data() + polynomial * count;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = 0; j < count; ++j) {
+      of_polynomial[i] +=
+          inverse[i * count + j] * system.right_side_of(static_cast<int>(j))[polynomial];
+    }
+    sum += of_polynomial[i];
+    weights.error -= of_polynomial[i] * system.right_side_of(static_cast<int>(i))[polynomial];
+  }
+  const double missing = system.weight_sum(static_cast<int>(polynomial)) - sum;
+  weights.error += missing * missing / sum_of_ones;
+  for (std::size_t i = 0; i < count; ++i) of_polynomial[i] += missing / sum_of_ones * of_ones[i];
+}
+
+// The sets that have some texels, and others that are not excluded.
+struct Task {
+  std::vector<int> chosen;
+  std::vector<int> excluded;
+  double bound = 0.0;
+};
+
+struct Outcome {
+  std::vector<int> best;  // empty: none is better
+  double best_error = 0.0;
+  std::vector<Task> open;  // what was left where the nodes were used up
+  std::int64_t nodes = 0;
+};
+
+// One task, depth first.
+class Search {
+ public:
+  Search(const SubdomainSystem& system, const AllTexels& all, std::size_t size, double best_error)
+      : system_(system), all_(all), size_(size), is_free_(all.weights.count, 1) {
+    outcome_.best_error = best_error;
+  }
+
+  Outcome run(const Task& task) {
+    Elimination without = all_.weights;
+    for (const int texel : task.excluded) exclude(texel, &without);
+    Elimination with;
+    for (const int texel : task.chosen) choose(texel, &with);
+    visit(std::move(without), with);
+    return std::move(outcome_);
+  }
+
+ private:
+  // What no error of a better set is above.
+  double needed() const {
+    const double error = outcome_.best_error;
+    return error - std::max(kEqual * error, kNoError * system_.filter_square);
+  }
+  bool is_hopeless(double bound) const {
+    return bound - all_.slack * static_cast<double>(size_) >= needed();
+  }
+  std::size_t missing() const { return size_ - chosen_.size(); }
+
+  double product(int i, int j) const {
+    const double* const base = system_.products_of(chosen_[0]);
+    return system_.products_of(i)[j] - base[i] - base[j] + base[chosen_[0]];
+  }
+  bool can_join(int texel, double square) const {
+    return square > kDependent * system_.products_of(texel)[texel];
+  }
+
+  void exclude(int texel, Elimination* without) {
+    const double* const row = all_.inverse_of(texel);
+    excluded_rows_.eliminate(texel, {row, row + without->count}, 1.0, without);
+    excluded_.push_back(texel);
+    is_free_[texel] = 0;
+  }
+
+  // The first one sees to the weights' sum: of all others, what differs from it counts.
+  void choose(int texel, Elimination* with) {
+    const std::size_t count = all_.weights.count;
+    is_free_[texel] = 0;
+    chosen_.push_back(texel);
+    if (chosen_.size() > 1) {
+      std::vector<double> row(count);
+      for (std::size_t i = 0; i < count; ++i) row[i] = product(texel, static_cast<int>(i));
+      chosen_rows_.eliminate(texel, std::move(row), -1.0, with);
+      return;
+    }
+    const double* const base = system_.products_of(texel);
+    const auto polynomials = static_cast<std::size_t>(system_.polynomials());
+    with->count = count;
+    with->error = system_.filter_square;
+    with->sides.resize(polynomials * count);
+    for (std::size_t p = 0; p < polynomials; ++p) {
+      const double sum = system_.weight_sum(static_cast<int>(p));
+      const double side = system_.right_side_of(texel)[p];
+      with->error += sum * sum * base[texel] - 2.0 * sum * side;
+      for (std::size_t i = 0; i < count; ++i) {
+        with->sides[p * count + i] =
+            system_.right_side_of(static_cast<int>(i))[p] - side - sum * (base[i] - base[texel]);
+      }
+    }
+    with->squares.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      with->squares[i] = product(static_cast<int>(i), static_cast<int>(i));
+    }
+  }
+
+  void undo_choice() {
+    is_free_[chosen_.back()] = 1;
+    chosen_.pop_back();
+    chosen_rows_.resize(chosen_.empty() ? 0 : chosen_.size() - 1);
+  }
+
+  void offer(double error, int last) {
+    if (error >= needed()) return;
+    outcome_.best_error = error;
+    outcome_.best = chosen_;
+    outcome_.best.push_back(last);
+  }
+
+  // All sets with one texel more than the chosen ones.
+  void try_last(const Elimination& with) {
+    gains_.assign(with.count, 0.0);
+    for (std::size_t first = 0; first < with.sides.size(); first += with.count) {
+      const double* const side = with.sides.data() + first;
+      for (std::size_t i = 0; i < with.count; ++i) gains_[i] += side[i] * side[i];
+    }
+    const double gain = with.error - needed();
+    for (std::size_t i = 0; i < with.count; ++i) {
+      const auto texel = static_cast<int>(i);
+      if (gains_[i] > gain * with.squares[i] && can_join(texel, with.squares[i])) {
+        offer(with.error - gains_[i] / with.squares[i], texel);
+      }
+    }
+  }
+
+  // A set that lacks two of the texels.
+  void try_pair(const Elimination& with, int i, int j) {
+    if (!can_join(i, with.squares[i])) return;
+    const double share = chosen_rows_.reduced(i, j, product(i, j)) / with.squares[i];
+    const double square = with.squares[j] - share * share * with.squares[i];
+    if (!can_join(j, square)) return;
+    double gain = 0.0;
+    for (std::size_t first = 0; first < with.sides.size(); first += with.count) {
+      const double side = with.sides[first + j] - share * with.sides[first + i];
+      gain += side * side;
+    }
+    chosen_.push_back(i);
+    offer(with.error - with.side_square(i) / with.squares[i] - gain / square, j);
+    chosen_.pop_back();
+  }
+
+  // Of the free texels the `count` ones that raise the bound the most where they are excluded, in
+  // this order, into next_; by how much, into rises_.
+  void rank(const Elimination& without, std::size_t count) {
+    rises_.assign(without.count, 0.0);
+    for (std::size_t first = 0; first < without.sides.size(); first += without.count) {
+      const double* const side = without.sides.data() + first;
+      for (std::size_t i = 0; i < without.count; ++i) rises_[i] += side[i] * side[i];
+    }
+    next_.clear();
+    for (std::size_t i = 0; i < without.count; ++i) {
+      if (is_free_[i] == 0) continue;
+      rises_[i] /= without.squares[i];
+      next_.push_back(static_cast<int>(i));
+    }
+    const auto end = next_.begin() + static_cast<std::ptrdiff_t>(std::min(count, next_.size()));
+    std::partial_sort(next_.begin(), end, next_.end(), [&](int a, int b) {
+      return rises_[a] != rises_[b] ? rises_[a] > rises_[b] : a < b;
+    });
+  }
+
+  void visit(Elimination without, const Elimination& with) {
+    const std::size_t excluded_before = excluded_.size();
+    while (true) {
+      // Of so many texels one at the least is out.
+      rank(without, missing() + 1);
+      if (next_.size() < missing()) break;
+      const double bound =
+          without.error + (next_.size() > missing() ? rises_[next_[missing()]] : 0.0);
+      if (is_hopeless(bound)) break;
+      if (outcome_.nodes++ >= kNodesOfTask) {
+        outcome_.open.push_back({chosen_, excluded_, bound});
+        break;
+      }
+      const int texel = next_[0];
+      const double bound_without = without.error + rises_[texel];
+      if (missing() == 2 && !chosen_.empty() && is_hopeless(without.error + rises_[next_[1]])) {
+        try_pair(with, texel, next_[1]);
+      } else if (chosen_.empty() || can_join(texel, with.squares[texel])) {
+        Elimination next = with;
+        choose(texel, &next);
+        if (missing() == 1) {
+          try_last(next);
+        } else {
+          visit(without, next);
+        }
+        undo_choice();
+      }
+      if (is_hopeless(bound_without)) break;
+      exclude(texel, &without);
+    }
+    for (std::size_t i = excluded_before; i < excluded_.size(); ++i) is_free_[excluded_[i]] = 1;
+    excluded_.resize(excluded_before);
+    excluded_rows_.resize(excluded_before);
+  }
+
+  const SubdomainSystem& system_;
+  const AllTexels& all_;
+  std::size_t size_;
+  std::vector<unsigned char> is_free_;
+  std::vector<int> chosen_;
+  std::vector<int> excluded_;
+  Rows chosen_rows_;  // of all but the first
+  Rows excluded_rows_;
+  Outcome outcome_;
+  std::vector<double> rises_;  // these are for use within a function
+  std::vector<int> next_;
+  std::vector<double> gains_;
+};
+
+}  // namespace
+
+CertifiedSet certify_set(const SubdomainSystem& system, const FittedSet& start,
+                         const CertifyOptions& options) {
+  const std::size_t size = start.members.size();
+  CertifiedSet result{start, 0.0};
+  const double no_error = kNoError * system.filter_square;
+  if (static_cast<int>(size) == system.candidates() || start.error <= no_error) return result;
+
+  const AllTexels all(system, options.progress);
+  std::vector<int> best = start.members;
+  double best_error = start.error;
+  const auto order = [](const Task& a, const Task& b) { return a.bound < b.bound; };
+  std::multiset<Task, decltype(order)> open(order);  // equal ones in the order of insertion
+  open.insert({{}, {}, all.weights.error});
+  std::int64_t nodes = 0;
+  while (!open.empty() && nodes < options.nodes) {
+    // What is worked on together, and with which best error, is the same on any number of threads.
+    std::vector<Task> tasks;
+    while (!open.empty() && tasks.size() < kTasksOfRound) {
+      tasks.push_back(std::move(open.extract(open.begin()).value()));
+    }
+    std::vector<Outcome> outcomes(tasks.size());
+    const double done = static_cast<double>(nodes) / static_cast<double>(options.nodes);
+    parallel_for(
+        static_cast<std::int64_t>(tasks.size()), options.threads, options.progress.part(done, done),
+        [&](std::int64_t i) { outcomes[i] = Search(system, all, size, best_error).run(tasks[i]); });
+    for (Outcome& outcome : outcomes) {
+      if (!outcome.best.empty() && outcome.best_error < best_error) {
+        best_error = outcome.best_error;
+        best = std::move(outcome.best);
+      }
+      nodes += outcome.nodes;
+      for (Task& task : outcome.open) open.insert(std::move(task));
+    }
+  }
+  if (best_error < start.error) result.set = fit_set(system, best);
+  if (!open.empty() && best_error > no_error) {
+    const double bound = open.begin()->bound - all.slack * static_cast<double>(size);
+    result.gap = std::clamp(1.0 - bound / best_error, 0.0, 1.0);
+  }
+  options.progress.report(1.0);
+  return result;
+}
+
+}  // namespace prefilter

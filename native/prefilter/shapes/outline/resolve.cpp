@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "prefilter/shapes/resolve.h"
+
+#include <algorithm>
+#include <array>
+
+#include "prefilter/base/curve.h"
+#include "prefilter/shapes/outline/arrangement.h"
+#include "prefilter/shapes/outline/convex_contours.h"
+#include "prefilter/shapes/outline/fill_rule.h"
+#include "prefilter/shapes/outline/polygon_clipper.h"
+#include "prefilter/shapes/outline/resolve_soon.h"
+
+namespace prefilter {
+namespace {
+
+enum class Outcome : std::uint8_t { kAsItIs, kTraced, kUnclear, kTooMany };
+
+Outcome resolve_exactly(const Outline& outline, FillRule rule, double precision,
+                        ArrangementEffort effort, const Progress& progress, Outline* result) {
+  const std::array<const Outline*, 1> outlines = {&outline};
+  Arrangement arrangement(outlines, precision);
+  const CutOutcome cut = arrangement.cut(effort, progress.part(0.0, 0.5));
+  if (cut != CutOutcome::kCut) {
+    return cut == CutOutcome::kUnclear ? Outcome::kUnclear : Outcome::kTooMany;
+  }
+  std::vector<BoundaryChain> boundary;
+  boundary.reserve(arrangement.chain_count());
+  bool all_forward = true;
+  std::size_t steps = 0;
+  const auto visitor = [&](std::uint32_t chain, const LayerWindings& right,
+                           const LayerWindings& left) {
+    steps += right.touched().size() + left.touched().size();
+    const bool is_left = is_filled(left[0], rule);
+    const bool is_right = is_filled(right[0], rule);
+    all_forward = all_forward && is_left && !is_right;
+    if (is_left != is_right) boundary.push_back({chain, is_right});
+  };
+  constexpr std::size_t kAtOnce = 256;
+  // Winding numbers are told that much sooner than whether two lines meet.
+  constexpr std::size_t kWindingsPerStep = 128;
+  const std::size_t count = arrangement.chain_count();
+  for (std::size_t begin = 0; begin < count; begin += kAtOnce) {
+    progress.report(0.5 + 0.5 * static_cast<double>(begin) / static_cast<double>(count));
+    arrangement.visit(begin, std::min(begin + kAtOnce, count), visitor);
+    if (steps / kWindingsPerStep > arrangement.most_steps(effort)) return Outcome::kTooMany;
+  }
+  if (arrangement.all_whole() && all_forward) return Outcome::kAsItIs;
+  return arrangement.trace(boundary, result) ? Outcome::kTraced : Outcome::kUnclear;
+}
+
+Outline contours_of(const Outline& outline, std::span<const ContourUse> uses) {
+  Outline result;
+  result.reserve(outline.points().size(), outline.segments().size());
+  for (std::size_t c = 0; c < uses.size(); ++c) {
+    if (uses[c] == ContourUse::kDropped || outline.contour(c).empty()) continue;
+    append_contour(outline, c, uses[c] == ContourUse::kReversed, &result);
+  }
+  return result;
+}
+
+}  // namespace
+
+namespace {
+
+// Of convex contours that are beside each other, or one in another.
+bool resolve_convex(const Outline& outline, FillRule rule, std::optional<Outline>* changed) {
+  const auto uses = convex_contour_uses(outline, rule);
+  if (!uses) return false;
+  const bool are_all_kept = std::all_of(uses->begin(), uses->end(),
+                                        [](ContourUse use) { return use == ContourUse::kKept; });
+  if (!are_all_kept) *changed = contours_of(outline, *uses);
+  return true;
+}
+
+bool resolve_by_arrangement(const Outline& outline, FillRule rule, ArrangementEffort effort,
+                            const Progress& progress, std::optional<Outline>* changed) {
+  for (const double precision : kPrecisions) {
+    Outline result;
+    switch (resolve_exactly(outline, rule, precision, effort, progress, &result)) {
+      case Outcome::kAsItIs:
+        return true;
+      case Outcome::kTraced:
+        *changed = std::move(result);
+        return true;
+      case Outcome::kTooMany:
+        return false;
+      case Outcome::kUnclear:
+        break;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+bool resolve_soon(const Outline& outline, FillRule rule, const Progress& progress,
+                  std::optional<Outline>* changed) {
+  changed->reset();
+  return resolve_convex(outline, rule, changed) ||
+         resolve_by_arrangement(outline, rule, ArrangementEffort::kBounded, progress, changed);
+}
+
+std::optional<Outline> resolved(const Outline& outline, FillRule rule, double tolerance,
+                                const Progress& progress) {
+  std::optional<Outline> changed;
+  if (resolve_convex(outline, rule, &changed) ||
+      resolve_by_arrangement(outline, rule, ArrangementEffort::kAny, progress, &changed)) {
+    return changed;
+  }
+  return combine_polygons(flattened(outline, tolerance), rule, {}, rule, OutlineOperation::kUnion);
+}
+
+Outline resolve(const Outline& outline, FillRule rule, double tolerance) {
+  std::optional<Outline> result = resolved(outline, rule, tolerance);
+  return result ? std::move(*result) : outline;
+}
+
+}  // namespace prefilter

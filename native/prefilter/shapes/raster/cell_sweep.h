@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// The arcs in a cell cut where they cross, and what lies on both sides of each part.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "prefilter/shapes/raster/key_numbers.h"
+#include "prefilter/shapes/raster/row_layers.h"
+
+namespace prefilter {
+
+/// Part of an arc that several layers may have in common.
+struct SweptPart {
+  static constexpr std::uint32_t kLeftSide = UINT32_MAX;
+
+  std::uint32_t arc = kLeftSide;  // of CellSweep::arcs(), or the left side of the cell
+  double low = 0.0;               // heights, from the cell's center
+  double high = 0.0;
+  std::uint32_t left = 0;  // states
+  std::uint32_t right = 0;
+};
+
+/// Goes up through a cell. Between two heights at which an arc ends or two of them cross, the order
+/// of the arcs is that in the middle; a crossing that is missed is off by what lies between two
+/// arcs that are that close.
+class CellSweep {
+ public:
+  /// As many layers, of which a state tells by a bit whether each is there.
+  static constexpr std::size_t kMostLayers = 63;
+  /// The state of what lies left of the cell, which shows nothing.
+  static constexpr std::uint32_t kNothing = 0;
+
+  explicit CellSweep(const StackArcs& stack_arcs) : stack_arcs_(stack_arcs) {}
+
+  /// For arcs of up to kMostLayers layers, in a row of cells. Returns false where that takes more
+  /// than `most_work` steps.
+  bool sweep(int column, int row, std::span<const CellLayer> layers, std::size_t most_work);
+  /// How many steps that took.
+  std::size_t work() const { return work_; }
+
+  std::span<const SweptPart> parts() const { return parts_; }
+  const StackArc& arc(const SweptPart& part) const { return *arcs_[part.arc].arc; }
+  /// How many states there are, with kNothing, and which layers are there in one.
+  std::size_t state_count() const { return states_.keys().size(); }
+  std::uint64_t present_in(std::uint32_t state) const { return states_.keys()[state]; }
+  /// Where an arc is at a height.
+  Point2 point_at(const StackArc& arc, double y) const { return {x_at(arc, y), y}; }
+  /// The parameter there, of a curve.
+  double parameter_at(const StackArc& arc, double y) const;
+
+ private:
+  struct SweptArc {
+    const StackArc* arc = nullptr;
+    std::uint32_t layer = 0;  // of the cell
+    std::uint32_t part = kNoPart;
+    double slope = 0.0;  // of lines: x by y
+    double x = 0.0;
+  };
+  static constexpr std::uint32_t kNoPart = UINT32_MAX;
+  static constexpr std::uint64_t kNothingKey = std::uint64_t{1} << kMostLayers;
+
+  void take_arcs(std::span<const CellLayer> layers);
+  void add_crossings();
+  void add_crossings_of(const SweptArc& a, const SweptArc& b);
+  void add_roots(const SweptArc& a, const SweptArc& b, double low, double at_low, double high,
+                 double at_high, int depth);
+  double root_between(const SweptArc& a, const SweptArc& b, double low, double at_low, double high,
+                      double at_high) const;
+  void sweep_slab(std::span<const CellLayer> layers, double low, double high);
+  void set_left_side(std::span<const CellLayer> layers, double y);
+  void cross(const SweptArc& arc, std::span<const CellLayer> layers);
+  void add_part(std::uint32_t arc, double low, double high, std::uint32_t left,
+                std::uint32_t right);
+  double x_at(const StackArc& arc, double y) const;
+  double x_at(const SweptArc& arc, double y) const;
+
+  const StackArcs& stack_arcs_;
+  Point2 center_;
+  std::vector<SweptArc> arcs_;
+  std::vector<double> heights_;
+  std::vector<std::uint32_t> order_;
+  std::vector<std::int32_t> windings_;
+  std::uint64_t present_ = 0;
+  std::uint32_t side_part_ = kNoPart;
+  std::vector<SweptPart> parts_;
+  KeyNumbers states_;
+  std::size_t work_ = 0;
+};
+
+}  // namespace prefilter

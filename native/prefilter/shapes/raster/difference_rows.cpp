@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "prefilter/shapes/raster/difference_rows.h"
+
+namespace prefilter {
+
+void DifferenceRows::begin(int width, int first_row, int end_row) {
+  const int behind = (width + kMargin + kBlock - 1) / kBlock * kBlock;
+  const int blocks = (behind / kBlock + 1 + 7) / 8 * 8;
+  const std::size_t rows = static_cast<std::size_t>(end_row - first_row) + kRowsBehind;
+  // What is there is all 0, so that another shape of rows needs no more than room.
+  if (steps_.size() < rows * (kBlock + behind)) steps_.resize(rows * (kBlock + behind));
+  if (is_marked_.size() < rows * blocks) is_marked_.resize(rows * blocks);
+  if (left_.size() < rows) left_.resize(rows);
+  width_ = width;
+  first_row_ = first_row;
+  end_row_ = end_row;
+  stride_ = kBlock + behind;
+  blocks_ = blocks;
+}
+
+}  // namespace prefilter

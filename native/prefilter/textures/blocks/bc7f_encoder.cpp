@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// BC7F is Basis Universal's: modes are chosen by what covariances say of their errors, and, with
+// more effort, by their errors.
+#include <basisu_transcoder.h>
+
+#include <array>
+#include <cstddef>
+#include <cstring>
+#include <mutex>
+
+#include "prefilter/textures/blocks/encoders.h"
+
+namespace prefilter {
+namespace {
+
+constexpr std::size_t kTexels = 16;
+constexpr std::ptrdiff_t kTexelBytes = 4 * kTexels;
+constexpr std::ptrdiff_t kBlockBytes = 16;
+
+// Without what may make opaque texels of mode 6 less than opaque.
+constexpr std::uint32_t kFast =
+    basist::bc7f::cPackBC7FlagDefault & ~std::uint32_t{basist::bc7f::cPackBC7FlagPBitOptMode6};
+constexpr std::uint32_t kThorough = basist::bc7f::cPackBC7FlagDefaultNonAnalytical &
+                                    ~std::uint32_t{basist::bc7f::cPackBC7FlagPBitOptMode6};
+
+class Bc7fEncoder final : public ByteEncoder {
+ public:
+  explicit Bc7fEncoder(BlockEffort effort)
+      : flags_(effort == BlockEffort::kFast ? kFast : kThorough) {
+    static std::once_flag once;
+    std::call_once(once, [] {
+      // Makes, among others, the table of blocks of one color.
+      basist::uastc_init();
+      basist::bc7f::init();
+    });
+  }
+
+  void encode(const BlockRow<std::uint8_t>& row, std::uint8_t* blocks) override {
+    std::array<basist::color_rgba, kTexels> texels;
+    for (int i = 0; i < row.count; ++i) {
+      std::memcpy(texels.data(), row.texels + kTexelBytes * i, kTexelBytes);
+      basist::bc7f::fast_pack_bc7_auto_rgba(blocks + kBlockBytes * i, texels.data(), flags_);
+    }
+  }
+
+ private:
+  std::uint32_t flags_;
+};
+
+}  // namespace
+
+std::unique_ptr<ByteEncoder> make_bc7f_encoder(BlockEffort effort) {
+  return std::make_unique<Bc7fEncoder>(effort);
+}
+
+}  // namespace prefilter

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include <cstddef>
+#include <cstring>
+// Needs std::size_t.
+#include <Decode.hpp>
+#include <vector>
+
+#include "prefilter/textures/blocks/decoders.h"
+
+namespace prefilter {
+namespace {
+
+constexpr int kSide = 4;
+
+class EtcpakDecoder final : public ByteDecoder {
+ public:
+  explicit EtcpakDecoder(const DecodeOptions& options)
+      : format_(options.format), bytes_(layout_of(options.format).bytes) {}
+
+  void decode(const std::uint8_t* blocks, int count, std::uint8_t* texels) override {
+    const auto size = static_cast<std::size_t>(count);
+    std::vector<std::uint64_t> words(size * static_cast<std::size_t>(bytes_) / sizeof words[0]);
+    std::memcpy(words.data(), blocks, words.size() * sizeof words[0]);
+    std::vector<std::uint32_t> rgba(size * kSide * kSide);
+    decode(words.data(), rgba.data(), kSide * count);
+    std::memcpy(texels, rgba.data(), rgba.size() * sizeof rgba[0]);
+  }
+
+ private:
+  void decode(const std::uint64_t* words, std::uint32_t* rgba, int width) const {
+    switch (format_) {
+      case BlockFormat::kEtc2Rgba:
+        return DecodeRGBA(words, rgba, width, kSide);
+      case BlockFormat::kEacR11:
+        return DecodeR(words, rgba, width, kSide);
+      case BlockFormat::kEacRg11:
+        return DecodeRG(words, rgba, width, kSide);
+      default:
+        return DecodeRGB(words, rgba, width, kSide);
+    }
+  }
+
+  BlockFormat format_;
+  int bytes_;
+};
+
+}  // namespace
+
+std::unique_ptr<ByteDecoder> make_etcpak_decoder(const DecodeOptions& options) {
+  return std::make_unique<EtcpakDecoder>(options);
+}
+
+}  // namespace prefilter

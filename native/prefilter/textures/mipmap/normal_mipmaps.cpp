@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "prefilter/textures/normal_mipmaps.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "prefilter/base/elementary.h"
+#include "prefilter/base/error.h"
+#include "prefilter/base/parallel.h"
+#include "prefilter/base/text.h"
+#include "prefilter/images/filters/push_pull.h"
+#include "prefilter/textures/mipmap/argument_checks.h"
+#include "prefilter/textures/mipmap/lookup_means.h"
+#include "prefilter/textures/mipmaps.h"
+#include "prefilter/textures/texels/coverage.h"
+#include "prefilter/textures/texture_use.h"
+
+namespace prefilter {
+namespace {
+
+// A texel of neutral gray decodes to a vector of this length at most, for 8 bits a channel.
+constexpr double kNoDirection = 0.02;
+
+// Calls change(texel) for each texel.
+template <typename Change>
+void for_each_texel(Image* image, const Progress& progress, int threads, const Change& change) {
+  parallel_for(image->height, threads, progress, [&](std::int64_t row) {
+    float* texel = image->texel(0, static_cast<int>(row));
+    for (int x = 0; x < image->width; ++x, texel += image->channels) change(texel);
+  });
+}
+
+// What is not finite becomes NaN in part.
+void make_unit(float* vector) {
+  const double x = vector[0];
+  const double y = vector[1];
+  const double z = vector[2];
+  const double length = std::sqrt(x * x + y * y + z * z);
+  if (length < kNoDirection) {
+    vector[0] = 0.0F;
+    vector[1] = 0.0F;
+    vector[2] = 1.0F;
+    return;
+  }
+  vector[0] = static_cast<float>(x / length);
+  vector[1] = static_cast<float>(y / length);
+  vector[2] = static_cast<float>(z / length);
+}
+
+// Roughness from the mean difference of unit normals to (0, 0, 1), and the mean alpha^2. A unit
+// vector n differs from (0, 0, 1) by d with |d|^2 = -2 d_z; so the variance of the normals, 1 -
+// L^2, is -2 E[d_z] - |E[d]|^2.
+float roughness_of(const float* means) {
+  const double x = means[0];
+  const double y = means[1];
+  const double z = means[2];
+  const double variance = std::clamp(-2.0 * z - (x * x + y * y + z * z), 0.0, 1.0);
+  const double lost = variance / (1.0 + std::sqrt(1.0 - variance));  // 1 - L, without cancellation
+  return static_cast<float>(elementary::pow(std::clamp(means[3] + 2.0 * lost, 0.0, 1.0), 0.25));
+}
+
+class NormalFilter {
+ public:
+  NormalFilter(const ImageView& normals, const ImageView* roughness,
+               const std::vector<const Surface*>& surfaces, const NormalMipmapOptions& options)
+      : roughness_(roughness), surfaces_(surfaces), options_(options), vectors_(normals) {}
+
+  NormalMipmaps run() {
+    const double share = roughness_ == nullptr ? 1.0 : 0.5;
+    NormalMipmaps levels;
+    decode(options_.progress.part(0.0, 0.2 * share));
+    MipmapOptions means = mipmap_options(options_.filter, false, 0.2 * share, share);
+    means.footprint = options_.footprint;
+    levels.normals = coarser_levels(vectors_.view(), surfaces_, means);
+    for (Image& level : levels.normals) finish(options_.progress.part(share, share), &level);
+    if (roughness_ != nullptr) levels.roughness = rougher_levels();
+    options_.progress.report(1.0);
+    return levels;
+  }
+
+ private:
+  MipmapOptions mipmap_options(const MipmapFilter& filter, bool premultiplied, double from,
+                               double to) const {
+    MipmapOptions options;
+    options.image_name = "normals";
+    options.filter = filter;
+    options.wrap = options_.wrap;
+    options.bounds = {std::nullopt, std::nullopt};
+    options.levels = options_.levels;
+    options.premultiplied = premultiplied;
+    options.threads = options_.threads;
+    options.progress = options_.progress.part(from, to);
+    return options;
+  }
+
+  void decode(const Progress& progress) {
+    const bool encoded = options_.encoded;
+    for_each_texel(&vectors_, progress, options_.threads, [encoded](float* vector) {
+      for (int c = 0; c < 3 && encoded; ++c) vector[c] = 2.0F * vector[c] - 1.0F;
+      make_unit(vector);
+    });
+  }
+
+  // Takes from a level what least squares overshoot, and makes normals of it.
+  void finish(const Progress& progress, Image* level) {
+    const bool lift = points_below(*level, nullptr, progress) && !map_points_below(progress);
+    const bool encoded = options_.encoded;
+    for_each_texel(level, progress, options_.threads, [lift, encoded](float* vector) {
+      if (lift) vector[2] = std::max(vector[2], 0.0F);
+      make_unit(vector);
+      for (int c = 0; c < 3 && encoded; ++c) vector[c] = (vector[c] + 1.0F) / 2.0F;
+    });
+  }
+
+  // Whether a vector does; where there are weights, one that has some.
+  bool points_below(const Image& vectors, const Image* weights, const Progress& progress) const {
+    std::atomic<bool> found{false};
+    parallel_for(vectors.height, options_.threads, progress, [&](std::int64_t row) {
+      const int y = static_cast<int>(row);
+      for (int x = 0; x < vectors.width && !found.load(std::memory_order_relaxed); ++x) {
+        if (!(vectors.texel(x, y)[2] < 0.0F)) continue;
+        if (weights == nullptr || *weights->texel(x, y) > 0.0F) found.store(true);
+      }
+    });
+    return found.load();
+  }
+
+  // Whether a texel of the map that counts does.
+  bool map_points_below(const Progress& progress) {
+    if (!map_points_below_) {
+      map_points_below_ = points_below(vectors_, nullptr, progress);
+      if (*map_points_below_ && !surfaces_.empty()) {
+        const Image weights = texel_weights(surfaces_, vectors_.width, vectors_.height,
+                                            options_.wrap, progress, options_.threads);
+        map_points_below_ = points_below(vectors_, &weights, progress);
+      }
+    }
+    return *map_points_below_;
+  }
+
+  std::vector<Image> rougher_levels() {
+    Image rough(*roughness_);
+    MipmapFilter means = SurfaceFilter::kBox;
+    if (const auto* in_texture = std::get_if<TextureSpaceFilter>(&options_.filter)) {
+      means = TextureSpaceFilter{&box_kernel(), in_texture->weighting};
+    } else if (!needs_surface(options_.filter)) {
+      means = TextureSpaceFilter{&box_kernel(), Weighting::kAll};
+    }
+    if (needs_surface(means)) fill_unused_texels(&rough);
+    check_roughness(rough);
+    for_each_texel(&rough, Progress(), options_.threads,
+                   [](float* value) { *value = std::clamp(*value, 0.0F, 1.0F); });
+    const Image shown =
+        lookup_means(vectors_.view(), rough.view(), options_.wrap, static_cast<float>(kNoDirection),
+                     options_.progress.part(0.65, 0.8), options_.threads);
+    vectors_ = Image();
+    rough = Image();
+    std::vector<Image> levels;
+    for (const Image& level :
+         coarser_levels(shown.view(), surfaces_, mipmap_options(means, true, 0.8, 0.95))) {
+      Image& rougher = levels.emplace_back(level.width, level.height, 1);
+      parallel_for(level.height, options_.threads, options_.progress.part(0.95, 0.95),
+                   [&](std::int64_t row) {
+                     const int y = static_cast<int>(row);
+                     for (int x = 0; x < level.width; ++x) {
+                       *rougher.texel(x, y) = roughness_of(level.texel(x, y));
+                     }
+                   });
+    }
+    return levels;
+  }
+
+  void fill_unused_texels(Image* rough) {
+    const std::vector<unsigned char> used =
+        looked_up_texels(surfaces_, vectors_.width, vectors_.height, options_.wrap,
+                         options_.progress.part(0.5, 0.58), options_.threads);
+    if (std::find(used.begin(), used.end(), 1) == used.end()) throw_outside();
+    const std::vector<float> weights(used.begin(), used.end());
+    const auto fill = [&](double from, double to, Image* image) {
+      fill_holes(weights, options_.wrap, image->channels, options_.progress.part(from, to),
+                 options_.threads, image);
+    };
+    fill(0.58, 0.63, &vectors_);
+    fill(0.63, 0.65, rough);
+  }
+
+  void check_roughness(const Image& rough) const {
+    std::vector<int> finite(static_cast<std::size_t>(rough.height));  // values from the row's left
+    parallel_for(rough.height, options_.threads, Progress(), [&](std::int64_t row) {
+      const float* values = rough.texel(0, static_cast<int>(row));
+      while (finite[row] < rough.width && std::isfinite(values[finite[row]])) ++finite[row];
+    });
+    for (int row = 0; row < rough.height; ++row) {
+      const int column = finite[row];
+      if (column == rough.width) continue;
+      throw_invalid("roughness: the texel in row " + std::to_string(row) + ", column " +
+                    std::to_string(column) + " holds " + to_text(*rough.texel(column, row)) +
+                    "; texels that count must be finite");
+    }
+  }
+
+  const ImageView* roughness_;
+  const std::vector<const Surface*>& surfaces_;
+  const NormalMipmapOptions& options_;
+  Image vectors_;  // the map, decoded, of length 1
+  std::optional<bool> map_points_below_;
+};
+
+void check(const ImageView& normals, const ImageView* roughness) {
+  const auto text_of = [](const ImageView& image) {
+    return std::to_string(image.width) + " x " + std::to_string(image.height) + " texels of " +
+           std::to_string(image.channels) + " channels";
+  };
+  if (normals.channels != 3) {
+    throw_invalid("normals: " + text_of(normals) + "; 3 channels are needed");
+  }
+  if (roughness != nullptr && (roughness->channels != 1 || roughness->width != normals.width ||
+                               roughness->height != normals.height)) {
+    throw_invalid("roughness: " + text_of(*roughness) + "; 1 channel and the " +
+                  std::to_string(normals.width) + " x " + std::to_string(normals.height) +
+                  " texels of the normals are needed");
+  }
+}
+
+}  // namespace
+
+NormalMipmaps normal_mipmaps(const ImageView& normals, const ImageView* roughness,
+                             const std::vector<const Surface*>& surfaces,
+                             const NormalMipmapOptions& options) {
+  check(normals, roughness);
+  return NormalFilter(normals, roughness, surfaces, options).run();
+}
+
+}  // namespace prefilter

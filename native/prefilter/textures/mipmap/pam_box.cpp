@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "prefilter/textures/mipmap/pam_box.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "prefilter/base/lanes.h"
+#include "prefilter/base/parallel.h"
+#include "prefilter/images/filters/push_pull.h"
+#include "prefilter/textures/texels/coverage.h"
+#include "prefilter/textures/texels/level_grid.h"
+#include "prefilter/textures/texels/levels.h"
+
+namespace prefilter {
+namespace {
+
+// Of cells or texels, the surface's mass, and mass times color.
+struct MassSums {
+  Image image;
+  std::vector<float> masses;
+};
+
+// Which row and column of the sums each cell belongs to. Both rise.
+struct Blocks {
+  const std::vector<int>& columns;
+  int width;
+  const std::vector<int>& rows;
+  int height;
+};
+
+// Sums over blocks of cells. add(x, y, sums, mass) adds cell (x, y).
+template <int C, typename Add>
+MassSums gathered(const Blocks& to, int threads, const Progress& progress, const Add& add) {
+  MassSums sums{Image(to.width, to.height, C),
+                std::vector<float>(static_cast<std::size_t>(to.width) * to.height)};
+  parallel_for(to.height, threads, progress, [&](std::int64_t row) {
+    const auto [first, last] = std::equal_range(to.rows.begin(), to.rows.end(), row);
+    float* row_masses = sums.masses.data() + row * to.width;
+    float* row_sums = sums.image.texel(0, static_cast<int>(row));
+    for (auto y = first - to.rows.begin(); y < last - to.rows.begin(); ++y) {
+      for (std::size_t x = 0; x < to.columns.size(); ++x) {
+        const int column = to.columns[x];
+        add(static_cast<int>(x), static_cast<int>(y), row_sums + C * column, row_masses + column);
+      }
+    }
+  });
+  return sums;
+}
+
+template <int C>
+MassSums gathered(const MassSums& from, const Blocks& to, int threads, const Progress& progress) {
+  const int width = from.image.width;
+  return gathered<C>(to, threads, progress, [&](int x, int y, float* sum, float* mass) {
+    const float* own = from.image.texel(x, y);
+    for (int c = 0; c < C; ++c) sum[c] += own[c];
+    *mass += from.masses[static_cast<std::size_t>(y) * width + x];
+  });
+}
+
+// Turns sums into means; 0 where there is no mass.
+template <int C>
+void divide(int threads, const Progress& progress, MassSums* sums) {
+  parallel_for(sums->image.height, threads, progress, [&](std::int64_t row) {
+    float* sum = sums->image.texel(0, static_cast<int>(row));
+    const float* mass = sums->masses.data() + row * sums->image.width;
+    for (int x = 0; x < sums->image.width; ++x, sum += C) {
+      for (int c = 0; c < C; ++c) sum[c] = mass[x] > 0.0F ? sum[c] / mass[x] : 0.0F;
+    }
+  });
+}
+
+template <int C>
+std::vector<Image> levels_of(const TexelSource& image, const TexelTriangles& triangles,
+                             int level_count, WrapModes wrap, const Progress& progress,
+                             int threads) {
+  const AxisTexels columns(image.width, level_count);
+  const AxisTexels rows(image.height, level_count);
+  std::vector<Image> levels;
+  if (level_count < 2) return levels;
+  const auto cells_of = [&](int level) {
+    return Blocks{columns.parents(level - 1), columns.cell_count(level), rows.parents(level - 1),
+                  rows.cell_count(level)};
+  };
+  std::vector<float> masses =
+      cell_masses(triangles, columns.lines(0), rows.lines(0), progress.part(0.0, 0.5), threads);
+  const std::size_t stride = columns.texels(0).size();
+  const auto add_cell = [&](const auto& value) {
+    return [&](int x, int y, float* sum, float* mass) {
+      const float own = masses[static_cast<std::size_t>(y) * stride + x];
+      if (own == 0.0F) return;
+      const int column = columns.texels(0)[x];
+      const int row = rows.texels(0)[y];
+      for (int c = 0; c < C; ++c) sum[c] += own * value(column, row, c);
+      *mass += own;
+    };
+  };
+  const Progress gathering = progress.part(0.5, 0.65);
+  MassSums sums =
+      image.has_bytes()
+          ? gathered<C>(cells_of(1), threads, gathering, add_cell([&](int x, int y, int c) {
+                          return image.value(image.byte_texel(x, y)[c], c);
+                        }))
+          : gathered<C>(cells_of(1), threads, gathering, add_cell([&](int x, int y, int c) {
+                          return image.floats().texel(x, y)[c];
+                        }));
+  std::vector<float>().swap(masses);
+
+  double from = 0.65;
+  for (int level = 1; level < level_count; ++level) {
+    // A level has a quarter of the texels of the one before.
+    const double to = from + 0.75 * (1.0 - from);
+    const Progress part = progress.part(from, to);
+    from = to;
+    if (level > 1) sums = gathered<C>(sums, cells_of(level), threads, part.part(0.0, 0.3));
+    const Blocks texels = {columns.texels(level), level_size(image.width, level),
+                           rows.texels(level), level_size(image.height, level)};
+    const bool nested = sums.image.width == texels.width && sums.image.height == texels.height;
+    MassSums means = nested ? sums : gathered<C>(sums, texels, threads, part.part(0.3, 0.5));
+    divide<C>(threads, part.part(0.5, 0.6), &means);
+    fill_holes(means.masses, wrap, C, part.part(0.6, 1.0), threads, &means.image);
+    levels.push_back(std::move(means.image));
+  }
+  return levels;
+}
+
+}  // namespace
+
+std::vector<Image> pam_box_levels(const TexelSource& image, const TexelTriangles& triangles,
+                                  int level_count, WrapModes wrap, const Progress& progress,
+                                  int threads) {
+  switch (image.channels) {
+    case 1:
+      return levels_of<1>(image, triangles, level_count, wrap, progress, threads);
+    case 2:
+      return levels_of<2>(image, triangles, level_count, wrap, progress, threads);
+    case 3:
+      return levels_of<3>(image, triangles, level_count, wrap, progress, threads);
+    default:
+      return levels_of<4>(image, triangles, level_count, wrap, progress, threads);
+  }
+}
+
+}  // namespace prefilter

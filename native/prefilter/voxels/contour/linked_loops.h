@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Sharp loops side by side.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "prefilter/base/progress.h"
+#include "prefilter/voxels/contour/feature_surface.h"
+#include "prefilter/voxels/contour/looped_mesh.h"
+#include "prefilter/voxels/contour/sharp_vertices.h"
+
+namespace prefilter {
+
+/// Of a loop.
+struct LoopSide {
+  bool is_divided = false;  // an edge of the shape crosses it
+  std::int32_t other = -1;  // the loop beyond, where the two can be joined across it
+  // Bit k: an earlier loop has the vertex where the side begins, and corner k of this loop.
+  std::uint16_t shared = 0;
+};
+
+/// Sharp loops, and what is beyond their sides.
+struct LinkedLoops {
+  std::vector<SharpLoop> loops;
+  std::vector<std::array<LoopSide, 12>> sides;  // of each loop
+
+  std::size_t size() const { return loops.size(); }
+  std::size_t side_count(std::size_t loop) const {
+    return static_cast<std::size_t>(loops[loop].count);
+  }
+  /// Whether a loop is joined across a side to one that is sharp yet.
+  bool is_joined(std::size_t loop, std::size_t side, std::span<const std::uint8_t> is_sharp) const {
+    const std::int32_t other = sides[loop][side].other;
+    return other >= 0 && is_sharp[static_cast<std::size_t>(other)] != 0;
+  }
+  /// The loops that it is joined to, in order of its sides.
+  std::vector<std::size_t> joined(std::size_t loop, std::span<const std::uint8_t> is_sharp) const;
+};
+
+/// Whether there is an edge between two vertices.
+bool are_divided(const FeatureSurface& surface, const VertexSamples& samples, std::int32_t a,
+                 std::int32_t b);
+
+/// Finds the sides that edges cross. Two loops can be joined where they have just one such side in
+/// common. Throws Error(kCancelled).
+LinkedLoops link_loops(std::vector<SharpLoop> loops, const FeatureSurface& surface,
+                       const VertexSamples& samples, const Progress& progress, int threads);
+
+}  // namespace prefilter

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Quads without folds and intersections.
+#pragma once
+
+#include "prefilter/base/progress.h"
+#include "prefilter/voxels/contour/dual_loops.h"
+#include "prefilter/voxels/contour/dual_places.h"
+#include "prefilter/voxels/contour/edge_source.h"
+#include "prefilter/voxels/contour/quad_surface.h"
+
+namespace prefilter {
+
+/// Quads between the loops at their places. Where triangles of theirs fold by more than 120
+/// degrees, intersect or face the wrong way, vertices slide along their edges; or go back toward
+/// the middles of their loops, and then to the safe ones. Throws Error(kCancelled).
+QuadSurface settled_quads(const DualLoops& loops, const DualPlaces& places, const EdgeSource& edges,
+                          const FeaturePlaces* features, const Vector3& cell,
+                          const Progress& progress, int threads);
+
+}  // namespace prefilter

@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "prefilter/voxels/mesh_topology.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <numeric>
+#include <string>
+#include <utility>
+
+#include "prefilter/base/disjoint_sets.h"
+#include "prefilter/base/error.h"
+#include "prefilter/base/parallel.h"
+#include "prefilter/voxels/solid/edge_hash.h"
+#include "prefilter/voxels/solid/weld.h"
+
+namespace prefilter {
+namespace {
+
+constexpr std::int64_t kFansPerTask = 1 << 13;
+constexpr std::int64_t kTrianglesPerTask = 1 << 14;
+
+using Corners = std::array<std::uint32_t, 3>;
+
+// Triangles by the names of their vertices.
+struct NamedTriangles {
+  const TriangleView& triangles;
+  const std::vector<std::int32_t>& names;  // empty: the vertices' own
+
+  Corners operator[](std::size_t t) const {
+    Corners corners;
+    const auto triangle = triangles[t];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto vertex = static_cast<std::size_t>(triangle[i]);
+      corners[i] = static_cast<std::uint32_t>(
+          names.empty() ? vertex : static_cast<std::size_t>(names[vertex]));
+    }
+    return corners;
+  }
+};
+
+bool is_flat(const Corners& corners) {
+  const auto& [a, b, c] = corners;
+  return a == b || b == c || c == a;
+}
+
+// The triangles at each vertex, but for those that name one twice.
+struct TrianglesAt {
+  std::vector<std::uint32_t> starts;
+  std::vector<std::uint32_t> triangles;
+
+  TrianglesAt(const NamedTriangles& mesh, std::size_t vertices, const Progress& progress,
+              int threads)
+      : starts(vertices + 1, 0) {
+    const auto next = [&](std::uint32_t vertex) {
+      return std::atomic_ref(starts[vertex]).fetch_add(1, std::memory_order_relaxed);
+    };
+    const auto for_corners = [&](const Progress& part, const auto& visit) {
+      parallel_ranges(static_cast<std::int64_t>(mesh.triangles.size()), kTrianglesPerTask, threads,
+                      part, [&](std::int64_t begin, std::int64_t end) {
+                        for (std::int64_t t = begin; t < end; ++t) {
+                          const Corners corners = mesh[static_cast<std::size_t>(t)];
+                          if (is_flat(corners)) continue;
+                          for (const std::uint32_t v : corners) {
+                            visit(v, static_cast<std::uint32_t>(t));
+                          }
+                        }
+                      });
+    };
+    for_corners(progress.part(0.0, 0.4), [&](std::uint32_t v, std::uint32_t) { next(v); });
+    std::uint32_t sum = 0;
+    for (std::uint32_t& start : starts) {
+      sum += start;
+      start = sum - start;
+    }
+    triangles.resize(sum);
+    for_corners(progress.part(0.4, 1.0),
+                [&](std::uint32_t v, std::uint32_t t) { triangles[next(v)] = t; });
+    // Each start has become the next one's.
+    for (std::size_t v = vertices; v > 0; --v) starts[v] = starts[v - 1];
+    starts[0] = 0;
+  }
+};
+
+std::uint64_t edge_of(std::uint64_t v, std::uint64_t w) {
+  return (std::min(v, w) << 32U) | std::max(v, w);
+}
+
+// What is counted at vertices.
+struct Counts {
+  std::int64_t fans = 0;  // triangles around a vertex that hang together there
+  std::int64_t edges = 0;
+  bool is_crowded = false;                            // more than two at an edge
+  std::vector<std::array<std::uint64_t, 2>> borders;  // edges, joined by a fan
+
+  void add(Counts&& other) {
+    fans += other.fans;
+    edges += other.edges;
+    is_crowded = is_crowded || other.is_crowded;
+    borders.insert(borders.end(), other.borders.begin(), other.borders.end());
+  }
+};
+
+// Counts what is at one vertex after another, and joins the triangles at its edges.
+class Fans {
+ public:
+  Fans(const NamedTriangles& mesh, DisjointSets<std::uint32_t>* parts)
+      : mesh_(mesh), parts_(parts) {}
+
+  Counts counts;
+
+  void visit(std::uint32_t v, std::span<const std::uint32_t> triangles) {
+    uses_.clear();
+    fan_of_.resize(triangles.size());
+    std::iota(fan_of_.begin(), fan_of_.end(), 0U);
+    for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+      for (const std::uint32_t w : mesh_[triangles[i]]) {
+        if (w != v) uses_.push_back((std::uint64_t{w} << 32U) | i);
+      }
+    }
+    std::sort(uses_.begin(), uses_.end());
+    borders_.clear();
+    for (std::size_t i = 0; i < uses_.size();) {
+      const auto w = static_cast<std::uint32_t>(uses_[i] >> 32U);
+      const auto first = static_cast<std::uint32_t>(uses_[i]);
+      std::size_t end = i + 1;
+      for (; end < uses_.size() && uses_[end] >> 32U == w; ++end) {
+        const auto other = static_cast<std::uint32_t>(uses_[end]);
+        join(first, other);
+        if (v < w) parts_->join_from_threads(triangles[first], triangles[other]);
+      }
+      if (v < w) ++counts.edges;
+      counts.is_crowded = counts.is_crowded || end - i > 2;
+      if (end - i == 1) borders_.push_back({first, edge_of(v, w)});
+      i = end;
+    }
+    for (std::uint32_t i = 0; i < triangles.size(); ++i) counts.fans += fan_of_[i] == i ? 1 : 0;
+    for (auto& [fan, edge] : borders_) fan = root(fan);
+    std::sort(borders_.begin(), borders_.end());
+    for (std::size_t i = 0; i < borders_.size(); ++i) {
+      const bool is_next = i > 0 && borders_[i].first == borders_[i - 1].first;
+      counts.borders.push_back({borders_[is_next ? i - 1 : i].second, borders_[i].second});
+    }
+  }
+
+ private:
+  std::uint32_t root(std::uint32_t i) const {
+    while (fan_of_[i] != i) i = fan_of_[i];
+    return i;
+  }
+  void join(std::uint32_t i, std::uint32_t j) {
+    const std::uint32_t a = root(i);
+    const std::uint32_t b = root(j);
+    fan_of_[std::max(a, b)] = std::min(a, b);
+    // Around a vertex of many triangles, so that paths stay short.
+    fan_of_[j] = fan_of_[i] = std::min(a, b);
+  }
+
+  NamedTriangles mesh_;
+  DisjointSets<std::uint32_t>* parts_;
+  std::vector<std::uint64_t> uses_;  // other end of an edge, triangle here
+  std::vector<std::uint32_t> fan_of_;
+  std::vector<std::pair<std::uint32_t, std::uint64_t>> borders_;  // fan, edge
+};
+
+Counts count_all(const NamedTriangles& mesh, const TrianglesAt& at, const Progress& progress,
+                 int threads, DisjointSets<std::uint32_t>* parts) {
+  std::mutex mutex;
+  Counts all;
+  parallel_ranges(
+      static_cast<std::int64_t>(at.starts.size()) - 1, kFansPerTask, threads, progress,
+      [&](std::int64_t begin, std::int64_t end) {
+        Fans fans(mesh, parts);
+        for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v) {
+          const std::span all_triangles(at.triangles);
+          fans.visit(static_cast<std::uint32_t>(v),
+                     all_triangles.subspan(at.starts[v], at.starts[v + 1] - at.starts[v]));
+        }
+        const std::lock_guard lock(mutex);
+        all.add(std::move(fans.counts));
+      });
+  return all;
+}
+
+// The edges of borders, in order.
+std::vector<std::uint64_t> border_edges(const Counts& counts) {
+  std::vector<std::uint64_t> edges;
+  edges.reserve(counts.borders.size());
+  for (const auto& [one, other] : counts.borders) edges.push_back(other);
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return edges;
+}
+
+// How many loops edges make that fans join.
+std::size_t count_loops(const std::vector<std::uint64_t>& edges, const Counts& counts) {
+  DisjointSets<std::uint32_t> loops(edges.size());
+  const auto number = [&](std::uint64_t edge) {
+    return static_cast<std::uint32_t>(std::lower_bound(edges.begin(), edges.end(), edge) -
+                                      edges.begin());
+  };
+  for (const auto& [one, other] : counts.borders) loops.join(number(one), number(other));
+  std::uint32_t count = 0;
+  loops.numbers(&count);
+  return count;
+}
+
+// For each vertex the first of a border that is at its place; itself for those of no border. Empty
+// where that is so of all.
+std::vector<std::int32_t> welded_borders(const PositionView& positions, const Counts& counts,
+                                         const Progress& progress, int threads) {
+  std::vector<std::uint32_t> ends;
+  for (const auto& [one, other] : counts.borders) {
+    ends.push_back(static_cast<std::uint32_t>(other >> 32U));
+    ends.push_back(static_cast<std::uint32_t>(other & 0xFFFFFFFFU));
+  }
+  std::sort(ends.begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  std::vector<Vector3> places;
+  places.reserve(ends.size());
+  for (const std::uint32_t v : ends) places.push_back(positions[v]);
+  const std::vector<std::int32_t> firsts = first_at_each_place(places, progress, threads);
+  bool is_same = true;
+  for (std::size_t i = 0; i < firsts.size(); ++i) {
+    is_same = is_same && firsts[i] == static_cast<std::int32_t>(i);
+  }
+  if (is_same) return {};
+  std::vector<std::int32_t> names(positions.size());
+  std::iota(names.begin(), names.end(), 0);
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    names[ends[i]] = static_cast<std::int32_t>(ends[static_cast<std::size_t>(firsts[i])]);
+  }
+  return names;
+}
+
+// How many parts are closed, with faces that agree on a side, and inside out.
+std::size_t count_cavities(const InputMesh& mesh, const NamedTriangles& named,
+                           const MeshTopology& found) {
+  constexpr double kLeast = 1e-9;  // of the area to the power of 3/2: sheets have no volume
+  struct Part {
+    EdgeHash edges;
+    Vector3 origin{};
+    double volume = 0.0;
+    double area = 0.0;
+  };
+  std::vector<Part> parts(found.parts);
+  double size = 0.0;
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const Vector3 p = mesh.positions[v];
+    for (const double x : p) size = std::max(size, std::abs(x));
+  }
+  for (std::size_t t = 0; t < found.part_of.size(); ++t) {
+    if (found.part_of[t] < 0) continue;
+    Part& part = parts[static_cast<std::size_t>(found.part_of[t])];
+    const auto [a, b, c] = named[t];
+    part.edges += EdgeHash::of(a, b, c);
+    std::array<Vector3, 3> p = mesh.corners(t);
+    if (part.area == 0.0) part.origin = p[0];
+    for (Vector3& corner : p) {
+      for (std::size_t i = 0; i < 3; ++i) corner[i] = (corner[i] - part.origin[i]) / size;
+    }
+    part.volume += dot(p[0], cross(p[1], p[2])) / 6.0;
+    part.area += length(cross(p[1] - p[0], p[2] - p[0])) / 2.0;
+  }
+  return static_cast<std::size_t>(std::count_if(parts.begin(), parts.end(), [](const Part& part) {
+    return part.edges.is_zero() && part.volume < -kLeast * part.area * std::sqrt(part.area);
+  }));
+}
+
+MeshTopology topology_of(const NamedTriangles& mesh, const Counts& counts,
+                         DisjointSets<std::uint32_t>&& parts) {
+  MeshTopology result;
+  const std::vector<std::uint32_t> roots = std::move(parts).roots();
+  result.part_of.assign(roots.size(), -1);
+  std::int64_t faces = 0;
+  for (std::size_t t = 0; t < roots.size(); ++t) {
+    if (is_flat(mesh[t])) continue;
+    // The root is the first of its part.
+    const bool is_first = roots[t] == t;
+    result.part_of[t] =
+        is_first ? static_cast<std::int32_t>(result.parts++) : result.part_of[roots[t]];
+    ++faces;
+  }
+  const std::vector<std::uint64_t> edges = border_edges(counts);
+  result.borders = count_loops(edges, counts);
+  for (const std::uint64_t edge : edges) {
+    result.border_edges.push_back(
+        {static_cast<std::int32_t>(edge >> 32U), static_cast<std::int32_t>(edge & 0xFFFFFFFFU)});
+  }
+  const std::int64_t euler = counts.fans - counts.edges + faces;
+  const std::int64_t twice = 2 * static_cast<std::int64_t>(result.parts) -
+                             static_cast<std::int64_t>(result.borders) - euler;
+  if (!counts.is_crowded && twice % 2 == 0) result.genus = static_cast<std::size_t>(twice / 2);
+  return result;
+}
+
+}  // namespace
+
+MeshTopology mesh_topology(const InputMesh& mesh, bool welds, const Progress& progress,
+                           int threads) {
+  check_mesh(mesh, kLargestCoordinate);
+  const std::size_t count = mesh.triangles.size();
+  if (3 * count > std::numeric_limits<std::int32_t>::max()) {
+    throw_invalid("triangles: found " + std::to_string(count) + "; at most 715827882 are allowed");
+  }
+  std::vector<std::int32_t> names;
+  const auto counted = [&](DisjointSets<std::uint32_t>* parts, const Progress& part) {
+    const NamedTriangles named = {mesh.triangles, names};
+    const TrianglesAt at(named, mesh.positions.size(), part.part(0.0, 0.5), threads);
+    return count_all(named, at, part.part(0.5, 1.0), threads, parts);
+  };
+  DisjointSets<std::uint32_t> parts(count);
+  Counts counts = counted(&parts, progress.part(0.0, 0.5));
+  if (welds && !counts.borders.empty()) {
+    names = welded_borders(mesh.positions, counts, progress.part(0.5, 0.6), threads);
+    if (!names.empty()) {
+      parts = DisjointSets<std::uint32_t>(count);
+      counts = counted(&parts, progress.part(0.6, 0.9));
+    }
+  }
+  const NamedTriangles named = {mesh.triangles, names};
+  MeshTopology result = topology_of(named, counts, std::move(parts));
+  result.cavities = count_cavities(mesh, named, result);
+  progress.report(1.0);
+  return result;
+}
+
+}  // namespace prefilter

@@ -1,0 +1,390 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "prefilter/voxels/thin_places.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "prefilter/base/parallel.h"
+#include "prefilter/geometry/spatial/triangle_pieces.h"
+#include "prefilter/voxels/cube_keys.h"
+#include "prefilter/voxels/cube_table.h"
+#include "prefilter/voxels/inner_balls.h"
+#include "prefilter/voxels/opposed_bricks.h"
+#include "prefilter/voxels/outer_sides.h"
+
+namespace prefilter {
+namespace {
+
+constexpr double kLongestPiece = 1.0;  // the longest side of a piece, in cells
+constexpr double kLargestPiece = 4.0;  // of one that is as thin everywhere
+constexpr double kLeastBrick = 2.0;    // in cells
+// The cosines between normals of what is opposite, on a rod 148 degrees, and of what counts on a
+// plate and of what is opposite there, 150 and 160: what opens wider is a wedge, which its body
+// holds and whose edge contours place.
+constexpr double kOpposite = -0.85;
+constexpr double kPlateAcross = -0.866;
+constexpr double kPlateOpposite = -0.94;
+constexpr double kParallel = -0.985;  // the cosine between normals of a wall: 170 degrees
+// How much thicker than a plate that cells hold together a rod and a speck have to be: the quarter
+// of a disc that cells have of a rod along their common edge, and the eighth of a ball at their
+// common corner, are half of a cell.
+constexpr double kRod = 0.23;
+constexpr double kSpeck = 0.17;
+constexpr std::int64_t kTrianglesPerTask = 1 << 6;
+
+bool is_short(const std::array<Vector3, 3>& p) {
+  return std::max({length(p[1] - p[0]), length(p[2] - p[1]), length(p[0] - p[2])}) <= kLongestPiece;
+}
+
+std::vector<Vector3> normals_of(const MeshView<std::int32_t>& mesh) {
+  std::vector<Vector3> normals(mesh.triangles.size());
+  for (std::size_t t = 0; t < normals.size(); ++t) {
+    const auto [a, b, c] = mesh.corners(t);
+    const Vector3 normal = cross(b - a, c - a);
+    const double size = length(normal);
+    normals[t] = size > 0.0 ? (1.0 / size) * normal : Vector3{};
+  }
+  return normals;
+}
+
+// Of the middles of a place: the products of two components of the normals above them, summed by
+// area, and their own mean.
+struct PlaceSums {
+  std::array<double, 6> sums{};  // xx, yy, zz, xy, yz, zx
+  Vector3 middles{};
+  double area = 0.0;
+
+  void add(const Vector3& n, const Vector3& middle, double size) {
+    const std::array<double, 6> products = {n[0] * n[0], n[1] * n[1], n[2] * n[2],
+                                            n[0] * n[1], n[1] * n[2], n[2] * n[0]};
+    for (std::size_t i = 0; i < 6; ++i) sums[i] += size * products[i];
+    middles = middles + size * middle;
+    area += size;
+  }
+  void add(const PlaceSums& other, double weight) {
+    for (std::size_t i = 0; i < 6; ++i) sums[i] += weight * other.sums[i];
+    middles = middles + weight * other.middles;
+    area += weight * other.area;
+  }
+
+  Vector3 times(const Vector3& v) const {
+    const auto [xx, yy, zz, xy, yz, zx] = sums;
+    return {xx * v[0] + xy * v[1] + zx * v[2], xy * v[0] + yy * v[1] + yz * v[2],
+            zx * v[0] + yz * v[1] + zz * v[2]};
+  }
+
+  /// In descending order (Smith 1961).
+  Vector3 eigenvalues() const {
+    const auto [xx, yy, zz, xy, yz, zx] = sums;
+    const double mean = (xx + yy + zz) / 3.0;
+    const double off = xy * xy + yz * yz + zx * zx;
+    const Vector3 d = {xx - mean, yy - mean, zz - mean};
+    const double p = std::sqrt((dot(d, d) + 2.0 * off) / 6.0);
+    if (!(p > 1e-12 * mean)) return {mean, mean, mean};
+    const double det =
+        (d[0] * (d[1] * d[2] - yz * yz) - xy * (xy * d[2] - yz * zx) + zx * (xy * yz - d[1] * zx)) /
+        (p * p * p);
+    const double angle = elementary::acos(std::clamp(det / 2.0, -1.0, 1.0)) / 3.0;
+    constexpr double kThird = 2.0943951023931953;  // of a turn
+    const double first = mean + 2.0 * p * elementary::cos(angle);
+    const double last = mean + 2.0 * p * elementary::cos(angle + kThird);
+    return {first, 3.0 * mean - first - last, last};
+  }
+};
+
+struct Candidate {
+  std::array<Vector3, 3> corners;
+  Vector3 normal;
+  InnerBall ball;
+  std::uint32_t triangle;
+  double share;   // of the area that it stands for, its own being 1
+  bool is_plate;  // whatever is around it
+
+  Vector3 middle() const { return triangle_middle(corners) - ball.radius * normal; }
+};
+
+// How much of a place is a rod, by the eigenvalues of its normals.
+double rod_of(const Vector3& values) { return std::clamp(2.0 * values[1] / values[0], 0.0, 1.0); }
+
+// How much of what a place lacks it gets, by the cosine between its faces' normals.
+double thickened_share(double facing, double rod) {
+  // A wedge of which nothing counts has 0.14, a rod of five sides 1.
+  const double share = std::clamp((rod - 0.4) / 0.4, 0.0, 1.0);
+  const double across = kPlateAcross + share * (kAcross - kPlateAcross);
+  const double opposite = kPlateOpposite + share * (kOpposite - kPlateOpposite);
+  const double counted = (across - facing) / (across - opposite);
+  // Cells that little is added to would lose their edges for nothing.
+  return counted < 0.5 ? 0.0 : std::min(counted, 1.0);
+}
+
+// How much thicker than a plate it has to be.
+double extra_of(const Vector3& values) {
+  const double speck = std::clamp(2.0 * values[2] / values[0], 0.0, 1.0);
+  return kRod * rod_of(values) + kSpeck * speck;
+}
+
+// What is thin of a triangle. It is cut only as far as its parts differ, as each piece is looked at
+// by every cell that it reaches.
+class CandidateFinder {
+ public:
+  CandidateFinder(const OpposedBricks& bricks, const InnerBalls& balls, const OuterSides& outer,
+                  double largest, std::vector<Candidate>* found)
+      : bricks_(bricks), balls_(balls), outer_(outer), largest_(largest), found_(found) {}
+
+  /// One of the `chosen`, by its number among these.
+  void add(const std::array<Vector3, 3>& corners, const Vector3& normal,
+           const Representatives& chosen, std::size_t index) {
+    normal_ = normal;
+    is_sheet_ = chosen.are_sheets[index];
+    triangle_ = chosen.triangles[index];
+    share_ = chosen.shares[index];
+    if (is_sheet_) {
+      if (add_plates(corners)) push_plate(corners);
+    } else {
+      for_pieces(corners, kLargestPiece, may_meet_, [&](const auto& piece) { add_piece(piece); });
+    }
+  }
+
+ private:
+  // Of a sheet. If all of it is a plate it says so and adds nothing: two halves that are can then
+  // be one plate, as large as the triangle if that is all in crowded bricks.
+  bool add_plates(const std::array<Vector3, 3>& piece) {
+    if (!bricks_.may_meet(piece)) return false;
+    const auto halves = halves_of(piece, kLargestPiece);
+    if (!halves) {
+      const Vector3 middle = triangle_middle(piece);
+      if (!is_short(piece) && bricks_.is_crowded(middle) &&
+          (may_count(middle) || has_counting(piece))) {
+        return true;
+      }
+      add_piece(piece);
+      return false;
+    }
+    const std::array<bool, 2> are_plates = {add_plates((*halves)[0]), add_plates((*halves)[1])};
+    if (are_plates[0] && are_plates[1]) return true;
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (are_plates[i]) push_plate((*halves)[i]);
+    }
+    return false;
+  }
+
+  void push_plate(const std::array<Vector3, 3>& piece) {
+    found_->push_back({piece, normal_, kSheet, triangle_, share_, true});
+  }
+
+  // A sheet counts where one of its faces does.
+  bool may_count(const Vector3& point) const {
+    return bricks_.holds(point) &&
+           (outer_.may_be(point, normal_) || (is_sheet_ && outer_.may_be(point, -1.0 * normal_)));
+  }
+
+  bool is_outer(const Vector3& point) const {
+    return outer_.is_outer(point, normal_) || (is_sheet_ && outer_.is_outer(point, -1.0 * normal_));
+  }
+
+  void push(const std::array<Vector3, 3>& piece, const InnerBall& ball) {
+    found_->push_back({piece, normal_, ball, triangle_, share_, false});
+  }
+
+  // A piece whose middle may count, if that is thin; whether it is.
+  bool push_outer(const std::array<Vector3, 3>& piece) {
+    const Vector3 middle = triangle_middle(piece);
+    if (!is_outer(middle)) return false;
+    if (is_sheet_) {
+      push(piece, kSheet);
+      return true;
+    }
+    const std::optional<InnerBall> ball =
+        balls_.at(middle, normal_, largest_, across_, is_across_outer_);
+    if (ball) push(piece, *ball);
+    return ball.has_value();
+  }
+
+  // One no larger than kLargestPiece.
+  void add_piece(const std::array<Vector3, 3>& piece) {
+    const Vector3 middle = triangle_middle(piece);
+    const bool counts = may_count(middle);
+    if (!counts && (is_short(piece) || !has_counting(piece))) return;
+    if (bricks_.is_crowded(middle)) {
+      push(piece, kSheet);
+      return;
+    }
+    if (is_short(piece)) {
+      // A list of what is across does not pay for a single ball.
+      across_.has_more = true;
+      push_outer(piece);
+      return;
+    }
+    if (!is_sheet_) {
+      balls_.find_across(piece, normal_, largest_, &across_);
+      if (across_.is_empty()) return;
+    }
+    // Whole if it is as thin everywhere.
+    if (counts && (is_sheet_ || balls_.are_alike(piece, normal_, largest_, across_)) &&
+        push_outer(piece)) {
+      return;
+    }
+    for_pieces(piece, kLongestPiece, may_meet_, [&](const auto& small) {
+      if (may_count(triangle_middle(small))) push_outer(small);
+    });
+  }
+
+  // Whether the middle may not count, but others do.
+  bool has_counting(const std::array<Vector3, 3>& piece) const {
+    bool counts = false;
+    for_pieces(piece, kLongestPiece, may_meet_,
+               [&](const auto& small) { counts = counts || may_count(triangle_middle(small)); });
+    return counts;
+  }
+
+  static constexpr InnerBall kSheet = {0.0, -1.0, -1.0};  // what has no inside
+
+  struct MayMeet {
+    const OpposedBricks& bricks;
+    bool operator()(const std::array<Vector3, 3>& corners) const {
+      return bricks.may_meet(corners);
+    }
+  };
+
+  const OpposedBricks& bricks_;
+  MayMeet may_meet_{bricks_};
+  const InnerBalls& balls_;
+  const OuterSides& outer_;
+  InnerBalls::IsOuter is_across_outer_ = [this](const Vector3& point, const Vector3& normal) {
+    return outer_.is_outer(point, normal) || outer_.is_outer(point, -1.0 * normal);
+  };
+  double largest_;
+  std::vector<Candidate>* found_;
+  InnerBalls::Across across_;
+  // Of the triangle that is looked at.
+  Vector3 normal_{};
+  bool is_sheet_ = false;
+  std::uint32_t triangle_ = 0;
+  double share_ = 1.0;
+};
+
+std::vector<Candidate> find_candidates(const MeshView<std::int32_t>& mesh,
+                                       std::span<const Vector3> normals,
+                                       const Representatives& chosen, const OpposedBricks& bricks,
+                                       const InnerBalls& balls, const OuterSides& outer,
+                                       double largest, const Progress& progress, int threads) {
+  const auto rows = static_cast<std::int64_t>(chosen.triangles.size());
+  std::vector<std::vector<Candidate>> tasks(
+      static_cast<std::size_t>(range_count(rows, kTrianglesPerTask)));
+  parallel_ranges(
+      rows, kTrianglesPerTask, threads, progress, [&](std::int64_t begin, std::int64_t end) {
+        CandidateFinder finder(bricks, balls, outer, largest,
+                               &tasks[static_cast<std::size_t>(begin / kTrianglesPerTask)]);
+        for (std::int64_t i = begin; i < end; ++i) {
+          const std::uint32_t t = chosen.triangles[static_cast<std::size_t>(i)];
+          finder.add(chosen.corners(mesh, static_cast<std::size_t>(i)), normals[t], chosen,
+                     static_cast<std::size_t>(i));
+        }
+      });
+  std::vector<Candidate> all;
+  for (const std::vector<Candidate>& found : tasks)
+    all.insert(all.end(), found.begin(), found.end());
+  return all;
+}
+
+// What is within about a cell.
+PlaceSums place_around(const CubeTable<PlaceSums>& places, const Vector3& middle) {
+  constexpr double kReach = 1.5;
+  PlaceSums around;
+  const Vector3 low = {std::floor(middle[0]), std::floor(middle[1]), std::floor(middle[2])};
+  const std::uint64_t first = cube_key(low - Vector3{0.5, 0.5, 0.5}, 1.0);
+  for (std::uint64_t i = 0; i < 27; ++i) {
+    const std::array<std::uint64_t, 3> k = {i % 3, i / 3 % 3, i / 9};
+    const PlaceSums* found = places.find(first + (k[0] << 42U) + (k[1] << 21U) + k[2]);
+    if (found == nullptr) continue;
+    double weight = 1.0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      weight *= kReach - std::abs(low[a] + static_cast<double>(k[a]) - 0.5 - middle[a]);
+    }
+    if (weight > 0.0) around.add(*found, weight);
+  }
+  return around;
+}
+
+}  // namespace
+
+ThickPieces thick_pieces(const MeshView<std::int32_t>& mesh, double thickness, const Box& bounds,
+                         const std::function<float(const Vector3&)>& occupancy,
+                         const Progress& progress, int threads) {
+  const double plate = thickness / 2.0;
+  const double largest = plate * (1.0 + kRod + kSpeck);
+  const std::vector<Vector3> normals = normals_of(mesh);
+  const OpposedBricks bricks(mesh, normals, std::max(kLeastBrick, 2.0 * largest), bounds,
+                             progress.part(0.0, 0.2), threads);
+  ThickPieces result;
+  if (bricks.is_empty()) return result;
+  std::vector<std::uint32_t> triangles;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (dot(normals[t], normals[t]) > 0.0 && bricks.may_meet(mesh.corners(t))) {
+      triangles.push_back(static_cast<std::uint32_t>(t));
+    }
+  }
+  Representatives chosen = find_representatives(
+      mesh, normals, triangles, [&](const auto& corners) { return bricks.may_meet(corners); });
+  // What is across from others has its own direction: balls meet both faces of sheets.
+  std::vector<std::uint32_t> facing = chosen.triangles;
+  facing.erase(std::unique(facing.begin(), facing.end()), facing.end());
+  for (const Represented& other : chosen.others) {
+    if (other.is_back) facing.push_back(other.triangle);
+  }
+  const InnerBalls balls(mesh, normals, facing, progress.part(0.2, 0.4), threads);
+  result.winding = std::make_unique<const WindingNumbers>(InputMesh{mesh.positions, mesh.triangles},
+                                                          progress.part(0.4, 0.5), threads);
+  const OuterSides outer(occupancy, *result.winding);
+  const std::vector<Candidate> candidates = find_candidates(
+      mesh, normals, chosen, bricks, balls, outer, largest, progress.part(0.5, 0.95), threads);
+  CubeTable<PlaceSums> places;
+  for (const Candidate& one : candidates) {
+    if (one.is_plate) continue;
+    const auto add = [&](const std::array<Vector3, 3>& piece) {
+      const Vector3 middle = triangle_middle(piece) - one.ball.radius * one.normal;
+      places[cube_key(middle, 1.0)].add(one.normal, middle, one.share * triangle_area(piece));
+    };
+    for_pieces(
+        one.corners, kLongestPiece, [](const auto&) { return true; }, add);
+  }
+  for (const Candidate& one : candidates) {
+    if (one.is_plate) {
+      result.pieces.push_back(
+          {one.corners, plate, one.triangle, 0.0, triangle_area(one.corners), true});
+      continue;
+    }
+    const Vector3 middle = one.middle();
+    const PlaceSums around = place_around(places, middle);
+    const Vector3 values = around.eigenvalues();
+    const double wanted = plate * (1.0 + extra_of(values));
+    const double share = thickened_share(one.ball.facing, rod_of(values));
+    const double radius = one.ball.radius + share * (wanted - one.ball.radius);
+    if (!(radius > one.ball.radius)) continue;
+    // The middle of a plate is as wide as its faces, that of a rod a line, that of a speck a point.
+    const auto across = [&](const Vector3& v) { return (1.0 / values[0]) * around.times(v); };
+    const Vector3 mean = (1.0 / around.area) * around.middles;
+    const Vector3 moved = middle + rod_of(values) * across(mean - middle);
+    const Vector3 from = triangle_middle(one.corners);
+    ThickPiece piece = {{},
+                        radius,
+                        one.triangle,
+                        2.0 * one.ball.radius,
+                        triangle_area(one.corners),
+                        one.ball.across < kParallel};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vector3 offset = one.corners[i] - from;
+      piece.middles[i] = moved + offset - across(offset);
+    }
+    result.pieces.push_back(piece);
+  }
+  result.others = std::move(chosen.others);
+  progress.report(1.0);
+  return result;
+}
+
+}  // namespace prefilter
