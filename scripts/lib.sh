@@ -480,6 +480,30 @@ compile() {
   unlock "$(build_lock "$preset")"
 }
 
+# native_files: sets files to all C++ sources that are formatted.
+native_files() {
+  mapfile -d '' files < <(find native examples bench tests/native \( -name '*.h' -o -name '*.cpp' \) -print0)
+}
+
+# ensure_tools: installs what scripts/tools.txt lists, from PyPI: Debian 12 has it too old or not at all. Sets tools.
+ensure_tools() {
+  local folder=$cache_dir/tools log=$log_dir/tools.log
+  lock "$cache_dir/.tools.lock"
+  if ! cmp --silent scripts/tools.txt "$folder/.stamp"; then
+    mkdir -p "$log_dir"
+    /usr/bin/python3 -c 'import ensurepip' 2>/dev/null || ensure_packages python3-venv
+    if ! {
+      /usr/bin/python3 -m venv --clear "$folder" &&
+        "$folder/bin/pip" install --disable-pip-version-check --requirement scripts/tools.txt
+    } >"$log" 2>&1; then
+      skip "scripts/tools.txt cannot be installed: $(tail -n 1 "$log")"
+    fi
+    cp scripts/tools.txt "$folder/.stamp"
+  fi
+  unlock "$cache_dir/.tools.lock"
+  tools=$folder/bin
+}
+
 configure_release() {
   configure release "PREFILTER_PYTHON_HEADERS=$python_headers" "PREFILTER_PYBIND11_INCLUDE=$pybind11_include" \
     "${source_options[@]}" "PREFILTER_WHEELS=$wheels_dir"

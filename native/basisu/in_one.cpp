@@ -53,9 +53,9 @@
 #include "prefilter/base/elementary.h"
 #include "prefilter/base/error.h"
 #include "prefilter/base/parallel.h"
-#include "prefilter/textures/compress_etc1s.h"
 #include "prefilter/textures/blocks/decoders.h"
 #include "prefilter/textures/blocks/encoders.h"
+#include "prefilter/textures/compress_etc1s.h"
 
 // clang-format off: behind all headers that are not the library's.
 #include <in_place_of_std.h>
