@@ -34,12 +34,12 @@ NOT_IN = {("look_dev", "4.3"): "Texture caches came with Blender 5.2."}
 _HEAD = """# Paths to a first result
 
 `docs/paths/drive` walks these paths in real windows of Blender 4.3 and 5.2, by mouse and keys, and
-makes this page of what it measured. A click is a press of a mouse button, a drag one that moves.
-The wait is how long Prefilter works until the result is there. The gap is the longest time for
-which Blender answered nothing meanwhile: between two ticks of a timer that should tick every
-hundredth of a second. Own is the longest time for which Prefilter kept the main thread; the rest is
-Blender, mostly drawing. Here the processor draws, and does other work as well, so times are above
-those of a desktop; of several walks the one with the shortest gap is told.
+writes this page. A click is a press of a mouse button, a drag a press with movement. The wait is
+the time until the result is ready. The gap is the longest time without a response of Blender
+meanwhile: between two ticks of a timer that should tick every hundredth of a second. Own is the
+longest time for which Prefilter blocked the main thread; the rest is Blender, mostly drawing. The
+machine had other work and no graphics card, so times are longer than on a desktop. The page shows
+the walk with the shortest gap.
 """
 
 
