@@ -1,21 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Writes the tables and commands of docs/ anew, from the results in bench/results/.
+"""Writes the tables and commands of the pages in docs/ from the results in bench/results/.
 
-A page has marks, and what stands up to the end mark follows from the result that they name:
+A page has marks; the text up to the end mark follows from the results that they name:
 
     <!-- result: NAME TABLE -->     a table of bench/results/NAME.json
-    <!-- totals: NAME... TABLE -->  sums over the rows of such tables, by the word before the colon
     <!-- commands: NAME... -->      the commands that measure it, the date, and what it was run on
-    <!-- criteria: PAGE -->         what bench/results/verdicts.toml asks of a page's subject
-    <!-- verdicts -->               its short list of what was found, each with its command
+    <!-- criteria: PAGE -->         the criteria of bench/results/verdicts.toml for a page
+    <!-- verdicts -->               its verdicts, a table per subject
 
 To keep the result of a program, give it `--json bench/results/NAME.json`, and run this.
 
 usage: python3 bench/pages.py
 """
 
-import collections
 import re
 import sys
 import tomllib
@@ -29,7 +27,7 @@ from bench import report  # noqa: E402
 DOCS = ROOT / "docs"
 RESULTS = ROOT / "bench" / "results"
 MARK = re.compile(
-    r"(<!-- (result|totals|commands|criteria|verdicts)(?:: ([^>]*?))? -->\n)"
+    r"(<!-- (result|commands|criteria|verdicts)(?:: ([^>]*?))? -->\n)"
     r".*?(<!-- end of \2 -->)",
     re.DOTALL,
 )
@@ -47,12 +45,11 @@ def rewritten(text: str) -> str:
         kind, name = found[2], found[3] or ""
         lines = {
             "result": table,
-            "totals": totals,
             "commands": commands,
             "criteria": criteria,
             "verdicts": verdicts,
         }
-        words = name.split() if kind in ("totals", "commands") else name.split(maxsplit=1)
+        words = name.split() if kind == "commands" else name.split(maxsplit=1)
         return f"{found[1]}{lines[kind](*words)}\n{found[4]}"
 
     return MARK.sub(made, text)
@@ -67,38 +64,6 @@ def table(name: str, table_name: str) -> str:
     """Returns a table in Markdown; columns of numbers are aligned at the right."""
     found = result(name)["tables"][table_name]
     return _in_markdown(found["columns"], found["rows"])
-
-
-def totals(*names: str) -> str:
-    """Returns one table of the sums over tables of several results, which the last name says.
-
-    Rows are grouped by what stands before the colon of their first cells. Numbers are added up, and
-    so are those before each word of a text such as "9 old, 21 new"; "old" counts as "1 old".
-    """
-    *results, table_name = names
-    tables = [result(name)["tables"][table_name] for name in results]
-    groups: dict[str, list[list[str]]] = {}
-    for row in (row for one in tables for row in one["rows"]):
-        groups.setdefault(row[0].partition(":")[0], []).append(row)
-    columns = [tables[0]["columns"][0] + "s", "Number", *tables[0]["columns"][1:]]
-    rows = [
-        [
-            group,
-            str(len(members)),
-            *(_sum(column) for column in list(zip(*members, strict=True))[1:]),
-        ]
-        for group, members in groups.items()
-    ]
-    return _in_markdown(columns, rows)
-
-
-def _sum(cells: tuple[str, ...]) -> str:
-    words: collections.Counter[str] = collections.Counter()
-    for cell in cells:
-        for number, word in re.findall(r"(?:(-?[\d.]+) *)?([^\W\d]*)(?:, |$)", cell or ""):
-            if number or word:
-                words[word] += float(number or 1)
-    return ", ".join(f"{number:.0f} {word}".strip() for word, number in words.items())
 
 
 def _in_markdown(columns: list[str], rows: list[list[str]]) -> str:
@@ -130,17 +95,15 @@ def criteria(page: str) -> str:
 
 
 def verdicts() -> str:
-    """Returns the short list, by subject."""
+    """Returns the verdicts, a table per subject."""
     lines: list[str] = []
     subject = None
     for one in _verdicts()["verdict"]:
         if one["subject"] != subject:
             subject = one["subject"]
-            lines += ["", f"## {subject}", ""]
-        lines.append(f"- **{one['text']}** {one['found']} ([details]({one['link']}))")
-        typed = [line for name in one["results"] for line in result(name)["command"]]
-        lines += ["", *(f"      {line}" for line in typed), ""]
-    return re.sub(r"\n{3,}", "\n\n", "\n".join(lines))
+            lines += ["", f"## {subject}", "", "| | Verdict |", "| :--- | :--- |"]
+        lines.append(f"| [{one['text'].rstrip('.')}]({one['link']}) | {one['found']} |")
+    return "\n".join([*lines, ""])
 
 
 def _verdicts() -> dict:
