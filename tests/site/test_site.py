@@ -165,6 +165,13 @@ def test_pages_open_in_a_browser(name, address, tmp_path):
 
 
 @needs_chromium
+def test_search_works_on_pages_opened_from_a_folder(tmp_path):
+    html, messages = opened(f"{(SITE / 'voxels.html').as_uri()}?q=genus", tmp_path)
+    assert messages == []
+    assert "md-search-result__item" in html
+
+
+@needs_chromium
 @pytest.mark.parametrize("width", [1280, 420])
 def test_nothing_is_wider_than_the_window(width, address, tmp_path):
     script = "<script>document.title = document.documentElement.scrollWidth - innerWidth</script>"
