@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Has a Blender walk the paths of walks.py in a window that nobody sees, and keeps what it took.
+"""Runs the paths of walks.py in Blender on a virtual screen, and records their costs.
 
 usage: python3 drive.py [NAME...]
 """
@@ -24,17 +24,17 @@ MOST_SECONDS = 1500
 
 
 def main(names: list[str]) -> None:
-    """Walks the paths one after another, each in a Blender of its own."""
+    """Walks the paths one after another, each in a new Blender."""
     for name in names or list(page.WHO):
         with photograph.screen(*SIZE) as (display, _), tempfile.TemporaryDirectory() as folder:
-            told = walked(name, display, folder)
-        if "left_out" not in told:
-            page.keep(name, told)
-        print(name, json.dumps(told), flush=True)
+            costs = measure(name, display, folder)
+        if "left_out" not in costs:
+            page.keep(name, costs)
+        print(name, json.dumps(costs), flush=True)
 
 
-def walked(name: str, display: str, folder: str) -> dict[str, object]:
-    """Returns what a path took."""
+def measure(name: str, display: str, folder: str) -> dict[str, object]:
+    """Returns the costs of a path."""
     environment = {**os.environ, "DISPLAY": display}
     if name in page.WITHOUT_EXTENSION:
         environment["BLENDER_USER_RESOURCES"] = folder

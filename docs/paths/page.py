@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The page of the paths: a table of what each took, and its steps, from paths.json.
+"""Writes the page of the paths from paths.json: a table of their costs, and their steps.
 
 usage: python3 page.py     writes docs/paths.md again
 """
@@ -24,11 +24,11 @@ WHO = {
     "texture_artist": ("Texture artist", "a facade, straightened", 3),
     "newcomer": ("Newcomer", "a demonstration, from the zip", 4),
 }
-"""Who walks a path, to what, and in how many clicks at most."""
+"""By path: the user, the goal, and the limit of clicks."""
 WITHOUT_EXTENSION = {"newcomer"}
-"""Paths of a Blender that never had the extension, and gets the zip in build/."""
+"""Paths of a Blender without the extension, which gets the zip in build/."""
 TOLD = "prefilter: path "
-"""What the line begins with in which a Blender tells what a path took."""
+"""Prefix of the line with the costs of a path in Blender's output."""
 NOT_IN = {("look_dev", "4.3"): "Texture caches came with Blender 5.2."}
 
 _HEAD = """# Paths to a first result
@@ -44,12 +44,12 @@ the walk with the shortest gap.
 
 
 def read() -> dict[str, Any]:
-    """Returns what was measured, by path and version."""
+    """Returns the recorded costs, by path and version."""
     return json.loads(DATA.read_text(encoding="utf-8")) if DATA.exists() else {}
 
 
 def keep(name: str, told: dict[str, Any]) -> None:
-    """Keeps what a path took, if it has other steps than before or a shorter gap."""
+    """Records the costs of a path if its steps have changed, or its gap is shorter."""
     kept = read()
     version = told.pop("version")
     before = kept.setdefault(name, {}).get(version)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Walks a path by mouse and keys, inside of a Blender with a window. See drive.py.
+"""Walks a path by mouse and keys, in a Blender with a window. See drive.py.
 
 usage: blender --enable-event-simulate --python walks.py -- NAME FOLDER
 """
@@ -31,13 +31,13 @@ _CORNERS = ("lower_left", "lower_right", "upper_right", "upper_left")
 
 
 class Hand:
-    """Presses keys and buttons, and counts that; words say what it does.
+    """Presses and counts keys and buttons; `words` describe each step on the page.
 
-    Where buttons are is looked up with the mouse, before it counts.
+    Positions of buttons are found with the mouse before the counting starts.
     """
 
     def __init__(self, stage: Stage) -> None:
-        """Takes the editor that it works in."""
+        """Takes the editor to work in."""
         self.stage = stage
         self.clicks = self.keys = self.drags = 0
         self.wait = self.gap = self.own = 0.0
@@ -48,7 +48,7 @@ class Hand:
         bpy.app.timers.register(self._tick, persistent=True)
 
     def learn(self) -> Iterator[None]:
-        """Finds out where the tab is; the sidebar is then as it was, closed."""
+        """Finds the position of the tab, and closes the sidebar again."""
         space = self.stage.area.spaces.active
         space.show_region_ui = True
         yield from until(lambda: self.stage.tab != "UNSUPPORTED")
@@ -98,17 +98,17 @@ class Hand:
         yield from clicked(self.stage.window, *place)
 
     def press(self, command: str, words: str) -> Iterator[None]:
-        """Presses a button of the sidebar, whose call in Python begins with something."""
+        """Presses the button of the sidebar whose Python call begins with `command`."""
         place = yield from window.place_of(self.stage.window, self.stage.area, command)
         yield from self.click(place, words)
 
     def make(self, command: str, words: str) -> Iterator[None]:
-        """Presses a button that makes something, and waits for that."""
+        """Presses a button that starts a job, and waits for the result."""
         place = yield from window.place_of(self.stage.window, self.stage.area, command)
         yield from self.watched(self.click(place, words))
 
     def watched(self, steps: Iterator[None]) -> Iterator[None]:
-        """Takes steps, and waits for what they begin; looks at the clock meanwhile."""
+        """Takes steps, waits for the jobs that they start, and measures the time."""
         with self._timing():
             yield from self._waited(steps)
 
@@ -124,7 +124,7 @@ class Hand:
 
     @contextmanager
     def _timing(self) -> Iterator[None]:
-        """Notes how long operators of the add-on keep the main thread at a time."""
+        """Measures how long operators of the add-on block the main thread."""
         found = (
             (one, name)
             for one in (
@@ -160,7 +160,7 @@ class Hand:
         self.own = max(self.own, time.monotonic() - began)
 
     def drag(self, start: tuple[int, int], end: tuple[int, int]) -> Iterator[None]:
-        """Drags from a place to another."""
+        """Drags from one position to another."""
         self.drags += 1
         yield from moved(self.stage.window, *start)
         for kind, value, (x, y) in (
@@ -172,7 +172,7 @@ class Hand:
             yield
 
     def told(self, start: str, result: str) -> dict[str, object]:
-        """Returns what it took."""
+        """Returns the costs."""
         return {
             "version": ".".join(map(str, bpy.app.version[:2])),
             "clicks": self.clicks,
@@ -280,7 +280,7 @@ def scanner() -> Walk:
     yield
     hand = Hand(stage)
     yield from moved(stage.window, *hand.middle())
-    # What Blender calls when files are dropped; drops from other programs cannot be simulated.
+    # Blender calls this when files are dropped; drops from other programs cannot be simulated.
     with bpy.context.temp_override(**stage.override):
         bpy.ops.prefilter.drop_points(
             "INVOKE_DEFAULT", directory=str(FOLDER), files=[{"name": "knot.xyz"}]
@@ -297,13 +297,13 @@ def scanner() -> Walk:
 
 
 def menu_entry(hand: Hand, number: int) -> tuple[int, int]:
-    """Returns where an entry is of a menu that opens at the mouse; the first is 0."""
+    """Returns the position of an entry of a menu at the mouse; the first is 0."""
     x, y = hand.middle()
     return x, y - round(20 * bpy.context.preferences.system.ui_scale * number)
 
 
 def button_of_dialog(hand: Hand) -> tuple[int, int]:
-    """Returns where OK is in the dialog that opened over the mouse, for a zip that was dropped."""
+    """Returns the position of OK in the dialog at the mouse, for a dropped zip."""
     x, y = hand.middle()
     scale = bpy.context.preferences.system.ui_scale
     return x - round(22 * scale), y - round(91 * scale)
@@ -359,7 +359,7 @@ def newcomer() -> Walk:
     yield
     hand = Hand(stage)
     yield from moved(stage.window, *hand.middle())
-    # What Blender calls when a zip is dropped; drops from other programs cannot be simulated.
+    # Blender calls this when a zip is dropped; drops from other programs cannot be simulated.
     with bpy.context.temp_override(**stage.override):
         bpy.ops.extensions.package_install_files("INVOKE_DEFAULT", url=str(archive))
     hand.steps.append("Drop the zip onto the window: Blender asks.")
@@ -381,7 +381,7 @@ def newcomer() -> Walk:
 
 
 def models():
-    """Returns the module of the models that come along."""
+    """Returns the module of the included models."""
     import importlib
 
     begun()
@@ -389,7 +389,7 @@ def models():
 
 
 def stone() -> bpy.types.Object:
-    """Makes the painted stone, selected, in a scene of its own."""
+    """Makes the painted stone, selected, in an empty scene."""
     window.without_objects()
     made = models()
     model, pixels = made.stone(), made.paint(1024)
@@ -409,7 +409,7 @@ def stone() -> bpy.types.Object:
 
 
 def broken() -> bpy.types.Object:
-    """Makes the broken stone, selected, in a scene of its own."""
+    """Makes the broken stone, selected, in an empty scene."""
     window.without_objects()
     return object_of("Broken", models().broken_stone())
 
@@ -439,7 +439,7 @@ def opened(kind: str) -> Generator[None, None, Hand]:
 
 
 def facade(size: tuple[int, int], places) -> np.ndarray:
-    """Returns pixels of rows of windows, seen in perspective, between four places."""
+    """Returns pixels of rows of windows, in perspective, between four corners."""
     rows = []
     for (x, y), (u, v) in zip(places, ((0, 0), (1, 0), (1, 1), (0, 1)), strict=True):
         rows += [[x, y, 1, 0, 0, 0, -u * x, -u * y, u], [0, 0, 0, x, y, 1, -v * x, -v * y, v]]
@@ -459,14 +459,14 @@ def facade(size: tuple[int, int], places) -> np.ndarray:
 
 
 def on_screen(stage: Stage, place, size: tuple[int, int]) -> tuple[int, int]:
-    """Returns where a pixel of the image is in the window."""
+    """Returns the position of a pixel of the image in the window."""
     part = region(stage.area, "WINDOW")
     x, y = part.view2d.view_to_region(place[0] / size[0], place[1] / size[1], clip=False)
     return part.x + x, part.y + y
 
 
 def session() -> Iterator[None]:
-    """Walks the path, and tells what it took."""
+    """Walks the path, and prints its costs."""
     version = ".".join(map(str, bpy.app.version[:2]))
     if (NAME, version) in page.NOT_IN:
         told = {"version": version, "left_out": page.NOT_IN[NAME, version]}

@@ -89,7 +89,7 @@ def add_surface(positions: np.ndarray, triangles: np.ndarray) -> bpy.types.Objec
 
 
 def set_up_stripes(scene: bpy.types.Scene) -> None:
-    """Surrounds the scene with stripes, which is what the mirror shows; no other light."""
+    """Surrounds the scene with stripes, which the mirror reflects; no other light."""
     for obj in list(scene.objects):
         if obj.type == "LIGHT":
             bpy.data.objects.remove(obj)

@@ -33,7 +33,7 @@ def main(folder: Path) -> None:
 
 
 def cutout() -> Image.Image:
-    """Levels of a twig as an alpha test shows them, without and with their coverage kept."""
+    """A twig after the alpha test, by levels without and with preserved coverage."""
     ordinary = prefilter.mipmaps(twig(512).astype(np.float32), card())
     rows = {
         "ordinary levels": ordinary,
@@ -56,7 +56,7 @@ def card() -> prefilter.Surface:
 
 
 def twig(size: int) -> Array:
-    """Straight RGBA of thin leaves along curved stems; magenta where there are none."""
+    """Straight RGBA of thin leaves along curved stems; magenta elsewhere."""
     random = np.random.default_rng(5)
     v, u = (np.mgrid[:size, :size] + 0.5) / size
     alpha, shade = np.zeros((size, size)), np.zeros((size, size))
@@ -91,7 +91,7 @@ def blade(
 
 
 def tested(level: NDArray[np.float32]) -> tuple[Array, float]:
-    """What an alpha test of bilinear lookups shows, sRGB with rows from the top, and its share."""
+    """The result of an alpha test of bilinear lookups, sRGB from the top, and its coverage."""
     samples = 4
     at = (np.arange(CUTOUT_CELL * samples) + 0.5) / (CUTOUT_CELL * samples)
     u, v = np.meshgrid(at, at)
@@ -127,7 +127,7 @@ def lobes() -> Image.Image:
 
 
 def bumps(size: int) -> NDArray[np.float32]:
-    """An encoded normal map of round dents that tiles."""
+    """An encoded, tileable normal map of round dents."""
     random = np.random.default_rng(3)
     v, u = (np.mgrid[:size, :size] + 0.5) / size
     height = np.zeros((size, size))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Makes the picture of docs/engines.md: a level as files hold it, read back by OpenImageIO.
+"""Makes the picture of docs/engines.md: a level in file formats, read back by OpenImageIO.
 
 usage: python3 engines.py FOLDER        (with the package prefilter importable)
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Renders what the tasks of a farm do of a surface: shares of points, parts, and the whole.
+"""Renders the tasks of a farm for a surface: shares of points, parts, and the whole.
 
 usage: blender --background --python farm.py -- TARGET.png
 """
@@ -66,13 +66,13 @@ def main(target: Path) -> None:
 
 
 def shares(points: Floats) -> np.ndarray:
-    """Tells which scan each point is from: that of its side."""
+    """Returns the scan of each point: that of its side."""
     angle = np.arctan2(points[:, 1], points[:, 0] + 0.3)
     return np.floor((angle / (2 * np.pi) + 0.4) * FILES).astype(int) % FILES
 
 
 def made_in_steps(files: list[Path], work: Path) -> tuple[Mesh, float]:
-    """Returns the surface, of a process for each task, and the side of a cell."""
+    """Returns the surface, made by a process per task, and the side of a cell."""
     target = work / "surface.ply"
     words = [sys.executable, "-m", "prefilter", "reconstruct", *map(str, files)]
     words += ["-o", str(target)]
@@ -91,7 +91,7 @@ def made_in_steps(files: list[Path], work: Path) -> tuple[Mesh, float]:
 
 
 def parts(mesh: Mesh, side: float) -> np.ndarray:
-    """Tells which part each triangle is of: parts have equally many layers of the cube of cells."""
+    """Returns the part of each triangle: parts have equally many layers of cells."""
     positions, triangles = mesh
     low, high = positions.min(axis=0), positions.max(axis=0)
     height = positions[triangles][..., 2].mean(axis=1) - (low[2] + high[2]) / 2
@@ -107,7 +107,7 @@ def apart(mesh: Mesh, part: np.ndarray) -> Mesh:
 
 
 def add_parts(mesh: Mesh, part: np.ndarray) -> bpy.types.Object:
-    """Adds a mesh whose parts have colors of their own."""
+    """Adds a mesh with a color per part."""
     obj = scans.add_surface(mesh)
     obj.data.polygons.foreach_set("use_smooth", np.zeros(len(part), bool))
     clay = obj.data.materials[0]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Renders a ball with a hole, and what each method of close_holes makes of it, voxelized.
+"""Renders a ball with a hole, and voxelized after each method of close_holes.
 
 usage: blender --background --python holes.py -- TARGET.png
 """

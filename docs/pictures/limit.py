@@ -16,7 +16,7 @@ import prefilter
 
 SIZE = 512
 PACKAGE = "bl_ext.user_default.prefilter"
-# From little to much, as the share of an average texel: steps of a perceptually even scale.
+# From low to high, relative to an average texel: steps of a perceptually even scale.
 COLORS = np.array(
     [(13, 8, 135), (126, 3, 168), (204, 71, 120), (248, 149, 64), (240, 249, 33)], float
 )

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Makes the picture of docs/benchmarks/renders.md: what OpenGL shows with one lookup a pixel.
+"""Makes the picture of docs/benchmarks/renders.md: OpenGL with one lookup per pixel.
 
 usage: python3 opengl.py FOLDER [MODELS]    (with the package prefilter importable, and moderngl)
 

@@ -60,7 +60,7 @@ def main(target: Path) -> None:
 
 
 def show_vertices(surface: bpy.types.Object, colors: NDArray[np.floating]) -> None:
-    """Has a mesh show colors of its vertices, sRGB."""
+    """Gives a mesh a material that shows its sRGB vertex colors."""
     add_colors(surface.data, colors)
     material = bpy.data.materials.new("Vertices")
     material.use_nodes = True
@@ -75,7 +75,7 @@ def show_vertices(surface: bpy.types.Object, colors: NDArray[np.floating]) -> No
 def add_texture(
     surface: bpy.types.Object, points: NDArray[np.floating], colors: NDArray[np.floating]
 ) -> None:
-    """Does as the artist: selects the scan, then the mesh, and runs Colors to Texture."""
+    """Selects the scan, then the mesh, and runs Colors to Texture, as a user does."""
     cloud = scans.new_object(points, np.empty((0, 3), np.int32))
     add_colors(cloud.data, colors)
     cloud.select_set(True)

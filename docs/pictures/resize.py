@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Makes the picture of docs/resize.md: figure 1.8, made smaller by filters and enlarged again.
+"""Makes the picture of docs/resize.md: figure 1.8, reduced by filters and enlarged again.
 
 usage: python3 resize.py FOLDER        (with the package prefilter importable)
 

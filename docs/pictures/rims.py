@@ -69,7 +69,7 @@ def main(target: Path) -> None:
 
 
 def operands() -> tuple[bpy.types.Object, bpy.types.Object]:
-    """The block and what is cut away."""
+    """The block and the cutting object."""
     bpy.ops.mesh.primitive_cube_add(size=1.5, rotation=(0.21, 0.33, 0.47))
     block = bpy.context.object
     bpy.ops.mesh.primitive_cylinder_add(
@@ -83,7 +83,7 @@ def operands() -> tuple[bpy.types.Object, bpy.types.Object]:
 
 
 def modified(obj: bpy.types.Object, kind: str, options: dict[str, object]) -> Mesh:
-    """What a modifier makes of an object."""
+    """The object after a modifier."""
     modifier = obj.modifiers.new(kind, kind)
     for name, value in options.items():
         setattr(modifier, name, value)
@@ -104,7 +104,7 @@ def arrays_of(obj: bpy.types.Object) -> Mesh:
 
 
 def object_of(mesh: Mesh) -> bpy.types.Object:
-    """An object of satin metal, smooth but for edges of more than 30 degrees."""
+    """An object of satin metal, smooth except at edges of more than 30 degrees."""
     made = bpy.data.meshes.new("Surface")
     made.from_pydata(mesh[0].tolist(), [], mesh[1].tolist())
     made.polygons.foreach_set("use_smooth", np.ones(len(made.polygons), bool))
@@ -132,7 +132,7 @@ def rim_point(positions: np.ndarray, cutter: Mesh) -> tuple[float, ...]:
 
 
 def set_up_light(scene: bpy.types.Scene) -> None:
-    """A sun, and a sky that is brighter above, which edges show up against."""
+    """A sun, and a sky that is brighter above, so that edges stand out."""
     scene.cycles.samples = SAMPLES
     scene.cycles.max_bounces = 1
     for obj in scene.objects:

@@ -27,13 +27,13 @@ PROBES = 280, 150  # Pixels of figure 6.12.
 
 
 class Figure(NamedTuple):
-    """Pictures in linear light, rows from below, by how they were made."""
+    """Pictures in linear light, row 0 at the bottom, by method."""
 
     exact: Array
     approximate: dict[str, Array]
 
     def psnr(self, name: str) -> float:
-        """How close one is to the exact one, in dB."""
+        """The PSNR of a picture against the exact one, in dB."""
         return psnr(self.approximate[name], self.exact)
 
 
@@ -149,7 +149,7 @@ def checkerboard() -> Figure:
 
 
 def places_of(transform: Array, size: tuple[int, int]) -> tuple[Array, Array]:
-    """Of each pixel, row by row: the place of its center, in texels, and the Jacobian there."""
+    """For each pixel, row by row: the position of its center, in texels, and the Jacobian."""
     x, y = np.meshgrid(np.arange(size[0]) + 0.5, np.arange(size[1]) + 0.5)
     homogeneous = np.stack([x.ravel(), y.ravel(), np.ones(x.size)], axis=1) @ transform.T
     depth = homogeneous[:, 2:]

@@ -66,7 +66,7 @@ KINDS = {
 
 @dataclass(frozen=True)
 class View:
-    """What the camera sees: a place, this wide, from angles in degrees.
+    """A view of the camera: a position, a width, and angles in degrees.
 
     `dot` is the radius of points, and `edge` the width of edges, both in widths of the view.
     """
@@ -81,14 +81,14 @@ class View:
 
 @dataclass(frozen=True)
 class Subject:
-    """What is shown, and the lines under it."""
+    """A mesh or cloud, and the lines under it."""
 
     title: str
     note: str
     add: Callable[[View], bpy.types.Object]
 
 
-# The bunny's are of its points in meters, turned to have z upwards.
+# The bunny's coordinates are in meters, with z upwards.
 BUNNY_VIEWS = (
     View((-0.017, 0.0, 0.11), 0.2, -12, 8, dot=0.0011),
     View((-0.062, 0.0, 0.137), 0.075, -38, 8, dot=0.0026),
@@ -138,7 +138,7 @@ def shots(subjects: Sequence[Subject], views: Sequence[View], folder: Path) -> l
 
 
 def bunny(conf: Path) -> list[Subject]:
-    """The ten range scans, each in a color, and what becomes of them."""
+    """The ten range scans, each in a color, and their surface."""
     placed = [range_scans.placed(*scan) for scan in range_scans.placements(conf)]
     points, normals = (np.concatenate(parts) for parts in zip(*placed, strict=True))
     colors = np.concatenate(
@@ -183,7 +183,7 @@ def uneven(source: Mesh) -> list[Subject]:
 
 
 def dots(title: str, points: Floats, normals: Floats, colors: Floats) -> Subject:
-    """Points, in one color or in one each."""
+    """Points, in one color or a color per point."""
     each = np.broadcast_to(colors, points.shape)
     return Subject(
         title,

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Renders the demo's model with a coarse level, whose seams count or not, and where its seams are.
+"""Renders the demo's model with a coarse level, with and without seams in the fit, and its seams.
 
 usage: blender --background --python-exit-code 1 --python seams.py -- TARGET.png
 """
@@ -55,7 +55,7 @@ def main(target: Path) -> None:
 
 
 def float_image(name: str, values: demo.Array) -> bpy.types.Image:
-    """Makes an image datablock of scene-linear floats, which Cycles interpolates as they are."""
+    """Makes an image datablock of scene-linear floats, which Cycles interpolates unchanged."""
     height, width = values.shape[:2]
     image = bpy.data.images.new(name, width, height, float_buffer=True, is_data=True)
     opaque = np.concatenate([values, np.ones((height, width, 1), np.float32)], axis=2)

@@ -65,7 +65,7 @@ def gaps() -> Image.Image:
 
 
 def torn_star(size: int) -> prefilter.Shape:
-    """A star of 7 tips with a hole, each side a contour of its own that ends before its corner."""
+    """A star of 7 tips with a hole, each side a separate contour that ends before its corner."""
     shape = prefilter.Shape()
     for radii, direction, bend in (((0.46, 0.24), 1, 0.03), ((0.13, 0.13), -1, 0.0)):
         angles = 0.5 * np.pi + direction * np.pi * np.arange(15) / 7

@@ -74,7 +74,7 @@ def linear(color: Sequence[int]) -> list[float]:
 
 
 def place(texels: float, error: float) -> tuple[float, float]:
-    """Where a value is, from the lower left corner."""
+    """The position of a value, from the lower left corner."""
     along = (texels - TEXELS[0]) / (TEXELS[-1] - TEXELS[0])
     return (
         LEFT + along * (WIDTH - LEFT - RIGHT),
@@ -98,7 +98,7 @@ def line(
 
 
 def write(draw: ImageDraw.ImageDraw) -> None:
-    """Adds the numbers of the axes, and what the lines are."""
+    """Adds the numbers of the axes, and a legend."""
     font = ImageFont.load_default(size=15)
 
     def text(

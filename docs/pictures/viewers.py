@@ -48,7 +48,7 @@ def main(folder: Path, modules: Path, models: Path) -> None:
 
 
 def check(viewer: str, model: str, kind: str, textures: list[dict[str, object]]) -> None:
-    """Tells of each texture how many levels have come; ends the program where one has not."""
+    """Prints the number of loaded levels per texture; exits if one is missing."""
     for texture in textures if kind == "fitted" else ():
         sides = (texture["width"], texture["height"])
         levels = [tuple(level[:2]) for level in texture["levels"]]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What panels draw, in order: settings with labels and defaults, buttons, texts.
+"""Lists the contents of panels, in order: settings with labels and defaults, buttons, texts.
 
-A photograph of panels carries this as text, and a test compares it with what they draw today.
+A photograph of panels carries this list as text, and a test compares it with the current panels.
 Runs inside Blender, with or without a window.
 """
 
@@ -16,7 +16,7 @@ PAINT = "Paint"
 
 
 def drawn(panels: Sequence[str]) -> list[dict[str, Any]]:
-    """Returns what panels and those below them draw for a square with an image.
+    """Returns the contents of panels and their subpanels for a square with an image.
 
     The scene is made anew: it loses all objects.
     """
@@ -25,7 +25,7 @@ def drawn(panels: Sequence[str]) -> list[dict[str, Any]]:
 
 
 def as_text(found: Sequence[dict[str, Any]]) -> str:
-    """Returns what is drawn as text, a row a line."""
+    """Returns the contents as text, a line per row."""
     lines = []
     for panel in found:
         lines.append(f"{panel['panel']} {panel['label']!r} in {panel['editor']}")
@@ -42,19 +42,19 @@ def family(panel: type) -> Iterator[type]:
 
 
 def registered_panels() -> list[type]:
-    """Returns the classes of all panels that are written in Python."""
+    """Returns the classes of all Python panels."""
     return [panel for panel in bpy.types.Panel.__subclasses__() if panel.is_registered]
 
 
 class Layout:
-    """Stands for a layout of Blender, and notes what is put into it."""
+    """A stand-in for a layout of Blender that records its contents."""
 
     def __init__(self, rows: list[list[Any]]) -> None:
-        """Takes the list that the notes go to."""
+        """Takes the list of records."""
         self._rows = rows
 
     def row(self, *, heading: str = "", **_: Any) -> "Layout":
-        """Notes the heading of a part."""
+        """Records the heading of a part."""
         if heading:
             self._rows.append(["heading", heading])
         return Layout(self._rows)
@@ -62,15 +62,15 @@ class Layout:
     column = box = split = grid_flow = column_flow = row
 
     def separator(self, **_: Any) -> None:
-        """Notes a gap."""
+        """Records a gap."""
         self._rows.append(["gap"])
 
     def label(self, *, text: str = "", **_: Any) -> None:
-        """Notes a text."""
+        """Records a text."""
         self._rows.append(["text", text])
 
     def prop(self, data: Any, name: str, *, text: str | None = None, **_: Any) -> None:
-        """Notes a setting, with its label and default."""
+        """Records a setting, with its label and default."""
         setting = data.bl_rna.properties[name]
         self._rows.append(
             ["setting", name, setting.name if text is None else text, _default(setting)]
@@ -79,16 +79,16 @@ class Layout:
     def prop_search(
         self, data: Any, name: str, *_: Any, text: str | None = None, **__: Any
     ) -> None:
-        """Notes a setting that is picked from a list."""
+        """Records a setting that is chosen from a list."""
         self.prop(data, name, text=text)
 
     def prop_enum(self, data: Any, name: str, value: str, *, text: str | None = None) -> None:
-        """Notes one of the values of a setting."""
+        """Records one of the values of a setting."""
         self.prop(data, name, text=text)
         self._rows[-1].append(value)
 
     def operator(self, name: str, *, text: str | None = None, **_: Any) -> "_Properties":
-        """Notes a button."""
+        """Records a button."""
         module, _, function = name.partition(".")
         if text is None:
             text = getattr(getattr(bpy.ops, module), function).get_rna_type().name
@@ -96,16 +96,16 @@ class Layout:
         return _Properties()
 
     def progress(self, *, text: str = "", **_: Any) -> None:
-        """Notes a bar."""
+        """Records a bar."""
         self._rows.append(["progress", text])
 
     def panel(self, name: str, *, default_closed: bool = False) -> tuple["Layout", "Layout"]:
-        """Notes a part that opens and closes, as if it were open."""
+        """Records a collapsible part, as if it were open."""
         self._rows.append(["panel", name, "closed" if default_closed else "open"])
         return Layout(self._rows), Layout(self._rows)
 
     def __getattr__(self, name: str) -> Any:
-        """Returns a function that notes the texts that it is called with."""
+        """Returns a function that records its texts."""
 
         def other(*arguments: Any, **keywords: Any) -> "Layout":
             texts = [one for one in (*arguments, *keywords.values()) if isinstance(one, str)]
@@ -116,11 +116,11 @@ class Layout:
 
 
 class _Properties:
-    """Takes whatever a panel gives to the operator of a button."""
+    """Accepts any property that a panel sets on the operator of a button."""
 
 
 class _Panel:
-    """Stands for a panel while it draws."""
+    """A stand-in for a panel while it draws."""
 
     def __init__(self, panel: type, rows: list[list[Any]]) -> None:
         self._panel = panel

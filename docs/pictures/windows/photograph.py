@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Photographs windows of Blender on a screen that nobody sees.
+"""Photographs windows of Blender on a virtual screen.
 
 usage: python3 photograph.py panels|windows [NAME...]
 "panels" photographs single panels (panels/NAME-VERSION.png), "windows" whole windows (NAME.png);
@@ -27,7 +27,7 @@ SECONDS_BETWEEN_LOOKS = 0.7
 MOST_LOOKS = 40
 MARGIN = 6
 DIFFERENCE = 3
-"""How much a value differs at least where something is drawn."""
+"""Least difference from the background of a pixel that counts as drawn, in byte values."""
 
 
 def main(kind: str, names: list[str]) -> None:
@@ -39,7 +39,7 @@ def main(kind: str, names: list[str]) -> None:
 
 
 def photograph(kind: str, name: str, display: str, look) -> None:
-    """Starts Blender, and saves what its window shows."""
+    """Starts Blender, and saves the picture of its window."""
     width, height = SIZES[kind]
     blender = subprocess.Popen(
         [
@@ -84,7 +84,7 @@ def photograph(kind: str, name: str, display: str, look) -> None:
 
 @contextmanager
 def screen(width: int, height: int) -> Iterator[tuple[str, object]]:
-    """Runs an X server, and yields its display and a function that returns what it shows."""
+    """Runs an X server, and yields its display and a function that returns its picture."""
     with tempfile.TemporaryDirectory() as folder:
         reading, writing = os.pipe()
         size = ["-screen", "0", f"{width}x{height}x24", "-fbdir", folder]
@@ -113,7 +113,7 @@ def framebuffer(path: Path) -> np.ndarray:
 
 
 def steady(look) -> np.ndarray:
-    """Looks until two looks show the same."""
+    """Takes pictures until two in a row are equal."""
     before = look()
     for _ in range(MOST_LOOKS):
         time.sleep(SECONDS_BETWEEN_LOOKS)
@@ -125,7 +125,7 @@ def steady(look) -> np.ndarray:
 
 
 def cropped(pixels: np.ndarray, region: list[int]) -> np.ndarray:
-    """What is drawn in a region (left, bottom, width, height; y upwards), and a small margin."""
+    """The drawn part of a region (left, bottom, width, height; y upwards), and a small margin."""
     left, bottom, width, height = region
     top = pixels.shape[0] - bottom - height
     pixels = pixels[top : top + height, left : left + width]
@@ -140,7 +140,7 @@ def cropped(pixels: np.ndarray, region: list[int]) -> np.ndarray:
 
 
 def save(pixels: np.ndarray, told: dict[str, object], target: Path) -> None:
-    """Writes a small PNG file of at most 256 colors, with what the panels draw as text."""
+    """Writes a small PNG file of at most 256 colors, with the contents of the panels as text."""
     picture = Image.fromarray(np.ascontiguousarray(pixels))
     # Pillow dithers with a given palette only.
     small = picture.quantize(palette=picture.quantize(256), dither=Image.Dither.FLOYDSTEINBERG)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Which photographs there are of Blender's windows, and which panels they show."""
+"""The photographs of Blender's windows, and the panels in them."""
 
 import json
 import re
@@ -21,8 +21,8 @@ class Photograph:
 
     Attributes:
         panels: The panels that it shows, and with them those below.
-        scene: The function of scenes.py that makes what is in the window.
-        opened: Panels that start closed, and are open in the photograph.
+        scene: The function of scenes.py that makes the scene.
+        opened: Panels that are closed by default, and open in the photograph.
         unfolded: Whether the parts of the panel are open, which start closed.
         since: The first Blender that has the panels.
     """
@@ -95,7 +95,7 @@ def version_of(picture: Path) -> tuple[int, int]:
 
 
 def read_text(picture: Path) -> dict[str, object]:
-    """Returns what a photograph says about the panels in it; nothing if it says nothing."""
+    """Returns the list of panel contents in a photograph; empty if it has none."""
     data = picture.read_bytes()
     position = len(_SIGNATURE)
     while position < len(data):

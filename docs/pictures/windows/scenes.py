@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Makes what photographs show, inside of a Blender with a window. See photograph.py.
+"""Makes the scenes of photographs, in a Blender with a window. See photograph.py.
 
 usage: blender --python scenes.py -- panels|windows NAME
 """
@@ -28,11 +28,11 @@ from pictures import CROPPED, WHOLE, Photograph  # noqa: E402
 READY = "prefilter: ready "
 SCALE = 1.5
 PROPERTIES_WIDTH = 0.4
-"""Of the largest area, where a panel of the Properties editor is photographed."""
+"""Share of the largest area in which a panel of the Properties editor is photographed."""
 
 
 def session(kind: str, name: str) -> Iterator[float]:
-    """Makes a photograph's scene, and tells what is to be photographed; yields seconds to wait."""
+    """Makes a photograph's scene, and prints the regions to photograph; yields seconds to wait."""
     shown = (CROPPED if kind == "panels" else WHOLE)[name]
     told = {"version": ".".join(map(str, bpy.app.version[:2]))}
     if bpy.app.version[:2] < shown.since:
@@ -104,7 +104,7 @@ def open_tab(*areas: bpy.types.Area) -> Iterator[float]:
 
 
 def rearrange(opened: Sequence[str], only: Sequence[str] = (), first: str = "") -> None:
-    """Has panels start open; the other ones of the add-on closed, or absent.
+    """Opens panels; the others of the add-on are closed, or absent.
 
     Args:
         opened: The names of the panels; those around them open too.
@@ -131,33 +131,33 @@ def rearrange(opened: Sequence[str], only: Sequence[str] = (), first: str = "") 
 
 
 def parent_of(name: str) -> str:
-    """Returns the panel of the add-on that one is in; empty if there is none."""
+    """Returns the parent panel of the add-on; empty if there is none."""
     parent = getattr(getattr(bpy.types, name, None), "bl_parent_id", "")
     return parent if parent.startswith("PREFILTER_") else ""
 
 
 class Unfolded:
-    """A layout whose parts that open and close are open."""
+    """A layout whose collapsible parts are open."""
 
     def __init__(self, layout: bpy.types.UILayout) -> None:
         """Takes a panel's layout."""
         object.__setattr__(self, "_layout", layout)
 
     def panel(self, name: str, **_: object) -> tuple[bpy.types.UILayout, bpy.types.UILayout]:
-        """Begins such a part."""
+        """Begins a collapsible part."""
         return self._layout.panel(f"{name}_unfolded", default_closed=False)
 
     def __getattr__(self, name: str) -> object:
-        """Returns what the layout has."""
+        """Returns an attribute of the layout."""
         return getattr(self._layout, name)
 
     def __setattr__(self, name: str, value: object) -> None:
-        """Sets what the layout has."""
+        """Sets an attribute of the layout."""
         setattr(self._layout, name, value)
 
 
 def unfold(panel: type) -> None:
-    """Has a panel draw its parts open."""
+    """Makes a panel draw its collapsible parts open."""
     draw = panel.draw
 
     class Drawing:
@@ -190,7 +190,7 @@ def show_panel(shown: Photograph) -> Iterator[float]:
         area.spaces.active.image = bpy.data.images[demo_scene.IMAGE]
     if shown.unfolded:
         unfold(panel)
-    # Where nothing is active, the panel is about the others, which are not drawn.
+    # Without an active object, the panel refers to the others, which are not drawn.
     rearrange(shown.opened, only=shown.panels if bpy.context.object else ())
     if panel.bl_space_type == "PROPERTIES":
         yield 0.5
@@ -210,7 +210,7 @@ def split(area: bpy.types.Area) -> bpy.types.Area:
 
 
 def keep_panels_around(panel: type) -> None:
-    """Removes all panels of the Properties editor but those that a panel is in, which open."""
+    """Removes all panels of the Properties editor except the parents of a panel, which open."""
     around = set()
     parent = getattr(panel, "bl_parent_id", "")
     while parent:
@@ -232,7 +232,7 @@ def place_of(area: bpy.types.Area) -> list[int]:
         region = region_of(area, "WINDOW")
         return [region.x, region.y, region.width, region.height]
     region = region_of(area, "UI")
-    # The tabs are as wide as a line of text is high, and a bit.
+    # The tabs are slightly wider than the height of a line of text.
     tabs = round(24 * SCALE)
     return [region.x, region.y, region.width - tabs, region.height]
 
