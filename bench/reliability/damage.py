@@ -317,8 +317,8 @@ def main() -> None:
     report.add_json_option(parser)
     options = parser.parse_args()
     told, rows, wrong = report.Report(), [], []
-    import prefilter.shapes._svg.compositing
-    import prefilter.shapes._svg.opening
+    import prefilter.shapes._svg.draw.compositing
+    import prefilter.shapes._svg.draw.opening
     import prefilter.textures.ktx2_reader  # noqa: F401
 
     seeds = range(options.first, options.first + options.count)

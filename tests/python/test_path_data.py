@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from path_oracle import arc_residual, numbers_of, steps_of
 from prefilter import _native
-from prefilter.shapes._svg.document import TooLargeError
-from prefilter.shapes._svg.outline import Outline, read_path
+from prefilter.shapes._svg.model.limits import TooLargeError
+from prefilter.shapes._svg.model.outline import Outline, read_path
 
 ODD = ["1e400", "-1e-400", ".5", "5.", "+.25", "1.5.5", "1e", "-", "0x1", "00", "1-2", "--3", "."]
 COUNTS = {"m": 2, "l": 2, "h": 1, "v": 1, "c": 6, "s": 4, "q": 4, "t": 2, "a": 7, "z": 0}

@@ -13,6 +13,8 @@ ROOT = Path(__file__).resolve().parents[2]
 ADDON = ROOT / "addon"
 PACKAGE = ROOT / "native" / "python" / "prefilter"
 FLOORS = ("core", "bridge")
+SVG = PACKAGE / "shapes" / "_svg"
+SVG_FLOORS = ("model", "read", "text", "paint", "filters", "draw")
 
 
 def modules(folder: Path) -> dict[str, Path]:
@@ -75,6 +77,21 @@ def wrong_imports(graph: dict[str, set[str]]) -> list[str]:
     return sorted(wrong)
 
 
+def upward_imports(graph: dict[str, set[str]], package: str, floors: tuple[str, ...]) -> list[str]:
+    """Returns the imports of higher folders by lower ones; `floors` goes from the lowest up."""
+    floor_of = {
+        name: floors.index(name.removeprefix(package).split(".")[1])
+        for name in graph
+        if name.startswith(f"{package}.")
+    }
+    return sorted(
+        f"{name} imports {other}"
+        for name, floor in floor_of.items()
+        for other in graph[name]
+        if floor_of.get(other, -1) > floor
+    )
+
+
 def write(folder: Path, files: dict[str, str]) -> Path:
     for name, text in files.items():
         path = folder / name
@@ -94,6 +111,12 @@ def test_rooms_import_what_is_below_them_only():
     graph = imports(ADDON)
     assert {room(name) for name in graph} > {"", *FLOORS}
     assert not wrong_imports(graph)
+
+
+def test_folders_of_svg_import_lower_ones_only():
+    assert {path.parent.name for path in SVG.glob("*/*.py")} == set(SVG_FLOORS)
+    assert [path.name for path in SVG.glob("*.py")] == ["__init__.py"]
+    assert not upward_imports(imports(PACKAGE), "prefilter.shapes._svg", SVG_FLOORS)
 
 
 def test_every_subject_is_registered_and_has_nothing_beside_its_folder():
@@ -127,6 +150,12 @@ def test_a_wrong_import_is_found():
         "addon.mipmaps.c imports addon",
         "addon.mipmaps.c imports addon.voxels.d",
     ]
+
+
+def test_an_upward_import_is_found():
+    graph = {"a.read.one": {"a.model.two", "a.draw.three", "b"}, "a.model.two": set()}
+    graph |= {"a.draw.three": {"a.read.one"}, "a": {"a.draw.three"}, "b": {"a.draw.three"}}
+    assert upward_imports(graph, "a", SVG_FLOORS) == ["a.read.one imports a.draw.three"]
 
 
 @pytest.mark.parametrize(

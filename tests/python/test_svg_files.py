@@ -225,7 +225,7 @@ def test_what_is_large_when_unpacked_is_stopped():
 
 
 def test_repeated_uses_are_counted_before_any_is_drawn(monkeypatch):
-    from prefilter.shapes._svg.drawing import Walk
+    from prefilter.shapes._svg.draw.drawing import Walk
 
     def drawn(*_):
         raise AssertionError
@@ -243,7 +243,7 @@ def used(count, each="<rect width='9' height='9'/>"):
 
 
 def test_repeated_uses_up_to_a_limit(monkeypatch):
-    from prefilter.shapes._svg import limits
+    from prefilter.shapes._svg.model import limits
 
     # Each is an element of the file, and repeats two.
     monkeypatch.setattr(limits, "MOST_USED", 20)
@@ -262,7 +262,7 @@ def test_repeated_uses_up_to_a_limit(monkeypatch):
     ],
 )
 def test_lines_curves_and_dashes_are_counted(monkeypatch, body):
-    from prefilter.shapes._svg import limits, outline
+    from prefilter.shapes._svg.model import limits, outline
 
     for module in (limits, outline):
         monkeypatch.setattr(module, "MOST_SEGMENTS", 200)
@@ -274,7 +274,7 @@ def test_lines_curves_and_dashes_are_counted(monkeypatch, body):
 
 
 def test_elements_are_counted_while_they_are_read(monkeypatch):
-    from prefilter.shapes._svg import document
+    from prefilter.shapes._svg.read import document
 
     monkeypatch.setattr(document, "MOST_ELEMENTS", 100)
     assert read("<g/>" * 99).shapes == []

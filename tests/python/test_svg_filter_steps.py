@@ -420,8 +420,8 @@ def test_filters_of_what_is_turned_are_turned(turn):
 
 
 def test_what_rounding_leaves_of_colors_stays_small():
-    from prefilter.shapes._svg.filtering import filtered
-    from prefilter.shapes._svg.tree import Filter, Group, Step
+    from prefilter.shapes._svg.filters.evaluation import filtered
+    from prefilter.shapes._svg.model.tree import Filter, Group, Step
 
     def blurred(pixels):
         identity = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)

@@ -104,7 +104,7 @@ def points_of(segments):
 @pytest.mark.parametrize("is_large", [False, True])
 @pytest.mark.parametrize("is_positive", [False, True])
 def test_arcs_lie_on_their_ellipse_and_go_round_it_as_said(rotation, is_large, is_positive):
-    from prefilter.shapes._svg.outline import read_path
+    from prefilter.shapes._svg.model.outline import read_path
 
     start, end, rx, ry = np.array([20.0, 30.0]), np.array([47.0, 61.0]), 30.0, 45.0
     data = f"M 20 30 A {rx} {ry} {rotation} {int(is_large)} {int(is_positive)} 47 61"

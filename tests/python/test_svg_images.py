@@ -9,7 +9,7 @@ import numpy as np
 import prefilter
 import pytest
 from drawings import GREEN, RED, SIZE, box, by_hand, same, svg, whole
-from prefilter.shapes._svg.pictures import size_of
+from prefilter.shapes._svg.read.image_files import size_of
 from prefilter.workflows.files import png
 
 
@@ -121,16 +121,16 @@ def test_where_images_are():
 def test_pictures_are_the_same_by_either_library(monkeypatch, channels):
     pytest.importorskip("PIL")
     pytest.importorskip("OpenImageIO")
-    from prefilter.shapes._svg import pictures
+    from prefilter.shapes._svg.read import image_files
 
     random = np.random.default_rng(2)
     for kind in (np.uint8, np.uint16):
         values = random.integers(0, np.iinfo(kind).max, (5, 7, channels), kind)
         data = png.encoded(values)
-        first = pictures.read_picture(data)
+        first = image_files.read_picture(data)
         with monkeypatch.context() as patched:
-            patched.setattr(pictures, "import_module", missing)
-            second = pictures.read_picture(data)
+            patched.setattr(image_files, "import_module", missing)
+            second = image_files.read_picture(data)
         # Pillow cuts colors of 16 bits off, which are rounded elsewhere.
         assert np.abs(first.astype(int) - second).max() <= (kind is np.uint16)
         expected = np.rint(values / (1 if kind is np.uint8 else 257)).astype(np.uint8)[::-1]
@@ -156,7 +156,8 @@ def test_drawings_without_a_size_fit_themselves_into_their_place(aspect):
 
 
 def test_images_are_read_once_and_counted(monkeypatch):
-    from prefilter.shapes._svg import images, limits
+    from prefilter.shapes._svg.model import limits
+    from prefilter.shapes._svg.paint import images
 
     href = data_url(np.full((4, 4, 4), 255, np.uint8))
     body = f'<defs><image id="i" width="9" height="9" href="{href}"/></defs>'

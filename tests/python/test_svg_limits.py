@@ -19,7 +19,7 @@ def refused(body, words):
 
 
 def test_attributes_are_counted(monkeypatch):
-    from prefilter.shapes._svg import document
+    from prefilter.shapes._svg.read import document
 
     monkeypatch.setattr(document, "MOST_ATTRIBUTES", 100)
     assert read("<g a='1' b='2'/>" * 40).shapes == []
@@ -37,7 +37,7 @@ def test_attributes_are_counted(monkeypatch):
     ],
 )
 def test_long_attributes_are_refused(monkeypatch, body):
-    from prefilter.shapes._svg import document
+    from prefilter.shapes._svg.read import document
 
     monkeypatch.setattr(document, "MOST_VALUE", 1000)
     monkeypatch.setitem(document._MOST_VALUES, "points", 1000)
@@ -46,7 +46,7 @@ def test_long_attributes_are_refused(monkeypatch, body):
 
 
 def test_long_paths_and_what_other_programs_keep_are_read(monkeypatch):
-    from prefilter.shapes._svg import document
+    from prefilter.shapes._svg.read import document
 
     monkeypatch.setattr(document, "MOST_VALUE", 1000)
     path = "M0 0" + "h1v1" * 400
@@ -55,7 +55,7 @@ def test_long_paths_and_what_other_programs_keep_are_read(monkeypatch):
 
 
 def test_text_is_counted(monkeypatch):
-    from prefilter.shapes._svg import document
+    from prefilter.shapes._svg.read import document
 
     monkeypatch.setattr(document, "MOST_TEXT", 1000)
     for tag in ("text", "style"):
@@ -64,7 +64,7 @@ def test_text_is_counted(monkeypatch):
 
 
 def test_style_sheets_are_counted_but_for_what_they_quote(monkeypatch):
-    from prefilter.shapes._svg import style_rules
+    from prefilter.shapes._svg.read import style_rules
 
     monkeypatch.setattr(style_rules, "MOST_WRITTEN", 1000)
     font = f"@font-face {{ src: url(data:font/ttf;base64,{'A' * 4000}) }}"
@@ -95,7 +95,7 @@ def test_selectors_in_a_list_have_parts_of_their_own():
 
 
 def test_what_selectors_look_at_is_counted(monkeypatch):
-    from prefilter.shapes._svg import styles
+    from prefilter.shapes._svg.read import styles
 
     monkeypatch.setattr(styles, "MOST_ANCESTORS", 200_000)
     # Each part is tried at each ancestor: 100 over 10 is the number of ways.
@@ -105,7 +105,8 @@ def test_what_selectors_look_at_is_counted(monkeypatch):
 
 
 def test_what_is_read_is_not_kept():
-    from prefilter.shapes._svg import styles, values
+    from prefilter.shapes._svg.model import values
+    from prefilter.shapes._svg.read import styles
 
     read("<rect style='fill:red'/>")
     tracemalloc.start()

@@ -50,7 +50,7 @@ def test_layers_have_limits(monkeypatch):
     # Each has one group in it, and becomes a layer.
     with pytest.raises(ValueError, match="source: layers are nested more than 48 deep"):
         prefilter.rasterize_svg(svg(deep), 8, 8)
-    from prefilter.shapes._svg import compositing
+    from prefilter.shapes._svg.draw import compositing
 
     monkeypatch.setattr(compositing, "MOST_LAYER_PIXELS", 1000)
     wide = f'<g opacity="0.5">{inner}</g>' * 20
@@ -63,7 +63,7 @@ def test_layers_have_limits(monkeypatch):
 
 
 def test_boxes_of_groups_in_groups_are_counted(monkeypatch):
-    from prefilter.shapes._svg import limits
+    from prefilter.shapes._svg.model import limits
 
     clip = f'<clipPath id="c" clipPathUnits="objectBoundingBox">{box(0, 0, 1, 1)}</clipPath>'
     body = clip + '<g clip-path="url(#c)">' * 20 + box(0, 0, 50, 50) * 20 + "</g>" * 20
@@ -82,7 +82,7 @@ def test_boxes_of_groups_in_groups_are_counted(monkeypatch):
     ],
 )
 def test_what_masks_and_others_repeat_is_counted_before_it_is_drawn(monkeypatch, group):
-    from prefilter.shapes._svg.drawing import Walk
+    from prefilter.shapes._svg.draw.drawing import Walk
 
     def visited(*_):
         raise AssertionError

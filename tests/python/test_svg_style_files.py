@@ -8,7 +8,7 @@ import numpy as np
 import prefilter
 import pytest
 from drawings import read, svg
-from prefilter.shapes._svg import style_rules
+from prefilter.shapes._svg.read import style_rules
 
 BOX = '<rect width="100" height="100" class="a"/>'
 GREEN, RED = ".a{fill:green}", ".a{fill:red}"

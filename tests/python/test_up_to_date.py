@@ -10,7 +10,7 @@ import numpy as np
 import prefilter
 import pytest
 from command_files import fails, noise, run, write_picture, write_quad
-from prefilter.shapes._svg.document import MOST_UNPACKED
+from prefilter.shapes._svg.read.document import MOST_UNPACKED
 from prefilter.workflows import mesh_files
 from prefilter.workflows.files import png
 from prefilter.workflows.up_to_date import (

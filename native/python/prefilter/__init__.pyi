@@ -70,7 +70,7 @@ from .sampling.sampling_table import TableSection as TableSection
 from .sampling.stochastic import PickedTexels as PickedTexels
 from .sampling.stochastic import pick_texels as pick_texels
 from .sampling.stochastic import sample_stochastic as sample_stochastic
-from .shapes._svg.warnings import SvgWarning as SvgWarning
+from .shapes._svg.model.warnings import SvgWarning as SvgWarning
 from .shapes.rasterization import RASTER_FILTERS as RASTER_FILTERS
 from .shapes.rasterization import rasterize as rasterize
 from .shapes.shape import Shape as Shape

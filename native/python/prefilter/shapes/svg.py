@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 from .._border.arguments import ProgressCallback, as_one_of, as_progress
 from .._native import Cancelled
-from ._svg.warnings import SvgWarning, Warnings
+from ._svg.model.warnings import SvgWarning, Warnings
 from .shape import Shape
 
 if TYPE_CHECKING:
-    from ._svg.drawing import Drawing
+    from ._svg.draw.drawing import Drawing
 
 
 class SvgDrawing:
@@ -24,8 +24,8 @@ class SvgDrawing:
     """
 
     def __init__(self, name: str, drawing: "Drawing", light: str, warnings: Warnings) -> None:
-        from ._svg.flat import Flat
-        from ._svg.opening import refusing
+        from ._svg.draw.flattening import Flat
+        from ._svg.draw.opening import refusing
 
         self._name = name
         self._drawing = drawing
@@ -82,7 +82,7 @@ class SvgDrawing:
         for name, side in (("width", width), ("height", height)):
             if isinstance(side, bool) or not 0.0 < side < 1e7:
                 raise ValueError(f"{name}: {side!r}; a positive number of pixels is needed")
-        from ._svg.outlining import Outlining
+        from ._svg.draw.outlines import Outlining
 
         tell = teller(as_progress(progress))
         to_pixels, around = self._drawing.placement(float(width), float(height))
@@ -133,8 +133,8 @@ def read_svg(
     """
     as_one_of("light", light, ("linear", "srgb"))
     # Style sheets take modules that those who read no drawings need not wait for.
-    from ._svg.opening import open_drawing
-    from ._svg.paint_servers import Colors
+    from ._svg.draw.opening import open_drawing
+    from ._svg.model.gradients import Colors
 
     tell = teller(as_progress(progress))
     colors = Colors(light == "linear", is_stepped=False)

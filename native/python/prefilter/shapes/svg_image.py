@@ -11,7 +11,7 @@ import numpy.typing as npt
 from .._border.arguments import ProgressCallback, as_name, as_one_of, as_progress, as_size
 from .._border.arrays import FloatArray, as_threads
 from .._border.names import RasterFilter
-from ._svg.warnings import SvgWarning
+from ._svg.model.warnings import SvgWarning
 from .rasterization import RASTER_FILTERS, as_whether_bytes, to_bytes
 from .svg import teller
 
@@ -86,8 +86,8 @@ class SvgPicture:
         fonts: Iterable[str | os.PathLike[str]] | None,
         progress: ProgressCallback | None,
     ) -> None:
-        from ._svg.opening import open_drawing
-        from ._svg.paint_servers import Colors
+        from ._svg.draw.opening import open_drawing
+        from ._svg.model.gradients import Colors
 
         colors = Colors(light == "linear", is_stepped=light == "srgb")
         self._name, self._drawing, warnings = open_drawing(
@@ -126,8 +126,8 @@ class SvgPicture:
             threads: As there.
             progress: As there.
         """
-        from ._svg.compositing import Compositor
-        from ._svg.opening import refusing
+        from ._svg.draw.compositing import Compositor
+        from ._svg.draw.opening import refusing
 
         drawing = self._drawing
         if place is None:

@@ -102,7 +102,7 @@ def stands_alone(drawing: str | os.PathLike[str]) -> bool:
     """
     data = Path(drawing).read_bytes()
     if data[:2] == _GZIP:
-        from ..shapes._svg.document import unpacked
+        from ..shapes._svg.read.document import unpacked
 
         try:
             data = b"".join(unpacked(data, str(drawing)))

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""From a file to a drawing."""
+
+import os
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+
+from ..model.gradients import Colors
+from ..model.limits import TooLargeError
+from ..model.warnings import Warnings
+from ..read.document import read_document
+from ..read.fonts import FontPlaces
+from .drawing import Drawing
+
+
+def open_drawing(
+    source: str | os.PathLike[str] | bytes,
+    *,
+    colors: Colors,
+    reads_files: bool,
+    tell: Callable[[float], None],
+    fonts: Iterable[str | os.PathLike[str]] | None,
+) -> tuple[str, Drawing, Warnings]:
+    """Reads a drawing, and images beside it if it is to. See `prefilter.read_svg`.
+
+    Returns:
+        What messages call it, the drawing, and what is wrong with it.
+    """
+    places = FontPlaces(fonts)
+    document = read_document(source, lambda share: tell(0.3 * share))
+    if not reads_files:
+        document.folder = None
+    warnings = Warnings()
+    with refusing(document.name):
+        drawing = Drawing(document, colors, warnings, lambda share: tell(0.3 + 0.7 * share), places)
+    return document.name, drawing, warnings
+
+
+@contextmanager
+def refusing(name: str) -> Iterator[None]:
+    """Has what is too large or too deep refused as a ValueError that names the drawing."""
+    try:
+        yield
+    except RecursionError:
+        raise ValueError(f"{name}: values, styles or groups are nested too deeply") from None
+    except TooLargeError as error:
+        raise ValueError(f"{name}: {error}") from None

@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Layers of groups with a filter: upright, or as the group was before it was turned."""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from .... import _native
+from ...affine import Matrix, inverse, multiplied
+from ..model.tree import Box, Filter, Group, carried, common
+from .evaluation import filtered, is_upright, reach_of
+from .warping import turned_pixels
+
+FloatArray = npt.NDArray[np.float32]
+Window = tuple[int, int, int, int]
+"""Pixels: left, low, right, high; the last two are not in it."""
+Draw = Callable[[Group, Matrix, Window], FloatArray]
+"""Returns the pixels of what is in a group; the matrix leads to them from the tree."""
+
+# What pixels of a turned image look at beside them.
+_SPARE = 3
+
+
+def filtered_layer(
+    draw: Draw, group: Group, box: Box, matrix: Matrix, window: Window, threads: int
+) -> FloatArray:
+    """What the filter of a group makes of it.
+
+    Args:
+        draw: Draws groups.
+        group: The group.
+        box: Where the result ends, in the tree's units.
+        matrix: From there to pixels.
+        window: The pixels to return.
+        threads: How many to use.
+    """
+    filter_ = _filter_of(group)
+    to_pixels = multiplied(matrix, filter_.matrix)
+    # What is farther away than half a side is left out: it would take too much memory.
+    most = max(window[2] - window[0], window[3] - window[1]) / 2.0
+    reach = math.ceil(min(reach_of(filter_, matrix), most))
+    left, low, right, high = window
+    around = (float(left - reach), float(low - reach), float(right + reach), float(high + reach))
+    if is_upright(to_pixels):
+        return _upright(draw, group, carried(box, matrix), around, (matrix, to_pixels), window)
+    return _turned(draw, group, box, around, (matrix, to_pixels), window, threads)
+
+
+def _upright(
+    draw: Draw, group: Group, box: Box, around: Box, ways: tuple[Matrix, Matrix], window: Window
+) -> FloatArray:
+    layer = np.zeros((window[3] - window[1], window[2] - window[0], 4), np.float32)
+    region = _pixels(common(box, around))
+    shared = common((*map(float, window),), (*map(float, region),)) if region else None  # type: ignore[arg-type]
+    if region is None or shared is None:
+        return layer
+    made = _made(draw, group, ways, region)
+    left, low, right, high = map(int, shared)
+    rows, columns = (
+        slice(low - window[1], high - window[1]),
+        slice(left - window[0], right - window[0]),
+    )
+    layer[rows, columns] = made[
+        low - region[1] : high - region[1], left - region[0] : right - region[0]
+    ]
+    return layer
+
+
+def _turned(
+    draw: Draw,
+    group: Group,
+    box: Box,
+    around: Box,
+    ways: tuple[Matrix, Matrix],
+    window: Window,
+    threads: int,
+) -> FloatArray:
+    """The group is drawn as if it was not turned, and its filter's result is."""
+    to_pixels = ways[1]
+    filter_ = _filter_of(group)
+    width, height = window[2] - window[0], window[3] - window[1]
+    across, along = _native.hypot(*to_pixels[:2]), _native.hypot(*to_pixels[2:4])
+    most = 2.0 * max(around[2] - around[0], around[3] - around[1])
+
+    def placed() -> tuple[Matrix, Window | None]:
+        upright: Matrix = (across, 0.0, 0.0, -along, 0.0, 0.0)
+        whole = carried(box, multiplied(upright, inverse(filter_.matrix)))
+        seen = carried(around, multiplied(upright, inverse(to_pixels)))
+        return upright, _pixels(common(whole, seen))
+
+    upright, region = placed()
+    largest = max(region[2] - region[0], region[3] - region[1]) if region else 0
+    if largest > most:
+        # What is sheared much would take many pixels.
+        across, along = (side * most / largest for side in (across, along))
+        upright, region = placed()
+    if region is None:
+        return np.zeros((height, width, 4), np.float32)
+    to_upright = multiplied(upright, inverse(filter_.matrix))
+    made = _made(draw, _grown(group, across, along), (to_upright, upright), region)
+    back = multiplied(
+        (1.0, 0.0, 0.0, 1.0, -region[0], -region[1]), multiplied(upright, inverse(to_pixels))
+    )
+    back = multiplied(back, (1.0, 0.0, 0.0, 1.0, window[0], window[1]))
+    return turned_pixels(made, back, width, height, threads)
+
+
+def _made(draw: Draw, group: Group, ways: tuple[Matrix, Matrix], region: Window) -> FloatArray:
+    return filtered(
+        lambda shown: draw(shown, ways[0], region), group, _filter_of(group), ways[1], region
+    )
+
+
+def _grown(group: Group, across: float, along: float) -> Group:
+    """A group whose filter goes on beyond its region: what is turned is cut off later."""
+    filter_ = _filter_of(group)
+    if filter_.region is None:
+        return group
+    left, top, right, bottom = filter_.region
+    x, y = _SPARE / across, _SPARE / along
+    region = (left - x, top - y, right + x, bottom + y)
+    return replace(group, filter=replace(filter_, region=region))
+
+
+def _filter_of(group: Group) -> Filter:
+    assert group.filter is not None
+    return group.filter
+
+
+def _pixels(box: Box | None) -> Window | None:
+    """Those that a box touches, and some more."""
+    if box is None:
+        return None
+    left, low = math.floor(box[0]) - _SPARE, math.floor(box[1]) - _SPARE
+    return left, low, math.ceil(box[2]) + _SPARE, math.ceil(box[3]) + _SPARE

@@ -1,0 +1,312 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""The steps of filters: what each element says of itself."""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from .... import _native
+from ...affine import Matrix
+from ..model.blending import BLEND_MODES
+from ..model.colors import Color
+from ..model.tree import Box
+from ..model.values import as_color, as_number, leading_numbers
+from ..read.context import Sources
+from ..read.document import SvgElement
+
+_OPERATORS = ("over", "in", "out", "atop", "xor", "lighter", "arithmetic")
+_CHANNELS = ("feFuncR", "feFuncG", "feFuncB", "feFuncA")
+_EDGE_MODES = ("duplicate", "wrap", "none")
+_LIGHTS = ("feDistantLight", "fePointLight", "feSpotLight")
+_MOST_WEIGHTS = 400
+_MOST_OCTAVES = 10
+# Of red, green and blue, as Filter Effects has them.
+_RED, _GREEN, _BLUE = 0.213, 0.715, 0.072
+_SATURATION = np.array([[_RED, _GREEN, _BLUE]] * 3)
+
+
+class UnknownStepError(Exception):
+    """A filter needs something that is not supported; the message names it."""
+
+
+@dataclass(frozen=True)
+class FilterPlace:
+    """Where a filter is applied.
+
+    Attributes:
+        units: From those of the steps' lengths to the element's: shares of a box, or its own.
+        region: Of the filter, in the element's units.
+    """
+
+    units: Matrix
+    region: Box
+
+
+Found = tuple[list[str], list[float], str]
+"""The names of inputs, numbers, and the name of an operator or mode."""
+Matrix5 = npt.NDArray[np.float64]
+
+
+def _numbers(text: str | None, default: list[float]) -> list[float]:
+    found, is_whole = leading_numbers(text or "")
+    return found if found and is_whole else default
+
+
+def _number(element: SvgElement, name: str, default: float) -> float:
+    found = as_number(element.get(name, ""))
+    return default if found is None else found
+
+
+def _in(element: SvgElement, name: str = "in") -> str:
+    return element.get(name, "").strip()
+
+
+def _blur(element: SvgElement, place: FilterPlace, _: Sources) -> Found:
+    return [_in(element)], _deviations(element, 0.0, place), ""
+
+
+def _deviations(element: SvgElement, default: float, place: FilterPlace) -> list[float]:
+    numbers = _numbers(element.get("stdDeviation"), [default])
+    if len(numbers) > 2 or min(numbers) < 0.0:
+        numbers = [0.0]
+    return _scales(numbers[0], numbers[-1], place)
+
+
+def _scales(x: float, y: float, place: FilterPlace) -> list[float]:
+    """Lengths along x and y in the element's units."""
+    return [x * place.units[0], y * place.units[3]]
+
+
+def _offset(element: SvgElement, place: FilterPlace, _: Sources) -> Found:
+    x, y = _number(element, "dx", 0.0), _number(element, "dy", 0.0)
+    return [_in(element)], _scales(x, y, place), ""
+
+
+def _flood(element: SvgElement, place: FilterPlace, sources: Sources) -> Found:
+    del place
+    color = _color(element, "flood-color", (0.0, 0.0, 0.0, 1.0), sources)
+    opacity = as_number(sources.sheets.declared(element).get("flood-opacity", "1"))
+    alpha = color[3] * (1.0 if opacity is None else min(max(opacity, 0.0), 1.0))
+    return [], [*color[:3], alpha], ""
+
+
+def _color(element: SvgElement, name: str, default: Color, sources: Sources) -> Color:
+    color = as_color(sources.sheets.declared(element).get(name, "none"))
+    if color is None:
+        return default
+    return sources.sheets.style(element).color if isinstance(color, str) else color
+
+
+def _shadow(element: SvgElement, place: FilterPlace, sources: Sources) -> Found:
+    _, color, _ = _flood(element, place, sources)
+    move = _scales(_number(element, "dx", 2.0), _number(element, "dy", 2.0), place)
+    return [_in(element)], [*_deviations(element, 2.0, place), *move, *color], ""
+
+
+def _merge(element: SvgElement, _: FilterPlace, sources: Sources) -> Found:
+    del sources
+    nodes = [node for node in element if node.tag == "feMergeNode"]
+    return [_in(node) for node in nodes if isinstance(node, SvgElement)], [], ""
+
+
+def _composite(element: SvgElement, _: FilterPlace, sources: Sources) -> Found:
+    del sources
+    name = element.get("operator", "over").strip()
+    factors = [_number(element, f"k{k}", 0.0) for k in range(1, 5)]
+    inputs = [_in(element), _in(element, "in2")]
+    return inputs, factors, name if name in _OPERATORS else "over"
+
+
+def _blend(element: SvgElement, _: FilterPlace, sources: Sources) -> Found:
+    del sources
+    name = element.get("mode", "normal").strip()
+    return [_in(element), _in(element, "in2")], [], name if name in BLEND_MODES else "normal"
+
+
+def saturating(share: float) -> Matrix5:
+    """Rows of red, green, blue and alpha that keep a share of what differs from gray."""
+    matrix = np.eye(4, 5)
+    matrix[:3, :3] = _SATURATION + share * (np.eye(3) - _SATURATION)
+    return matrix
+
+
+def turning_hues(degrees: float) -> Matrix5:
+    """Rows likewise that turn hues."""
+    angle = degrees * (np.pi / 180.0)
+    cos, sin = _native.cos(angle), _native.sin(angle)
+    turn = np.array([[-0.213, -0.715, 0.928], [0.143, 0.140, -0.283], [-0.787, 0.715, 0.072]])
+    matrix = np.eye(4, 5)
+    matrix[:3, :3] = _SATURATION + cos * (np.eye(3) - _SATURATION) + sin * turn
+    return matrix
+
+
+def _color_matrix(element: SvgElement, _: FilterPlace, sources: Sources) -> Found:
+    del sources
+    kind = element.get("type", "matrix").strip()
+    matrix = np.eye(4, 5)
+    if kind == "luminanceToAlpha":
+        matrix = np.zeros((4, 5))
+        matrix[3, :3] = _RED, _GREEN, _BLUE
+    elif kind == "saturate":
+        matrix = saturating(_numbers(element.get("values"), [1.0])[0])
+    elif kind == "hueRotate":
+        matrix = turning_hues(_numbers(element.get("values"), [0.0])[0])
+    else:
+        values = _numbers(element.get("values"), [])
+        if len(values) == 20:
+            matrix = np.array(values).reshape(4, 5)
+    return [_in(element)], matrix.ravel().tolist(), ""
+
+
+def _transfer(element: SvgElement, _: FilterPlace, sources: Sources) -> Found:
+    """For each channel: how many numbers, and the values at equal distances, or a step each."""
+    del sources
+    numbers: list[float] = []
+    for name in _CHANNELS:
+        functions = [child for child in element if child.tag == name]
+        function = functions[-1] if functions else None
+        kind = function.get("type", "identity").strip() if function is not None else "identity"
+        if isinstance(function, SvgElement) and kind == "gamma":
+            # No values, and a power instead.
+            numbers += [0.0, _number(function, "amplitude", 1.0)]
+            numbers += [_number(function, "exponent", 1.0), _number(function, "offset", 0.0)]
+            continue
+        values = [0.0, 1.0]
+        if isinstance(function, SvgElement) and kind == "linear":
+            start = _number(function, "intercept", 0.0)
+            values = [start, start + _number(function, "slope", 1.0)]
+        elif function is not None and kind in ("table", "discrete"):
+            values = _numbers(function.get("tableValues"), values)
+        is_discrete = (
+            kind == "discrete" and function is not None and "tableValues" in function.attrib
+        )
+        numbers += [-len(values) if is_discrete else len(values), *values]
+    return [_in(element)], numbers, ""
+
+
+def _morphology(element: SvgElement, place: FilterPlace, _: Sources) -> Found:
+    numbers = _numbers(element.get("radius"), [0.0])
+    if len(numbers) > 2 or min(numbers) < 0.0:
+        numbers = [0.0]
+    is_dilating = element.get("operator", "erode").strip() == "dilate"
+    lengths = _scales(numbers[0], numbers[-1], place)
+    return [_in(element)], lengths, "dilate" if is_dilating else "erode"
+
+
+def _nothing(element: SvgElement) -> Found:
+    """A step of wrong attributes: its result is transparent."""
+    return [_in(element)], [], "nothing"
+
+
+def _tile(element: SvgElement, _: FilterPlace, sources: Sources) -> Found:
+    del sources
+    return [_in(element)], [], ""
+
+
+def _convolution(element: SvgElement, _: FilterPlace, sources: Sources) -> Found:
+    """Columns, rows, the target's column and row, whether alpha stays, bias, and weights."""
+    del sources
+    sizes = _numbers(element.get("order"), [] if "order" in element.attrib else [3.0])
+    weights = _numbers(element.get("kernelMatrix"), [])
+    if len(sizes) not in (1, 2) or any(size != int(size) or size < 1.0 for size in sizes):
+        return _nothing(element)
+    columns, rows = int(sizes[0]), int(sizes[-1])
+    if columns * rows != len(weights):
+        return _nothing(element)
+    if len(weights) > _MOST_WEIGHTS:
+        raise UnknownStepError(f"more than {_MOST_WEIGHTS} weights of <feConvolveMatrix>")
+    x = _number(element, "targetX", columns // 2)
+    y = _number(element, "targetY", rows // 2)
+    if not (0 <= x < columns and 0 <= y < rows):
+        return _nothing(element)
+    divisor = _number(element, "divisor", 0.0) or sum(weights) or 1.0
+    keeps_alpha = element.get("preserveAlpha", "false").strip() == "true"
+    numbers = [columns, rows, math.floor(x), math.floor(y), float(keeps_alpha)]
+    numbers += [_number(element, "bias", 0.0), *(weight / divisor for weight in weights)]
+    mode = element.get("edgeMode", "duplicate").strip()
+    return [_in(element)], numbers, mode if mode in _EDGE_MODES else "duplicate"
+
+
+def _turbulence(element: SvgElement, _: FilterPlace, sources: Sources) -> Found:
+    """Frequencies, octaves, the seed, and whether tiles fit."""
+    del sources
+    numbers = _numbers(element.get("baseFrequency"), [0.0])
+    if len(numbers) > 2 or min(numbers) < 0.0:
+        numbers = [0.0]
+    octaves = _number(element, "numOctaves", 1.0)
+    if octaves < 1.0:
+        return _nothing(element)
+    fits = element.get("stitchTiles", "noStitch").strip() == "stitch"
+    found = [numbers[0], numbers[-1], float(min(int(octaves), _MOST_OCTAVES))]
+    found += [float(int(_number(element, "seed", 0.0))), float(fits)]
+    is_fractal = element.get("type", "turbulence").strip() == "fractalNoise"
+    return [], found, "fractalNoise" if is_fractal else "turbulence"
+
+
+def _lighting(element: SvgElement, place: FilterPlace, sources: Sources) -> Found:
+    """Height, strength, shininess, color, and what the light says of itself."""
+    color = _color(element, "lighting-color", (1.0, 1.0, 1.0, 1.0), sources)
+    lights = [child for child in element if child.tag in _LIGHTS]
+    if not lights or not isinstance(lights[0], SvgElement):
+        return _nothing(element)
+    is_diffuse = element.tag == "feDiffuseLighting"
+    strength = _number(element, "diffuseConstant" if is_diffuse else "specularConstant", 1.0)
+    shininess = min(max(_number(element, "specularExponent", 1.0), 1.0), 128.0)
+    numbers = [_number(element, "surfaceScale", 1.0), max(strength, 0.0), shininess, *color[:3]]
+    return [_in(element)], [*numbers, *_light(lights[0], place)], lights[0].tag
+
+
+def _light(light: SvgElement, place: FilterPlace) -> list[float]:
+    """Of a distant one its direction; of others their place, and what they point at."""
+    if light.tag == "feDistantLight":
+        angles = (
+            _number(light, name, 0.0) * (math.pi / 180.0) for name in ("azimuth", "elevation")
+        )
+        azimuth, elevation = angles
+        flat = _native.cos(elevation)
+        x, y = flat * _native.cos(azimuth), flat * _native.sin(azimuth)
+        return [x, y, _native.sin(elevation)]
+    found = _place_of(light, ("x", "y", "z"), place)
+    if light.tag == "feSpotLight":
+        found += _place_of(light, ("pointsAtX", "pointsAtY", "pointsAtZ"), place)
+        exponent = _number(light, "specularExponent", 1.0)
+        # Browsers take an angle of 0 for one that is not said.
+        cone = _number(light, "limitingConeAngle", 0.0) or 180.0
+        found += [min(max(exponent, 1.0), 128.0)]
+        found += [_native.cos(min(abs(cone), 180.0) * (math.pi / 180.0))]
+    return found
+
+
+def _place_of(light: SvgElement, names: tuple[str, str, str], place: FilterPlace) -> list[float]:
+    x, y, z = (_number(light, name, 0.0) for name in names)
+    a, _, _, d, e, f = place.units
+    return [a * x + e, d * y + f, math.sqrt((a * a + d * d) / 2.0) * z]
+
+
+def _image(element: SvgElement, _: FilterPlace, sources: Sources) -> Found:
+    del element, sources
+    return [], [], ""
+
+
+STEPS: Mapping[str, Callable[[SvgElement, FilterPlace, Sources], Found]] = {
+    "feGaussianBlur": _blur,
+    "feOffset": _offset,
+    "feFlood": _flood,
+    "feDropShadow": _shadow,
+    "feMerge": _merge,
+    "feComposite": _composite,
+    "feBlend": _blend,
+    "feColorMatrix": _color_matrix,
+    "feComponentTransfer": _transfer,
+    "feMorphology": _morphology,
+    "feTile": _tile,
+    "feConvolveMatrix": _convolution,
+    "feTurbulence": _turbulence,
+    "feDiffuseLighting": _lighting,
+    "feSpecularLighting": _lighting,
+    "feImage": _image,
+}

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Clip paths: what is seen of an element is what their shapes fill."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from ...affine import multiplied
+from ..model.clips import clip_of
+from ..model.tree import Clip, ClipPart
+from ..model.values import as_paint
+from ..read.basic_shapes import BASIC_SHAPES
+from ..read.context import Context, Sources
+from ..read.document import SvgElement
+from ..read.nesting import moved, used
+from ..read.tags import NOT_DRAWN
+from .bounds import object_bounds
+
+
+def clipped(element: SvgElement, context: Context, sources: Sources) -> Context | None:
+    """The context within the clip path of an element, if it has one; None where nothing shows.
+
+    `context` is that within the element.
+    """
+    text = sources.sheets.declared(element).get("clip-path", "none")
+    if text.lower() == "none":
+        return context
+    paint = as_paint(text)
+    if paint is None or not paint.server:
+        sources.warnings.unsupported("clip-path", f"ignored: {text[:40]}", element.line)
+        return context
+    path = sources.referred(text)
+    if path is None or path.tag != "clipPath":
+        sources.warnings.broken("clip-path", "ignored", element.line)
+        return context
+    if path in context.uses:
+        sources.warnings.broken("clip-path", "ignored, as it refers to itself", element.line)
+        return context
+    clip = _clip(path, element, context, sources)
+    if clip is None:
+        return None
+    return replace(context, clips=(*context.clips, clip))
+
+
+def _clip(path: SvgElement, element: SvgElement, context: Context, sources: Sources) -> Clip | None:
+    """What a clip path leaves of an element; None where that is nothing."""
+    place = replace(context, clips=(), uses=(*context.uses, path), use=None)
+    around = clipped(path, place, sources)
+    if around is None:
+        return None
+    inside = moved(path, place, sources)
+    if path.get("clipPathUnits") == "objectBoundingBox":
+        box = object_bounds(element, context, sources)
+        if box is None or box[2] <= box[0] or box[3] <= box[1]:
+            return None
+        shares = (box[2] - box[0], 0.0, 0.0, box[3] - box[1], box[0], box[1])
+        inside = replace(inside, matrix=multiplied(inside.matrix, shares), viewport=(1.0, 1.0))
+    inside = replace(inside, style=sources.sheets.style(path))
+    parts: list[ClipPart] = []
+    for child in path:
+        assert isinstance(child, SvgElement)
+        if child.tag not in NOT_DRAWN:
+            parts.extend(_parts(child, inside, sources))
+    clip = clip_of(parts, around.clips)
+    return clip if clip.bounds is not None else None
+
+
+def _parts(child: SvgElement, context: Context, sources: Sources) -> Iterator[ClipPart]:
+    """Yields what a child of a clip path lets through."""
+    declared = sources.sheets.declared(child)
+    if declared.get("display", "") == "none":
+        return
+    place = clipped(child, moved(child, replace(context, clips=()), sources), sources)
+    if place is None:
+        return
+    if child.tag == "use":
+        for target, inside in used(child, place, sources):
+            if target.tag in BASIC_SHAPES or target.tag == "text":
+                for part in _parts(target, inside, sources):
+                    yield replace(part, clips=(*place.clips, *part.clips))
+        return
+    if child.tag == "text":
+        # Fonts take modules that those who draw no text need not wait for.
+        from ..text.text_elements import TextPiece, drawn_text
+
+        for piece in drawn_text(child, place, sources).pieces:
+            if not isinstance(piece, TextPiece):
+                continue
+            sources.budget.take_segments(len(piece.outline), 0.0)
+            yield ClipPart(piece.outline, "nonzero", place.matrix, place.clips)
+    if child.tag not in BASIC_SHAPES or child.tag == "line":
+        return
+    outline = sources.outline(child, place.units)
+    if outline is None or place.style.visibility != "visible":
+        return
+    sources.budget.take_segments(len(outline), 0.0)
+    yield ClipPart(outline, place.style.clip_rule, place.matrix, place.clips)

@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Images in drawings: those that are embedded, and files beside the drawing."""
+
+from collections.abc import Callable
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from ...affine import Matrix, multiplied
+from ..model.clips import box_clip
+from ..model.gradients import Colors
+from ..model.limits import TooLargeError
+from ..model.tree import Clip, Group, Picture, carried
+from ..model.values import Length
+from ..model.view_boxes import ViewBox, placed
+from ..read.context import Context, Sources
+from ..read.document import SvgElement
+from ..read.external_resources import ElsewhereError, Place, UnusableError, read_address
+from ..read.image_files import PictureError, ending_of, read_picture, size_of
+from ..read.nesting import SHOWN
+from ..read.page import Page
+
+_ZERO, _AUTO = Length(0.0), Length(-1.0)
+_PIXELATED = ("pixelated", "crisp-edges", "optimizespeed", "-moz-crisp-edges")
+MOST_BYTES = 1 << 28
+
+
+class Inner(Protocol):
+    """A drawing in a drawing."""
+
+    @property
+    def page(self) -> Page:
+        """How large it is."""
+
+    def draw_in(
+        self, matrix: Matrix, clips: tuple[Clip, ...], target: Group, colors: Colors
+    ) -> None:
+        """Draws it; the matrix leads from its units to those of the tree."""
+
+
+Read = Callable[[bytes, str], Inner]
+"""Reads a drawing in a drawing, of its bytes and its name."""
+Contents = npt.NDArray[np.uint8] | Inner
+Bounds = tuple[float, float, float, float]
+"""Left, top, width, height."""
+
+
+class Images:
+    """The images of a drawing, each of which is read once.
+
+    Args:
+        read: Reads a drawing in this one.
+    """
+
+    def __init__(self, read: Read) -> None:
+        self._read = read
+        self._known: dict[SvgElement, Contents | Exception] = {}
+
+    def contents(self, element: SvgElement, sources: Sources) -> Contents:
+        """The texels of an image, or a drawing. Raises what says why there are none."""
+        if element not in self._known:
+            try:
+                self._known[element] = self._contents(element, sources)
+            except (ElsewhereError, UnusableError, PictureError, ValueError) as error:
+                self._known[element] = error
+        found = self._known[element]
+        if isinstance(found, Exception):
+            raise found
+        return found
+
+    def _contents(self, element: SvgElement, sources: Sources) -> Contents:
+        data, name = _bytes_of(element, sources)
+        if ending_of(data):
+            width, height = size_of(data)
+            sources.budget.take_texels(width * height)
+            return read_picture(data)
+        if data.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"<" or data[:2] == b"\x1f\x8b":
+            return self._read(data, name)
+        raise ElsewhereError("as it is neither PNG, JPEG, GIF, WebP nor SVG")
+
+
+def draw_image(element: SvgElement, context: Context, sources: Sources, images: Images) -> None:
+    """Draws an `image`."""
+    if context.style.visibility == "visible":
+        put_image(element, None, context, sources, images)
+
+
+def put_image(
+    element: SvgElement, box: Bounds | None, context: Context, sources: Sources, images: Images
+) -> None:
+    """Draws what an element refers to.
+
+    Args:
+        element: The element.
+        box: Left, top, width and height of where that is; None for what the element says.
+        context: Within it.
+        sources: What it is read with.
+        images: Those of the drawing.
+    """
+    try:
+        contents = images.contents(element, sources)
+        if isinstance(contents, np.ndarray):
+            own = float(contents.shape[1]), float(contents.shape[0])
+        else:
+            own = contents.page.width, contents.page.height
+        place = _box_of(element, own, context, sources) if box is None else box
+        if place[2] > 0.0 and place[3] > 0.0:
+            _draw(element, contents, own, place, context, sources)
+    except TooLargeError:
+        raise
+    except ElsewhereError as error:
+        sources.warnings.unsupported(f"<{element.tag}>", f"left out, {error}", element.line)
+    except (UnusableError, PictureError, ValueError) as error:
+        sources.warnings.broken(f"<{element.tag}>", f"left out, {error}", element.line)
+
+
+def _box_of(
+    element: SvgElement, own: tuple[float, float], context: Context, sources: Sources
+) -> Bounds:
+    """Where an image is. What its sides do not say follows from its proportions."""
+    x, y = (sources.pixels(element, key, _ZERO, context.units) for key in ("x", "y"))
+    width, height = (
+        sources.pixels(element, key, _AUTO, context.units) for key in ("width", "height")
+    )
+    if width < 0.0 and height < 0.0:
+        width, height = own
+    ratio = own[0] / own[1]
+    width = height * ratio if width < 0.0 else width
+    height = width / ratio if height < 0.0 else height
+    return x, y, width, height
+
+
+def _draw(
+    element: SvgElement,
+    contents: Contents,
+    own: tuple[float, float],
+    box: Bounds,
+    context: Context,
+    sources: Sources,
+) -> None:
+    declared = sources.sheets.declared(element)
+    x, y, width, height = box
+    aspect = declared.get("preserveAspectRatio", "")
+    if not isinstance(contents, np.ndarray) and not contents.page.has_size:
+        # As in browsers it is as large as its place, and fits itself into that.
+        own = own if aspect.strip() == "none" else (width, height)
+    own_width, own_height = own
+    page = ViewBox(0.0, 0.0, own_width, own_height)
+    fitted = multiplied((1.0, 0.0, 0.0, 1.0, x, y), placed(page, aspect, width, height))
+    matrix = multiplied(context.matrix, fitted)
+    clips = context.clips
+    if declared.get("overflow", "hidden") not in SHOWN and aspect.strip().endswith("slice"):
+        clips = (*clips, box_clip((x, y, x + width, y + height), context.matrix))
+    if isinstance(contents, np.ndarray):
+        unit = multiplied(matrix, (own_width, 0.0, 0.0, own_height, 0.0, 0.0))
+        context.target.items.append(
+            Picture(
+                contents,
+                unit,
+                context.style.image_rendering in _PIXELATED,
+                context.colors.is_linear,
+                clips,
+                carried((0.0, 0.0, 1.0, 1.0), unit),
+                element.line,
+            )
+        )
+    else:
+        group = Group(is_isolated=True, line=element.line)
+        context.target.items.append(group)
+        clips = (*clips, box_clip((0.0, 0.0, own_width, own_height), matrix))
+        fitted = placed(contents.page.view, contents.page.aspect, own_width, own_height)
+        contents.draw_in(multiplied(matrix, fitted), clips, group, context.colors)
+
+
+def _bytes_of(element: SvgElement, sources: Sources) -> tuple[bytes, str]:
+    """The bytes that an image refers to, and what messages call it."""
+    address = element.address
+    if not address or address.startswith("#"):
+        raise UnusableError("as it refers to no image")
+    folder = sources.folder
+    place = None if folder is None else Place(folder, folder)
+    data, path = read_address(address, place, MOST_BYTES)
+    return data, "<image>" if path is None else path.name

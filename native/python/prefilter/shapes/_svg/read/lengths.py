@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Lengths of attributes in the units of the drawing."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from ...affine import IDENTITY, Matrix, multiplied
+from ..model.values import Length, UnknownUnitError, as_length, as_origin
+from ..model.warnings import Warnings
+from .document import SvgElement
+
+_ALONG_X = frozenset(("x", "x1", "x2", "cx", "fx", "rx", "width", "refX", "markerWidth"))
+_ALONG_Y = frozenset(("y", "y1", "y2", "cy", "fy", "ry", "height", "refY", "markerHeight"))
+
+
+@dataclass(frozen=True, slots=True)
+class Units:
+    """What percentages and the units of fonts are relative to.
+
+    Attributes:
+        width: Of the viewport.
+        height: Likewise.
+        font_size: Of the element.
+    """
+
+    width: float
+    height: float
+    font_size: float
+
+    def pixels(self, length: Length, name: str) -> float:
+        """A length that is the value of an attribute or property of that name."""
+        if name in _ALONG_X:
+            whole = self.width
+        elif name in _ALONG_Y:
+            whole = self.height
+        else:
+            whole = math.sqrt((self.width * self.width + self.height * self.height) / 2.0)
+        return length.pixels(whole, self.font_size)
+
+
+def about_origin(
+    matrix: Matrix, text: str, units: Units, corner: tuple[float, float] = (0.0, 0.0)
+) -> Matrix | None:
+    """A transform about the place that the property `transform-origin` holds; None if none.
+
+    Args:
+        matrix: The transform.
+        text: The property.
+        units: With the width and height of the box that it is relative to.
+        corner: Of that box.
+    """
+    origin = as_origin(text)
+    if origin is None or matrix == IDENTITY:
+        return None if origin is None else matrix
+    x, y = corner[0] + units.pixels(origin[0], "x"), corner[1] + units.pixels(origin[1], "y")
+    matrix = multiplied((1.0, 0.0, 0.0, 1.0, x, y), matrix)
+    return multiplied(matrix, (1.0, 0.0, 0.0, 1.0, -x, -y))
+
+
+def read_length(
+    element: SvgElement, values: Mapping[str, str], name: str, warnings: Warnings
+) -> Length | None:
+    """The length that is among the values of an element; None where there is none, or `auto`."""
+    text = values.get(name)
+    if text is None or text == "auto":
+        return None
+    try:
+        length = as_length(text)
+    except UnknownUnitError as error:
+        warnings.unsupported(f"unit '{error}'", "ignored", element.line)
+        return None
+    if length is None:
+        warnings.broken(f"{name} '{text[:40]}'", "ignored", element.line)
+    return length

@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Letters that have colors of their own, as things of a tree."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ..._fonts.bitmaps import Bitmap
+from ..._fonts.color_layers import ColorFill, ColorGroup, ColorStop
+from ..._fonts.font import Font
+from ...affine import Matrix, determinant, inverse, multiplied
+from ..model.clips import clip_of
+from ..model.colors import Color
+from ..model.gradients import Colors, Gradient, Stop, pieces_between
+from ..model.outline import Outline
+from ..model.tree import Clip, ClipPart, Group, Mask, Painted, Picture, carried
+from ..model.values import BLACK
+from ..read.context import Context, Sources
+from ..read.document import SvgElement
+from ..read.image_files import PictureError, read_picture, size_of
+from ..read.styles import Style
+
+# The side of what a color fills where no glyph says how far, in heights of the font.
+_PLANE = 8.0
+
+
+@dataclass(frozen=True, slots=True)
+class ColoredLetter:
+    """A letter.
+
+    Attributes:
+        font: Its font.
+        look: Its layers, or its picture.
+        matrix: From units of the font, with y upwards, to those of the text element.
+    """
+
+    font: Font
+    look: ColorGroup | Bitmap
+    matrix: Matrix
+
+
+@dataclass(frozen=True, slots=True)
+class ColoredPiece:
+    """Letters of one element that have colors of their own.
+
+    Attributes:
+        element: The element.
+        style: Its properties.
+        letters: One after the other.
+    """
+
+    element: SvgElement
+    style: Style
+    letters: Sequence[ColoredLetter]
+
+
+def draw_colored(piece: ColoredPiece, context: Context, sources: Sources) -> None:
+    """Draws letters; the fill of the text says whether, how opaque they are, and their own color.
+
+    Args:
+        piece: They.
+        context: Within the text element.
+        sources: What it is read with.
+    """
+    style, line = piece.style, piece.element.line
+    paint = style.fill
+    if paint.color is None and not paint.server:
+        return
+    color = style.color if paint.color == "current" else paint.color
+    target = Group(opacity=context.colors.opacity(style.fill_opacity), is_isolated=True, line=line)
+    context.target.items.append(target)
+    own = color if isinstance(color, tuple) else BLACK
+    drawing = _Letters(context.colors, own, sources, line)
+    for letter in piece.letters:
+        drawing.draw(letter, multiplied(context.matrix, letter.matrix), context.clips, target)
+
+
+class _Letters:
+    """Draws letters of one color.
+
+    Args:
+        colors: How colors are kept.
+        color: Of what has that of the text.
+        sources: What the drawing is read with.
+        line: Where the text is.
+    """
+
+    def __init__(self, colors: Colors, color: Color, sources: Sources, line: int) -> None:
+        self._colors = colors
+        self._color = color
+        self._sources = sources
+        self._line = line
+
+    def draw(
+        self, letter: ColoredLetter, matrix: Matrix, clips: tuple[Clip, ...], target: Group
+    ) -> None:
+        """Draws a letter; the matrix leads from units of its font to those of the tree."""
+        if determinant(matrix) == 0.0:
+            return
+        if isinstance(letter.look, Bitmap):
+            self._draw_bitmap(letter.look, matrix, clips, target)
+        else:
+            self._draw_group(letter.font, letter.look, matrix, clips, target)
+
+    def _draw_bitmap(
+        self, bitmap: Bitmap, matrix: Matrix, clips: tuple[Clip, ...], target: Group
+    ) -> None:
+        width, height = size_of(bitmap.data)
+        known = self._sources.letters
+        if bitmap not in known:
+            self._sources.budget.take_texels(width * height)
+            try:
+                known[bitmap] = read_picture(bitmap.data)
+            except PictureError as error:
+                self._sources.warnings.broken("letter", f"left out, {error}", self._line)
+                return
+        wide, high = width * bitmap.unit, height * bitmap.unit
+        top = bitmap.edge if bitmap.is_top else bitmap.edge + high
+        unit = multiplied(matrix, (wide, 0.0, 0.0, -high, bitmap.left, top))
+        box = carried((0.0, 0.0, 1.0, 1.0), unit)
+        is_linear = self._colors.is_linear
+        target.items.append(Picture(known[bitmap], unit, False, is_linear, clips, box, self._line))
+
+    def _draw_group(
+        self,
+        font: Font,
+        group: ColorGroup,
+        matrix: Matrix,
+        clips: tuple[Clip, ...],
+        target: Group,
+    ) -> None:
+        """Draws layers, as a group of their own where they are mixed, or seen through others."""
+        self._sources.budget.take_element()
+        if group.cut is not None:
+            glyph, place = group.cut
+            outline = self._outline(font, glyph)
+            self._sources.budget.take_segments(len(outline), 0.0)
+            part = ClipPart(outline, "nonzero", multiplied(matrix, place))
+            clip = clip_of([part], ())
+            if clip.bounds is None:
+                return
+            clips = (*clips, clip)
+        if group.inside is not None or group.blend != "normal":
+            masks: tuple[Mask, ...] = ()
+            if group.inside is not None:
+                seen = Group(is_isolated=True, line=self._line)
+                self._draw_group(font, group.inside, matrix, (), seen)
+                masks = (Mask(seen, is_luminance=False, is_linear=False),)
+            made = Group(blend=group.blend, masks=masks, is_isolated=True, line=self._line)
+            target.items.append(made)
+            target = made
+        for item in group.items:
+            if isinstance(item, ColorGroup):
+                self._draw_group(font, item, matrix, clips, target)
+            else:
+                self._fill(font, item, matrix, clips, target)
+
+    def _fill(
+        self,
+        font: Font,
+        fill: ColorFill,
+        matrix: Matrix,
+        clips: tuple[Clip, ...],
+        target: Group,
+    ) -> None:
+        outline = self._outline(font, fill.glyph)
+        bounds = outline.bounds() if len(outline) else None
+        if bounds is None or determinant(fill.matrix) == 0.0:
+            return
+        self._sources.budget.take_segments(len(outline), 0.0)
+        whole = multiplied(matrix, fill.matrix)
+        box = carried(bounds, whole)
+        paint = self._paint(fill)
+        target.items.append(Painted(outline, "nonzero", whole, paint, None, clips, box, self._line))
+
+    def _paint(self, fill: ColorFill) -> tuple[float, ...] | Gradient:
+        stops = [Stop(stop.offset, self._color_of(stop)) for stop in fill.stops]
+        if fill.kind == "solid" or determinant(fill.paint_matrix) == 0.0:
+            return next(iter(pieces_between(stops[:1], self._colors)))[1]
+        is_radial = fill.kind == "radial"
+        matrix = multiplied(inverse(fill.matrix), fill.paint_matrix)
+        pieces = list(pieces_between(stops, self._colors))
+        return Gradient(is_radial, fill.numbers, pieces, fill.spread, matrix)
+
+    def _color_of(self, stop: ColorStop) -> Color:
+        color = self._color if stop.color is None else stop.color
+        return (*color[:3], color[3] * min(max(stop.alpha, 0.0), 1.0))
+
+    def _outline(self, font: Font, number: int | None) -> Outline:
+        """The outline of a glyph, in units of its font; that of all there is without one."""
+        outline = Outline()
+        if number is None:
+            side = _PLANE * font.units_per_em
+            outline.rectangle(-side, -side, 2.0 * side, 2.0 * side, 0.0, 0.0)
+        else:
+            glyph = font.glyph(number)
+            outline.extend(glyph.letters, glyph.numbers)
+        return outline

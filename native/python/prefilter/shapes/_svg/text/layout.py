@@ -1,0 +1,300 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Where the glyphs of a text are: characters become clusters, and clusters follow each other."""
+
+import math
+import unicodedata
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+
+from ..._fonts.bidi import levels_of, visual_order
+from ..._fonts.font import Font
+from ..._fonts.shaping import (
+    COMPLEX,
+    HAS_HARFBUZZ,
+    JOINING,
+    Features,
+    Shaped,
+    scripts_in,
+    shape,
+)
+from ...affine import Matrix, multiplied
+from ..model.values import rotation
+from .characters import Character, Fitted, Span
+from .lettering import Lettering
+
+_SPACES = (" ", "\u00a0")
+
+
+@dataclass(slots=True)
+class Cluster:
+    """Glyphs that stand for characters together.
+
+    Attributes:
+        characters: Those.
+        font: Of its glyphs.
+        glyphs: From left to right.
+        advance: How far it leads, in pixels, with the space behind it.
+        spacing: That space.
+        stretch: How much wider than usual it is drawn.
+        shift: How far it is below the line that it is on.
+        matrix: From its origin on the baseline to the units of the text; None where it is not seen.
+    """
+
+    characters: Sequence[Character]
+    font: Font
+    glyphs: list[Shaped]
+    advance: float
+    spacing: float = 0.0
+    stretch: float = 1.0
+    shift: float = 0.0
+    matrix: Matrix | None = None
+
+    @property
+    def span(self) -> Span:
+        """Of its first character."""
+        return self.characters[0].span
+
+    @property
+    def scale(self) -> float:
+        """From units of the font to pixels."""
+        return self.span.style.font_size / self.font.units_per_em
+
+
+@dataclass(slots=True)
+class _Run:
+    """Characters that are shaped together."""
+
+    begin: int
+    end: int
+    font: Font
+    level: int
+    script: str
+
+
+class TextLayout:
+    """Lays out text.
+
+    Args:
+        lettering: The fonts.
+    """
+
+    def __init__(self, lettering: Lettering) -> None:
+        self._lettering = lettering
+        self._at = (0.0, 0.0)
+
+    def lay_out(self, characters: Sequence[Character]) -> list[Cluster]:
+        """The clusters of a text, in their places."""
+        parts = [(part, self._clusters(part)) for part in _parts(characters) if part]
+        everything = [cluster for _, clusters in parts for cluster in clusters]
+        _fit(everything)
+        self._at = (0.0, 0.0)
+        for part, clusters in parts:
+            self._place(part, clusters)
+        return everything
+
+    def _clusters(self, part: Sequence[Character]) -> list[Cluster]:
+        """The clusters of characters on one line, from left to right."""
+        text = "".join(character.letter for character in part)
+        base = 1 if next(part[0].span.line()).text.direction == "rtl" else 0
+        levels = levels_of(text, base, [character.span.forced for character in part])
+        runs = list(self._runs(part, text, levels))
+        order = visual_order([run.level for run in runs])
+        found = [cluster for index in order for cluster in self._shaped(part, runs[index])]
+        # There is no space behind the last one.
+        for cluster in found[:-1]:
+            cluster.advance += cluster.spacing
+        if found:
+            found[-1].spacing = 0.0
+        return found
+
+    def _runs(self, part: Sequence[Character], text: str, levels: Sequence[int]) -> Iterator[_Run]:
+        fonts = self._lettering.fonts_of(part)
+        keys = [
+            (font, level, script, _key(character.span))
+            for font, level, script, character in zip(
+                fonts, levels, scripts_in(text), part, strict=True
+            )
+        ]
+        begin = 0
+        for (font, level, script, _), group in groupby(keys):
+            end = begin + len(list(group))
+            if font is not None:
+                yield _Run(begin, end, font, level, script)
+            begin = end
+
+    def _shaped(self, part: Sequence[Character], run: _Run) -> Iterator[Cluster]:
+        characters = part[run.begin : run.end]
+        span = characters[0].span
+        style = span.text
+        if run.script in COMPLEX and not HAS_HARFBUZZ:
+            self._lettering.warnings.unsupported(
+                f"script {run.script}",
+                "letters are not joined without uharfbuzz",
+                span.element.line,
+            )
+        features = Features(
+            style.has_kerning, style.letter_spacing == 0.0, style.has_small_capitals
+        )
+        text = "".join(character.letter for character in characters)
+        glyphs = shape(run.font, text, run.script, span.language, features, run.level % 2 == 1)
+        if not glyphs:
+            return
+        starts = sorted({glyph.cluster for glyph in glyphs})
+        ends = dict(zip(starts, [*starts[1:], len(text)], strict=True))
+        for start, group in groupby(glyphs, lambda glyph: glyph.cluster):
+            inside = characters[start : ends[start]]
+            found = list(group)
+            cluster = Cluster(inside, run.font, found, 0.0)
+            cluster.advance = cluster.scale * sum(glyph.advance for glyph in found)
+            own = inside[0].span.text
+            if run.script not in JOINING or scripts_in(inside[0].letter)[0] not in JOINING:
+                cluster.spacing = own.letter_spacing
+            if inside[0].letter in _SPACES:
+                cluster.advance += own.word_spacing
+            cluster.shift = self._lettering.shift_of(inside[0].span)
+            yield cluster
+
+    def _place(self, part: Sequence[Character], clusters: list[Cluster]) -> None:
+        """Puts the clusters of a line one after another."""
+        first = part[0]
+        along = first.span.place
+        x = self._at[0] if first.x is None else first.x
+        y = self._at[1] if first.y is None else first.y
+        if along is not None:
+            x, y = along.offset + (first.x or 0.0), 0.0
+        style = first.span.text
+        is_vertical = along is None and next(first.span.line()).text.is_vertical
+        low, high = _extent(clusters, is_vertical)
+        share = {"start": 0.0, "middle": 0.5, "end": 1.0}[style.anchor]
+        if style.direction == "rtl":
+            share = 1.0 - share
+        # SVG 2, 11.5: of all glyphs of the chunk, wherever dx and dy have moved them, what the
+        # anchor names comes to where the first one is.
+        shift = low + share * (high - low) - (first.dx, first.dy)[is_vertical]
+        if is_vertical:
+            y -= shift
+        else:
+            x -= shift
+        for cluster in clusters:
+            head = cluster.characters[0]
+            x += sum(each.dx for each in cluster.characters)
+            y += sum(each.dy for each in cluster.characters)
+            if is_vertical:
+                cluster.matrix = _downward(cluster, head, x, y)
+                y += cluster.advance
+            else:
+                cluster.matrix = _matrix(cluster, head, x, y)
+                x += cluster.advance
+        if along is None:
+            self._at = (x, y)
+        else:
+            end = along.track.at(along.track.length)
+            self._at = (end[4], end[5]) if end is not None else self._at
+
+
+def _extent(clusters: Sequence[Cluster], is_vertical: bool) -> tuple[float, float]:
+    """The least and the greatest place along a line that its clusters reach, from its beginning."""
+    at = 0.0
+    low, high = math.inf, -math.inf
+    for cluster in clusters:
+        at += sum((each.dx, each.dy)[is_vertical] for each in cluster.characters)
+        low = min(low, at, at + cluster.advance)
+        high = max(high, at, at + cluster.advance)
+        at += cluster.advance
+    return (low, high) if clusters else (0.0, 0.0)
+
+
+def _matrix(cluster: Cluster, head: Character, x: float, y: float) -> Matrix | None:
+    below = y + cluster.shift
+    place = head.span.place
+    if place is None:
+        matrix: Matrix | None = (1.0, 0.0, 0.0, 1.0, x, below)
+    else:
+        half = 0.5 * (cluster.advance - cluster.spacing)
+        matrix = place.track.at(x + half)
+        if matrix is not None:
+            matrix = multiplied(matrix, (1.0, 0.0, 0.0, 1.0, -half, below))
+    if matrix is not None and head.rotate != 0.0:
+        matrix = multiplied(matrix, rotation(head.rotate))
+    return matrix
+
+
+def _downward(cluster: Cluster, head: Character, x: float, y: float) -> Matrix:
+    """On a line downwards, turned by a right angle, and its middle on the line.
+
+    What stands upright in such lines, as Chinese does, is turned back about its middle.
+    """
+    metrics = cluster.font.metrics
+    middle = 0.5 * (metrics.ascent + metrics.descent) * cluster.span.style.font_size
+    matrix = multiplied(
+        (0.0, 1.0, -1.0, 0.0, x, y), (1.0, 0.0, 0.0, 1.0, 0.0, cluster.shift + middle)
+    )
+    if _is_upright(head.letter):
+        half = (cluster.advance - cluster.spacing) / 2.0
+        matrix = multiplied(matrix, (0.0, -1.0, 1.0, 0.0, half + middle, half - middle))
+    if head.rotate != 0.0:
+        matrix = multiplied(matrix, rotation(head.rotate))
+    return matrix
+
+
+def _is_upright(letter: str) -> bool:
+    is_wide = unicodedata.east_asian_width(letter) in ("W", "F")
+    return is_wide and not unicodedata.category(letter).startswith("P")
+
+
+def _parts(characters: Sequence[Character]) -> Iterator[Sequence[Character]]:
+    """Yields the characters that follow each other, from one position to the next."""
+    begin = 0
+    for index, character in enumerate(characters):
+        before = characters[index - 1].span.place if index else character.span.place
+        is_new = character.span.place is not before
+        if character.x is not None or (character.y is not None and character.span.place is None):
+            is_new = True
+        if is_new and index > begin:
+            yield characters[begin:index]
+            begin = index
+    yield characters[begin:]
+
+
+def _key(span: Span) -> object:
+    """What must be the same for letters to be shaped together."""
+    style = span.text
+    return (
+        span.style.font_size,
+        style.has_kerning,
+        style.letter_spacing == 0.0,
+        style.has_small_capitals,
+        span.language,
+    )
+
+
+def _fit(clusters: Sequence[Cluster]) -> None:
+    """Makes the text of elements as long as they say."""
+    wanted: dict[Span, list[Cluster]] = {}
+    for cluster in clusters:
+        # What is said nearest counts.
+        for span in (cluster.span, *reversed(cluster.span.around)):
+            if span.fitted is not None:
+                wanted.setdefault(span, []).append(cluster)
+                break
+    for span, inside in wanted.items():
+        assert span.fitted is not None
+        _fit_span(inside, span.fitted)
+
+
+def _fit_span(clusters: Sequence[Cluster], fitted: Fitted) -> None:
+    natural = sum(cluster.advance for cluster in clusters)
+    if fitted.is_stretched:
+        if natural > 0.0:
+            factor = fitted.length / natural
+            for cluster in clusters:
+                cluster.advance *= factor
+                cluster.stretch *= factor
+        return
+    if len(clusters) > 1:
+        more = (fitted.length - natural) / (len(clusters) - 1)
+        for cluster in clusters[:-1]:
+            cluster.advance += more
+            cluster.spacing += more
