@@ -462,9 +462,9 @@ def test_pictures_may_be_those_of_other_letters(tmp_path):
 
 def test_pictures_of_letters_are_read_and_counted_once(tmp_path, monkeypatch):
     path = with_sbix(tmp_path / "font.ttf")
-    monkeypatch.setattr("prefilter.shapes._svg.model.limits.MOST_TEXELS", 40)
+    monkeypatch.setattr("prefilter.shapes._svg.model.limits.MAX_TEXELS", 40)
     assert image(text("AAAA", 'style="font-size:20px"'), [path]).any()
-    monkeypatch.setattr("prefilter.shapes._svg.model.limits.MOST_TEXELS", 20)
+    monkeypatch.setattr("prefilter.shapes._svg.model.limits.MAX_TEXELS", 20)
     with pytest.raises(ValueError, match="images of more than 20 pixels"):
         image(text("A"), [path])
 

@@ -225,12 +225,12 @@ def test_what_is_large_when_unpacked_is_stopped():
 
 
 def test_repeated_uses_are_counted_before_any_is_drawn(monkeypatch):
-    from prefilter.shapes._svg.draw.drawing import Walk
+    from prefilter.shapes._svg.draw.drawing import TreeBuilder
 
     def drawn(*_):
         raise AssertionError
 
-    monkeypatch.setattr(Walk, "_visit", drawn)
+    monkeypatch.setattr(TreeBuilder, "_visit", drawn)
     with pytest.raises(
         ValueError, match="source: <use>, masks, patterns and markers repeat more than 250000"
     ):
@@ -246,7 +246,7 @@ def test_repeated_uses_up_to_a_limit(monkeypatch):
     from prefilter.shapes._svg.model import limits
 
     # Each is an element of the file, and repeats two.
-    monkeypatch.setattr(limits, "MOST_USED", 20)
+    monkeypatch.setattr(limits, "MAX_USED", 20)
     assert len(read(used(10)).shapes) == 10
     with pytest.raises(ValueError, match="repeat more than 20 elements"):
         read(used(30))
@@ -265,10 +265,10 @@ def test_lines_curves_and_dashes_are_counted(monkeypatch, body):
     from prefilter.shapes._svg.model import limits, outline
 
     for module in (limits, outline):
-        monkeypatch.setattr(module, "MOST_SEGMENTS", 200)
+        monkeypatch.setattr(module, "MAX_SEGMENTS", 200)
     assert len(read(body).shapes) > 0
     for module in (limits, outline):
-        monkeypatch.setattr(module, "MOST_SEGMENTS", 100)
+        monkeypatch.setattr(module, "MAX_SEGMENTS", 100)
     with pytest.raises(ValueError, match="source: more than 100 lines and curves"):
         read(body)
 
@@ -276,7 +276,7 @@ def test_lines_curves_and_dashes_are_counted(monkeypatch, body):
 def test_elements_are_counted_while_they_are_read(monkeypatch):
     from prefilter.shapes._svg.read import document
 
-    monkeypatch.setattr(document, "MOST_ELEMENTS", 100)
+    monkeypatch.setattr(document, "MAX_ELEMENTS", 100)
     assert read("<g/>" * 99).shapes == []
     with pytest.raises(ValueError, match="source, line 3: more than 100 elements"):
         read("\n" + "<g/>" * 50 + "\n" + "<g/>" * 50)

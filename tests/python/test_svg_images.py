@@ -9,7 +9,7 @@ import numpy as np
 import prefilter
 import pytest
 from drawings import GREEN, RED, SIZE, box, by_hand, same, svg, whole
-from prefilter.shapes._svg.read.image_files import size_of
+from prefilter.shapes._svg.read.image_files import image_size
 from prefilter.workflows.files import png
 
 
@@ -46,7 +46,7 @@ def test_other_kinds_of_pictures(kind, options):
         pillow.fromarray(rows).save(file, kind, **options)
     except (KeyError, OSError):
         pytest.skip(f"Pillow writes no {kind}")
-    assert size_of(file.getvalue()) == (50, 30)
+    assert image_size(file.getvalue()) == (50, 30)
     address = f"data:image/{kind};base64,{base64.b64encode(file.getvalue()).decode()}"
     made = whole(f'<image width="50" height="30" href="{address}"/>')
     for x, color in ((10, (0, 0, 0, 1)), (40, (0, 128 / 255, 0, 1)), (60, (0, 0, 0, 0))):
@@ -127,10 +127,10 @@ def test_pictures_are_the_same_by_either_library(monkeypatch, channels):
     for kind in (np.uint8, np.uint16):
         values = random.integers(0, np.iinfo(kind).max, (5, 7, channels), kind)
         data = png.encoded(values)
-        first = image_files.read_picture(data)
+        first = image_files.decode_image(data)
         with monkeypatch.context() as patched:
             patched.setattr(image_files, "import_module", missing)
-            second = image_files.read_picture(data)
+            second = image_files.decode_image(data)
         # Pillow cuts colors of 16 bits off, which are rounded elsewhere.
         assert np.abs(first.astype(int) - second).max() <= (kind is np.uint16)
         expected = np.rint(values / (1 if kind is np.uint8 else 257)).astype(np.uint8)[::-1]
@@ -169,11 +169,11 @@ def test_images_are_read_once_and_counted(monkeypatch):
         count += 1
         return images_read(data)
 
-    images_read = images.read_picture
-    monkeypatch.setattr(images, "read_picture", counted)
+    images_read = images.decode_image
+    monkeypatch.setattr(images, "decode_image", counted)
     same(whole(body), by_hand((0, 0, 9, 9, (1, 1, 1))))
     assert count == 1
-    monkeypatch.setattr(limits, "MOST_TEXELS", 15)
+    monkeypatch.setattr(limits, "MAX_TEXELS", 15)
     with pytest.raises(ValueError, match="source: images of more than 15 pixels"):
         whole(body)
 

@@ -21,7 +21,7 @@ def refused(body, words):
 def test_attributes_are_counted(monkeypatch):
     from prefilter.shapes._svg.read import document
 
-    monkeypatch.setattr(document, "MOST_ATTRIBUTES", 100)
+    monkeypatch.setattr(document, "MAX_ATTRIBUTES", 100)
     assert read("<g a='1' b='2'/>" * 40).shapes == []
     refused("<g a='1' b='2'/>" * 60, "more than 100 attributes")
 
@@ -39,8 +39,8 @@ def test_attributes_are_counted(monkeypatch):
 def test_long_attributes_are_refused(monkeypatch, body):
     from prefilter.shapes._svg.read import document
 
-    monkeypatch.setattr(document, "MOST_VALUE", 1000)
-    monkeypatch.setitem(document._MOST_VALUES, "points", 1000)
+    monkeypatch.setattr(document, "MAX_VALUE", 1000)
+    monkeypatch.setitem(document._MAX_VALUES, "points", 1000)
     read(body.format("1 " * 400))
     refused(body.format("1 " * 600), r"the attribute '\w+' has 1200 characters; at most 1000 are")
 
@@ -48,7 +48,7 @@ def test_long_attributes_are_refused(monkeypatch, body):
 def test_long_paths_and_what_other_programs_keep_are_read(monkeypatch):
     from prefilter.shapes._svg.read import document
 
-    monkeypatch.setattr(document, "MOST_VALUE", 1000)
+    monkeypatch.setattr(document, "MAX_VALUE", 1000)
     path = "M0 0" + "h1v1" * 400
     body = f'<path d="{path}" xmlns:other="http://example.org" other:original-d="{path}"/>'
     assert len(read(body).shapes) == 1
@@ -57,7 +57,7 @@ def test_long_paths_and_what_other_programs_keep_are_read(monkeypatch):
 def test_text_is_counted(monkeypatch):
     from prefilter.shapes._svg.read import document
 
-    monkeypatch.setattr(document, "MOST_TEXT", 1000)
+    monkeypatch.setattr(document, "MAX_TEXT", 1000)
     for tag in ("text", "style"):
         read(f"<{tag}>{' ' * 500}</{tag}>")
         refused(f"<{tag}>{' ' * 600}</{tag}>" * 2, "more than 1000 characters of text and style")
@@ -66,7 +66,7 @@ def test_text_is_counted(monkeypatch):
 def test_style_sheets_are_counted_but_for_what_they_quote(monkeypatch):
     from prefilter.shapes._svg.read import style_rules
 
-    monkeypatch.setattr(style_rules, "MOST_WRITTEN", 1000)
+    monkeypatch.setattr(style_rules, "MAX_CHARACTERS", 1000)
     font = f"@font-face {{ src: url(data:font/ttf;base64,{'A' * 4000}) }}"
     read(f"<style>{font}</style>" * 2)
     refused(f"<style>{'a{fill:red}' * 60}</style>" * 2, "style sheets of more than 0 MiB")
@@ -97,7 +97,7 @@ def test_selectors_in_a_list_have_parts_of_their_own():
 def test_what_selectors_look_at_is_counted(monkeypatch):
     from prefilter.shapes._svg.read import styles
 
-    monkeypatch.setattr(styles, "MOST_ANCESTORS", 200_000)
+    monkeypatch.setattr(styles, "MAX_ANCESTORS", 200_000)
     # Each part is tried at each ancestor: 100 over 10 is the number of ways.
     style = f"<style>{'a ' + '* ' * 10}{{fill:red}}</style>"
     body = "<g>" * 100 + "<rect width='9' height='9'/>" + "</g>" * 100
@@ -116,8 +116,8 @@ def test_what_is_read_is_not_kept():
     kept, _ = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert kept < 100_000
-    assert values.as_color("#f00") is values.as_color("#f00")
-    assert styles._parsed_declarations("fill:red") is styles._parsed_declarations("fill:red")
+    assert values.parse_color("#f00") is values.parse_color("#f00")
+    assert styles._parse_declarations("fill:red") is styles._parse_declarations("fill:red")
 
 
 def filtered(steps):

@@ -52,12 +52,12 @@ def test_layers_have_limits(monkeypatch):
         prefilter.rasterize_svg(svg(deep), 8, 8)
     from prefilter.shapes._svg.draw import compositing
 
-    monkeypatch.setattr(compositing, "MOST_LAYER_PIXELS", 1000)
+    monkeypatch.setattr(compositing, "MAX_LAYER_PIXELS", 1000)
     wide = f'<g opacity="0.5">{inner}</g>' * 20
     with pytest.raises(ValueError, match="source: more than 50000 layers, or of more than 1000"):
         prefilter.rasterize_svg(svg(wide), 16, 16)
     monkeypatch.undo()
-    monkeypatch.setattr(compositing, "MOST_LAYERS", 10)
+    monkeypatch.setattr(compositing, "MAX_LAYERS", 10)
     with pytest.raises(ValueError, match="source: more than 10 layers"):
         prefilter.rasterize_svg(svg(wide), 16, 16)
 
@@ -68,7 +68,7 @@ def test_boxes_of_groups_in_groups_are_counted(monkeypatch):
     clip = f'<clipPath id="c" clipPathUnits="objectBoundingBox">{box(0, 0, 1, 1)}</clipPath>'
     body = clip + '<g clip-path="url(#c)">' * 20 + box(0, 0, 50, 50) * 20 + "</g>" * 20
     same(whole(body), by_hand((0, 0, 50, 50, (0, 0, 0))))
-    monkeypatch.setattr(limits, "MOST_MEASURED", 500)
+    monkeypatch.setattr(limits, "MAX_MEASURED", 500)
     with pytest.raises(ValueError, match="source: boxes around groups of more than 500 elements"):
         whole(body)
 
@@ -82,12 +82,12 @@ def test_boxes_of_groups_in_groups_are_counted(monkeypatch):
     ],
 )
 def test_what_masks_and_others_repeat_is_counted_before_it_is_drawn(monkeypatch, group):
-    from prefilter.shapes._svg.draw.drawing import Walk
+    from prefilter.shapes._svg.draw.drawing import TreeBuilder
 
     def visited(*_):
         raise AssertionError
 
-    monkeypatch.setattr(Walk, "_visit", visited)
+    monkeypatch.setattr(TreeBuilder, "_visit", visited)
     tag = "mask" if "mask=" in group else "pattern" if "fill" in group else "marker"
     bombs = "".join(f'<{tag} id="m{k}">{group.format(k - 1) * 3}</{tag}>' for k in range(1, 20))
     with pytest.raises(ValueError, match="masks, patterns and markers repeat more than 250000"):

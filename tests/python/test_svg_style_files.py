@@ -164,7 +164,7 @@ def test_sheets_that_import_each_other_end(color):
 
 
 def test_large_sheets_are_not_read(color, monkeypatch):
-    monkeypatch.setattr(style_rules, "MOST_BYTES", 5000)
+    monkeypatch.setattr(style_rules, "MAX_BYTES", 5000)
     found, (warning,) = color({"d/a.css": GREEN + " " * 5000}, instruction())
     assert (found, "larger than" in warning) == ("black", True)
     two = instruction() + instruction('href="b.css"')

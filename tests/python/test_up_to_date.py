@@ -10,7 +10,7 @@ import numpy as np
 import prefilter
 import pytest
 from command_files import fails, noise, run, write_picture, write_quad
-from prefilter.shapes._svg.read.document import MOST_UNPACKED
+from prefilter.shapes._svg.read.document import MAX_UNPACKED
 from prefilter.workflows import mesh_files
 from prefilter.workflows.files import png
 from prefilter.workflows.up_to_date import (
@@ -191,9 +191,7 @@ def test_drawings_of_one_file_stand_alone(tmp_path, inside):
 
 def test_a_drawing_that_is_large_when_unpacked_is_not_looked_through(tmp_path):
     path = tmp_path / "a.svg"
-    path.write_bytes(
-        gzip.compress(b"<svg>" + bytes(MOST_UNPACKED).replace(b"\0", b" ") + b"</svg>")
-    )
+    path.write_bytes(gzip.compress(b"<svg>" + bytes(MAX_UNPACKED).replace(b"\0", b" ") + b"</svg>"))
     assert not stands_alone(path)
 
 

@@ -11,13 +11,13 @@ from .._border.arguments import as_number
 from .._border.arrays import as_array, as_floats
 
 Stop = tuple[float, Sequence[float]]
-_MOST_CHANNELS = 4
+_MAX_CHANNELS = 4
 
 
 def as_color(name: str, color: Sequence[float]) -> tuple[float, ...]:
     found = as_array(name, color)
-    if found.ndim != 1 or not 1 <= found.size <= _MOST_CHANNELS or found.dtype.kind not in "fiu":
-        raise ValueError(f"{name}: {color!r}; one to {_MOST_CHANNELS} numbers are needed")
+    if found.ndim != 1 or not 1 <= found.size <= _MAX_CHANNELS or found.dtype.kind not in "fiu":
+        raise ValueError(f"{name}: {color!r}; one to {_MAX_CHANNELS} numbers are needed")
     if not np.isfinite(found).all():
         raise ValueError(f"{name}: {color!r}; finite numbers are needed")
     return tuple(float(value) for value in found)

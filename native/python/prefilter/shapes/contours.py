@@ -12,7 +12,7 @@ from .._border.arguments import as_name, as_number
 from .._border.arrays import as_array
 from .arguments import as_point, as_points, check_finite
 
-_MOST_DEGREE = 60
+_MAX_DEGREE = 60
 
 
 class Contours:
@@ -64,10 +64,8 @@ class Contours:
         if not numbers or found.size % 2 or found.ndim not in (1, 2) or found.shape[-1] % 2:
             raise ValueError("control_points: found no pairs (x, y)")
         points = np.ascontiguousarray(found, np.float64).reshape(-1, 2)
-        if not 1 <= len(points) <= _MOST_DEGREE:
-            raise ValueError(
-                f"control_points: {len(points)} points; 1 to {_MOST_DEGREE} are needed"
-            )
+        if not 1 <= len(points) <= _MAX_DEGREE:
+            raise ValueError(f"control_points: {len(points)} points; 1 to {_MAX_DEGREE} are needed")
         check_finite("control_points", points)
         self._outline.curve_to(points)
 
@@ -126,9 +124,9 @@ class Contours:
         """
         controls = as_points("points", points, ("curves", "points", 2))
         degree = controls.shape[1] - 1
-        if len(controls) == 0 or not 1 <= degree <= _MOST_DEGREE:
+        if len(controls) == 0 or not 1 <= degree <= _MAX_DEGREE:
             raise ValueError(
-                f"points: shape {controls.shape}; at least one curve of 2 to {_MOST_DEGREE + 1} "
+                f"points: shape {controls.shape}; at least one curve of 2 to {_MAX_DEGREE + 1} "
                 "points is needed"
             )
         check_finite("points", controls)

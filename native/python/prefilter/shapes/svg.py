@@ -24,14 +24,14 @@ class SvgDrawing:
     """
 
     def __init__(self, name: str, drawing: "Drawing", light: str, warnings: Warnings) -> None:
-        from ._svg.draw.flattening import Flat
-        from ._svg.draw.opening import refusing
+        from ._svg.draw.flattening import FlatTree
+        from ._svg.draw.opening import as_value_errors
 
         self._name = name
         self._drawing = drawing
         self._light = light
-        with refusing(name):
-            self._painted = Flat(drawing.tree, warnings).painted
+        with as_value_errors(name):
+            self._painted = FlatTree(drawing.tree, warnings).painted
         self._warnings = warnings.all()
         self._shapes: list[Shape] | None = None
 
@@ -82,18 +82,18 @@ class SvgDrawing:
         for name, side in (("width", width), ("height", height)):
             if isinstance(side, bool) or not 0.0 < side < 1e7:
                 raise ValueError(f"{name}: {side!r}; a positive number of pixels is needed")
-        from ._svg.draw.outlines import Outlining
+        from ._svg.draw.outlines import ShapeBuilder
 
-        tell = teller(as_progress(progress))
+        report = progress_reporter(as_progress(progress))
         to_pixels, around = self._drawing.placement(float(width), float(height))
-        outlining = Outlining()
+        outlining = ShapeBuilder()
         shapes = []
         background = self._drawing.background_in(to_pixels)
         if background is not None:
             shapes.append(background)
         for index, (item, opacity) in enumerate(self._painted):
             if index % 20 == 0:
-                tell(index / len(self._painted))
+                report(index / len(self._painted))
             shape = outlining.shape(item, to_pixels, opacity, around)
             if shape is not None:
                 shapes.append(shape)
@@ -136,19 +136,19 @@ def read_svg(
     from ._svg.draw.opening import open_drawing
     from ._svg.model.gradients import Colors
 
-    tell = teller(as_progress(progress))
+    report = progress_reporter(as_progress(progress))
     colors = Colors(light == "linear", is_stepped=False)
     name, drawing, warnings = open_drawing(
-        source, colors=colors, reads_files=False, tell=tell, fonts=fonts
+        source, colors=colors, reads_files=False, report=report, fonts=fonts
     )
     return SvgDrawing(name, drawing, light, warnings)
 
 
-def teller(progress: ProgressCallback | None) -> Callable[[float], None]:
+def progress_reporter(progress: ProgressCallback | None) -> Callable[[float], None]:
     """Returns what tells of progress, and raises Cancelled where that says so."""
 
-    def tell(share: float) -> None:
+    def report(share: float) -> None:
         if progress is not None and progress(share) is False:
             raise Cancelled("cancelled by the progress callback")
 
-    return tell
+    return report

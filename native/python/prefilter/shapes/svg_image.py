@@ -13,7 +13,7 @@ from .._border.arrays import FloatArray, as_threads
 from .._border.names import RasterFilter
 from ._svg.model.warnings import SvgWarning
 from .rasterization import RASTER_FILTERS, as_whether_bytes, to_bytes
-from .svg import teller
+from .svg import progress_reporter
 
 _READ = 0.3
 
@@ -68,10 +68,10 @@ def rasterize_svg(
     size = as_size("width", width), as_size("height", height)
     count = as_threads(threads)
     is_bytes = as_whether_bytes(dtype)
-    tell = as_progress(progress)
-    picture = SvgPicture(source, light, fonts, part_of(tell, 0.0, _READ))
+    report = as_progress(progress)
+    picture = SvgPicture(source, light, fonts, part_of(report, 0.0, _READ))
     image = picture.drawn(
-        *size, None, filter_name=filter, threads=count, progress=part_of(tell, _READ, 1.0)
+        *size, None, filter_name=filter, threads=count, progress=part_of(report, _READ, 1.0)
     )
     return to_bytes(image) if is_bytes else image, picture.warnings
 
@@ -91,7 +91,7 @@ class SvgPicture:
 
         colors = Colors(light == "linear", is_stepped=light == "srgb")
         self._name, self._drawing, warnings = open_drawing(
-            source, colors=colors, reads_files=True, tell=teller(progress), fonts=fonts
+            source, colors=colors, reads_files=True, report=progress_reporter(progress), fonts=fonts
         )
         self.warnings = warnings.all()
 
@@ -127,7 +127,7 @@ class SvgPicture:
             progress: As there.
         """
         from ._svg.draw.compositing import Compositor
-        from ._svg.draw.opening import refusing
+        from ._svg.draw.opening import as_value_errors
 
         drawing = self._drawing
         if place is None:
@@ -135,8 +135,8 @@ class SvgPicture:
         else:
             scale, x, y = place
             to_pixels, around = drawing.placed(scale, x, y)
-        compositor = Compositor(filter_name, threads, teller(progress))
-        with refusing(self._name):
+        compositor = Compositor(filter_name, threads, progress_reporter(progress))
+        with as_value_errors(self._name):
             return compositor.draw(drawing, to_pixels, (width, height), around)
 
 

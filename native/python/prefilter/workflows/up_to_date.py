@@ -102,10 +102,10 @@ def stands_alone(drawing: str | os.PathLike[str]) -> bool:
     """
     data = Path(drawing).read_bytes()
     if data[:2] == _GZIP:
-        from ..shapes._svg.read.document import unpacked
+        from ..shapes._svg.read.document import decompress
 
         try:
-            data = b"".join(unpacked(data, str(drawing)))
+            data = b"".join(decompress(data, str(drawing)))
         except ValueError:
             return False
     return b"\0" not in data and _ELSEWHERE.search(data) is None

@@ -14,7 +14,7 @@ _NEUTRAL = frozenset(("B", "S", "WS", "ON"))
 _IGNORED = frozenset(("BN", "LRE", "RLE", "LRO", "RLO", "PDF", "LRI", "RLI", "FSI", "PDI"))
 _BRACKETS = {"(": ")", "[": "]", "{": "}", "\u2329": "\u232a", "\u3008": "\u3009"}
 _CLOSING = {closing: opening for opening, closing in _BRACKETS.items()}
-_MOST_OPEN = 63
+_MAX_OPEN = 63
 
 
 def levels_of(text: str, base: int, forced: Sequence[str] = ()) -> list[int]:
@@ -98,7 +98,7 @@ def _brackets(run: list[str], text: Sequence[str], marks: Sequence[bool], outer:
         if run[index] != "ON":
             continue
         if each in _BRACKETS:
-            if len(opened) >= _MOST_OPEN:
+            if len(opened) >= _MAX_OPEN:
                 return
             opened.append((each, index))
         elif each in _CLOSING:

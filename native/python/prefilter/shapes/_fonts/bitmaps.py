@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-_MOST_COPIES = 8
+_MAX_COPIES = 8
 _BITMAPS = ("CBDT", "sbix")
 
 
@@ -55,7 +55,7 @@ class BitmapTable:
 
     def _from_sbix(self, name: str) -> Bitmap | None:
         strike, glyph = self._sbix, None
-        for _ in range(_MOST_COPIES):
+        for _ in range(_MAX_COPIES):
             glyph = strike.glyphs.get(name) if strike is not None else None
             if glyph is None or glyph.graphicType != "dupe":
                 break

@@ -18,7 +18,7 @@ from .substitutes import GENERIC, MONO, SAME_ADVANCES, SANS, SERIF, from_fontcon
 _ALIKE = (("calibri", "carlito", *SANS), ("cambria", "caladea", *SERIF), SANS, SERIF, MONO)
 # Of a slanted face that is made: that of browsers.
 _SKEW = 0.25
-_MOST_TRIED = 400
+_MAX_TRIED = 400
 # Characters of Unicode that are pictures, such as emoji.
 _PICTURES = range(0x1F000, 0x20000)
 
@@ -144,7 +144,7 @@ class Fonts:
             if face.family in seen:
                 continue
             seen.add(face.family)
-            if len(seen) > _MOST_TRIED:
+            if len(seen) > _MAX_TRIED:
                 break
             font = self._open(self._of_family(face.family), wanted)
             if font is not None and font.shows(code):

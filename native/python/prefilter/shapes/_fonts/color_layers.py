@@ -15,8 +15,8 @@ Color: TypeAlias = tuple[float, float, float, float]
 
 _TEXT_COLOR = 0xFFFF
 _SPREADS = ("pad", "repeat", "reflect")
-MOST_PAINTS = 4096
-MOST_DEPTH = 32
+MAX_PAINTS = 4096
+MAX_DEPTH = 32
 # Names of CompositeMode that are blend modes of CSS, by their number.
 _BLENDED = {
     **{13: "screen", 14: "overlay", 15: "darken", 16: "lighten", 17: "color-dodge"},
@@ -113,7 +113,7 @@ class ColorTable:
                 self.number(layer.name), IDENTITY, "solid", (),
                 (self.stop(0.0, layer.colorID, 1.0),), "pad", IDENTITY,
             )
-            for layer in layers[:MOST_PAINTS]
+            for layer in layers[:MAX_PAINTS]
         )  # fmt: skip
         return ColorGroup(tuple(fills))
 
@@ -169,7 +169,7 @@ class _Reading:
 
     def __init__(self, table: ColorTable) -> None:
         self._table = table
-        self._left = MOST_PAINTS
+        self._left = MAX_PAINTS
         self._depth = 0
 
     def group(self, paint: Any) -> ColorGroup:
@@ -178,7 +178,7 @@ class _Reading:
     def _items(self, paint: Any, matrix: Matrix) -> Iterator[ColorFill | ColorGroup]:
         """Yields what a paint consists of; the matrix leads to the units of the glyph."""
         self._left -= 1
-        if self._left < 0 or self._depth >= MOST_DEPTH:
+        if self._left < 0 or self._depth >= MAX_DEPTH:
             raise UnknownPaintError("too many layers")
         self._depth += 1
         kind = _kind_of(paint)
@@ -201,7 +201,7 @@ class _Reading:
         """A glyph that is filled by a paint."""
         glyph = self._table.number(paint.Glyph)
         inner, paint_matrix = paint.Paint, matrix
-        for _ in range(MOST_DEPTH):
+        for _ in range(MAX_DEPTH):
             if not 12 <= _kind_of(inner) < 32:
                 break
             paint_matrix = multiplied(paint_matrix, _transform(inner))

@@ -19,7 +19,7 @@ from .woff import as_sfnt
 _WIDTHS = (100.0, 50.0, 62.5, 75.0, 87.5, 100.0, 112.5, 125.0, 150.0, 200.0)
 _FAMILY_NAMES = (16, 1, 21)
 OUTLINES = ("glyf", "CFF ", "CFF2")
-_MOST_FACES = 256
+_MAX_FACES = 256
 DAMAGED = "it is damaged, or no font"
 """What is said of a file whose tables cannot be read."""
 
@@ -87,7 +87,7 @@ def _faces_as_of(path: Path, stamp: tuple[int, int]) -> tuple[Face, ...]:
         if is_collection:
             with TTCollection(str(path), lazy=True) as collection:
                 count = len(collection.fonts)
-        found = (_face(path, index) for index in range(min(count, _MOST_FACES)))
+        found = (_face(path, index) for index in range(min(count, _MAX_FACES)))
         return tuple(face for face in found if face is not None)
     except OSError:
         raise
@@ -115,11 +115,11 @@ def face_in(data: bytes, name: str) -> Face:
         UnreadableFontError: They are none.
     """
     try:
-        unpacked = as_sfnt(data)
+        decompress = as_sfnt(data)
     except Exception as error:
         raise UnreadableFontError(str(error)[:200] or type(error).__name__) from None
     try:
-        found = _face(Path(name), 0, unpacked)
+        found = _face(Path(name), 0, decompress)
     except Exception:
         raise UnreadableFontError(DAMAGED) from None
     if found is None:

@@ -9,7 +9,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 SUFFIXES = (".ttf", ".otf", ".ttc", ".otc", ".woff", ".woff2")
-_MOST_FILES = 20_000
+_MAX_FILES = 20_000
 _FONTCONFIG = Path("/etc/fonts/fonts.conf")
 
 
@@ -47,9 +47,9 @@ def files_in(folder: Path) -> list[Path]:
     for place, folders, names in os.walk(folder):
         folders.sort()
         found.extend(Path(place, name) for name in sorted(names) if _is_font(name))
-        if len(found) > _MOST_FILES:
+        if len(found) > _MAX_FILES:
             break
-    return found[:_MOST_FILES]
+    return found[:_MAX_FILES]
 
 
 def _is_font(name: str) -> bool:

@@ -16,7 +16,7 @@ from .color_layers import ColorGroup, ColorTable, UnknownPaintError
 from .faces import OUTLINES, Face
 
 # Of a glyph: components of components may be many.
-_MOST_SEGMENTS = 200_000
+_MAX_SEGMENTS = 200_000
 # What the table "head" says of itself, and may say of the units of an em.
 _MAGIC = 0x5F0F3CF5
 _UNITS = range(16, 16385)
@@ -215,7 +215,7 @@ class _Pen(BasePen):  # type: ignore[misc]
         self.numbers = array("d")
 
     def _add(self, letter: bytes, *points: tuple[float, float]) -> None:
-        if len(self.letters) >= _MOST_SEGMENTS:
+        if len(self.letters) >= _MAX_SEGMENTS:
             raise ValueError("too many segments")
         self.letters += letter
         for point in points:

@@ -56,9 +56,9 @@ SAME_ADVANCES: Sequence[frozenset[str]] = (
 )
 """Families of which each may stand for the others, as lines are as long with it."""
 _SPECIAL = re.compile(r"([\\\-:,=])")
-_MOST_SECONDS = 20
+_MAX_SECONDS = 20
 _LONGEST_NAME = 200
-_MOST_ANSWERS = 50
+_MAX_ANSWERS = 50
 
 
 def generic(name: str) -> Sequence[str]:
@@ -101,13 +101,13 @@ def _answers(
             [*words, _SPECIAL.sub(r"\\\1", name)],
             stdin=subprocess.DEVNULL,
             capture_output=True,
-            timeout=_MOST_SECONDS,
+            timeout=_MAX_SECONDS,
             check=True,
         )
     except (OSError, ValueError, subprocess.SubprocessError):
         return ()
     found = []
-    for line in os.fsdecode(done.stdout).splitlines()[:_MOST_ANSWERS]:
+    for line in os.fsdecode(done.stdout).splitlines()[:_MAX_ANSWERS]:
         index, _, file = line.partition("\t")
         if file and index.isdigit():
             # The upper half of the number is that of an instance of a variable font.

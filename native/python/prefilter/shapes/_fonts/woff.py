@@ -6,10 +6,10 @@ import struct
 import zlib
 from importlib import import_module
 
-MOST_BYTES = 1 << 26
+MAX_BYTES = 1 << 26
 _HEADER = struct.Struct(">4s4sIHHIHHIIIII")
 _ENTRY = struct.Struct(">4sIIII")
-_TOO_LARGE = f"it is larger than {MOST_BYTES >> 20} MiB when unpacked"
+_TOO_LARGE = f"it is larger than {MAX_BYTES >> 20} MiB when unpacked"
 _WOFF2_HEADER = 48
 # A few bytes may become 16 MiB, and no fewer than one can be unpacked.
 _UNPACKED_AT_ONCE = 16
@@ -43,7 +43,7 @@ def as_sfnt(data: bytes) -> bytes:
     head = bytearray(struct.pack(">4sHHHH", flavor, count, *_search(count)))
     body = bytearray()
     begin = len(head) + 16 * count
-    left = MOST_BYTES
+    left = MAX_BYTES
     for index in range(count):
         tag, offset, packed, size, checksum = _ENTRY.unpack_from(
             data, _HEADER.size + index * _ENTRY.size
@@ -71,7 +71,7 @@ def _check_woff2(data: bytes) -> None:
         raise DamagedFontError("WOFF 2 needs the Python package brotli") from None
     begin = _WOFF2_HEADER + _size_of_directory(data)
     packed = data[begin : begin + int.from_bytes(data[20:24], "big")]
-    unpacker, left = brotli.Decompressor(), MOST_BYTES
+    unpacker, left = brotli.Decompressor(), MAX_BYTES
     try:
         for at in range(0, len(packed), _UNPACKED_AT_ONCE):
             left -= len(unpacker.process(packed[at : at + _UNPACKED_AT_ONCE]))

@@ -20,29 +20,39 @@ from ...rasterization import rasterize
 from ...shape import Shape
 from ..filters.layers import filtered_layer
 from ..filters.warping import picture_pixels, tiled_pixels
-from ..model.blending import blended
+from ..model.blending import blend
 from ..model.limits import TooLargeError
-from ..model.tree import Box, Clip, Group, Mask, Painted, Pattern, Picture, carried, common
+from ..model.tree import (
+    Box,
+    Clip,
+    Group,
+    Mask,
+    Painted,
+    Pattern,
+    Picture,
+    intersect_boxes,
+    transform_box,
+)
 from .drawing import Drawing
-from .layers import Layering, Placed, bounds_of, filtered_region, is_plain, leaf_count
-from .outlines import Outlining
+from .layers import LayerPlanner, PlacedItem, bounds_of, filtered_region, is_plain, leaf_count
+from .outlines import ShapeBuilder
 
 FloatArray = npt.NDArray[np.float32]
 Window = tuple[int, int, int, int]
 """Pixels: left, low, right, high; the last two are not in it."""
 
 # A pattern is drawn tile by tile up to so many outlines.
-_MOST_TILED = 20_000
-_MOST_TILES = 4_000
+_MAX_TILED = 20_000
+_MAX_TILES = 4_000
 _SMALLEST_TILE, _LARGEST_TILE = 16, 2048
 # Pixels: of tiles that are smaller all filters see the mean alone, to a thousandth of 1/255.
 _LEAST_SEEN = 1 / 16
 # Layers within layers: each holds an image.
-_MOST_DEPTH = 48
-MOST_LAYER_PIXELS = 1 << 32
-MOST_LAYERS = 50_000
+_MAX_DEPTH = 48
+MAX_LAYER_PIXELS = 1 << 32
+MAX_LAYERS = 50_000
 # A pattern with layers in it is drawn tile by tile up to so many tiles.
-_MOST_LAYERED_TILES = 64
+_MAX_LAYERED_TILES = 64
 # What luminance is made of, of linear colors; SVG has the same for encoded ones.
 _LUMINANCE = tuple(np.float32(share) for share in (0.2125, 0.7154, 0.0721))
 
@@ -56,17 +66,17 @@ class Compositor:
         tell: Called with the fraction done; raises to stop.
     """
 
-    def __init__(self, filter_name: str, threads: int, tell: Callable[[float], None]) -> None:
+    def __init__(self, filter_name: str, threads: int, report: Callable[[float], None]) -> None:
         self._filter = filter_name
         self._threads = threads
-        self._tell = tell
+        self._report = report
         self._share = 0.0
         self._reach = next(found.radius for found in PIXEL_FILTERS if found.name == filter_name)
-        self._layering = Layering()
-        self._outlining = Outlining()
+        self._layering = LayerPlanner()
+        self._outlining = ShapeBuilder()
         self._depth = 0
-        self._pixels_left = MOST_LAYER_PIXELS
-        self._layers_left = MOST_LAYERS
+        self._pixels_left = MAX_LAYER_PIXELS
+        self._layers_left = MAX_LAYERS
 
     def draw(
         self, drawing: Drawing, matrix: Matrix, size: tuple[int, int], around: tuple[Clip, ...]
@@ -87,14 +97,14 @@ class Compositor:
         below = [background] if background is not None else []
         return self._painted(self._telling(placed), (0, 0, *size), below)
 
-    def _telling(self, placed: list[Placed]) -> Iterator[Placed]:
+    def _telling(self, placed: list[PlacedItem]) -> Iterator[PlacedItem]:
         for index, each in enumerate(placed):
             self._share = index / len(placed)
-            self._tell(self._share)
+            self._report(self._share)
             yield each
 
     def _painted(
-        self, placed: Iterable[Placed], window: Window, below: Sequence[Shape] = ()
+        self, placed: Iterable[PlacedItem], window: Window, below: Sequence[Shape] = ()
     ) -> FloatArray:
         """Items over each other, and over shapes."""
         canvas = self._blank(window)
@@ -127,7 +137,7 @@ class Compositor:
         self._layers_left -= 1
         if self._pixels_left < 0 or self._layers_left < 0:
             raise TooLargeError(
-                f"more than {MOST_LAYERS} layers, or of more than {MOST_LAYER_PIXELS} pixels"
+                f"more than {MAX_LAYERS} layers, or of more than {MAX_LAYER_PIXELS} pixels"
             )
 
     def _put_shapes(self, shapes: list[Shape], canvas: FloatArray, window: Window) -> None:
@@ -154,7 +164,7 @@ class Compositor:
         return found  # type: ignore[return-value]
 
     def _go_on(self, _: float) -> bool:
-        self._tell(self._share)
+        self._report(self._share)
         return True
 
     def _coverage(self, shape: Shape, window: Window) -> FloatArray:
@@ -162,18 +172,18 @@ class Compositor:
         shape.color = (1.0,)
         return self._rasterized([shape], window)
 
-    def _part(self, placed: Placed, window: Window) -> Window | None:
+    def _part(self, placed: PlacedItem, window: Window) -> Window | None:
         """The part of a window that an item shows in."""
         boxes: list[Box] = []
         for box in bounds_of(placed.item):
             shown: Box | None = box
             for clip in placed.around:
-                shown = common(shown, clip.bounds) if shown and clip.bounds else None
+                shown = intersect_boxes(shown, clip.bounds) if shown and clip.bounds else None
             if shown is not None:
-                boxes.append(carried(shown, placed.matrix))
+                boxes.append(transform_box(shown, placed.matrix))
         return window_of(boxes, window, self._reach)
 
-    def _layer(self, placed: Placed, window: Window) -> FloatArray:
+    def _layer(self, placed: PlacedItem, window: Window) -> FloatArray:
         """A group, a picture, or an outline with a pattern."""
         item = placed.item
         if isinstance(item, Group):
@@ -194,7 +204,7 @@ class Compositor:
         layer *= np.float32(opacity) * self._coverage(shape, window)
         return layer
 
-    def _group(self, group: Group, placed: Placed, window: Window) -> FloatArray:
+    def _group(self, group: Group, placed: PlacedItem, window: Window) -> FloatArray:
         inside = self._layering.placed(group, placed.matrix, placed.around)
         if group.filter is not None:
             layer = self._filtered(group, placed, window)
@@ -207,7 +217,7 @@ class Compositor:
             layer *= np.float32(opacity)
         return layer
 
-    def _filtered(self, group: Group, placed: Placed, window: Window) -> FloatArray:
+    def _filtered(self, group: Group, placed: PlacedItem, window: Window) -> FloatArray:
         """A group after its filter, cut off at its clips after that."""
         box = filtered_region(group)
         clips = (*placed.around, *group.clips)
@@ -223,9 +233,9 @@ class Compositor:
             layer *= self._coverage(shape, window)
         return layer
 
-    def _nested(self, placed: Iterable[Placed], window: Window) -> FloatArray:
-        if self._depth >= _MOST_DEPTH:
-            raise TooLargeError(f"layers are nested more than {_MOST_DEPTH} deep")
+    def _nested(self, placed: Iterable[PlacedItem], window: Window) -> FloatArray:
+        if self._depth >= _MAX_DEPTH:
+            raise TooLargeError(f"layers are nested more than {_MAX_DEPTH} deep")
         self._depth += 1
         layer = self._painted(placed, window)
         self._depth -= 1
@@ -250,13 +260,13 @@ class Compositor:
         whole = multiplied(matrix, pattern.matrix)
         left, top, right, bottom = pattern.tile
         width, height = right - left, bottom - top
-        box = carried((*map(float, window),), inverse(whole))  # type: ignore[arg-type]
+        box = transform_box((*map(float, window),), inverse(whole))  # type: ignore[arg-type]
         columns = range(math.floor((box[0] - left) / width), math.ceil((box[2] - left) / width))
         rows = range(math.floor((box[1] - top) / height), math.ceil((box[3] - top) / height))
         tiles = (columns.stop - columns.start) * (rows.stop - rows.start)
-        most = min(_MOST_TILES, _MOST_TILED // max(leaf_count(pattern.group), 1))
+        most = min(_MAX_TILES, _MAX_TILED // max(leaf_count(pattern.group), 1))
         if not all(is_plain(each.item) for each in self._layering.placed(pattern.group, whole)):
-            most = min(most, _MOST_LAYERED_TILES)
+            most = min(most, _MAX_LAYERED_TILES)
         if tiles > most:
             return self._tiled(pattern, whole, window)
         return self._nested(
@@ -298,7 +308,7 @@ def window_of(boxes: Sequence[Box], window: Window, reach: float) -> Window | No
     lefts, lows, rights, highs = zip(*boxes, strict=True)
     more = reach + 1.0
     box = (min(lefts) - more, min(lows) - more, max(rights) + more, max(highs) + more)
-    seen = common(box, (*map(float, window),))  # type: ignore[arg-type]
+    seen = intersect_boxes(box, (*map(float, window),))  # type: ignore[arg-type]
     if seen is None:
         return None
     left, low, right, high = seen
@@ -309,4 +319,4 @@ def _put(canvas: FloatArray, window: Window, layer: FloatArray, part: Window, mo
     """Puts a layer over a part of a canvas."""
     rows = slice(part[1] - window[1], part[3] - window[1])
     columns = slice(part[0] - window[0], part[2] - window[0])
-    canvas[rows, columns] = blended(canvas[rows, columns], layer, mode)
+    canvas[rows, columns] = blend(canvas[rows, columns], layer, mode)

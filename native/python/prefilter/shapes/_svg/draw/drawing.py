@@ -9,13 +9,13 @@ from dataclasses import dataclass, replace
 from ...affine import IDENTITY, Matrix, determinant, inverse, multiplied
 from ...shape import Shape
 from ..filters.filter_property import filters_of
-from ..model.clips import box_clip
+from ..model.clips import make_box_clip
 from ..model.gradients import Colors, Gradient
 from ..model.limits import Budget
 from ..model.outline import Outline
-from ..model.tree import Box, Clip, Group, Painted, Pattern, Stroke, carried
+from ..model.tree import Box, Clip, Group, Painted, Pattern, Stroke, transform_box
 from ..model.values import Paint
-from ..model.view_boxes import placed
+from ..model.view_boxes import fit_view_box
 from ..model.warnings import Warnings
 from ..paint.bounds import object_bounds
 from ..paint.clip_paths import clipped
@@ -26,11 +26,20 @@ from ..paint.paints import paint_order, resolved, stroke_of
 from ..read.basic_shapes import BASIC_SHAPES
 from ..read.context import Context, Sources
 from ..read.document import Document, SvgElement, read_document
-from ..read.fonts import FontPlaces
-from ..read.nesting import DRAWN, FOREIGN, SHOWN, children, is_wanted, moved, used, viewport
-from ..read.page import Page, background_of, read_page
+from ..read.fonts import FontSources
+from ..read.nesting import (
+    FOREIGN,
+    RENDERED_TAGS,
+    VISIBLE_OVERFLOW,
+    enter_element,
+    enter_viewport,
+    passes_conditions,
+    rendered_children,
+    resolve_use,
+)
+from ..read.page import Page, read_background, read_page
 from ..read.paint_servers import PaintServers
-from ..read.references import check_uses
+from ..read.references import check_repetition
 from ..read.styles import UNSUPPORTED, Style, StyleSheets
 from ..read.tags import NOT_DRAWN
 
@@ -39,7 +48,7 @@ Tell = Callable[[float], None]
 # Squares of larger coordinates might not be finite.
 _LARGEST = 1e100
 _SMALLEST_DETERMINANT = 1e-40
-_MOST_NESTED = 8
+_MAX_NESTED = 8
 # Of the larger side: what rounding makes of a page that fits.
 _SLACK = 1e-9
 
@@ -72,14 +81,16 @@ class Drawing:
         document: Document,
         colors: Colors,
         warnings: Warnings,
-        tell: Tell,
-        fonts: FontPlaces,
+        report: Tell,
+        fonts: FontSources,
     ) -> None:
-        walk = Walk(document, warnings, tell, 0, Budget(document.count), fonts)
+        walk = TreeBuilder(document, warnings, report, 0, Budget(document.count), fonts)
         self.page = walk.page
         self.tree = Group(is_isolated=True)
-        self._is_open = walk.sources.sheets.declared(document.root).get("overflow") in SHOWN
-        self.background = background_of(walk.sources, colors)
+        self._is_open = (
+            walk.sources.sheets.declared(document.root).get("overflow") in VISIBLE_OVERFLOW
+        )
+        self.background = read_background(walk.sources, colors)
         walk.draw_in(IDENTITY, (), self.tree, colors)
 
     def placement(self, width: float, height: float) -> tuple[Matrix, tuple[Clip, ...]]:
@@ -88,7 +99,7 @@ class Drawing:
         The page is all of an image that has its proportions.
         """
         to_pixels = self.page.placement(width, height)
-        left, low, right, high = carried(self.page.shown(), to_pixels)
+        left, low, right, high = transform_box(self.page.shown(), to_pixels)
         slack = _SLACK * max(width, height)
         if left <= slack and low <= slack and right >= width - slack and high >= height - slack:
             return to_pixels, ()
@@ -103,33 +114,33 @@ class Drawing:
         """What the drawing is cut off at: its page."""
         if self._is_open:
             return ()
-        return (box_clip(self.page.shown(), IDENTITY),)
+        return (make_box_clip(self.page.shown(), IDENTITY),)
 
     def background_in(self, to_pixels: Matrix) -> Shape | None:
         """The page as a shape of its color; None where it has none."""
         if self.background is None:
             return None
-        left, low, right, high = carried(self.page.shown(), to_pixels)
+        left, low, right, high = transform_box(self.page.shown(), to_pixels)
         shape = Shape(color=self.background)
         shape.add_polygon([(left, low), (right, low), (right, high), (left, high)])
         return shape
 
 
-class Walk:
+class TreeBuilder:
     """Draws the elements of a document."""
 
     def __init__(
         self,
         document: Document,
         warnings: Warnings,
-        tell: Tell,
+        report: Tell,
         depth: int,
         budget: Budget,
-        fonts: FontPlaces,
+        fonts: FontSources,
     ) -> None:
-        sheets = StyleSheets(document, warnings, lambda share: tell(0.5 * share))
+        sheets = StyleSheets(document, warnings, lambda share: report(0.5 * share))
         servers = PaintServers(document, sheets, warnings)
-        check_uses(document, sheets)
+        check_repetition(document, sheets)
         own = fonts.with_rules(sheets.font_rules, warnings)
         self._fonts = fonts
         self.sources = Sources(
@@ -143,7 +154,7 @@ class Walk:
             measure=object_bounds,
         )
         self.page: Page = read_page(self.sources)
-        self._tell = tell
+        self._report = report
         self._depth = depth
         self._images = Images(self._nested)
 
@@ -161,9 +172,9 @@ class Walk:
             count += 1
             if count % 100 == 0:
                 # With `use` there may be more than there are elements.
-                self._tell(0.5 + 0.5 * min(count / sources.document.count, 0.99))
+                self._report(0.5 + 0.5 * min(count / sources.document.count, 0.99))
             sources.budget.take_element()
-            sources.draw(self._visit(element, context))
+            sources.schedule(self._visit(element, context))
 
     def _visit(self, element: SvgElement, context: Context) -> Iterator[tuple[SvgElement, Context]]:
         """Paints an element; yields those in it."""
@@ -173,18 +184,18 @@ class Walk:
             sources.warnings.unsupported("<script>", "not run", element.line)
         if tag in NOT_DRAWN or tag.startswith("{") or declared.get("display", "") == "none":
             return
-        if not is_wanted(element) and element is not sources.document.root:
+        if not passes_conditions(element) and element is not sources.document.root:
             return
         if tag == "symbol" and context.use is None:
             return
-        if tag not in DRAWN:
+        if tag not in RENDERED_TAGS:
             sources.warnings.unsupported(f"<{tag}>", "left out", element.line)
             return
         foreign = [child for child in element if child.tag == FOREIGN] if tag == "switch" else []
         if foreign:
             effect = "replaced by what follows it" if element[-1] not in foreign else "left out"
             sources.warnings.unsupported(f"<{FOREIGN}>", effect, element.line)
-        inside = self._within(element, moved(element, context, sources))
+        inside = self._within(element, enter_element(element, context, sources))
         if inside is None:
             return
         if tag in BASIC_SHAPES:
@@ -194,13 +205,13 @@ class Walk:
         elif tag == "image":
             draw_image(element, inside, sources, self._images)
         elif tag == "use":
-            yield from used(element, inside, sources)
+            yield from resolve_use(element, inside, sources)
         else:
             if tag in ("svg", "symbol") and element is not sources.document.root:
-                inside = viewport(element, inside, sources)
+                inside = enter_viewport(element, inside, sources)
             if inside is not None:
                 place = replace(inside, use=None)
-                yield from ((child, place) for child in children(element))
+                yield from ((child, place) for child in rendered_children(element))
 
     def _within(self, element: SvgElement, context: Context) -> Context | None:
         """The context within an element's opacity, mask and clip path; None where nothing shows."""
@@ -236,9 +247,9 @@ class Walk:
             )
             context.target.items.append(group)
             for earlier in reversed(filters[:-1]):
-                within = Group(filter=earlier, is_isolated=True, line=element.line)
-                group.items.append(within)
-                group = within
+                clip_box = Group(filter=earlier, is_isolated=True, line=element.line)
+                group.items.append(clip_box)
+                group = clip_box
             clips = () if filters else inside.clips
             inside = replace(inside, target=group, clips=clips)
         return inside
@@ -295,7 +306,7 @@ class Walk:
             margin = 0.5 * stroke.width * max(longest, math.sqrt(2.0))
         left, top, right, bottom = drawn.box
         box = (left - margin, top - margin, right + margin, bottom + margin)
-        box = carried(box, context.matrix)
+        box = transform_box(box, context.matrix)
         if not all(abs(value) < _LARGEST for value in box):
             self.sources.warnings.broken(
                 f"<{element.tag}>", "left out, as it is too far away", element.line
@@ -323,7 +334,7 @@ class Walk:
     ) -> tuple[Context, _Drawn, tuple[float, ...] | Gradient | Pattern]:
         """The same in pixels of the page."""
         page = self.page
-        to_page = placed(page.view, page.aspect, page.width, page.height)
+        to_page = fit_view_box(page.view, page.aspect, page.width, page.height)
         own = multiplied(to_page, context.matrix)
         outline = drawn.outline.transformed(own)
         if not isinstance(paint, tuple):
@@ -332,14 +343,14 @@ class Walk:
         context = replace(context, matrix=inverse(to_page))
         return context, _Drawn(outline, box, drawn.bounds), paint
 
-    def _nested(self, data: bytes, name: str) -> "Walk":
+    def _nested(self, data: bytes, name: str) -> "TreeBuilder":
         """A drawing in this one; nothing in it comes from other files."""
-        if self._depth >= _MOST_NESTED:
-            raise ValueError(f"as drawings are nested more than {_MOST_NESTED} deep")
+        if self._depth >= _MAX_NESTED:
+            raise ValueError(f"as drawings are nested more than {_MAX_NESTED} deep")
         document = read_document(data, lambda _: None)
         document.name = name
         sources = self.sources
-        return Walk(
+        return TreeBuilder(
             document,
             sources.warnings,
             lambda _: None,

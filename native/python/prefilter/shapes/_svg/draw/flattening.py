@@ -7,10 +7,10 @@ from collections.abc import Iterator
 from ...affine import IDENTITY, Matrix
 from ..model.tree import Group, Painted, Pattern, Picture
 from ..model.warnings import Warnings
-from .layers import Layering
+from .layers import LayerPlanner
 
 
-class Flat:
+class FlatTree:
     """The outlines of a tree.
 
     Args:
@@ -22,7 +22,7 @@ class Flat:
     """
 
     def __init__(self, group: Group, warnings: Warnings) -> None:
-        self._layering = Layering()
+        self._layering = LayerPlanner()
         self._warnings = warnings
         self.painted = list(self._outlines(group, IDENTITY, 1.0))
 
@@ -32,7 +32,7 @@ class Flat:
         for placed in self._layering.placed(group, matrix, (), opacity):
             item = placed.item
             if isinstance(item, Group):
-                self._tell(item)
+                self._report(item)
                 yield from self._outlines(item, matrix, placed.opacity * item.opacity)
             elif isinstance(item, Picture):
                 self._warnings.unsupported("<image>", "left out", item.line)
@@ -41,7 +41,7 @@ class Flat:
             else:
                 yield item, placed.opacity
 
-    def _tell(self, group: Group) -> None:
+    def _report(self, group: Group) -> None:
         if group.filter is not None:
             self._warnings.unsupported("filter", "ignored", group.line)
         if group.masks:

@@ -7,13 +7,24 @@ from dataclasses import dataclass
 
 from ...affine import IDENTITY, Matrix
 from ..filters.evaluation import reach_of
-from ..model.tree import Box, Clip, Group, Item, Painted, Pattern, carried, common, joined, leaves
+from ..model.tree import (
+    Box,
+    Clip,
+    Group,
+    Item,
+    Painted,
+    Pattern,
+    intersect_boxes,
+    leaves,
+    transform_box,
+    unite_boxes,
+)
 
-_MOST_COMPARED = 200
+_MAX_COMPARED = 200
 
 
 @dataclass(frozen=True, slots=True)
-class Placed:
+class PlacedItem:
     """What is drawn by itself.
 
     Attributes:
@@ -28,7 +39,7 @@ class Placed:
     around: tuple[Clip, ...]
 
 
-class Layering:
+class LayerPlanner:
     """Takes trees apart; knows the groups that it has seen."""
 
     def __init__(self) -> None:
@@ -36,13 +47,13 @@ class Layering:
 
     def placed(
         self, group: Group, matrix: Matrix, around: tuple[Clip, ...] = (), opacity: float = 1.0
-    ) -> Iterator[Placed]:
+    ) -> Iterator[PlacedItem]:
         """Yields outlines, pictures and groups with layers, first what is below."""
         for item in group.items:
             if isinstance(item, Group) and not self.needs_layer(item):
                 yield from self.placed(item, matrix, around, opacity * item.opacity)
             else:
-                yield Placed(item, matrix, opacity, around)
+                yield PlacedItem(item, matrix, opacity, around)
 
     def needs_layer(self, group: Group) -> bool:
         """Whether a group looks different from its items, drawn one by one."""
@@ -66,11 +77,13 @@ class Layering:
 
     def _is_overlapping(self, group: Group) -> bool:
         items = [placed.item for placed in self.placed(group, _UNUSED)]
-        if any(isinstance(item, Group) for item in items) or len(items) > _MOST_COMPARED:
+        if any(isinstance(item, Group) for item in items) or len(items) > _MAX_COMPARED:
             return True
         boxes = [item.box for item in items if not isinstance(item, Group)]
         return any(
-            common(box, other) is not None for k, box in enumerate(boxes) for other in boxes[:k]
+            intersect_boxes(box, other) is not None
+            for k, box in enumerate(boxes)
+            for other in boxes[:k]
         )
 
 
@@ -94,7 +107,7 @@ def bounds_of(item: Item) -> Iterator[Box]:
             yield from bounds_of(inner)
         return
     for clip in item.clips:
-        box = common(box, clip.bounds) if box and clip.bounds else None
+        box = intersect_boxes(box, clip.bounds) if box and clip.bounds else None
     if box is not None:
         yield box
 
@@ -104,11 +117,11 @@ def filtered_region(group: Group) -> Box | None:
     filter_ = group.filter
     assert filter_ is not None
     if filter_.region is not None:
-        return carried(filter_.region, filter_.matrix)
+        return transform_box(filter_.region, filter_.matrix)
     box: Box | None = None
     for item in group.items:
         for inner in bounds_of(item):
-            box = joined(box, inner)
+            box = unite_boxes(box, inner)
     if box is None:
         return None
     more = reach_of(filter_, IDENTITY)

@@ -10,7 +10,7 @@ from ..model.gradients import Colors
 from ..model.limits import TooLargeError
 from ..model.warnings import Warnings
 from ..read.document import read_document
-from ..read.fonts import FontPlaces
+from ..read.fonts import FontSources
 from .drawing import Drawing
 
 
@@ -19,7 +19,7 @@ def open_drawing(
     *,
     colors: Colors,
     reads_files: bool,
-    tell: Callable[[float], None],
+    report: Callable[[float], None],
     fonts: Iterable[str | os.PathLike[str]] | None,
 ) -> tuple[str, Drawing, Warnings]:
     """Reads a drawing, and images beside it if it is to. See `prefilter.read_svg`.
@@ -27,18 +27,20 @@ def open_drawing(
     Returns:
         What messages call it, the drawing, and what is wrong with it.
     """
-    places = FontPlaces(fonts)
-    document = read_document(source, lambda share: tell(0.3 * share))
+    places = FontSources(fonts)
+    document = read_document(source, lambda share: report(0.3 * share))
     if not reads_files:
         document.folder = None
     warnings = Warnings()
-    with refusing(document.name):
-        drawing = Drawing(document, colors, warnings, lambda share: tell(0.3 + 0.7 * share), places)
+    with as_value_errors(document.name):
+        drawing = Drawing(
+            document, colors, warnings, lambda share: report(0.3 + 0.7 * share), places
+        )
     return document.name, drawing, warnings
 
 
 @contextmanager
-def refusing(name: str) -> Iterator[None]:
+def as_value_errors(name: str) -> Iterator[None]:
     """Has what is too large or too deep refused as a ValueError that names the drawing."""
     try:
         yield

@@ -13,7 +13,7 @@ from ...shape import Shape
 from ..filters.evaluation import is_upright
 from ..model.gradients import Gradient
 from ..model.limits import TooLargeError
-from ..model.tree import Box, Clip, Group, Painted, Picture, common, holds
+from ..model.tree import Box, Clip, Group, Painted, Picture, contains_box, intersect_boxes
 
 # Pixels farther away than this are not looked at: what an outline has there is drawn together, so
 # that one far point takes nothing from what is near.
@@ -22,7 +22,7 @@ _FARTHEST = float(1 << 21)
 _STROKE_TOLERANCE = 1.0 / 1024.0
 
 
-class Outlining:
+class ShapeBuilder:
     """Makes shapes, and keeps what clips let through."""
 
     def __init__(self) -> None:
@@ -40,7 +40,7 @@ class Outlining:
             around: What it is cut off at beside its own clips.
         """
         box, clips = painted.box, (*around, *painted.clips)
-        if any(clip.bounds is None or common(box, clip.bounds) is None for clip in clips):
+        if any(clip.bounds is None or intersect_boxes(box, clip.bounds) is None for clip in clips):
             return None
         whole = multiplied(matrix, painted.matrix)
         if determinant(whole) == 0.0:
@@ -64,7 +64,9 @@ class Outlining:
         """What shows of a picture, likewise; None for nothing."""
         clips = (*around, *picture.clips)
         whole = multiplied(matrix, picture.matrix)
-        hidden = any(clip.bounds is None or not common(picture.box, clip.bounds) for clip in clips)
+        hidden = any(
+            clip.bounds is None or not intersect_boxes(picture.box, clip.bounds) for clip in clips
+        )
         if hidden or determinant(whole) == 0.0:
             return None
         shape = Shape()
@@ -94,7 +96,7 @@ class Outlining:
     def clipped(self, shape: Shape, box: Box, clips: Sequence[Clip], matrix: Matrix) -> Shape:
         """What clips leave of a shape that lies within a box of the tree."""
         for clip in clips:
-            if clip.is_box and clip.bounds is not None and holds(clip.bounds, box):
+            if clip.is_box and clip.bounds is not None and contains_box(clip.bounds, box):
                 continue
             shape = _combined(shape, self._region(clip, matrix), "intersection")
         return shape

@@ -15,9 +15,9 @@ import numpy.typing as npt
 
 from ....images.color import to_linear, to_srgb
 from ...affine import Matrix, inverse, multiplied
-from ..model.blending import blended, straight_colors
+from ..model.blending import blend, straight_colors
 from ..model.limits import TooLargeError
-from ..model.tree import Box, Filter, Group, Step, carried
+from ..model.tree import Box, Filter, Group, Step, transform_box
 from .lighting import lit
 from .neighborhoods import convolved, extreme, tiled
 from .pixels import blurred, composited, recolored, shifted, transferred
@@ -27,7 +27,7 @@ FloatArray = npt.NDArray[np.float32]
 Slices = tuple[slice, slice]
 """Rows and columns."""
 
-MOST_KEPT = 64
+MAX_KEPT = 64
 """Results of steps that later ones read: each is as large as the layer."""
 _AT_ONCE = 1 << 16
 
@@ -128,8 +128,8 @@ class _Filtering:
         """Lets results go that no step after that one reads."""
         read = {name for step in self._filter.steps[index + 1 :] for name in step.inputs}
         self._named = {name: kept for name, kept in self._named.items() if name in read}
-        if len(self._named) > MOST_KEPT:
-            raise TooLargeError(f"a filter keeps the results of more than {MOST_KEPT} steps")
+        if len(self._named) > MAX_KEPT:
+            raise TooLargeError(f"a filter keeps the results of more than {MAX_KEPT} steps")
 
     def _region_of(self, step: Step, inputs: list[_Result]) -> Slices:
         """Where a step ends: as it says, or with its inputs."""
@@ -160,7 +160,7 @@ class _Filtering:
             case "feComposite":
                 return composited(images[0], images[1], step.name, numbers)
             case "feBlend":
-                return blended(images[1].copy(), images[0], step.name)
+                return blend(images[1].copy(), images[0], step.name)
             case "feColorMatrix":
                 return recolored(images[0], np.array(numbers, np.float32).reshape(4, 5))
             case "feComponentTransfer":
@@ -218,7 +218,7 @@ class _Filtering:
         tile = None
         if step.numbers[4]:
             box = (float(columns.start), float(top), float(columns.stop), float(bottom))
-            left, upper, right, lower = carried(box, (a, b, c, d, e, f))
+            left, upper, right, lower = transform_box(box, (a, b, c, d, e, f))
             tile = left, upper, right - left, lower - upper
         inside = found[region][::-1]
         # Some rows at a time, as numbers on the way take much memory.
@@ -244,7 +244,7 @@ class _Filtering:
     def _merged(self, inputs: list[_Result], is_linear: bool) -> FloatArray:
         merged = np.zeros_like(self._source)
         for each in inputs:
-            merged = blended(merged, _with_colors(each, is_linear), "normal")
+            merged = blend(merged, _with_colors(each, is_linear), "normal")
         return merged
 
     def _flood(self, color: tuple[float, ...], is_linear: bool) -> FloatArray:
@@ -257,14 +257,14 @@ class _Filtering:
         blur, move, color = numbers[:2], numbers[2:4], numbers[4:]
         alpha = blurred(source[..., 3:], *_lengths(blur, self._matrix))
         alpha = shifted(alpha, *_direction(move, self._matrix))
-        return blended(self._flood(color, step.is_linear) * alpha, source, "normal")
+        return blend(self._flood(color, step.is_linear) * alpha, source, "normal")
 
     def _slices(self, region: Box | None) -> Slices:
         """The pixels that a region touches."""
         height, width = self._shape
         if region is None:
             return slice(0, height), slice(0, width)
-        left, low, right, high = carried(region, self._matrix)
+        left, low, right, high = transform_box(region, self._matrix)
         x, y = self._corner
         begin, end = (_limited(value - x, width) for value in (left + 1e-6, right - 1e-6))
         bottom, top = (_limited(value - y, height) for value in (low + 1e-6, high - 1e-6))

@@ -5,7 +5,7 @@
 from dataclasses import replace
 
 from ...affine import IDENTITY, multiplied
-from ..model.tree import Box, Filter, Group, Step, carried
+from ..model.tree import Box, Filter, Group, Step, transform_box
 from ..model.values import Length
 from ..paint.bounds import object_bounds
 from ..paint.images import Images, put_image
@@ -68,7 +68,7 @@ def _referred(
     if region is None:
         return Filter((), _NOTHING, context.matrix, context.colors.is_linear)
     units = shares_of(box) if found.get("primitiveUnits") == "objectBoundingBox" else IDENTITY
-    place = FilterPlace(units or IDENTITY, carried(region, matrix))
+    place = FilterPlace(units or IDENTITY, transform_box(region, matrix))
     steps = tuple(
         _step(child, place, context, sources, images)
         for child in found
@@ -151,5 +151,5 @@ def _shown(
             uses=(*context.uses, target),
             use=element,
         )
-        sources.draw(((target, inside),))
+        sources.schedule(((target, inside),))
     return group

@@ -11,11 +11,11 @@ import tinycss2
 from ...affine import Matrix
 from ..model.colors import Color
 from ..model.tree import Filter, Step
-from ..model.values import as_color, as_length, url_of
+from ..model.values import parse_color, parse_length, parse_url
 from ..read.lengths import Units
 from .primitives import Matrix5, saturating, turning_hues
 
-MOST_FUNCTIONS = 32
+MAX_FUNCTIONS = 32
 _DEGREES = {"deg": 1.0, "grad": 0.9, "rad": 180.0 / np.pi, "turn": 360.0}
 _NAMES = frozenset(
     ("brightness", "contrast", "grayscale", "invert", "opacity", "saturate", "sepia", "hue-rotate")
@@ -38,11 +38,11 @@ def listed(text: str) -> list[Any]:
     for token in tinycss2.parse_component_value_list(text, skip_comments=True):
         if token.type == "whitespace":
             continue
-        address = url_of(token)
+        address = parse_url(token)
         if address is None and token.type != "function":
             raise InvalidFunctionError
         found.append(token if address is None else address)
-    if not found or len(found) > MOST_FUNCTIONS:
+    if not found or len(found) > MAX_FUNCTIONS:
         raise InvalidFunctionError
     return found
 
@@ -91,7 +91,7 @@ def _length(token: Any, units: Units) -> float:
     if token.type not in ("number", "dimension"):
         raise InvalidFunctionError
     try:
-        length = as_length(token.serialize())
+        length = parse_length(token.serialize())
     except ValueError:
         length = None
     if length is None:
@@ -104,7 +104,7 @@ def _shadow(arguments: list[Any], units: Units, current: Color) -> list[float]:
     color: Color = current
     for place in (0, -1):
         if arguments and arguments[place].type not in ("number", "dimension"):
-            found = as_color(arguments.pop(place).serialize())
+            found = parse_color(arguments.pop(place).serialize())
             if found is None:
                 raise InvalidFunctionError
             color = current if isinstance(found, str) else found

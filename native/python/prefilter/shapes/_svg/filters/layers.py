@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from .... import _native
 from ...affine import Matrix, inverse, multiplied
-from ..model.tree import Box, Filter, Group, carried, common
+from ..model.tree import Box, Filter, Group, intersect_boxes, transform_box
 from .evaluation import filtered, is_upright, reach_of
 from .warping import turned_pixels
 
@@ -46,7 +46,9 @@ def filtered_layer(
     left, low, right, high = window
     around = (float(left - reach), float(low - reach), float(right + reach), float(high + reach))
     if is_upright(to_pixels):
-        return _upright(draw, group, carried(box, matrix), around, (matrix, to_pixels), window)
+        return _upright(
+            draw, group, transform_box(box, matrix), around, (matrix, to_pixels), window
+        )
     return _turned(draw, group, box, around, (matrix, to_pixels), window, threads)
 
 
@@ -54,8 +56,8 @@ def _upright(
     draw: Draw, group: Group, box: Box, around: Box, ways: tuple[Matrix, Matrix], window: Window
 ) -> FloatArray:
     layer = np.zeros((window[3] - window[1], window[2] - window[0], 4), np.float32)
-    region = _pixels(common(box, around))
-    shared = common((*map(float, window),), (*map(float, region),)) if region else None  # type: ignore[arg-type]
+    region = _pixels(intersect_boxes(box, around))
+    shared = intersect_boxes((*map(float, window),), (*map(float, region),)) if region else None  # type: ignore[arg-type]
     if region is None or shared is None:
         return layer
     made = _made(draw, group, ways, region)
@@ -88,9 +90,9 @@ def _turned(
 
     def placed() -> tuple[Matrix, Window | None]:
         upright: Matrix = (across, 0.0, 0.0, -along, 0.0, 0.0)
-        whole = carried(box, multiplied(upright, inverse(filter_.matrix)))
-        seen = carried(around, multiplied(upright, inverse(to_pixels)))
-        return upright, _pixels(common(whole, seen))
+        whole = transform_box(box, multiplied(upright, inverse(filter_.matrix)))
+        seen = transform_box(around, multiplied(upright, inverse(to_pixels)))
+        return upright, _pixels(intersect_boxes(whole, seen))
 
     upright, region = placed()
     largest = max(region[2] - region[0], region[3] - region[1]) if region else 0

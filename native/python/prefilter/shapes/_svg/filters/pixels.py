@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .... import _native
-from ..model.blending import blended, straight_colors
+from ..model.blending import blend, straight_colors
 
 FloatArray = npt.NDArray[np.float32]
 
@@ -129,7 +129,7 @@ def composited(
             k1, k2, k3, k4 = map(np.float32, factors)
             return _valid(k1 * above * below + k2 * above + k3 * below + k4)
         case _:
-            return blended(below.copy(), above, "normal")
+            return blend(below.copy(), above, "normal")
 
 
 def _valid(pixels: FloatArray) -> FloatArray:

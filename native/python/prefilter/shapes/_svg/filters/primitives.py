@@ -14,7 +14,7 @@ from ...affine import Matrix
 from ..model.blending import BLEND_MODES
 from ..model.colors import Color
 from ..model.tree import Box
-from ..model.values import as_color, as_number, leading_numbers
+from ..model.values import leading_numbers, parse_color, parse_number
 from ..read.context import Sources
 from ..read.document import SvgElement
 
@@ -22,8 +22,8 @@ _OPERATORS = ("over", "in", "out", "atop", "xor", "lighter", "arithmetic")
 _CHANNELS = ("feFuncR", "feFuncG", "feFuncB", "feFuncA")
 _EDGE_MODES = ("duplicate", "wrap", "none")
 _LIGHTS = ("feDistantLight", "fePointLight", "feSpotLight")
-_MOST_WEIGHTS = 400
-_MOST_OCTAVES = 10
+_MAX_WEIGHTS = 400
+_MAX_OCTAVES = 10
 # Of red, green and blue, as Filter Effects has them.
 _RED, _GREEN, _BLUE = 0.213, 0.715, 0.072
 _SATURATION = np.array([[_RED, _GREEN, _BLUE]] * 3)
@@ -57,7 +57,7 @@ def _numbers(text: str | None, default: list[float]) -> list[float]:
 
 
 def _number(element: SvgElement, name: str, default: float) -> float:
-    found = as_number(element.get(name, ""))
+    found = parse_number(element.get(name, ""))
     return default if found is None else found
 
 
@@ -89,13 +89,13 @@ def _offset(element: SvgElement, place: FilterPlace, _: Sources) -> Found:
 def _flood(element: SvgElement, place: FilterPlace, sources: Sources) -> Found:
     del place
     color = _color(element, "flood-color", (0.0, 0.0, 0.0, 1.0), sources)
-    opacity = as_number(sources.sheets.declared(element).get("flood-opacity", "1"))
+    opacity = parse_number(sources.sheets.declared(element).get("flood-opacity", "1"))
     alpha = color[3] * (1.0 if opacity is None else min(max(opacity, 0.0), 1.0))
     return [], [*color[:3], alpha], ""
 
 
 def _color(element: SvgElement, name: str, default: Color, sources: Sources) -> Color:
-    color = as_color(sources.sheets.declared(element).get(name, "none"))
+    color = parse_color(sources.sheets.declared(element).get(name, "none"))
     if color is None:
         return default
     return sources.sheets.style(element).color if isinstance(color, str) else color
@@ -217,8 +217,8 @@ def _convolution(element: SvgElement, _: FilterPlace, sources: Sources) -> Found
     columns, rows = int(sizes[0]), int(sizes[-1])
     if columns * rows != len(weights):
         return _nothing(element)
-    if len(weights) > _MOST_WEIGHTS:
-        raise UnknownStepError(f"more than {_MOST_WEIGHTS} weights of <feConvolveMatrix>")
+    if len(weights) > _MAX_WEIGHTS:
+        raise UnknownStepError(f"more than {_MAX_WEIGHTS} weights of <feConvolveMatrix>")
     x = _number(element, "targetX", columns // 2)
     y = _number(element, "targetY", rows // 2)
     if not (0 <= x < columns and 0 <= y < rows):
@@ -241,7 +241,7 @@ def _turbulence(element: SvgElement, _: FilterPlace, sources: Sources) -> Found:
     if octaves < 1.0:
         return _nothing(element)
     fits = element.get("stitchTiles", "noStitch").strip() == "stitch"
-    found = [numbers[0], numbers[-1], float(min(int(octaves), _MOST_OCTAVES))]
+    found = [numbers[0], numbers[-1], float(min(int(octaves), _MAX_OCTAVES))]
     found += [float(int(_number(element, "seed", 0.0))), float(fits)]
     is_fractal = element.get("type", "turbulence").strip() == "fractalNoise"
     return [], found, "fractalNoise" if is_fractal else "turbulence"

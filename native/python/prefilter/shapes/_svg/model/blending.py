@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""How layers are mixed: W3C, Compositing and Blending Level 1. Colors are multiplied by alpha."""
+"""Blending of layers: W3C, Compositing and Blending Level 1. Colors are premultiplied by alpha."""
 
 from collections.abc import Callable
 
@@ -11,20 +11,20 @@ FloatArray = npt.NDArray[np.float32]
 Mix = Callable[[FloatArray, FloatArray], FloatArray]
 
 _HALF, _ONE, _TWO = np.float32(0.5), np.float32(1.0), np.float32(2.0)
-# Of red, green and blue, as the recommendation has it.
+# Luminosity weights of red, green and blue in the recommendation.
 _LUMA = np.array([0.3, 0.59, 0.11], np.float32)
 
 
-def over(below: FloatArray, above: FloatArray) -> None:
-    """Puts a layer over another one, (height, width, 4) each, in place."""
+def blend_over(below: FloatArray, above: FloatArray) -> None:
+    """Composites a layer over another one of the same size, in place."""
     below *= _ONE - above[..., 3:]
     below += above
 
 
-def blended(below: FloatArray, above: FloatArray, mode: str) -> FloatArray:
-    """A layer over another one, which may change, mixed by the name of a `mix-blend-mode`."""
+def blend(below: FloatArray, above: FloatArray, mode: str) -> FloatArray:
+    """Blends a layer with the one below, which may be overwritten, by a `mix-blend-mode`."""
     if mode == "normal":
-        over(below, above)
+        blend_over(below, above)
         return below
     mix = _MODES[mode]
     alpha_below, alpha_above = below[..., 3:], above[..., 3:]
@@ -40,18 +40,18 @@ def blended(below: FloatArray, above: FloatArray, mode: str) -> FloatArray:
 
 
 def straight_colors(colors: FloatArray) -> FloatArray:
-    """Colors in [0, 1] that are not multiplied by alpha; 0 where that is 0."""
+    """Returns colors divided by alpha and clamped to [0, 1]; 0 where alpha is 0."""
     alpha = colors[..., 3:]
-    found = np.zeros_like(colors[..., :3])
-    np.divide(colors[..., :3], alpha, out=found, where=alpha > 0.0)
-    return found.clip(0.0, 1.0, out=found)
+    straight = np.zeros_like(colors[..., :3])
+    np.divide(colors[..., :3], alpha, out=straight, where=alpha > 0.0)
+    return straight.clip(0.0, 1.0, out=straight)
 
 
 def _quotient(numerator: FloatArray, denominator: FloatArray) -> FloatArray:
-    """What divides as the recommendation says: at most 1, and 0 for 0 / 0."""
-    found = np.where(numerator > 0.0, _ONE, np.float32(0.0)).astype(np.float32)
-    np.divide(numerator, denominator, out=found, where=denominator > 0.0)
-    return np.minimum(found, _ONE, out=found)
+    """Divides as the recommendation says: at most 1, and 0 for 0 / 0."""
+    quotients = np.where(numerator > 0.0, _ONE, np.float32(0.0)).astype(np.float32)
+    np.divide(numerator, denominator, out=quotients, where=denominator > 0.0)
+    return np.minimum(quotients, _ONE, out=quotients)
 
 
 def _screen(b: FloatArray, s: FloatArray) -> FloatArray:
@@ -59,32 +59,32 @@ def _screen(b: FloatArray, s: FloatArray) -> FloatArray:
 
 
 def _hard_light(b: FloatArray, s: FloatArray) -> FloatArray:
-    found: FloatArray = np.where(s <= _HALF, b * _TWO * s, _screen(b, _TWO * s - _ONE))
-    return found
+    mixed: FloatArray = np.where(s <= _HALF, b * _TWO * s, _screen(b, _TWO * s - _ONE))
+    return mixed
 
 
 def _soft_light(b: FloatArray, s: FloatArray) -> FloatArray:
     lighter = np.where(b <= 0.25, ((16 * b - 12) * b + 4) * b, np.sqrt(b))
     darkened = b - (_ONE - _TWO * s) * b * (_ONE - b)
-    found: FloatArray = np.where(s <= _HALF, darkened, b + (_TWO * s - _ONE) * (lighter - b))
-    return found
+    mixed: FloatArray = np.where(s <= _HALF, darkened, b + (_TWO * s - _ONE) * (lighter - b))
+    return mixed
 
 
 def _luminosity(color: FloatArray) -> FloatArray:
-    # One by one: a product of matrices has other bits elsewhere.
+    # Sums term by term: matrix products of numpy round differently across processors.
     red, green, blue = (color[..., k : k + 1] * _LUMA[k] for k in range(3))
-    found: FloatArray = red + green + blue
-    return found
+    luminosity: FloatArray = red + green + blue
+    return luminosity
 
 
 def _saturation(color: FloatArray) -> FloatArray:
-    found: FloatArray = color.max(-1, keepdims=True) - color.min(-1, keepdims=True)
-    return found
+    saturation: FloatArray = color.max(-1, keepdims=True) - color.min(-1, keepdims=True)
+    return saturation
 
 
 def _with_luminosity(color: FloatArray, luminosity: FloatArray) -> FloatArray:
     color = color + (luminosity - _luminosity(color))
-    # What leaves [0, 1] moves towards gray.
+    # Colors outside [0, 1] move towards gray.
     gray = _luminosity(color)
     low, high = color.min(-1, keepdims=True), color.max(-1, keepdims=True)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -96,9 +96,9 @@ def _with_luminosity(color: FloatArray, luminosity: FloatArray) -> FloatArray:
 def _with_saturation(color: FloatArray, saturation: FloatArray) -> FloatArray:
     low = color.min(-1, keepdims=True)
     extent = color.max(-1, keepdims=True) - low
-    found = np.zeros_like(color)
-    np.divide((color - low) * saturation, extent, out=found, where=extent > 0.0)
-    return found
+    scaled = np.zeros_like(color)
+    np.divide((color - low) * saturation, extent, out=scaled, where=extent > 0.0)
+    return scaled
 
 
 _MODES: dict[str, Mix] = {

@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Numbers of style sheets with their units, and what calc() and its relatives make of them."""
+"""CSS numbers with units, and the results of calc() and other math functions."""
 
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any, TypeAlias
 
 Quantity: TypeAlias = dict[str, float]
-"""A sum, by units in lower case: "" for numbers, "%", "px", "em", "deg" ..."""
+"""A sum of terms by their unit in lower case: "" for numbers, "%", "px", "em", "deg", ..."""
 
 DEGREES = {"deg": 1.0, "grad": 0.9, "rad": 180.0 / math.pi, "turn": 360.0}
-_MOST_NESTED = 32
+_MAX_NESTED = 32
 _FUNCTIONS = frozenset(("calc", "min", "max", "clamp", "abs", "sign", "round", "mod", "rem"))
 _CONSTANTS = {"pi": math.pi, "e": math.e}
 
@@ -19,35 +19,29 @@ def is_calculation(token: Any) -> bool:
     return token.type == "function" and token.lower_name in _FUNCTIONS
 
 
-def quantity_of(
+def evaluate_quantity(
     token: Any, units: Mapping[str, tuple[str, float]], names: Mapping[str, float] | None = None
 ) -> Quantity | None:
-    """The sum that a number, a dimension, a percentage or a calculation is; None for what is none.
+    """Evaluates a number, dimension, percentage or calculation; returns None if the token is none.
 
     Args:
-        token: Of tinycss2.
-        units: Those that are multiples of others, by their names.
-        names: Words that stand for numbers.
+        token: A token of tinycss2.
+        units: Conversions: from a unit's name to another unit and a factor.
+        names: Identifiers with numeric values.
     """
     try:
-        found = _value(token, units, names or {}, 0)
+        quantity = _value(token, units, names or {}, 0)
     except (ZeroDivisionError, OverflowError):
         return None
-    if found is None or not all(map(math.isfinite, found.values())):
+    if quantity is None or not all(map(math.isfinite, quantity.values())):
         return None
-    return found
-
-
-def number_of(token: Any, names: Mapping[str, float] | None = None) -> float | None:
-    """The number that a token is, or a calculation."""
-    found = quantity_of(token, {}, names)
-    return None if found is None or found.keys() - {""} else found.get("", 0.0)
+    return quantity
 
 
 def _value(
     token: Any, units: Mapping[str, tuple[str, float]], names: Mapping[str, float], depth: int
 ) -> Quantity | None:
-    if depth > _MOST_NESTED:
+    if depth > _MAX_NESTED:
         return None
     match token.type:
         case "number":
@@ -76,20 +70,20 @@ def _function(token: Any, units: Any, names: Any, depth: int) -> Quantity | None
         else:
             parts[-1].append(each)
     values = [_sum(part, units, names, depth) for part in parts]
-    found = [each for each in values if each is not None]
-    if len(found) < len(values):
+    operands = [each for each in values if each is not None]
+    if len(operands) < len(values):
         return None
     name = token.lower_name
     if name == "calc":
-        return found[0] if len(found) == 1 else None
-    if name == "abs" and len(found) == 1 and len(found[0]) == 1:
-        return {unit: abs(value) for unit, value in found[0].items()}
-    # What is compared must have one unit.
-    kinds = {unit for each in found for unit in each}
+        return operands[0] if len(operands) == 1 else None
+    if name == "abs" and len(operands) == 1 and len(operands[0]) == 1:
+        return {unit: abs(value) for unit, value in operands[0].items()}
+    # Comparisons need a common unit.
+    kinds = {unit for each in operands for unit in each}
     if len(kinds) != 1:
         return None
     unit = next(iter(kinds))
-    numbers = [each[unit] for each in found]
+    numbers = [each[unit] for each in operands]
     result = _of_numbers(name, numbers)
     if result is None:
         return None
@@ -118,7 +112,7 @@ def _of_numbers(name: str, numbers: Sequence[float]) -> float | None:
 
 
 def _sum(tokens: Sequence[Any], units: Any, names: Any, depth: int) -> Quantity | None:
-    """Products with + and - between them, which have blanks around them."""
+    """Evaluates products separated by + and -, which must have whitespace on both sides."""
     tokens = [token for token in tokens if token.type != "comment"]
     total: Quantity = {}
     sign, product = 1.0, list[Any]()
@@ -138,7 +132,7 @@ def _sum(tokens: Sequence[Any], units: Any, names: Any, depth: int) -> Quantity 
             return None
         for unit, number in value.items():
             total[unit] = total.get(unit, 0.0) + sign * number
-        # Numbers and lengths do not add up.
+        # A number cannot be added to a length.
         if "" in total and len(total) > 1:
             return None
         sign, product = (-1.0 if token == "-" else 1.0), []

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""From one color space of CSS to another: the matrices and curves of CSS Color 4, 10."""
+"""Conversions between the color spaces of CSS Color 4, section 10."""
 
 from collections.abc import Sequence
 from fractions import Fraction
@@ -13,12 +13,12 @@ from .... import _native
 
 Values: TypeAlias = npt.NDArray[np.float64]
 POLAR = {"hsl": 0, "hwb": 0, "lch": 2, "oklch": 2}
-"""Which component is a hue."""
+"""Index of the hue among the components of a polar space."""
 _WHITE = {
     "d65": (0.3127 / 0.3290, 1.0, (1.0 - 0.3127 - 0.3290) / 0.3290),
     "d50": (0.3457 / 0.3585, 1.0, (1.0 - 0.3457 - 0.3585) / 0.3585),
 }
-# The chromaticities of red, green and blue, the white, and the curve.
+# Chromaticities of red, green and blue, white point, transfer function.
 RGB_SPACES = {
     "srgb": ((0.64, 0.33), (0.30, 0.60), (0.15, 0.06), "d65", "srgb"),
     "srgb-linear": ((0.64, 0.33), (0.30, 0.60), (0.15, 0.06), "d65", "linear"),
@@ -50,35 +50,35 @@ _LMS_TO_OKLAB = np.array(
         [0.0259040424655478, 0.7827717124575296, -0.8086757549230774],
     ]
 )
-# Of the curve of ITU-R BT.2020, which browsers use.
+# Constants of the transfer function of ITU-R BT.2020, as browsers use it.
 _ALPHA, _BETA = 1.09929682680944, 0.018053968510807
 _KAPPA, _EPSILON = 24389.0 / 27.0, 216.0 / 24389.0
 
 
-def converted(values: Sequence[float], space: str, target: str) -> Values:
-    """The components of a color in another space; what is out of its gamut stays so."""
-    found = np.array(values, np.float64)
+def convert_color(values: Sequence[float], space: str, target: str) -> Values:
+    """Converts a color to another space, without gamut mapping."""
+    components = np.array(values, np.float64)
     if space == target:
-        return found
+        return components
     if space in ("hsl", "hwb") or target in ("hsl", "hwb"):
         if space in ("hsl", "hwb"):
-            found = _hsl_to_rgb(found) if space == "hsl" else _hwb_to_rgb(found)
-            return converted(list(found), "srgb", target)
-        found = converted(list(found), space, "srgb")
-        return _rgb_to_hsl(found) if target == "hsl" else _rgb_to_hwb(found)
-    return _from_xyz(_to_xyz(found, space), target)
+            components = _hsl_to_rgb(components) if space == "hsl" else _hwb_to_rgb(components)
+            return convert_color(list(components), "srgb", target)
+        components = convert_color(list(components), space, "srgb")
+        return _rgb_to_hsl(components) if target == "hsl" else _rgb_to_hwb(components)
+    return _from_xyz(_to_xyz(components, space), target)
 
 
 def _applied(matrix: Values, values: Values) -> Values:
-    # A product of matrices may round differently on other processors.
+    # Multiplies term by term: matrix products of numpy round differently across processors.
     applied: Values = matrix[:, 0] * values[0] + matrix[:, 1] * values[1] + matrix[:, 2] * values[2]
     return applied
 
 
 def _inverse(matrix: Values) -> Values:
-    """In fractions, so that it is the same everywhere."""
+    """Inverts a matrix in exact fractions, so that the result is the same on every machine."""
     m = [[Fraction(float(value)) for value in row] for row in matrix]
-    found = np.zeros((3, 3))
+    inverse = np.zeros((3, 3))
     first = [
         m[1][(k + 1) % 3] * m[2][(k + 2) % 3] - m[1][(k + 2) % 3] * m[2][(k + 1) % 3]
         for k in range(3)
@@ -91,8 +91,8 @@ def _inverse(matrix: Values) -> Values:
                 m[rows[0]][columns[0]] * m[rows[1]][columns[1]]
                 - m[rows[0]][columns[1]] * m[rows[1]][columns[0]]
             )
-            found[i, j] = float(minor / determinant)
-    return found
+            inverse[i, j] = float(minor / determinant)
+    return inverse
 
 
 def _rgb_to_xyz_matrix(space: str) -> Values:
@@ -103,7 +103,7 @@ def _rgb_to_xyz_matrix(space: str) -> Values:
 
 
 def _adaptation(white: str, target: str) -> Values:
-    """The matrix of Bradford between two whites, row by row."""
+    """Returns Bradford's chromatic adaptation matrix between two white points."""
     there = _applied(_BRADFORD, np.array(_WHITE[white]))
     here = _applied(_BRADFORD, np.array(_WHITE[target]))
     scaled = _BRADFORD * (here / there)[:, None]
@@ -118,7 +118,7 @@ _LMS_TO_XYZ, _OKLAB_TO_LMS = _inverse(_XYZ_TO_LMS), _inverse(_LMS_TO_OKLAB)
 
 
 def _to_xyz(values: Values, space: str) -> Values:
-    """With the white D65."""
+    """Converts to XYZ with the D65 white point."""
     if space in RGB_SPACES:
         *_, white, curve = RGB_SPACES[space]
         xyz = _applied(_MATRICES[space], _linear(values, curve))
@@ -139,16 +139,16 @@ def _from_xyz(xyz: Values, space: str) -> Values:
         xyz = _applied(_TO_D50, xyz) if white == "d50" else xyz
         return _encoded(_applied(_INVERSES[space], xyz), curve)
     if space in ("oklab", "oklch"):
-        found = _applied(_LMS_TO_OKLAB, _power(_applied(_XYZ_TO_LMS, xyz), 1.0 / 3.0))
+        components = _applied(_LMS_TO_OKLAB, _power(_applied(_XYZ_TO_LMS, xyz), 1.0 / 3.0))
     elif space in ("lab", "lch"):
-        found = _xyz_to_lab(_applied(_TO_D50, xyz))
+        components = _xyz_to_lab(_applied(_TO_D50, xyz))
     else:
         return xyz if space == "xyz-d65" else _applied(_TO_D50, xyz)
-    return _polar(found) if space in ("lch", "oklch") else found
+    return _polar(components) if space in ("lch", "oklch") else components
 
 
 def _power(values: Values, exponent: float) -> Values:
-    """Of the absolute value, with the sign."""
+    """Raises absolute values to a power and restores the signs."""
     powers: Values = np.sign(values) * _native.powers(np.abs(values), exponent)
     return powers
 
@@ -206,10 +206,10 @@ def _lab_to_xyz(lab: Values) -> Values:
     middle = (lab[0] + 16.0) / 116.0
     parts = np.array([middle + lab[1] / 500.0, middle, middle - lab[2] / 200.0])
     cubes = parts * parts * parts
-    found = np.where(cubes > _EPSILON, cubes, (116.0 * parts - 16.0) / _KAPPA)
+    relative = np.where(cubes > _EPSILON, cubes, (116.0 * parts - 16.0) / _KAPPA)
     if lab[0] <= _KAPPA * _EPSILON:
-        found[1] = lab[0] / _KAPPA
-    xyz: Values = found * np.array(_WHITE["d50"])
+        relative[1] = lab[0] / _KAPPA
+    xyz: Values = relative * np.array(_WHITE["d50"])
     return xyz
 
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Colors as CSS Color 4 and 5 have them, as sRGB that is cut off at its gamut.
+"""Colors of CSS Color 4 and 5, converted to sRGB and clamped to its gamut.
 
-Each function becomes a color space, three components and an alpha, of which `None` stands for the
-keyword `none`. Matrices and curves are those of the specification, 10.
+Each color function becomes a color space, three components and an alpha; `None` is the keyword
+`none`. Matrices and transfer functions are from section 10 of the specification.
 """
 
 from collections.abc import Mapping, Sequence
@@ -13,14 +13,14 @@ from typing import Any, TypeAlias
 import numpy as np
 import tinycss2.color4
 
-from .calculations import DEGREES, Quantity, quantity_of
-from .color_spaces import POLAR, RGB_SPACES, converted
+from .calculations import DEGREES, Quantity, evaluate_quantity
+from .color_spaces import POLAR, RGB_SPACES, convert_color
 
 Color: TypeAlias = tuple[float, float, float, float]
-"""Red, green, blue, alpha in [0, 1]; sRGB, not multiplied by alpha."""
-_MOST_NESTED = 8
+"""Red, green, blue and alpha in [0, 1]; sRGB, straight alpha."""
+_MAX_NESTED = 8
 _ANGLES = {unit: ("", factor) for unit, factor in DEGREES.items()}
-# What a percentage of 100 is of each component, and the names of components.
+# Value of 100 % for each component, None for hues; and the names of components.
 _RANGES = {
     "rgb": (255.0, 255.0, 255.0),
     "hsl": (None, 100.0, 100.0),
@@ -34,26 +34,28 @@ _ALIASES = {"rgba": "rgb", "hsla": "hsl"}
 _LETTERS = {"rgb": "rgb", "hsl": "hsl", "hwb": "hwb", "lab": "lab", "lch": "lch"}
 _LETTERS |= {"oklab": "lab", "oklch": "lch"}
 _LEGACY = ("rgb", "hsl")
-_WAYS = ("shorter", "longer", "increasing", "decreasing")
+_HUE_METHODS = ("shorter", "longer", "increasing", "decreasing")
 
 
 @dataclass(frozen=True, slots=True)
 class SpaceColor:
-    """A color in its space. `None` is a component that is missing."""
+    """A color in a color space. `None` is a missing component."""
 
     space: str
     values: tuple[float | None, float | None, float | None]
     alpha: float | None = 1.0
 
 
-def color_of(token: Any) -> Color | str | None:
-    """A color, or "current" for the one of the property `color`; None for what is none."""
-    found = _parsed(token, 0)
-    return found if found is None or isinstance(found, str) else _srgb(found)
+def color_from_token(token: Any) -> Color | str | None:
+    """Converts a token to a color, or to "current" for currentcolor; returns None if it is no
+    color.
+    """
+    color = _parsed(token, 0)
+    return color if color is None or isinstance(color, str) else _srgb(color)
 
 
 def _srgb(color: SpaceColor) -> Color | None:
-    values = converted([value or 0.0 for value in color.values], color.space, "srgb")
+    values = convert_color([value or 0.0 for value in color.values], color.space, "srgb")
     limited = [min(max(float(value), 0.0), 1.0) for value in (*values, color.alpha or 0.0)]
     if not np.isfinite(limited).all():
         return None
@@ -61,7 +63,7 @@ def _srgb(color: SpaceColor) -> Color | None:
 
 
 def _parsed(token: Any, depth: int) -> SpaceColor | str | None:
-    if depth > _MOST_NESTED or token is None:
+    if depth > _MAX_NESTED or token is None:
         return None
     if token.type in ("ident", "hash"):
         found = tinycss2.color4.parse_color(token)
@@ -124,11 +126,11 @@ def _function(name: str, tokens: list[Any], depth: int) -> SpaceColor | None:
         alpha = _component(alpha_tokens[0], 1.0, names)
     if any(value == "" for value in (*values, alpha)):
         return None
-    return _made(name, space, values, alpha)
+    return _limit_components(name, space, values, alpha)
 
 
 def _legacy(name: str, tokens: list[Any]) -> SpaceColor | None:
-    """With commas, and then without `none`; all of red, green and blue in one unit."""
+    """Parses the comma syntax, which has no `none` and the same unit for red, green and blue."""
     parts = _split(tokens)
     if name not in _LEGACY or len(parts) not in (3, 4) or any(len(part) != 1 for part in parts):
         return None
@@ -144,22 +146,28 @@ def _legacy(name: str, tokens: list[Any]) -> SpaceColor | None:
     alpha = _component(tokens[3], 1.0, {}) if len(tokens) == 4 else 1.0
     if any(value in ("", None) for value in (*values, alpha)):
         return None
-    return _made(name, name, values, alpha)
+    return _limit_components(name, name, values, alpha)
 
 
 def _component(token: Any, whole: float | None, names: Mapping[str, float]) -> Any:
-    """A number, None for `none`, or "" for neither; an angle where there is no whole."""
+    """Parses a component: a number, None for `none`, or "" if invalid. Without `whole` it is an
+    angle.
+    """
     if token.type == "ident" and token.lower_value == "none":
         return None
-    found: Quantity | None = quantity_of(token, _ANGLES if whole is None else {}, names)
-    if found is None or len(found) > 1 or (found and next(iter(found)) not in ("", "%")):
+    quantity: Quantity | None = evaluate_quantity(token, _ANGLES if whole is None else {}, names)
+    if (
+        quantity is None
+        or len(quantity) > 1
+        or (quantity and next(iter(quantity)) not in ("", "%"))
+    ):
         return ""
-    if "%" in found:
-        return "" if whole is None else found["%"] * whole / 100.0
-    return found.get("", 0.0)
+    if "%" in quantity:
+        return "" if whole is None else quantity["%"] * whole / 100.0
+    return quantity.get("", 0.0)
 
 
-def _made(name: str, space: str, values: Sequence[Any], alpha: Any) -> SpaceColor:
+def _limit_components(name: str, space: str, values: Sequence[Any], alpha: Any) -> SpaceColor:
     a, b, c = values
     if name == "rgb":
         space = "srgb"
@@ -174,9 +182,9 @@ def _made(name: str, space: str, values: Sequence[Any], alpha: Any) -> SpaceColo
 
 
 def _names_of(name: str, space: str, origin: SpaceColor) -> dict[str, float]:
-    """What the components of a color are called within another one."""
+    """Returns the components of the origin color, by their names in a relative color."""
     target = "srgb" if name == "rgb" else space
-    values = converted([value or 0.0 for value in origin.values], origin.space, target)
+    values = convert_color([value or 0.0 for value in origin.values], origin.space, target)
     scale = 255.0 if name == "rgb" else 1.0
     letters = _LETTERS.get(name, "xyz" if space.startswith("xyz") else "rgb")
     names = {letter: float(value) * scale for letter, value in zip(letters, values, strict=True)}
@@ -184,7 +192,7 @@ def _names_of(name: str, space: str, origin: SpaceColor) -> dict[str, float]:
 
 
 def _mixed(tokens: list[Any], depth: int) -> SpaceColor | None:
-    """`color-mix()`: CSS Color 5, 3."""
+    """Evaluates `color-mix()`: CSS Color 5, section 3."""
     parts = _split(tokens)
     how = [token.lower_value for token in parts[0] if token.type == "ident"]
     if len(parts) == 2:
@@ -206,7 +214,7 @@ def _mixed(tokens: list[Any], depth: int) -> SpaceColor | None:
         share = None
         rest = []
         for token in part:
-            found = quantity_of(token, {})
+            found = evaluate_quantity(token, {})
             if found is not None and found.keys() == {"%"}:
                 share = found["%"]
             else:
@@ -228,7 +236,7 @@ def _mixed(tokens: list[Any], depth: int) -> SpaceColor | None:
 def _mix(
     colors: Sequence[SpaceColor], space: str, hue: str, share: float, opacity: float
 ) -> SpaceColor:
-    """The color at a share of the way from the first to the second one."""
+    """Interpolates between two colors; `share` is the weight of the second one."""
     both = [_in_space(color, space) for color in colors]
     values: list[list[float | None]] = [list(each.values) for each in both]
     alphas = [each.alpha for each in both]
@@ -246,16 +254,16 @@ def _mix(
         if low is None or high is None:
             mixed.append(None)
         elif index == POLAR.get(space):
-            mixed.append(low + share * _way(low % 360.0, high % 360.0, hue))
+            mixed.append(low + share * _hue_difference(low % 360.0, high % 360.0, hue))
         else:
-            # Multiplied by alpha.
+            # Premultiplied by alpha.
             sum_ = (1.0 - share) * low * whole[0] + share * high * whole[1]
             mixed.append(sum_ / alpha if alpha > 0.0 else (1.0 - share) * low + share * high)
     return SpaceColor(space, (mixed[0], mixed[1], mixed[2]), alpha * opacity)
 
 
-def _way(low: float, high: float, hue: str) -> float:
-    """From an angle to another one."""
+def _hue_difference(low: float, high: float, hue: str) -> float:
+    """Returns the signed hue difference to interpolate over, in degrees."""
     way = high - low
     if hue == "shorter":
         return way - 360.0 if way > 180.0 else way + 360.0 if way < -180.0 else way
@@ -267,12 +275,12 @@ def _way(low: float, high: float, hue: str) -> float:
 
 
 def _in_space(color: SpaceColor, space: str) -> SpaceColor:
-    """The same color in another space, where a hue that counts for nothing is missing."""
+    """Converts a color to another space; powerless hues become missing."""
     if color.space == space:
         return color
     values: list[float | None] = [
         float(value)
-        for value in converted([value or 0.0 for value in color.values], color.space, space)
+        for value in convert_color([value or 0.0 for value in color.values], color.space, space)
     ]
     hue = POLAR.get(space)
     if hue is not None:
@@ -282,7 +290,7 @@ def _in_space(color: SpaceColor, space: str) -> SpaceColor:
             is_gray = (values[1] or 0.0) + (values[2] or 0.0) >= 99.999
         if is_gray:
             values[hue] = None
-        # A missing hue stays missing from one polar space to the next.
+        # A missing hue stays missing between polar spaces.
         before = POLAR.get(color.space)
         if before is not None and color.values[before] is None:
             values[hue] = None

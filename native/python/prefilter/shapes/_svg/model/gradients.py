@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Gradients of shapes, and colors as shapes have them."""
+"""Gradients of shapes, and the encoding of their colors."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -13,16 +13,16 @@ from ...affine import Matrix, multiplied
 from ...shape import Shape
 from .colors import Color
 
-# How far straight lines between stops may be off, in shares of white as it is encoded.
+# Largest error of linear interpolation between stops, as a fraction of encoded white.
 _TOLERANCE = 1.0 / 1020.0
 
 
 class Colors:
-    """Colors as shapes have them.
+    """The encoding of colors in shapes.
 
     Attributes:
         is_linear: Whether red, green and blue are decoded to scene-linear values.
-        is_stepped: Whether opacities are rounded to steps of a 255th, as browsers have them.
+        is_stepped: Whether opacities are rounded to multiples of 1/255, as in browsers.
     """
 
     def __init__(self, is_linear: bool, is_stepped: bool) -> None:
@@ -30,11 +30,11 @@ class Colors:
         self.is_stepped = is_stepped
 
     def opacity(self, opacity: float) -> float:
-        """An opacity as it is kept."""
+        """Returns an opacity, rounded if `is_stepped`."""
         return math.floor(255.0 * opacity + 0.5) / 255.0 if self.is_stepped else opacity
 
     def premultiplied(self, colors: np.ndarray) -> list[tuple[float, ...]]:
-        """Colors (n, 4) of a file, multiplied by their alpha."""
+        """Encodes (n, 4) straight sRGB colors and premultiplies them by alpha."""
         values = np.asarray(colors, np.float64)
         rgb = values[:, :3]
         if self.is_linear:
@@ -44,16 +44,16 @@ class Colors:
         return [tuple(row) for row in rows.tolist()]
 
     def between(self, first: Color, last: Color) -> np.ndarray:
-        """Colors from one stop to the next, so close that straight lines between them will do.
+        """Samples a gradient segment densely enough for linear interpolation.
 
-        A file has the colors change in a straight line as they are encoded, and not multiplied by
-        alpha. Either makes a curve of it: (n, 4), at equal distances, both ends included.
+        SVG interpolates encoded colors with straight alpha. Decoding and premultiplying make curves
+        of these lines. Returns (n, 4) at equal steps, both ends included.
         """
         ends = np.array([first, last])
         change = np.abs(ends[1] - ends[0])
-        # A curve is off from a chord by an eighth of its second derivative. That of the product is
-        # twice the product of the slopes. That of the decoded color, as seen when encoded again,
-        # is largest where its power begins: 1.4 / (0.04045 + 0.055).
+        # The error of a chord is an eighth of the second derivative. For the product with alpha
+        # that derivative is twice the product of the slopes. For a decoded color, compared after
+        # encoding, it is largest where the power segment begins: 1.4 / (0.04045 + 0.055).
         squares = change[:3].max() * change[3] / 4.0
         if self.is_linear:
             squares = 2.4 * squares + change[:3].max() * change[:3].max() * (1.4 / 0.09545) / 8.0
@@ -65,7 +65,7 @@ class Colors:
 
 @dataclass(frozen=True)
 class Gradient:
-    """A gradient of the colors that shapes have, in the units of what it paints."""
+    """A gradient in the units of the outline that it paints, with encoded stops."""
 
     is_radial: bool
     numbers: tuple[float, ...]
@@ -74,7 +74,7 @@ class Gradient:
     matrix: Matrix
 
     def apply(self, shape: Shape, matrix: Matrix, opacity: float) -> None:
-        """Paints a shape which `matrix` has carried to where it is, with an opacity."""
+        """Sets the gradient of a shape that `matrix` transformed, times an opacity."""
         a, b, c, d, e, f = multiplied(matrix, self.matrix)
         transform = np.array([[a, c, e], [b, d, f]])
         stops = [(at, tuple(opacity * value for value in color)) for at, color in self.stops]
@@ -102,10 +102,10 @@ class Stop:
     color: Color
 
 
-def pieces_between(
+def sample_stops(
     stops: Sequence[Stop], colors: Colors
 ) -> Iterator[tuple[float, tuple[float, ...]]]:
-    """Yields the stops of a shape: those of a file, and others where straight lines will not do."""
+    """Yields stops of a shape, with more of them where interpolation would be inexact."""
     for index, stop in enumerate(stops):
         following = stops[index + 1] if index + 1 < len(stops) else stop
         between = np.array([stop.color])

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Outlines in the units of the drawing: lines, curves, and exact arcs of ellipses."""
+"""Outlines in user units: lines, Bezier curves, and exact elliptical arcs."""
 
 import math
 import re
@@ -13,21 +13,21 @@ import numpy as np
 from .... import _native
 from ...affine import Matrix
 from ...shape import Shape
-from .limits import MOST_SEGMENTS, TooLargeError
+from .limits import MAX_SEGMENTS, TooLargeError
 
-# How many numbers a segment has.
+# Numbers per segment.
 _SIZES = {"M": 2, "L": 2, "Q": 4, "C": 6, "W": 5, "Z": 0}
 
 
 class Outline:
-    """Contours, as they are drawn.
+    """Contours made of segments.
 
-    Their segments are: M and its point; L and its end; Q or C and the control points behind the
-    start; W, a control point, its weight and the end, for a conic; Z.
+    Segments are M and its point; L and its end; Q or C, its control points and end; W, a control
+    point, its weight and the end, for a conic; Z.
     """
 
     def __init__(self) -> None:
-        # Without an object for each segment: a file may have a million.
+        # Compact arrays, as a file may have a million segments.
         self._letters = bytearray()
         self._numbers = array("d")
         self._shapes: dict[str, Shape] = {}
@@ -36,7 +36,7 @@ class Outline:
         return len(self._letters)
 
     def segments(self) -> Iterator[tuple[str, tuple[float, ...]]]:
-        """Yields each segment's letter and its numbers."""
+        """Yields each segment's letter and numbers."""
         at = 0
         for letter in self._letters.decode():
             size = _SIZES[letter]
@@ -62,32 +62,32 @@ class Outline:
         self._add(b"Z", ())
 
     def extend(self, letters: bytes, numbers: "array[float]") -> None:
-        """Adds segments, a letter for each, and the numbers of all of them."""
-        if len(self._letters) + len(letters) > MOST_SEGMENTS:
+        """Appends segments: one letter each, and all their numbers."""
+        if len(self._letters) + len(letters) > MAX_SEGMENTS:
             raise _too_many()
         self._letters += letters
         self._numbers.extend(numbers)
 
     def _add(self, letter: bytes, numbers: tuple[float, ...]) -> None:
-        if len(self._letters) >= MOST_SEGMENTS:
+        if len(self._letters) >= MAX_SEGMENTS:
             raise _too_many()
         self._letters += letter
         self._numbers.extend(numbers)
 
     def transformed(self, matrix: Matrix) -> "Outline":
-        """The same where an affine map takes it."""
+        """Returns the outline under an affine map."""
         moved = Outline()
         a, b, c, d, e, f = matrix
         for letter, numbers in self.segments():
             weight = numbers[2:3] if letter == "W" else ()
             points = numbers[:2] + numbers[3:] if letter == "W" else numbers
             pairs = zip(points[::2], points[1::2], strict=True)
-            found = [v for x, y in pairs for v in (a * x + c * y + e, b * x + d * y + f)]
-            moved._add(letter.encode(), (*found[:2], *weight, *found[2:]))
+            mapped = [v for x, y in pairs for v in (a * x + c * y + e, b * x + d * y + f)]
+            moved._add(letter.encode(), (*mapped[:2], *weight, *mapped[2:]))
         return moved
 
     def ellipse(self, cx: float, cy: float, rx: float, ry: float) -> None:
-        """A whole ellipse, from its right side on over its lower one (with y downwards)."""
+        """Adds an ellipse, from its rightmost point through the largest y."""
         self.move_to(cx + rx, cy)
         for (x1, y1), (x2, y2) in (
             ((1, 1), (0, 1)),
@@ -101,7 +101,7 @@ class Outline:
     def rectangle(
         self, x: float, y: float, width: float, height: float, rx: float, ry: float
     ) -> None:
-        """A rectangle whose corners are quarters of ellipses."""
+        """Adds a rectangle with elliptical corners."""
         right, bottom = x + width, y + height
         is_round = rx > 0.0 and ry > 0.0
         if not is_round:
@@ -122,11 +122,11 @@ class Outline:
         self.close()
 
     def bounds(self) -> tuple[float, float, float, float] | None:
-        """The smallest box: left, top, right, bottom; None without a point."""
+        """Returns the bounding box; None without a point."""
         return _native.drawn_box(bytes(self._letters), np.array(self._numbers))
 
     def is_box(self) -> bool:
-        """Whether it is one upright rectangle."""
+        """Returns whether the outline is a single axis-aligned rectangle."""
         if not re.fullmatch("MLLLL?Z?", self._letters.decode()):
             return False
         bounds = self.bounds()
@@ -140,7 +140,7 @@ class Outline:
         return set(points[:4]) == corners and turns == {(True, False), (False, True)}
 
     def length(self) -> float:
-        """How long it is at most: as long as the lines from control point to control point."""
+        """Returns an upper bound of the length: that of the control polygon."""
         total = 0.0
         x, y = begin = (0.0, 0.0)
         for kind, numbers in self.segments():
@@ -153,7 +153,7 @@ class Outline:
         return total
 
     def shape(self, fill_rule: str) -> Shape:
-        """The outline as a shape, made once."""
+        """Returns the outline as a shape, cached."""
         if fill_rule not in self._shapes:
             shape = Shape(fill_rule=fill_rule)
             shape.add_path(self._letters.decode(), np.array(self._numbers))
@@ -162,12 +162,12 @@ class Outline:
 
 
 def _too_many() -> TooLargeError:
-    return TooLargeError(f"more than {MOST_SEGMENTS} lines and curves in a path")
+    return TooLargeError(f"more than {MAX_SEGMENTS} lines and curves in a path")
 
 
 def read_path(text: str) -> tuple[Outline, bool]:
-    """The outline that path data draw up to their first error, and whether there is none."""
-    letters, numbers, is_whole = _native.read_path(text.encode(errors="replace"), MOST_SEGMENTS)
+    """Reads path data up to the first error; returns whether there was none, too."""
+    letters, numbers, is_whole = _native.read_path(text.encode(errors="replace"), MAX_SEGMENTS)
     if letters is None or numbers is None:
         raise _too_many()
     outline = Outline()

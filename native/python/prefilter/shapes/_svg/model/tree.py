@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a drawing consists of, as a tree: outlines and pictures in groups that are seen as one."""
+"""The tree that is drawn: outlines and images, in groups."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -14,15 +14,15 @@ from .gradients import Gradient
 from .outline import Outline
 
 Box: TypeAlias = tuple[float, float, float, float]
-"""Left, top, right, bottom."""
+"""Left, top, right, bottom; top is the smaller y."""
 
 
 @dataclass(frozen=True, slots=True)
 class Stroke:
-    """How an outline is stroked, in its own units, as `Shape.stroked` takes it.
+    """Stroke properties of an outline, in its own units; see `Shape.stroked`.
 
     Attributes:
-        dash_count: How many dashes there are at most.
+        dash_count: Upper bound of the number of dashes.
     """
 
     width: float
@@ -36,11 +36,11 @@ class Stroke:
 
 @dataclass(frozen=True, slots=True)
 class ClipPart:
-    """An outline that lets through what it fills.
+    """One outline of a clip path.
 
     Attributes:
-        matrix: From its units to those of the tree.
-        clips: What it is cut off at itself.
+        matrix: From the outline's units to the tree's.
+        clips: Clips of this outline alone.
     """
 
     outline: Outline
@@ -51,12 +51,12 @@ class ClipPart:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Clip:
-    """What things are cut off at: all that its parts let through.
+    """A clip: the union of its parts, intersected with its own clips.
 
     Attributes:
-        clips: What the whole of it is cut off at itself.
-        bounds: The box around it; None where nothing is let through.
-        is_box: Whether it is that box.
+        clips: Clips of the whole.
+        bounds: Bounding box; None if the clip is empty.
+        is_box: Whether the clip is exactly its bounding box.
     """
 
     parts: tuple[ClipPart, ...]
@@ -67,13 +67,13 @@ class Clip:
 
 @dataclass(frozen=True, slots=True)
 class Pattern:
-    """A group that is repeated.
+    """A group that repeats in tiles.
 
     Attributes:
-        group: In the units of the pattern.
-        tile: The box that is repeated.
-        matrix: From the pattern's units to those of the outline.
-        opacity: Of the paint.
+        group: The contents, in the pattern's units.
+        tile: The box that repeats.
+        matrix: From the pattern's units to the outline's.
+        opacity: Opacity of the paint.
     """
 
     group: "Group"
@@ -84,18 +84,18 @@ class Pattern:
 
 @dataclass(frozen=True, slots=True)
 class Painted:
-    """An outline to fill or to stroke.
+    """An outline that is filled or stroked.
 
     Attributes:
-        outline: In its own units.
-        fill_rule: For what it fills.
-        matrix: From its units to those of the tree.
-        paint: A color, multiplied by its alpha; or a gradient or pattern in the outline's units.
-        stroke: None where it is filled.
-        clips: What it is cut off at.
-        box: Around it, in the tree's units.
-        line: Where it is in the file.
-        is_crisp: Whether each pixel is covered wholly or not at all.
+        outline: The outline, in its own units.
+        fill_rule: The rule for filling.
+        matrix: From the outline's units to the tree's.
+        paint: A color premultiplied by alpha; or a gradient or pattern, in the outline's units.
+        stroke: The stroke; None to fill.
+        clips: Clips in the tree's units.
+        box: Bounding box in the tree's units.
+        line: Line in the file.
+        is_crisp: Whether pixels are covered completely or not at all.
     """
 
     outline: Outline
@@ -111,17 +111,17 @@ class Painted:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Picture:
-    """An image.
+    """A raster image.
 
     Attributes:
-        texels: (height, width, 4) bytes: red, green, blue and alpha, not multiplied by it, as they
-            are encoded; the top row first.
-        matrix: From the unit square, with y downwards, to the tree's units.
-        is_pixelated: Whether its texels are to be seen.
-        is_linear: Whether colors are to be decoded.
-        clips: What it is cut off at.
-        box: Around it, in the tree's units.
-        line: Where it is in the file.
+        texels: (height, width, 4) bytes: encoded red, green and blue with straight alpha; top row
+            first.
+        matrix: From the unit square, y downwards, to the tree's units.
+        is_pixelated: Whether enlarged texels keep sharp edges.
+        is_linear: Whether colors are decoded before filtering.
+        clips: Clips in the tree's units.
+        box: Bounding box in the tree's units.
+        line: Line in the file.
     """
 
     texels: npt.NDArray[np.uint8]
@@ -135,11 +135,11 @@ class Picture:
 
 @dataclass(frozen=True, slots=True)
 class Mask:
-    """What lets a group through in parts.
+    """A mask of a group.
 
     Attributes:
-        group: By its luminance, or by its alpha.
-        is_linear: Whether luminance is that of decoded colors.
+        group: The contents, used by luminance or by alpha.
+        is_linear: Whether luminance is computed from decoded colors.
     """
 
     group: "Group"
@@ -149,17 +149,17 @@ class Mask:
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """A step of a filter: an element such as `feOffset`.
+    """A filter primitive, such as `feOffset`.
 
     Attributes:
         kind: The element's name.
-        inputs: The names of other results; empty for the one before.
-        result: What its own is called.
-        numbers: What it needs; lengths are those of the filter.
-        name: Of its operator or mode.
-        is_linear: Whether it takes decoded colors.
-        region: Where it ends, in the filter's units; None for where its inputs do.
-        group: What `feImage` shows.
+        inputs: Names of results; empty for the previous one.
+        result: Name of the result.
+        numbers: Parameters; lengths are in the filter's units.
+        name: Operator or mode.
+        is_linear: Whether it works on decoded colors.
+        region: The primitive's subregion, in the filter's units; None for that of its inputs.
+        group: Contents of `feImage`.
     """
 
     kind: str
@@ -174,11 +174,11 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class Filter:
-    """What becomes of a group's pixels.
+    """A filter effect.
 
     Attributes:
-        region: Where it is applied, in its units; None where it ends nowhere.
-        matrix: From its units, those of its element, to the tree's.
+        region: The filter region, in the filter's units; None if unbounded.
+        matrix: From the filter's units, which are those of its element, to the tree's.
         is_linear: Whether the group's colors are decoded.
     """
 
@@ -190,17 +190,17 @@ class Filter:
 
 @dataclass(slots=True, eq=False)
 class Group:
-    """What belongs together.
+    """Items composited as one.
 
     Attributes:
-        items: First what is below.
-        opacity: Of the whole.
-        blend: How it is mixed with what is below it, by the name of `mix-blend-mode`.
-        masks: What lets it through.
-        filter: What becomes of its pixels before that.
-        clips: With a filter: what it is cut off at, which things in it are not.
-        is_isolated: Whether what is in it is mixed with nothing below it.
-        line: Where it is in the file.
+        items: Bottom item first.
+        opacity: Group opacity.
+        blend: The `mix-blend-mode`.
+        masks: Applied after the filter.
+        filter: Applied to the group's pixels.
+        clips: Clips of the filter's result; only with a filter, whose input is not clipped.
+        is_isolated: Whether items blend only with each other.
+        line: Line in the file.
     """
 
     items: list["Item"] = field(default_factory=list)
@@ -217,7 +217,7 @@ Item: TypeAlias = Painted | Picture | Group
 
 
 def leaves(group: Group) -> Iterator[Painted | Picture]:
-    """Yields the outlines and pictures of a group, first what is below."""
+    """Yields the outlines and images of a group, bottom first."""
     waiting: list[Item] = [group]
     while waiting:
         item = waiting.pop()
@@ -227,32 +227,32 @@ def leaves(group: Group) -> Iterator[Painted | Picture]:
             yield item
 
 
-def carried(box: Box, matrix: Matrix) -> Box:
-    """The box around a box that went through a matrix."""
+def transform_box(box: Box, matrix: Matrix) -> Box:
+    """Returns the bounding box of a transformed box."""
     a, b, c, d, e, f = matrix
     points = [(a * x + c * y + e, b * x + d * y + f) for x in box[::2] for y in box[1::2]]
     xs, ys = zip(*points, strict=True)
     return min(xs), min(ys), max(xs), max(ys)
 
 
-def common(one: Box, other: Box) -> Box | None:
-    """What two boxes have in common; None where that has no area."""
+def intersect_boxes(one: Box, other: Box) -> Box | None:
+    """Returns the intersection of two boxes; None if it has no area."""
     left, top = max(one[0], other[0]), max(one[1], other[1])
     right, bottom = min(one[2], other[2]), min(one[3], other[3])
     return (left, top, right, bottom) if left < right and top < bottom else None
 
 
-def joined(one: Box | None, other: Box | None) -> Box | None:
-    """The box around both."""
+def unite_boxes(one: Box | None, other: Box | None) -> Box | None:
+    """Returns the bounding box of both."""
     if one is None or other is None:
         return one or other
     low, high = map(min, one[:2], other[:2]), map(max, one[2:], other[2:])
     return (*low, *high)  # type: ignore[return-value]
 
 
-def holds(outer: Box, inner: Box) -> bool:
-    """Whether a box holds another one, but for rounding."""
-    # By the inner one: a large outer one may be cut off close to what is looked at.
+def contains_box(outer: Box, inner: Box) -> bool:
+    """Returns whether a box contains another one, up to rounding."""
+    # Relative to the inner box: the outer one may be much larger, and end close to the inner one.
     wide, high = 1e-6 * (inner[2] - inner[0]), 1e-6 * (inner[3] - inner[1])
     return (
         inner[0] >= outer[0] - wide

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What attributes and properties hold: numbers, lengths, colors, paints, transforms."""
+"""Parsers of attributes and properties: numbers, lengths, colors, paints, transforms."""
 
 import math
 import re
@@ -13,17 +13,17 @@ import tinycss2
 
 from .... import _native
 from ...affine import IDENTITY, Matrix, multiplied
-from .calculations import DEGREES, Quantity, is_calculation, quantity_of
-from .colors import Color, color_of
+from .calculations import DEGREES, Quantity, evaluate_quantity, is_calculation
+from .colors import Color, color_from_token
 
 BLACK: Color = (0.0, 0.0, 0.0, 1.0)
 
-Found = TypeVar("Found")
-_MOST_REMEMBERED = 1 << 10
-"""Characters: what long texts come to would be kept for good."""
+Result = TypeVar("Found")
+_MAX_REMEMBERED = 1 << 10
+"""Characters. Longer texts are not cached, as the cache would hold their memory."""
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _LENGTH = re.compile(rf"\s*({_NUMBER})([a-zA-Z]*|%)\s*", re.ASCII)
-# CSS pixels; em and ex are multiples of the font's size.
+# CSS pixels per unit; em and ex are multiples of the font size.
 _UNITS = {
     "": 1.0,
     "px": 1.0,
@@ -43,10 +43,10 @@ _OTHER_UNITS = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class Length:
-    """A number with its unit; "%" and the units of fonts need to know what they are relative to.
+    """A number with its unit; "%" and font units need a reference to become pixels.
 
     Attributes:
-        more: What is added to it, as calc() has it.
+        more: Terms to add, from calc().
     """
 
     value: float
@@ -54,7 +54,7 @@ class Length:
     more: tuple["Length", ...] = ()
 
     def pixels(self, whole: float, font_size: float) -> float:
-        """In pixels; `whole` is 100 %."""
+        """Converts to pixels; `whole` is 100 %."""
         if self.more:
             parts = (Length(self.value, self.unit), *self.more)
             return sum(part.pixels(whole, font_size) for part in parts)
@@ -66,11 +66,11 @@ class Length:
 
 
 class UnknownUnitError(ValueError):
-    """A length in a unit that CSS has, and that is not supported here."""
+    """A length in a CSS unit that is not supported."""
 
 
-def as_length(text: str) -> Length | None:
-    """The length that a text is; None where it is none. Raises UnknownUnitError."""
+def parse_length(text: str) -> Length | None:
+    """Parses a length; returns None if invalid. Raises UnknownUnitError."""
     match = _LENGTH.fullmatch(text)
     if not match:
         return _calculated_length(text) if "(" in text else None
@@ -91,13 +91,13 @@ def _calculated_length(text: str) -> Length | None:
     tokens = _tokens(text)
     if len(tokens) != 1 or not is_calculation(tokens[0]):
         return None
-    return _length_of_sum(quantity_of(tokens[0], _PIXELS))
+    return _length_of_sum(evaluate_quantity(tokens[0], _PIXELS))
 
 
-def _length_of_sum(found: Quantity | None) -> Length | None:
-    if found is None:
+def _length_of_sum(quantity: Quantity | None) -> Length | None:
+    if quantity is None:
         return None
-    parts = [_length_of(value, unit) for unit, value in found.items()]
+    parts = [_length_of(value, unit) for unit, value in quantity.items()]
     lengths = [part for part in parts if part is not None]
     if len(lengths) < len(parts):
         return None
@@ -105,20 +105,20 @@ def _length_of_sum(found: Quantity | None) -> Length | None:
     return replace(first, more=tuple(lengths[1:])) if lengths[1:] else first
 
 
-def as_lengths(text: str) -> tuple[Length, ...] | None:
+def parse_lengths(text: str) -> tuple[Length, ...] | None:
     if "(" in text:
         tokens = [token for token in _tokens(text) if token != ","]
-        lengths = [_length_of_sum(quantity_of(token, _PIXELS)) for token in tokens]
+        lengths = [_length_of_sum(evaluate_quantity(token, _PIXELS)) for token in tokens]
         return None if None in lengths else tuple(each for each in lengths if each is not None)
-    found = [as_length(part) for part in re.split(r"\s*,\s*|\s+", text.strip())]
-    return tuple(each for each in found if each is not None) if None not in found else None
+    lengths = [parse_length(part) for part in re.split(r"\s*,\s*|\s+", text.strip())]
+    return tuple(each for each in lengths if each is not None) if None not in lengths else None
 
 
 _ORIGINS = {"left": 0.0, "top": 0.0, "center": 50.0, "right": 100.0, "bottom": 100.0}
 
 
-def as_origin(text: str) -> tuple[Length, Length] | None:
-    """The two lengths that the property `transform-origin` holds; None for what is none."""
+def parse_origin(text: str) -> tuple[Length, Length] | None:
+    """Parses `transform-origin` into two lengths; returns None if invalid."""
     names = _words(text.lower())
     if not names:
         return Length(0.0), Length(0.0)
@@ -127,91 +127,92 @@ def as_origin(text: str) -> tuple[Length, Length] | None:
     elif len(names) == 1 and names[0] in ("top", "bottom"):
         names.insert(0, "center")
     try:
-        found = [
-            Length(_ORIGINS[name], "%") if name in _ORIGINS else as_length(name) for name in names
+        lengths = [
+            Length(_ORIGINS[name], "%") if name in _ORIGINS else parse_length(name)
+            for name in names
         ]
     except UnknownUnitError:
         return None
-    x, y = found[0], found[1] if len(found) > 1 else Length(50.0, "%")
-    # A third one is a depth.
-    return (x, y) if x is not None and y is not None and len(found) < 4 else None
+    x, y = lengths[0], lengths[1] if len(lengths) > 1 else Length(50.0, "%")
+    # The third length is a depth.
+    return (x, y) if x is not None and y is not None and len(lengths) < 4 else None
 
 
 def _words(text: str) -> list[str]:
-    """What blanks are between, but for those in calculations."""
+    """Splits at whitespace outside parentheses."""
     if "(" not in text:
         return text.split()
     return [tinycss2.serialize([token]) for token in _tokens(text)]
 
 
-def as_number(text: str) -> float | None:
-    """A number, or a percentage as its hundredth."""
+def parse_number(text: str) -> float | None:
+    """Parses a number, or a percentage as a fraction."""
     match = _LENGTH.fullmatch(text)
     if not match and "(" in text:
         tokens = _tokens(text)
-        found = quantity_of(tokens[0], {}) if len(tokens) == 1 else None
-        if found is None or found.keys() - {"", "%"}:
+        quantity = evaluate_quantity(tokens[0], {}) if len(tokens) == 1 else None
+        if quantity is None or quantity.keys() - {"", "%"}:
             return None
-        return found.get("", 0.0) + 0.01 * found.get("%", 0.0)
+        return quantity.get("", 0.0) + 0.01 * quantity.get("%", 0.0)
     if not match or match[2] not in ("", "%"):
         return None
     value = float(match[1]) * (0.01 if match[2] else 1.0)
     return value if math.isfinite(value) else None
 
 
-def remembered(read: Callable[..., Found]) -> Callable[..., Found]:
-    """Has a function of texts remember what the last short ones came to."""
+def cache_short_texts(read: Callable[..., Result]) -> Callable[..., Result]:
+    """Caches the results of a parser for short texts."""
     cached = lru_cache(maxsize=4096)(read)
 
     @wraps(read)
-    def found(*texts: Any) -> Found:
-        is_long = any(isinstance(text, str) and len(text) > _MOST_REMEMBERED for text in texts)
+    def call(*texts: Any) -> Result:
+        is_long = any(isinstance(text, str) and len(text) > _MAX_REMEMBERED for text in texts)
         return (read if is_long else cached)(*texts)
 
-    return found
+    return call
 
 
 def leading_numbers(text: str) -> tuple[list[float], bool]:
-    """The numbers that a text begins with, and whether it holds nothing else."""
+    """Parses numbers up to the first error; returns them, and whether there was no error."""
     return _native.read_numbers(text.encode(errors="replace"))
 
 
 @dataclass(frozen=True, slots=True)
 class Paint:
-    """What an outline is filled or stroked with.
+    """The value of `fill` or `stroke`.
 
     Attributes:
-        color: None paints nothing; "current" stands for the property `color`; "context-fill" and
-            "context-stroke" for what a `use` or the outline of a marker has.
-        server: What url() refers to: # and the id of a gradient, usually. The color is for where
-            there is none.
+        color: None paints nothing; "current" is the property `color`; "context-fill" and
+            "context-stroke" are the paints of the referring `use` or marked outline.
+        server: The address in url(), usually # and the id of a gradient. Then `color` is the
+            fallback.
     """
 
     color: Color | str | None
     server: str = ""
 
 
-@remembered
-def as_color(text: str) -> Color | str | None:
-    """A color, or "current"; None for what is none."""
+@cache_short_texts
+def parse_color(text: str) -> Color | str | None:
+    """Parses a color; returns "current" for currentcolor and None if invalid."""
     try:
-        return color_of(tinycss2.parse_one_component_value(text, skip_comments=True))
+        return color_from_token(tinycss2.parse_one_component_value(text, skip_comments=True))
     except ValueError:
         return None
 
 
-def as_background(text: str) -> Color | str | None:
-    """The color among the values of the property `background`, as of `as_color`."""
-    colors = [color_of(token) for token in _tokens(text)]
+def parse_background(text: str) -> Color | str | None:
+    """Finds the color in a value of the property `background`; see `parse_color`."""
+    colors = [color_from_token(token) for token in _tokens(text)]
     return next((color for color in colors if color is not None), None)
 
 
-@remembered
-def as_paint(text: str) -> Paint | None:
+@cache_short_texts
+def parse_paint(text: str) -> Paint | None:
     tokens = _tokens(text)
     if not tokens:
         return None
-    server = url_of(tokens[0])
+    server = parse_url(tokens[0])
     if server is None:
         return _plain_paint(tokens)
     fallback = _plain_paint(tokens[1:]) if tokens[1:] else Paint(None)
@@ -225,12 +226,12 @@ def _plain_paint(tokens: Sequence[Any]) -> Paint | None:
         return Paint(None)
     if tokens[0].type == "ident" and tokens[0].lower_value in ("context-fill", "context-stroke"):
         return Paint(tokens[0].lower_value)
-    color = color_of(tokens[0])
+    color = color_from_token(tokens[0])
     return Paint(color) if color is not None else None
 
 
-def url_of(token: Any) -> str | None:
-    """The address in a `url()`; None for other tokens."""
+def parse_url(token: Any) -> str | None:
+    """Returns the address of a `url()`; None for other tokens."""
     if token.type == "url":
         url = token.value
     elif token.type == "function" and token.lower_name == "url":
@@ -245,28 +246,28 @@ def _tokens(text: str) -> list[Any]:
     return [token for token in tokens if token.type != "whitespace"]
 
 
-@remembered
-def as_transform(text: str, *whole: float) -> Matrix | None:
-    """The product of a list of transforms; None where one of them is none.
+@cache_short_texts
+def parse_transform(text: str, *whole: float) -> Matrix | None:
+    """Parses a list of transforms and multiplies them; returns None if one is invalid.
 
     Args:
         text: The list.
-        whole: What is 100 % along x and along y, and the size of the font; without them lengths are
-            numbers and pixels.
+        whole: Width and height that are 100 %, and the font size; without them, lengths must be
+            numbers or pixels.
     """
     if text.strip().lower() in ("", "none"):
         return IDENTITY
     matrix = IDENTITY
     for name, arguments in _functions(text, whole or (0.0, 0.0, 0.0)):
-        one = _transform(name, arguments)
-        if one is None:
+        transform = _transform(name, arguments)
+        if transform is None:
             return None
-        matrix = multiplied(matrix, one)
+        matrix = multiplied(matrix, transform)
     return matrix if all(map(math.isfinite, matrix)) else None
 
 
-def needs_whole(text: str) -> bool:
-    """Whether a list of transforms has lengths that are shares of something else."""
+def has_relative_lengths(text: str) -> bool:
+    """Returns whether a list of transforms has percentages or font units."""
     return "%" in text or "em" in text or "ex" in text
 
 
@@ -274,7 +275,7 @@ def _functions(text: str, whole: tuple[float, ...]) -> Iterator[tuple[str, list[
     name = ""
     for token in _tokens(text):
         if token.type == "ident" and not name:
-            name = token.lower_value  # A blank stands before its parenthesis.
+            name = token.lower_value  # Whitespace precedes its parenthesis.
         elif token.type == "() block" and name:
             yield name, _numbers_in(name, token.content, whole)
             name = ""
@@ -290,22 +291,22 @@ _IN_TRANSFORMS = _PIXELS | {unit: ("deg", factor) for unit, factor in DEGREES.it
 
 
 def _numbers_in(name: str, tokens: Sequence[Any], whole: tuple[float, ...]) -> list[float] | None:
-    """Numbers, pixels, and angles in degrees."""
-    found: list[float] = []
+    """Reads numbers, pixels, and angles in degrees."""
+    numbers: list[float] = []
     for token in tokens:
         if token.type in ("whitespace", "comment") or token == ",":
             continue
-        quantity = quantity_of(token, _IN_TRANSFORMS)
+        quantity = evaluate_quantity(token, _IN_TRANSFORMS)
         if quantity is None or quantity.keys() - {"", "px", "deg", "%", "em", "ex"}:
             return None
         total = 0.0
-        along = whole[1] if name == "translatey" or len(found) == 1 else whole[0]
+        along = whole[1] if name == "translatey" or len(numbers) == 1 else whole[0]
         for unit, value in quantity.items():
             if unit == "%":
                 value *= 0.01 * (1.0 if name.startswith("scale") else along)
             total += value * _FONT_UNITS[unit] * whole[2] if unit in _FONT_UNITS else value
-        found.append(total)
-    return found if all(map(math.isfinite, found)) else None
+        numbers.append(total)
+    return numbers if all(map(math.isfinite, numbers)) else None
 
 
 def _transform(name: str, numbers: list[float] | None) -> Matrix | None:
@@ -340,13 +341,13 @@ def _transform(name: str, numbers: list[float] | None) -> Matrix | None:
     return None
 
 
-def as_rotate(text: str) -> Matrix | None:
-    """The transform of the property `rotate`: an angle, and an axis before or behind it."""
+def parse_rotate(text: str) -> Matrix | None:
+    """Parses the property `rotate`: an angle, with an axis before or after it."""
     axis: list[str] = []
     angle: float | None = None
     numbers: list[float] = []
     for token in _tokens(text):
-        quantity = quantity_of(token, _IN_TRANSFORMS)
+        quantity = evaluate_quantity(token, _IN_TRANSFORMS)
         if token.type == "ident":
             axis.append(token.lower_value)
         elif quantity is not None and quantity.keys() == {"deg"} and angle is None:
@@ -355,7 +356,7 @@ def as_rotate(text: str) -> Matrix | None:
             numbers.append(quantity[""])
         else:
             return None
-    # Other axes would turn it out of the plane.
+    # Other axes would rotate out of the plane.
     is_flat = axis in ([], ["z"]) if not numbers else not axis and len(numbers) == 3
     if angle is None or not is_flat or (numbers and (numbers[:2] != [0.0, 0.0] or not numbers[2])):
         return None
@@ -363,7 +364,7 @@ def as_rotate(text: str) -> Matrix | None:
 
 
 def as_path(text: str) -> str | None:
-    """The path data that the property `d` holds; None for what is none."""
+    """Returns the path data in a value of the property `d`; None if invalid."""
     tokens = _tokens(text)
     if len(tokens) != 1:
         return None
@@ -377,10 +378,10 @@ def as_path(text: str) -> str | None:
 
 
 def rotation(angle: float) -> Matrix:
-    """By an angle in degrees."""
-    # Quarters of a turn are exact, so that upright edges stay upright.
-    quarters, rest = divmod(angle, 90.0)
+    """Returns a rotation by degrees."""
+    # Quarter turns are exact, so that upright edges stay upright.
+    quarters, remainder = divmod(angle, 90.0)
     cos, sin = _native.cos(math.radians(angle)), _native.sin(math.radians(angle))
-    if rest == 0.0:
+    if remainder == 0.0:
         cos, sin = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[int(quarters) % 4]
     return (cos, sin, -sin, cos, 0.0, 0.0)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""How the units of a drawing are placed in a rectangle: viewBox and preserveAspectRatio."""
+"""viewBox and preserveAspectRatio: fitting user units into a rectangle."""
 
 import re
 from dataclasses import dataclass
@@ -9,8 +9,8 @@ from ...affine import Matrix
 from .values import leading_numbers
 
 _ALIGNMENT = re.compile(r"x(Min|Mid|Max)Y(Min|Mid|Max)(?:\s+(meet|slice))?")
-# A side has at most so many units; what is larger or smaller is a mistake.
-MOST_UNITS = 1e9
+# Largest side and coordinate, in units, and inverse of the smallest side.
+MAX_UNITS = 1e9
 _SHARES = {"Min": 0.0, "Mid": 0.5, "Max": 1.0}
 
 
@@ -24,26 +24,23 @@ class ViewBox:
     height: float
 
 
-def as_view_box(text: str | None) -> ViewBox | None:
-    """The view box that an attribute holds; None for what is none."""
+def parse_view_box(text: str | None) -> ViewBox | None:
+    """Parses `viewBox`; returns None if invalid."""
     if text is None:
         return None
     numbers, is_whole = leading_numbers(text)
-    if not is_whole or len(numbers) != 4 or min(numbers[2:]) < 1.0 / MOST_UNITS:
+    if not is_whole or len(numbers) != 4 or min(numbers[2:]) < 1.0 / MAX_UNITS:
         return None
-    if max(map(abs, numbers)) > MOST_UNITS:
+    if max(map(abs, numbers)) > MAX_UNITS:
         return None
     return ViewBox(*numbers)
 
 
-def placed(view: ViewBox, aspect: str, width: float, height: float) -> Matrix:
-    """What carries a view box into the rectangle from (0, 0) to (width, height).
+def fit_view_box(view: ViewBox, aspect: str, width: float, height: float) -> Matrix:
+    """Returns the matrix that fits a view box into the rectangle from (0, 0) to (width, height).
 
     Args:
-        view: The view box.
-        aspect: The attribute preserveAspectRatio; what is none stands for the default.
-        width: Of the rectangle.
-        height: Of the rectangle.
+        aspect: The attribute preserveAspectRatio; invalid values count as the default.
     """
     scale_x, scale_y = width / view.width, height / view.height
     share_x = share_y = 0.0

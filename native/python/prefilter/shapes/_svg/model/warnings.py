@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What was found in a drawing and is not in its shapes."""
+"""Warnings about parts of a drawing that are wrong or not supported."""
 
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -10,15 +10,15 @@ Kind = Literal["unsupported", "broken"]
 
 @dataclass(frozen=True, slots=True)
 class SvgWarning:
-    """Something in a file that its shapes do not show, or not as it is meant.
+    """A part of a drawing that its shapes do not show, or show differently.
 
     Attributes:
-        kind: "unsupported": the file is right, and other programs may show it. "broken": the file
-            is wrong there.
-        name: Of the element or property, as it stands in the file.
-        effect: What became of it: "left out", "ignored", ...
-        line: Where it is, the first time.
-        count: How often it is there.
+        kind: "unsupported" if the file is right and other programs may show it, "broken" if the
+            file is wrong.
+        name: The element or property, as written in the file.
+        effect: The consequence: "left out", "ignored", ...
+        line: Line of the first occurrence.
+        count: Number of occurrences.
     """
 
     kind: Kind
@@ -34,10 +34,10 @@ class SvgWarning:
 
 
 class Warnings:
-    """Collects warnings, the same ones as one."""
+    """Collects warnings and merges equal ones."""
 
     def __init__(self) -> None:
-        self._found: dict[tuple[Kind, str, str], SvgWarning] = {}
+        self._by_key: dict[tuple[Kind, str, str], SvgWarning] = {}
 
     def unsupported(self, name: str, effect: str, line: int) -> None:
         self._add("unsupported", name, effect, line)
@@ -47,11 +47,11 @@ class Warnings:
 
     def _add(self, kind: Kind, name: str, effect: str, line: int) -> None:
         key = (kind, name, effect)
-        known = self._found.get(key)
+        known = self._by_key.get(key)
         if known is None:
-            self._found[key] = SvgWarning(kind, name, effect, line)
+            self._by_key[key] = SvgWarning(kind, name, effect, line)
         else:
-            self._found[key] = replace(known, count=known.count + 1)
+            self._by_key[key] = replace(known, count=known.count + 1)
 
     def all(self) -> tuple[SvgWarning, ...]:
-        return tuple(self._found.values())
+        return tuple(self._by_key.values())

@@ -5,12 +5,12 @@
 from dataclasses import replace
 
 from ...affine import IDENTITY
-from ..model.tree import Box, carried, joined
+from ..model.tree import Box, transform_box, unite_boxes
 from ..model.values import Length
 from ..read.basic_shapes import BASIC_SHAPES
 from ..read.context import Context, Sources
 from ..read.document import SvgElement
-from ..read.nesting import children, moved, used, viewport
+from ..read.nesting import enter_element, enter_viewport, rendered_children, resolve_use
 from ..read.tags import GROUPS, NOT_DRAWN
 
 _ZERO = Length(0.0)
@@ -29,7 +29,7 @@ def object_bounds(element: SvgElement, context: Context, sources: Sources) -> Bo
     while waiting:
         sources.budget.take_measured()
         each, place = waiting.pop()
-        found = joined(found, _own_bounds(each, place, sources))
+        found = unite_boxes(found, _own_bounds(each, place, sources))
         waiting.extend(_inner(each, place, sources, is_outermost=each is element))
     return found
 
@@ -38,19 +38,19 @@ def _own_bounds(element: SvgElement, context: Context, sources: Sources) -> Box 
     if element.tag in BASIC_SHAPES:
         outline = sources.outline(element, context.units)
         box = outline.bounds() if outline is not None else None
-        return carried(box, context.matrix) if box is not None else None
+        return transform_box(box, context.matrix) if box is not None else None
     if element.tag == "text":
         # Fonts take modules that those who draw no text need not wait for.
         from ..text.text_elements import drawn_text
 
         box = drawn_text(element, context, sources).bounds
-        return carried(box, context.matrix) if box is not None else None
+        return transform_box(box, context.matrix) if box is not None else None
     if element.tag == "image":
         x, y, width, height = (
             sources.pixels(element, name, _ZERO, context.units)
             for name in ("x", "y", "width", "height")
         )
-        return carried((x, y, x + width, y + height), context.matrix)
+        return transform_box((x, y, x + width, y + height), context.matrix)
     return None
 
 
@@ -59,18 +59,18 @@ def _inner(
 ) -> list[tuple[SvgElement, Context]]:
     """The elements in another one, each in its own units."""
     if element.tag == "use":
-        inside = list(used(element, context, sources))
+        inside = list(resolve_use(element, context, sources))
     elif element.tag in GROUPS:
         place: Context | None = context
         if element.tag in ("svg", "symbol") and not is_outermost:
-            place = viewport(element, context, sources)
+            place = enter_viewport(element, context, sources)
         if place is None:
             return []
-        inside = [(child, replace(place, use=None)) for child in children(element)]
+        inside = [(child, replace(place, use=None)) for child in rendered_children(element)]
     else:
         return []
     return [
-        (child, moved(child, place, sources))
+        (child, enter_element(child, place, sources))
         for child, place in inside
         if child.tag not in NOT_DRAWN and sources.sheets.declared(child).get("display") != "none"
     ]

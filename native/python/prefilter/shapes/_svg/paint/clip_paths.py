@@ -6,13 +6,13 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from ...affine import multiplied
-from ..model.clips import clip_of
+from ..model.clips import make_clip
 from ..model.tree import Clip, ClipPart
-from ..model.values import as_paint
+from ..model.values import parse_paint
 from ..read.basic_shapes import BASIC_SHAPES
 from ..read.context import Context, Sources
 from ..read.document import SvgElement
-from ..read.nesting import moved, used
+from ..read.nesting import enter_element, resolve_use
 from ..read.tags import NOT_DRAWN
 from .bounds import object_bounds
 
@@ -25,11 +25,11 @@ def clipped(element: SvgElement, context: Context, sources: Sources) -> Context 
     text = sources.sheets.declared(element).get("clip-path", "none")
     if text.lower() == "none":
         return context
-    paint = as_paint(text)
+    paint = parse_paint(text)
     if paint is None or not paint.server:
         sources.warnings.unsupported("clip-path", f"ignored: {text[:40]}", element.line)
         return context
-    path = sources.referred(text)
+    path = sources.resolve_url(text)
     if path is None or path.tag != "clipPath":
         sources.warnings.broken("clip-path", "ignored", element.line)
         return context
@@ -48,7 +48,7 @@ def _clip(path: SvgElement, element: SvgElement, context: Context, sources: Sour
     around = clipped(path, place, sources)
     if around is None:
         return None
-    inside = moved(path, place, sources)
+    inside = enter_element(path, place, sources)
     if path.get("clipPathUnits") == "objectBoundingBox":
         box = object_bounds(element, context, sources)
         if box is None or box[2] <= box[0] or box[3] <= box[1]:
@@ -61,7 +61,7 @@ def _clip(path: SvgElement, element: SvgElement, context: Context, sources: Sour
         assert isinstance(child, SvgElement)
         if child.tag not in NOT_DRAWN:
             parts.extend(_parts(child, inside, sources))
-    clip = clip_of(parts, around.clips)
+    clip = make_clip(parts, around.clips)
     return clip if clip.bounds is not None else None
 
 
@@ -70,11 +70,11 @@ def _parts(child: SvgElement, context: Context, sources: Sources) -> Iterator[Cl
     declared = sources.sheets.declared(child)
     if declared.get("display", "") == "none":
         return
-    place = clipped(child, moved(child, replace(context, clips=()), sources), sources)
+    place = clipped(child, enter_element(child, replace(context, clips=()), sources), sources)
     if place is None:
         return
     if child.tag == "use":
-        for target, inside in used(child, place, sources):
+        for target, inside in resolve_use(child, place, sources):
             if target.tag in BASIC_SHAPES or target.tag == "text":
                 for part in _parts(target, inside, sources):
                     yield replace(part, clips=(*place.clips, *part.clips))

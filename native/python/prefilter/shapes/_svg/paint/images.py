@@ -9,22 +9,22 @@ import numpy as np
 import numpy.typing as npt
 
 from ...affine import Matrix, multiplied
-from ..model.clips import box_clip
+from ..model.clips import make_box_clip
 from ..model.gradients import Colors
 from ..model.limits import TooLargeError
-from ..model.tree import Clip, Group, Picture, carried
+from ..model.tree import Clip, Group, Picture, transform_box
 from ..model.values import Length
-from ..model.view_boxes import ViewBox, placed
+from ..model.view_boxes import ViewBox, fit_view_box
 from ..read.context import Context, Sources
 from ..read.document import SvgElement
-from ..read.external_resources import ElsewhereError, Place, UnusableError, read_address
-from ..read.image_files import PictureError, ending_of, read_picture, size_of
-from ..read.nesting import SHOWN
+from ..read.external_resources import BaseFolder, NotLocalError, UnusableError, read_address
+from ..read.image_files import ImageError, decode_image, image_extension, image_size
+from ..read.nesting import VISIBLE_OVERFLOW
 from ..read.page import Page
 
 _ZERO, _AUTO = Length(0.0), Length(-1.0)
 _PIXELATED = ("pixelated", "crisp-edges", "optimizespeed", "-moz-crisp-edges")
-MOST_BYTES = 1 << 28
+MAX_BYTES = 1 << 28
 
 
 class Inner(Protocol):
@@ -63,7 +63,7 @@ class Images:
         if element not in self._known:
             try:
                 self._known[element] = self._contents(element, sources)
-            except (ElsewhereError, UnusableError, PictureError, ValueError) as error:
+            except (NotLocalError, UnusableError, ImageError, ValueError) as error:
                 self._known[element] = error
         found = self._known[element]
         if isinstance(found, Exception):
@@ -72,13 +72,13 @@ class Images:
 
     def _contents(self, element: SvgElement, sources: Sources) -> Contents:
         data, name = _bytes_of(element, sources)
-        if ending_of(data):
-            width, height = size_of(data)
+        if image_extension(data):
+            width, height = image_size(data)
             sources.budget.take_texels(width * height)
-            return read_picture(data)
+            return decode_image(data)
         if data.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"<" or data[:2] == b"\x1f\x8b":
             return self._read(data, name)
-        raise ElsewhereError("as it is neither PNG, JPEG, GIF, WebP nor SVG")
+        raise NotLocalError("as it is neither PNG, JPEG, GIF, WebP nor SVG")
 
 
 def draw_image(element: SvgElement, context: Context, sources: Sources, images: Images) -> None:
@@ -110,9 +110,9 @@ def put_image(
             _draw(element, contents, own, place, context, sources)
     except TooLargeError:
         raise
-    except ElsewhereError as error:
+    except NotLocalError as error:
         sources.warnings.unsupported(f"<{element.tag}>", f"left out, {error}", element.line)
-    except (UnusableError, PictureError, ValueError) as error:
+    except (UnusableError, ImageError, ValueError) as error:
         sources.warnings.broken(f"<{element.tag}>", f"left out, {error}", element.line)
 
 
@@ -148,11 +148,13 @@ def _draw(
         own = own if aspect.strip() == "none" else (width, height)
     own_width, own_height = own
     page = ViewBox(0.0, 0.0, own_width, own_height)
-    fitted = multiplied((1.0, 0.0, 0.0, 1.0, x, y), placed(page, aspect, width, height))
+    fitted = multiplied((1.0, 0.0, 0.0, 1.0, x, y), fit_view_box(page, aspect, width, height))
     matrix = multiplied(context.matrix, fitted)
     clips = context.clips
-    if declared.get("overflow", "hidden") not in SHOWN and aspect.strip().endswith("slice"):
-        clips = (*clips, box_clip((x, y, x + width, y + height), context.matrix))
+    if declared.get("overflow", "hidden") not in VISIBLE_OVERFLOW and aspect.strip().endswith(
+        "slice"
+    ):
+        clips = (*clips, make_box_clip((x, y, x + width, y + height), context.matrix))
     if isinstance(contents, np.ndarray):
         unit = multiplied(matrix, (own_width, 0.0, 0.0, own_height, 0.0, 0.0))
         context.target.items.append(
@@ -162,15 +164,15 @@ def _draw(
                 context.style.image_rendering in _PIXELATED,
                 context.colors.is_linear,
                 clips,
-                carried((0.0, 0.0, 1.0, 1.0), unit),
+                transform_box((0.0, 0.0, 1.0, 1.0), unit),
                 element.line,
             )
         )
     else:
         group = Group(is_isolated=True, line=element.line)
         context.target.items.append(group)
-        clips = (*clips, box_clip((0.0, 0.0, own_width, own_height), matrix))
-        fitted = placed(contents.page.view, contents.page.aspect, own_width, own_height)
+        clips = (*clips, make_box_clip((0.0, 0.0, own_width, own_height), matrix))
+        fitted = fit_view_box(contents.page.view, contents.page.aspect, own_width, own_height)
         contents.draw_in(multiplied(matrix, fitted), clips, group, context.colors)
 
 
@@ -180,6 +182,6 @@ def _bytes_of(element: SvgElement, sources: Sources) -> tuple[bytes, str]:
     if not address or address.startswith("#"):
         raise UnusableError("as it refers to no image")
     folder = sources.folder
-    place = None if folder is None else Place(folder, folder)
-    data, path = read_address(address, place, MOST_BYTES)
+    place = None if folder is None else BaseFolder(folder, folder)
+    data, path = read_address(address, place, MAX_BYTES)
     return data, "<image>" if path is None else path.name

@@ -8,14 +8,14 @@ from dataclasses import dataclass, replace
 
 from .... import _native
 from ...affine import IDENTITY, Matrix, multiplied
-from ..model.clips import box_clip
+from ..model.clips import make_box_clip
 from ..model.outline import Outline
 from ..model.tree import Group
-from ..model.values import Length, as_number, rotation
-from ..model.view_boxes import as_view_box, placed
-from ..read.context import Context, Sources, paints_of
+from ..model.values import Length, parse_number, rotation
+from ..model.view_boxes import fit_view_box, parse_view_box
+from ..read.context import Context, Sources, context_paints
 from ..read.document import SvgElement
-from ..read.nesting import SHOWN, children
+from ..read.nesting import VISIBLE_OVERFLOW, rendered_children
 
 MARKED = ("path", "line", "polyline", "polygon")
 _ZERO, _THREE = Length(0.0), Length(3.0)
@@ -63,7 +63,7 @@ def draw_markers(element: SvgElement, context: Context, outline: Outline, source
     if all(marker is None for marker in found.values()):
         return
     corners = list(corners_of(outline))
-    context = replace(context, paints=paints_of(element, context))
+    context = replace(context, paints=context_paints(element, context))
     for index, corner in enumerate(corners):
         at_start, at_end = index == 0, index == len(corners) - 1
         for name, is_there in (
@@ -81,7 +81,7 @@ def _marker(
 ) -> SvgElement | None:
     if text.lower() == "none":
         return None
-    marker = sources.referred(text)
+    marker = sources.resolve_url(text)
     if marker is None or marker.tag != "marker":
         sources.warnings.broken("marker", "left out", element.line)
         return None
@@ -114,9 +114,9 @@ def _draw(
     fitted: Matrix = IDENTITY
     size = (width, height)
     region = (0.0, 0.0, width, height)
-    view = as_view_box(declared.get("viewBox"))
+    view = parse_view_box(declared.get("viewBox"))
     if view is not None:
-        fitted = placed(view, declared.get("preserveAspectRatio", ""), width, height)
+        fitted = fit_view_box(view, declared.get("preserveAspectRatio", ""), width, height)
         size = (view.width, view.height)
     ref_x, ref_y = (
         _PLACES[declared[name]] * side
@@ -129,8 +129,8 @@ def _draw(
     matrix = multiplied(matrix, (1.0, 0.0, 0.0, 1.0, -reference[0], -reference[1]))
     around = multiplied(context.matrix, matrix)
     clips = context.clips
-    if declared.get("overflow", "hidden") not in SHOWN:
-        clips = (*clips, box_clip(region, around))
+    if declared.get("overflow", "hidden") not in VISIBLE_OVERFLOW:
+        clips = (*clips, make_box_clip(region, around))
     group = Group(line=marker.line)
     context.target.items.append(group)
     inside = replace(
@@ -142,15 +142,15 @@ def _draw(
         uses=(*context.uses, marker),
         use=None,
     )
-    sources.draw((child, inside) for child in children(marker))
+    sources.schedule((child, inside) for child in rendered_children(marker))
 
 
 def _degrees(text: str) -> float:
     units = {"deg": 1.0, "grad": 0.9, "rad": 180.0 / math.pi, "turn": 360.0}
     for name, scale in units.items():
         if text.endswith(name):
-            return (as_number(text.removesuffix(name)) or 0.0) * scale
-    return as_number(text) or 0.0
+            return (parse_number(text.removesuffix(name)) or 0.0) * scale
+    return parse_number(text) or 0.0
 
 
 def corners_of(outline: Outline) -> Iterator[Corner]:

@@ -5,14 +5,14 @@
 from dataclasses import replace
 
 from ...affine import Matrix, multiplied
-from ..model.clips import box_clip
+from ..model.clips import make_box_clip
 from ..model.gradients import Colors
 from ..model.tree import Box, Group, Mask
 from ..model.values import Length
 from ..read.context import Context, Sources
 from ..read.document import SvgElement
 from ..read.lengths import Units
-from ..read.nesting import children
+from ..read.nesting import rendered_children
 from .bounds import object_bounds
 
 _DEFAULTS = {"x": -10.0, "y": -10.0, "width": 120.0, "height": 120.0}
@@ -27,7 +27,7 @@ def masks_of(element: SvgElement, context: Context, sources: Sources) -> tuple[M
     text = sources.sheets.declared(element).get("mask", "none")
     if text.lower() == "none":
         return ()
-    mask = sources.referred(text)
+    mask = sources.resolve_url(text)
     if mask is None or mask.tag != "mask":
         sources.warnings.broken("mask", "ignored", element.line)
         return ()
@@ -42,7 +42,7 @@ def masks_of(element: SvgElement, context: Context, sources: Sources) -> tuple[M
         return None
     style = sources.sheets.style(mask)
     group = Group(is_isolated=True, line=mask.line)
-    clips = (*context.clips, box_clip(region, multiplied(context.matrix, matrix)))
+    clips = (*context.clips, make_box_clip(region, multiplied(context.matrix, matrix)))
     # Masks are as bright as they look.
     place = replace(
         context,
@@ -58,7 +58,7 @@ def masks_of(element: SvgElement, context: Context, sources: Sources) -> tuple[M
         if shares is None:
             return None
         place = replace(place, matrix=multiplied(context.matrix, shares), viewport=(1.0, 1.0))
-    sources.draw((child, place) for child in children(mask))
+    sources.schedule((child, place) for child in rendered_children(mask))
     return (Mask(group, style.mask_type == "luminance", place.colors.is_linear),)
 
 

@@ -12,14 +12,14 @@ from ..model.gradients import Gradient
 from ..model.outline import Outline
 from ..model.tree import Box, Pattern, Stroke
 from ..model.values import Paint
-from ..read.context import Context, HeldPaint, Sources
+from ..read.context import Context, ContextPaint, Sources
 from ..read.document import SvgElement
 from ..read.tags import GRADIENTS, OTHER_PAINTS
 from .bounds import object_bounds
 from .masks import shares_of
 from .patterns import pattern_of
 
-_MOST_DASHES = 100_000
+_MAX_DASHES = 100_000
 
 
 def resolved(
@@ -50,8 +50,8 @@ def resolved(
             return pattern
     elif server is not None:
         is_paint = server.tag in OTHER_PAINTS
-        tell = sources.warnings.unsupported if is_paint else sources.warnings.broken
-        tell(f"<{server.tag}> as paint", "left out", element.line)
+        report = sources.warnings.unsupported if is_paint else sources.warnings.broken
+        report(f"<{server.tag}> as paint", "left out", element.line)
     elif paint.server:
         sources.warnings.broken(f"url({paint.server[:60]})", "not there", element.line)
     if isinstance(found, Gradient):
@@ -68,7 +68,7 @@ def resolved(
 
 
 def _resolved_there(
-    held: HeldPaint, context: Context, opacity: float, sources: Sources
+    held: ContextPaint, context: Context, opacity: float, sources: Sources
 ) -> tuple[float, ...] | Gradient | Pattern | None:
     """What another element is painted with, where that is, in units of this one."""
     there = replace(held.context, colors=context.colors)
@@ -99,7 +99,7 @@ def stroke_of(
     count = outline.length() * len(dashes) / sum(dashes) if sum(dashes) > 0.0 else 0.0
     if count == 0.0:
         dashes = []
-    elif count > _MOST_DASHES:
+    elif count > _MAX_DASHES:
         sources.warnings.broken("stroke-dasharray", "ignored: too many dashes", element.line)
         dashes, count = [], 0.0
     elif "pathLength" in sources.sheets.declared(element):

@@ -5,14 +5,14 @@
 from collections.abc import Mapping
 
 from ...affine import IDENTITY, Matrix, determinant, multiplied
-from ..model.clips import box_clip
+from ..model.clips import make_box_clip
 from ..model.tree import Box, Clip, Group, Pattern
-from ..model.values import Length, as_transform
-from ..model.view_boxes import MOST_UNITS, as_view_box, placed
+from ..model.values import Length, parse_transform
+from ..model.view_boxes import MAX_UNITS, fit_view_box, parse_view_box
 from ..read.context import Context, Sources
 from ..read.document import SvgElement
 from ..read.lengths import Units, about_origin, read_length
-from ..read.nesting import SHOWN, children
+from ..read.nesting import VISIBLE_OVERFLOW, rendered_children
 from .masks import shares_of
 
 _NAMES = ("x", "y", "width", "height")
@@ -37,7 +37,7 @@ def pattern_of(
         return None
     attributes, contents = _chain(element, sources)
     tile = _tile(element, attributes, context, bounds, sources)
-    own = as_transform(attributes.get("patternTransform", ""))
+    own = parse_transform(attributes.get("patternTransform", ""))
     if own is None:
         sources.warnings.broken("patternTransform", "ignored", element.line)
         own = IDENTITY
@@ -50,8 +50,8 @@ def pattern_of(
     matrix, size = found
     group = Group(is_isolated=True, line=element.line)
     clips: tuple[Clip, ...] = ()
-    if attributes.get("overflow", "hidden") not in SHOWN:
-        clips = (box_clip(tile, IDENTITY),)
+    if attributes.get("overflow", "hidden") not in VISIBLE_OVERFLOW:
+        clips = (make_box_clip(tile, IDENTITY),)
     place = Context(
         sources.sheets.style(contents),
         matrix,
@@ -61,7 +61,7 @@ def pattern_of(
         clips,
         (*context.uses, element),
     )
-    sources.draw((child, place) for child in children(contents))
+    sources.schedule((child, place) for child in rendered_children(contents))
     return Pattern(group, tile, own, opacity)
 
 
@@ -87,7 +87,7 @@ def _tile(
         x, y, width, height = e + x * a, f + y * d, width * a, height * d
     if width <= 0.0 or height <= 0.0:
         return None
-    if not all(1.0 / MOST_UNITS < side < MOST_UNITS for side in (width, height)):
+    if not all(1.0 / MAX_UNITS < side < MAX_UNITS for side in (width, height)):
         sources.warnings.broken("<pattern>", "left out, for its size", element.line)
         return None
     return x, y, x + width, y + height
@@ -98,10 +98,10 @@ def _contents_place(
 ) -> tuple[Matrix, tuple[float, float] | None] | None:
     """From the units of what is in a pattern to those of the outline, and its own viewport."""
     matrix: Matrix = (1.0, 0.0, 0.0, 1.0, tile[0], tile[1])
-    view = as_view_box(attributes.get("viewBox"))
+    view = parse_view_box(attributes.get("viewBox"))
     if view is not None:
         aspect = attributes.get("preserveAspectRatio", "")
-        fitted = placed(view, aspect, tile[2] - tile[0], tile[3] - tile[1])
+        fitted = fit_view_box(view, aspect, tile[2] - tile[0], tile[3] - tile[1])
         return multiplied(matrix, fitted), (view.width, view.height)
     if attributes.get("patternContentUnits") == "objectBoundingBox":
         shares = shares_of(bounds)

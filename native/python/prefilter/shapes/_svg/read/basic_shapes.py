@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The outlines of paths and basic shapes."""
+"""Outlines of paths and basic shapes."""
 
 from collections.abc import Mapping
 
@@ -16,13 +16,13 @@ BASIC_SHAPES = ("path", "rect", "circle", "ellipse", "line", "polyline", "polygo
 def read_shape(
     element: SvgElement, values: Mapping[str, str], units: Units, warnings: Warnings
 ) -> Outline | None:
-    """The outline of an element; None where it has none.
+    """Reads the outline of an element; returns None if it has none.
 
     Args:
         element: One of BASIC_SHAPES.
         values: Its attributes and properties.
-        units: What its lengths are relative to.
-        warnings: Gets what is wrong.
+        units: References of its lengths.
+        warnings: Receives errors in attributes.
     """
     outline = Outline()
 
@@ -31,7 +31,7 @@ def read_shape(
         return 0.0 if length is None else units.pixels(length, name)
 
     def radii() -> tuple[float, float]:
-        """rx and ry, each as the other one where it is missing or negative."""
+        """Returns rx and ry; a missing or negative one equals the other."""
         lengths = [read_length(element, values, name, warnings) for name in ("rx", "ry")]
         rx, ry = (
             None if length is None or length.value < 0.0 else units.pixels(length, name)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Where an element of a drawing stands, and what all elements are read with."""
+"""The state in which an element is read, and the resources shared by all elements."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
@@ -12,11 +12,11 @@ from ..model.gradients import Colors
 from ..model.limits import Budget
 from ..model.outline import Outline
 from ..model.tree import Box, Clip, Group
-from ..model.values import Length, Paint, as_paint
+from ..model.values import Length, Paint, parse_paint
 from ..model.warnings import Warnings
 from .basic_shapes import read_shape
 from .document import Document, SvgElement
-from .fonts import FontPlaces
+from .fonts import FontSources
 from .image_files import Texels
 from .lengths import Units, read_length
 from .paint_servers import PaintServers
@@ -25,16 +25,16 @@ from .styles import Style, StyleSheets
 
 @dataclass(frozen=True, slots=True)
 class Sources:
-    """What all elements are read with.
+    """Resources shared by all elements of a document.
 
     Attributes:
-        fonts: Those for text.
-        folder: Where images beside the drawing are; None where there are none.
-        waiting: The elements to be drawn, of which the next one is the last.
-        outlines: Those that are known, by element.
-        circular: Elements whose masks would mask themselves.
-        letters: The texels of letters that are pictures, read once.
-        measure: Returns the box around what an element fills.
+        fonts: Fonts for text.
+        folder: The drawing's folder, for images; None if there is none.
+        waiting: A stack of elements to draw; the next one is last.
+        outlines: Known outlines of basic shapes.
+        circular: Elements whose masks contain themselves.
+        letters: Decoded bitmap glyphs.
+        measure: Returns the bounding box of an element's fill.
     """
 
     document: Document
@@ -42,7 +42,7 @@ class Sources:
     servers: PaintServers
     warnings: Warnings
     budget: Budget
-    fonts: FontPlaces
+    fonts: FontSources
     folder: Path | None = None
     waiting: list[tuple[SvgElement, "Context"]] = field(default_factory=list)
     outlines: dict[tuple[SvgElement, Units], Outline | None] = field(default_factory=dict)
@@ -51,45 +51,45 @@ class Sources:
     measure: "Callable[[SvgElement, Context, Sources], Box | None] | None" = None
 
     def pixels(self, element: SvgElement, name: str, default: Length, units: Units) -> float:
-        """An attribute of an element, or what stands for it where there is none."""
+        """Returns a length attribute in pixels, or the default if missing."""
         declared = self.sheets.declared(element)
         length = read_length(element, declared, name, self.warnings)
         return units.pixels(default if length is None else length, name)
 
-    def referred(self, text: str) -> SvgElement | None:
-        """The element that a `url(#id)` refers to."""
-        paint = as_paint(text)
+    def resolve_url(self, text: str) -> SvgElement | None:
+        """Returns the element that a `url(#id)` refers to."""
+        paint = parse_paint(text)
         if paint is None or not paint.server.startswith("#"):
             return None
         return self.document.ids.get(paint.server[1:])
 
     def outline(self, element: SvgElement, units: Units) -> Outline | None:
-        """The outline of a basic shape; None where it has none."""
+        """Returns the outline of a basic shape; None if it has none."""
         key = (element, units)
         if key not in self.outlines:
             declared = self.sheets.declared(element)
             self.outlines[key] = read_shape(element, declared, units, self.warnings)
         return self.outlines[key]
 
-    def draw(self, drawn: Iterable[tuple[SvgElement, "Context"]]) -> None:
-        """Has elements drawn, in their order."""
+    def schedule(self, drawn: Iterable[tuple[SvgElement, "Context"]]) -> None:
+        """Schedules elements to be drawn next, in order."""
         self.waiting.extend(reversed(list(drawn)))
 
 
 @dataclass(frozen=True, slots=True)
 class Context:
-    """Where an element stands.
+    """The state in which an element is read.
 
     Attributes:
-        style: Of its parent.
-        matrix: From its parent's units to those of the tree.
+        style: The parent's style.
+        matrix: From the parent's units to the tree's.
         viewport: Width and height of the nearest viewport, in its units.
-        target: What it becomes a part of.
-        colors: How colors are kept.
-        clips: What it is cut off at.
-        uses: The elements that others have brought here by reference.
-        use: The `use` that brought this very element.
-        paints: What `context-fill` and `context-stroke` stand for.
+        target: The group that receives items.
+        colors: The encoding of colors.
+        clips: Clips that apply.
+        uses: Elements referenced by the enclosing `use` elements.
+        use: The `use` that directly refers to this element.
+        paints: Values of `context-fill` and `context-stroke`.
     """
 
     style: Style
@@ -100,7 +100,7 @@ class Context:
     clips: tuple[Clip, ...] = ()
     uses: tuple[SvgElement, ...] = ()
     use: SvgElement | None = None
-    paints: Mapping[str, "HeldPaint"] = field(default_factory=dict)
+    paints: Mapping[str, "ContextPaint"] = field(default_factory=dict)
 
     @property
     def units(self) -> Units:
@@ -108,13 +108,13 @@ class Context:
 
 
 @dataclass(frozen=True, slots=True)
-class HeldPaint:
-    """What `context-fill` or `context-stroke` stands for.
+class ContextPaint:
+    """The value of `context-fill` or `context-stroke`.
 
     Attributes:
-        paint: It.
-        element: The one that has it: gradients and patterns lie as they do there.
-        context: Within that.
+        paint: The paint.
+        element: Its element, in whose units gradients and patterns lie.
+        context: The context within that element.
     """
 
     paint: Paint
@@ -122,18 +122,18 @@ class HeldPaint:
     context: Context
 
 
-def paints_of(element: SvgElement, context: Context) -> dict[str, HeldPaint]:
-    """What `context-fill` and `context-stroke` stand for in what an element brings."""
-    found = {}
+def context_paints(element: SvgElement, context: Context) -> dict[str, ContextPaint]:
+    """Returns `context-fill` and `context-stroke` for the contents that an element refers to."""
+    paints = {}
     for name, paint in (
         ("context-fill", context.style.fill),
         ("context-stroke", context.style.stroke),
     ):
         if isinstance(paint.color, str) and paint.color != "current":
             held = context.paints.get(paint.color)
-            found[name] = HeldPaint(Paint(None), element, context) if held is None else held
+            paints[name] = ContextPaint(Paint(None), element, context) if held is None else held
             continue
         if paint.color == "current":
             paint = replace(paint, color=context.style.color)
-        found[name] = HeldPaint(paint, element, context)
-    return found
+        paints[name] = ContextPaint(paint, element, context)
+    return paints

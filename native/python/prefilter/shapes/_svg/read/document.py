@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The XML of a drawing, read by expat, within limits that no honest file meets."""
+"""XML documents, parsed by expat within limits that exceed all honest files."""
 
 import os
 import re
@@ -16,52 +16,52 @@ from ...._border.input import as_path, open_file
 SVG = "http://www.w3.org/2000/svg"
 XLINK_HREF = "{http://www.w3.org/1999/xlink}href"
 _SHEETS = ("style", "{http://www.w3.org/1999/xhtml}link")
-_SAID = re.compile(r"([\w-]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
+_ATTRIBUTE = re.compile(r"([\w-]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
 
-MOST_DEPTH = 256
-MOST_ELEMENTS = 250_000
-MOST_ATTRIBUTES = 2_000_000
-MOST_UNPACKED = 1 << 26
-# Characters of an attribute, and of all text and style sheets together: what is made of them takes
-# many times the memory, but of a few attributes; those of other programs are not looked at.
-MOST_VALUE = 1 << 18
-MOST_TEXT = 1 << 25
-_MOST_VALUES = {"points": 1 << 24, **dict.fromkeys(("d", "href", XLINK_HREF), MOST_UNPACKED)}
+MAX_DEPTH = 256
+MAX_ELEMENTS = 250_000
+MAX_ATTRIBUTES = 2_000_000
+MAX_UNPACKED = 1 << 26
+# Characters of an attribute, and of all text and style sheets together. Parsed values take many
+# times that memory, except for a few attributes. Attributes of other namespaces are unlimited.
+MAX_VALUE = 1 << 18
+MAX_TEXT = 1 << 25
+_MAX_VALUES = {"points": 1 << 24, **dict.fromkeys(("d", "href", XLINK_HREF), MAX_UNPACKED)}
 _TEXT_AT_ONCE = 1 << 20
 _UNPACKED_AT_ONCE = 1 << 20
-# Errors that expat has few words for.
+# Clearer words for some errors of expat.
 _WORDS = {
     expat.errors.codes[expat.errors.XML_ERROR_NO_ELEMENTS]: "the file ends in the middle",
     expat.errors.codes[expat.errors.XML_ERROR_INVALID_TOKEN]: "not well-formed XML",
     expat.errors.codes[expat.errors.XML_ERROR_SYNTAX]: "XML does not begin like that",
 }
-# What entities may add to a file: expat's own limit came with 2.4.
-_MOST_EXPANDED = 1 << 24
-_TOLD_EVERY = 1000
+# Characters that entities may add to a file. Expat has such a limit only since 2.4.
+_MAX_EXPANDED = 1 << 24
+_ELEMENTS_PER_REPORT = 1000
 
 
-Parts: TypeAlias = Callable[[], Iterator[bytes]]
-"""Returns the bytes of a file in parts, as often as it is called."""
+Chunks: TypeAlias = Callable[[], Iterator[bytes]]
+"""Returns the bytes of a file in chunks, at each call from the start."""
 
 
 class _RefusedError(Exception):
-    """What is well-formed, and refused; the message says where."""
+    """Well-formed XML beyond a limit; the message says where."""
 
 
 class SvgElement(Element):
-    """An element that knows where it stands. Its tag is without SVG's namespace."""
+    """An element with its line and parent. Tags of the SVG namespace have no prefix."""
 
     line = 0
     parent: "SvgElement | None" = None
 
     @property
     def address(self) -> str:
-        """What it refers to; empty where there is nothing."""
+        """The value of `href` or `xlink:href`; empty if missing."""
         return self.get("href", self.get(XLINK_HREF, "")).strip()
 
     @property
     def href(self) -> str:
-        """The id that it refers to, in this file; empty where there is none."""
+        """The id that `href` refers to in this file; empty if none."""
         target = self.address
         return target[1:] if target.startswith("#") else ""
 
@@ -70,17 +70,17 @@ class Document:
     """The elements of a file.
 
     Attributes:
-        name: What messages call the file.
-        folder: Where it is; None where it is no file.
+        name: The file's name in messages.
+        folder: The file's folder; None for markup.
         root: The outermost `svg`.
-        ids: Elements by their id, the first of each.
-        count: How many there are.
-        sheets: The elements that hold style sheets, or refer to some.
-        linked_sheets: What instructions before the drawing say of style sheets, and their lines.
+        ids: Elements by id; the first wins.
+        count: Number of elements.
+        sheets: `style` and `link` elements.
+        linked_sheets: Attributes and lines of `xml-stylesheet` instructions.
     """
 
     def __init__(
-        self, parts: Parts, name: str, encoding: str | None, tell: Callable[[float], None]
+        self, parts: Chunks, name: str, encoding: str | None, report: Callable[[float], None]
     ) -> None:
         self.name = name
         self.folder: Path | None = None
@@ -90,12 +90,12 @@ class Document:
         self.linked_sheets: list[tuple[dict[str, str], int]] = []
         self._open: list[SvgElement] = []
         self._texts = 0
-        self._attributes_left = MOST_ATTRIBUTES
-        self._text_left = MOST_TEXT
+        self._attributes_left = MAX_ATTRIBUTES
+        self._text_left = MAX_TEXT
         self._root: SvgElement | None = None
         self._references = sum(part.count(b"&") for part in parts())
         self._size = max(sum(map(len, parts())), 1)
-        self._tell = tell
+        self._report = report
         parser = expat.ParserCreate(encoding, "}")
         self._parser = parser
         parser.buffer_text = True
@@ -125,9 +125,9 @@ class Document:
 
     def _start(self, name: str, attributes: dict[str, str]) -> None:
         line = self._parser.CurrentLineNumber
-        if len(self._open) >= MOST_DEPTH:
+        if len(self._open) >= MAX_DEPTH:
             raise _RefusedError(
-                f"{self.name}, line {line}: elements are nested more than {MOST_DEPTH} deep"
+                f"{self.name}, line {line}: elements are nested more than {MAX_DEPTH} deep"
             )
         space, _, local = name.rpartition("}")
         tag = local if space in ("", SVG) else "{" + name
@@ -147,20 +147,20 @@ class Document:
             self.sheets.append(element)
         if "id" in element.attrib:
             self.ids.setdefault(element.attrib["id"], element)
-        if self.count % _TOLD_EVERY == 0:
-            self._tell(self._parser.CurrentByteIndex / self._size)
+        if self.count % _ELEMENTS_PER_REPORT == 0:
+            self._report(self._parser.CurrentByteIndex / self._size)
 
     def _count(self, element: SvgElement) -> None:
-        """Counts an element and what it holds. Raises _RefusedError where there is too much."""
+        """Counts an element and its attributes. Raises _RefusedError at a limit."""
         self.count += 1
-        if self.count > MOST_ELEMENTS:
-            raise self._refused(f"more than {MOST_ELEMENTS} elements")
+        if self.count > MAX_ELEMENTS:
+            raise self._refused(f"more than {MAX_ELEMENTS} elements")
         self._attributes_left -= len(element.attrib)
         if self._attributes_left < 0:
-            raise self._refused(f"more than {MOST_ATTRIBUTES} attributes")
+            raise self._refused(f"more than {MAX_ATTRIBUTES} attributes")
         for name, value in element.attrib.items():
-            most = _MOST_VALUES.get(name, MOST_VALUE)
-            if len(value) > most and (not name.startswith("{") or name in _MOST_VALUES):
+            most = _MAX_VALUES.get(name, MAX_VALUE)
+            if len(value) > most and (not name.startswith("{") or name in _MAX_VALUES):
                 raise self._refused(
                     f"the attribute '{name[:40]}' has {len(value)} characters; at most {most} are "
                     "read"
@@ -177,7 +177,7 @@ class Document:
             return
         self._text_left -= len(text)
         if self._text_left < 0:
-            raise self._refused(f"more than {MOST_TEXT} characters of text and style sheets")
+            raise self._refused(f"more than {MAX_TEXT} characters of text and style sheets")
         element = self._open[-1]
         if len(element):
             element[-1].tail = (element[-1].tail or "") + text
@@ -186,8 +186,8 @@ class Document:
 
     def _entity(self, name: str, parameter: bool, value: str | None, *rest: Any) -> None:
         if value is None:
-            return  # It stands in another file, and stays empty.
-        if "&" in value or "%" in value or len(value) * self._references > _MOST_EXPANDED:
+            return  # External entities stay empty.
+        if "&" in value or "%" in value or len(value) * self._references > _MAX_EXPANDED:
             raise _RefusedError(
                 f"{self.name}, line {self._parser.CurrentLineNumber}: the entity '{name}' would "
                 "make the file too large"
@@ -195,17 +195,17 @@ class Document:
 
     def _instruction(self, target: str, data: str) -> None:
         if target == "xml-stylesheet" and self._root is None:
-            said = {name: one or other for name, one, other in _SAID.findall(data)}
-            self.linked_sheets.append((said, self._parser.CurrentLineNumber))
+            attributes = {name: one or other for name, one, other in _ATTRIBUTE.findall(data)}
+            self.linked_sheets.append((attributes, self._parser.CurrentLineNumber))
 
 
 def read_document(
-    source: str | os.PathLike[str] | bytes, tell: Callable[[float], None]
+    source: str | os.PathLike[str] | bytes, report: Callable[[float], None]
 ) -> Document:
     """Reads a file, plain or compressed, or markup. See `prefilter.read_svg`."""
     encoding = folder = None
     if isinstance(source, str) and source.lstrip("\ufeff \t\r\n").startswith("<"):
-        # What the markup says of its encoding was true of its bytes.
+        # A str is no longer in the encoding that the markup declares.
         data, name, encoding = source.lstrip("\ufeff").encode("utf-8", "replace"), "source", "utf-8"
     elif isinstance(source, bytes | bytearray | memoryview):
         data, name = bytes(source), "source"
@@ -221,20 +221,20 @@ def read_document(
         raise ValueError(f"source: {source!r}; a path, markup, or bytes are needed")
 
     def parts() -> Iterator[bytes]:
-        return unpacked(data, name) if data[:2] == b"\x1f\x8b" else iter((data,))
+        return decompress(data, name) if data[:2] == b"\x1f\x8b" else iter((data,))
 
     if not any(part.strip() for part in parts()):
         raise ValueError(f"{name} is empty")
-    document = Document(parts, name, encoding, tell)
+    document = Document(parts, name, encoding, report)
     document.folder = folder
     return document
 
 
-def unpacked(data: bytes, name: str) -> Iterator[bytes]:
-    """Yields the contents bit by bit: a small file may hold any number of bytes.
+def decompress(data: bytes, name: str) -> Iterator[bytes]:
+    """Yields decompressed chunks: a small file may expand without bound.
 
     Raises:
-        ValueError: They are more than `MOST_UNPACKED`, or damaged.
+        ValueError: The result exceeds `MAX_UNPACKED`, or the data are damaged.
     """
     unpacker = zlib.decompressobj(wbits=31)
     count = 0
@@ -245,8 +245,8 @@ def unpacked(data: bytes, name: str) -> Iterator[bytes]:
             raise ValueError(f"{name}: compressed, and damaged") from None
         data = unpacker.unconsumed_tail
         count += len(part)
-        if count > MOST_UNPACKED:
-            raise ValueError(f"{name}: more than {MOST_UNPACKED >> 20} MiB when unpacked")
+        if count > MAX_UNPACKED:
+            raise ValueError(f"{name}: more than {MAX_UNPACKED >> 20} MiB when unpacked")
         if not part and not unpacker.eof:
             raise ValueError(f"{name}: compressed, and ends early")
         yield part

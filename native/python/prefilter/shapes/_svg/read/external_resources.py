@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What addresses in a drawing lead to: data in themselves, and files in the drawing's folder."""
+"""Resources that a drawing refers to: data addresses, and files in its folder."""
 
 import base64
 import binascii
@@ -10,68 +10,70 @@ from urllib.parse import unquote, unquote_to_bytes, urlsplit
 
 
 class UnusableError(Exception):
-    """What an address leads to cannot be used; the message says why."""
+    """A resource is missing or damaged; the message says why."""
 
 
-class ElsewhereError(Exception):
-    """What others may show; the message says why it is not read here."""
+class NotLocalError(Exception):
+    """A resource outside the drawing's folder, which is not read; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
-    """Where addresses lead from.
+class BaseFolder:
+    """Folders for resolving addresses.
 
     Attributes:
-        root: The folder of the drawing: nothing outside of it is read.
-        folder: Where relative addresses begin: that of the file that they stand in.
+        root: The drawing's folder; files outside it are not read.
+        folder: The folder of the file with the address; relative addresses start here.
     """
 
     root: Path
     folder: Path
 
 
-def read_address(address: str, place: Place | None, most_bytes: int) -> tuple[bytes, Path | None]:
-    """The bytes that an address leads to, and the file that they are in, if they are in one.
+def read_address(
+    address: str, base: BaseFolder | None, max_bytes: int
+) -> tuple[bytes, Path | None]:
+    """Reads a resource; returns its bytes, and its path if it is a file.
 
     Args:
-        address: As it stands in the file; not empty.
-        place: Where it leads from; None where no files are read.
-        most_bytes: How large a file may be.
+        address: The address as written; not empty.
+        place: base: Folders to resolve it; None if no files are read.
+        most_bytes: max_bytes: Size limit of a file.
 
     Raises:
-        ElsewhereError: It leads to another computer, or out of the folder.
-        UnusableError: There is no such file, or it is too large, or the data are damaged.
+        ElsewhereError: NotLocalError: The address leads to another computer, or out of the folder.
+        UnusableError: The file is missing or too large, or the data are damaged.
     """
     if address[:5].lower() == "data:":
-        return _embedded(address), None
+        return _decode_data(address), None
     try:
         parts = urlsplit(address)
     except ValueError:
         raise UnusableError("as its address is damaged") from None
     name = unquote(parts.path)
-    # Windows tells of no file, and that by a name with a zero in it.
+    # Windows reports names with a null character as missing files.
     if "\0" in name:
         raise UnusableError("as its address is damaged")
-    # Asking Windows for a path such as //computer/folder would ask that computer.
+    # On Windows, resolving a path such as //computer/folder contacts that computer.
     if parts.scheme or parts.netloc or PureWindowsPath(name).drive:
-        raise ElsewhereError("as it is neither in the file nor in its folder")
-    if place is None:
-        raise ElsewhereError("as it is not in the file, and that has no folder")
+        raise NotLocalError("as it is neither in the file nor in its folder")
+    if base is None:
+        raise NotLocalError("as it is not in the file, and that has no folder")
     try:
-        path = (place.folder / name).resolve()
-        if not path.is_relative_to(place.root.resolve()):
-            raise ElsewhereError("as it is neither in the file nor in its folder")
+        path = (base.folder / name).resolve()
+        if not path.is_relative_to(base.root.resolve()):
+            raise NotLocalError("as it is neither in the file nor in its folder")
         if not path.is_file():
             raise UnusableError(f"as there is no file '{name[:100]}'")
-        if path.stat().st_size > most_bytes:
-            raise UnusableError(f"as it is larger than {most_bytes >> 20} MiB")
+        if path.stat().st_size > max_bytes:
+            raise UnusableError(f"as it is larger than {max_bytes >> 20} MiB")
         return path.read_bytes(), path
     except (OSError, ValueError) as error:
         raise UnusableError(f"as it cannot be read: {error}") from None
 
 
-def _embedded(address: str) -> bytes:
-    """The bytes that an address `data:` holds. Raises UnusableError where these are damaged."""
+def _decode_data(address: str) -> bytes:
+    """Decodes a `data:` address. Raises UnusableError if it is damaged."""
     head, comma, body = address[5:].partition(",")
     if not comma:
         raise UnusableError("as its data are damaged")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Where the fonts of a drawing are; none is opened before there is text."""
+"""Fonts for text, opened at the first text."""
 
 import os
 from collections.abc import Iterable, Sequence
@@ -16,14 +16,14 @@ if TYPE_CHECKING:
     from .text_style import FontRule
 
 
-class FontPlaces:
-    """Files and folders of fonts.
+class FontSources:
+    """Font files and folders.
 
     Args:
-        places: Those that were given; they are looked at at once. None for those of the system.
+        places: Files and folders, which are checked at once; None for the system's fonts.
 
     Raises:
-        ValueError: There is no such file or folder, or no font that can be read in a file.
+        ValueError: A file or folder is missing, or a file is no readable font.
     """
 
     def __init__(self, places: Iterable[str | os.PathLike[str]] | None) -> None:
@@ -41,23 +41,23 @@ class FontPlaces:
         if self._places:
             _ = self.fonts
 
-    def with_rules(self, rules: "Sequence[FontRule]", warnings: Warnings) -> "FontPlaces":
-        """The same, and fonts of a drawing itself; warns of those that cannot be had."""
+    def with_rules(self, rules: "Sequence[FontRule]", warnings: Warnings) -> "FontSources":
+        """Returns a copy with fonts of `@font-face` rules; unusable ones cause warnings."""
         if not rules:
             return self
-        found = copy(self)
-        found._rules, found._warnings = rules, warnings
-        found.__dict__.pop("fonts", None)
-        return found
+        extended = copy(self)
+        extended._rules, extended._warnings = rules, warnings
+        extended.__dict__.pop("fonts", None)
+        return extended
 
     @cached_property
     def fonts(self) -> "Fonts":
-        """The fonts that are there."""
-        # fontTools takes a while to load, which drawings without text need not wait for.
+        """The available fonts."""
+        # fontTools loads slowly, and drawings without text do not need it.
         from ..._fonts.collection import Fonts
 
         if not self._rules:
             return Fonts(self._places)
-        from .font_faces import own_faces
+        from .font_faces import read_font_faces
 
-        return Fonts(self._places, own_faces(self._rules, self._warnings))
+        return Fonts(self._places, read_font_faces(self._rules, self._warnings))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Pictures: PNG, JPEG, GIF and WebP, read by Pillow or by OpenImageIO, whichever there is."""
+"""Raster images: PNG, JPEG, GIF and WebP, decoded by Pillow or OpenImageIO."""
 
 import io
 from importlib import import_module
@@ -16,28 +16,28 @@ if TYPE_CHECKING:
 
 Texels = npt.NDArray[np.uint8]
 
-MOST_TEXELS = 1 << 25
-_MODELS = frozenset({"CMYK", "LAB"})
+MAX_TEXELS = 1 << 25
+_COLOR_MODELS = frozenset({"CMYK", "LAB"})
 _GRAY_MODES = frozenset({"1", "L", "LA"})
-"""Of Pillow."""
+"""Modes of Pillow."""
 
 
-class PictureError(Exception):
-    """A picture that cannot be read; the message says why."""
+class ImageError(Exception):
+    """An image cannot be read; the message says why."""
 
 
-def read_picture(data: bytes) -> Texels:
-    """The texels of a file, the first ones where it holds several pictures.
+def decode_image(data: bytes) -> Texels:
+    """Decodes an image; of an animation, the first frame.
 
     Returns:
-        (height, width, 4): red, green, blue and alpha, not multiplied by it; the top row first.
+        (height, width, 4): red, green, blue and straight alpha; top row first.
 
     Raises:
-        PictureError: It cannot be read.
+        PictureError: ImageError: The image cannot be read.
     """
-    width, height = size_of(data)
-    if width * height > MOST_TEXELS:
-        raise PictureError(f"as it has {width} x {height} pixels; the limit is {MOST_TEXELS}")
+    width, height = image_size(data)
+    if width * height > MAX_TEXELS:
+        raise ImageError(f"as it has {width} x {height} pixels; the limit is {MAX_TEXELS}")
     try:
         pillow = import_module("PIL.Image")
     except ImportError:
@@ -52,16 +52,16 @@ def _by_pillow(pillow: Any, data: bytes) -> "tuple[Texels, Stated, bool]":
 
     try:
         with pillow.open(io.BytesIO(data), formats=("PNG", "JPEG", "GIF", "WEBP")) as file:
-            model = file.mode if file.mode in _MODELS else ""
+            model = file.mode if file.mode in _COLOR_MODELS else ""
             icc = file.info.get("icc_profile") or b""
             stated = Stated(file.format.lower(), model=model, icc=icc)
-            # Pillow cuts 16 bits off where it should round them.
+            # Pillow truncates 16 bits instead of rounding.
             if file.mode.startswith("I"):
                 gray = np.rint(np.asarray(file, np.float64) / 257.0).clip(0.0, 255.0)
                 return _as_rgba(gray.astype(np.uint8)[..., None]), stated, True
             return np.array(file.convert("RGBA"), np.uint8), stated, file.mode in _GRAY_MODES
     except (OSError, ValueError, SyntaxError, MemoryError) as error:
-        raise PictureError(f"as it cannot be read: {error}") from None
+        raise ImageError(f"as it cannot be read: {error}") from None
 
 
 def _by_openimageio(data: bytes) -> "tuple[Texels, Stated, bool]":
@@ -69,63 +69,63 @@ def _by_openimageio(data: bytes) -> "tuple[Texels, Stated, bool]":
 
     try:
         with temporary_folder() as folder:
-            path = folder / f"image{ending_of(data)}"
+            path = folder / f"image{image_extension(data)}"
             path.write_bytes(data)
             values, _, stated, _ = openimageio.read_pixels(path)
     except (OSError, ValueError, MemoryError) as error:
-        raise PictureError(f"as it cannot be read: {error}") from None
+        raise ImageError(f"as it cannot be read: {error}") from None
     if values.dtype != np.uint8:
         values = np.rint(values / 257.0).clip(0.0, 255.0).astype(np.uint8)
     return _as_rgba(values), stated, values.shape[2] < 3
 
 
 def _upright_in_srgb(texels: Texels, data: bytes, stated: "Stated", *, is_gray: bool) -> Texels:
-    """Texels as a browser shows them: turned as EXIF says, in the colors that the file names."""
+    """Applies EXIF orientation, and converts from the file's color space to sRGB."""
     from ....workflows import color_spaces, orientation, picture_colors
     from ....workflows.files.embedded import embedded_in
 
-    found = embedded_in(io.BytesIO(data))
+    metadata = embedded_in(io.BytesIO(data))
     try:
-        space = picture_colors.space_of(stated, found, is_integer=True, is_gray=is_gray)
+        space = picture_colors.space_of(stated, metadata, is_integer=True, is_gray=is_gray)
     except ValueError as error:
-        raise PictureError(f"as {str(error).partition(';')[0]}") from None
+        raise ImageError(f"as {str(error).partition(';')[0]}") from None
     if space is not None and not space.is_srgb:
         light = space.in_rec709(space.decoded(texels[..., :3].astype(np.float32) / np.float32(255)))
         texels[..., :3] = color_spaces.srgb_bytes(light)
-    shown = orientation.turned(texels, picture_colors.orientation_of(stated, found))
-    return np.ascontiguousarray(shown)
+    upright = orientation.turned(texels, picture_colors.orientation_of(stated, metadata))
+    return np.ascontiguousarray(upright)
 
 
 def _as_rgba(values: Texels) -> Texels:
-    """Four channels of one to four."""
+    """Expands one to four channels to four."""
     height, width, channels = values.shape
-    found = np.full((height, width, 4), 255, np.uint8)
-    found[..., :3] = values[..., :3] if channels > 2 else values[..., :1]
+    rgba = np.full((height, width, 4), 255, np.uint8)
+    rgba[..., :3] = values[..., :3] if channels > 2 else values[..., :1]
     if channels in (2, 4):
-        found[..., 3] = values[..., -1]
-    return found
+        rgba[..., 3] = values[..., -1]
+    return rgba
 
 
-def ending_of(data: bytes) -> str:
-    """The ending that files have which begin like that; empty for what is no picture."""
-    for ending, signature in (
+def image_extension(data: bytes) -> str:
+    """Returns the file name extension for an image's signature; empty if unknown."""
+    for extension, signature in (
         (".png", b"\x89PNG\r\n\x1a\n"),
         (".jpg", b"\xff\xd8\xff"),
         (".gif", b"GIF8"),
     ):
         if data.startswith(signature):
-            return ending
+            return extension
     return ".webp" if data[:4] == b"RIFF" and data[8:12] == b"WEBP" else ""
 
 
-def size_of(data: bytes) -> tuple[int, int]:
-    """The width and height that a file says it has, before anything of it is unpacked."""
+def image_size(data: bytes) -> tuple[int, int]:
+    """Reads width and height from the header, before decompression."""
     if data.startswith(b"\x89PNG"):
         return int.from_bytes(data[16:20], "big"), int.from_bytes(data[20:24], "big")
     if data.startswith(b"GIF8"):
         return int.from_bytes(data[6:8], "little"), int.from_bytes(data[8:10], "little")
     if data.startswith(b"RIFF"):
-        return _size_of_webp(data)
+        return _webp_size(data)
     at = 2
     while at + 9 <= len(data) and data[at] == 0xFF:
         kind, length = data[at + 1], int.from_bytes(data[at + 2 : at + 4], "big")
@@ -136,11 +136,11 @@ def size_of(data: bytes) -> tuple[int, int]:
     return 0, 0
 
 
-def _size_of_webp(data: bytes) -> tuple[int, int]:
+def _webp_size(data: bytes) -> tuple[int, int]:
     kind, body = data[12:16], data[20:30]
     if kind == b"VP8X":
-        found = int.from_bytes(body[4:7], "little"), int.from_bytes(body[7:10], "little")
-        return found[0] + 1, found[1] + 1
+        size = int.from_bytes(body[4:7], "little"), int.from_bytes(body[7:10], "little")
+        return size[0] + 1, size[1] + 1
     if kind == b"VP8L":
         bits = int.from_bytes(body[1:5], "little")
         return (bits & 0x3FFF) + 1, (bits >> 14 & 0x3FFF) + 1

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Lengths of attributes in the units of the drawing."""
+"""Lengths of attributes in user units."""
 
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ...affine import IDENTITY, Matrix, multiplied
-from ..model.values import Length, UnknownUnitError, as_length, as_origin
+from ..model.values import Length, UnknownUnitError, parse_length, parse_origin
 from ..model.warnings import Warnings
 from .document import SvgElement
 
@@ -17,12 +17,12 @@ _ALONG_Y = frozenset(("y", "y1", "y2", "cy", "fy", "ry", "height", "refY", "mark
 
 @dataclass(frozen=True, slots=True)
 class Units:
-    """What percentages and the units of fonts are relative to.
+    """References of percentages and font units.
 
     Attributes:
-        width: Of the viewport.
-        height: Likewise.
-        font_size: Of the element.
+        width: Width of the viewport.
+        height: Height of the viewport.
+        font_size: Font size of the element.
     """
 
     width: float
@@ -30,7 +30,7 @@ class Units:
     font_size: float
 
     def pixels(self, length: Length, name: str) -> float:
-        """A length that is the value of an attribute or property of that name."""
+        """Converts the value of an attribute or property to pixels."""
         if name in _ALONG_X:
             whole = self.width
         elif name in _ALONG_Y:
@@ -43,15 +43,14 @@ class Units:
 def about_origin(
     matrix: Matrix, text: str, units: Units, corner: tuple[float, float] = (0.0, 0.0)
 ) -> Matrix | None:
-    """A transform about the place that the property `transform-origin` holds; None if none.
+    """Applies `transform-origin` to a transform; returns None if the property is invalid.
 
     Args:
-        matrix: The transform.
         text: The property.
-        units: With the width and height of the box that it is relative to.
-        corner: Of that box.
+        units: Size of the reference box.
+        corner: Upper left corner of the reference box.
     """
-    origin = as_origin(text)
+    origin = parse_origin(text)
     if origin is None or matrix == IDENTITY:
         return None if origin is None else matrix
     x, y = corner[0] + units.pixels(origin[0], "x"), corner[1] + units.pixels(origin[1], "y")
@@ -62,12 +61,12 @@ def about_origin(
 def read_length(
     element: SvgElement, values: Mapping[str, str], name: str, warnings: Warnings
 ) -> Length | None:
-    """The length that is among the values of an element; None where there is none, or `auto`."""
+    """Reads the length of an attribute or property; returns None if missing, `auto` or invalid."""
     text = values.get(name)
     if text is None or text == "auto":
         return None
     try:
-        length = as_length(text)
+        length = parse_length(text)
     except UnknownUnitError as error:
         warnings.unsupported(f"unit '{error}'", "ignored", element.line)
         return None

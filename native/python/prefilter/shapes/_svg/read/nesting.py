@@ -1,62 +1,62 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Elements in others: children, what `use` brings, and viewports of their own."""
+"""Nested elements: children, contents of `use`, and viewports."""
 
 from collections.abc import Iterator
 from dataclasses import replace
 
 from ...affine import multiplied
-from ..model.clips import box_clip
+from ..model.clips import make_box_clip
 from ..model.values import Length
-from ..model.view_boxes import as_view_box, placed
+from ..model.view_boxes import fit_view_box, parse_view_box
 from .basic_shapes import BASIC_SHAPES
-from .context import Context, Sources, paints_of
+from .context import Context, Sources, context_paints
 from .document import SvgElement
 from .tags import GROUPS
-from .transforms import own_transform
+from .transforms import read_transform
 
 _ZERO, _WHOLE = Length(0.0), Length(100.0, "%")
 FOREIGN = "foreignObject"
-DRAWN = frozenset((*GROUPS, *BASIC_SHAPES, "use", "image", "text"))
-"""Elements of which something is drawn."""
-SHOWN = ("visible", "auto")
-"""The values of `overflow` that cut nothing off."""
+RENDERED_TAGS = frozenset((*GROUPS, *BASIC_SHAPES, "use", "image", "text"))
+"""Elements that draw something."""
+VISIBLE_OVERFLOW = ("visible", "auto")
+"""Values of `overflow` that do not clip."""
 
 
-def children(element: SvgElement) -> Iterator[SvgElement]:
-    """Yields the elements in another; of a `switch` the first that can be shown."""
+def rendered_children(element: SvgElement) -> Iterator[SvgElement]:
+    """Yields an element's children; for a `switch`, only the first one that can be rendered."""
     for child in element:
         assert isinstance(child, SvgElement)
         if element.tag != "switch":
             yield child
-        elif is_wanted(child) and child.tag in DRAWN:
+        elif passes_conditions(child) and child.tag in RENDERED_TAGS:
             yield child
             return
 
 
-def is_wanted(element: SvgElement) -> bool:
-    """Whether an element is for those who read English, and needs nothing more than SVG."""
+def passes_conditions(element: SvgElement) -> bool:
+    """Evaluates conditional attributes, for an English reader and without extensions."""
     if "requiredExtensions" in element.attrib:
         return False
     languages = element.attrib.get("systemLanguage", "en").split(",")
     return any(name.strip().lower().startswith("en") for name in languages)
 
 
-def moved(element: SvgElement, context: Context, sources: Sources) -> Context:
-    """The context within an element: with its style, and in its units."""
-    style = sources.sheets.style_below(element, context.style)
+def enter_element(element: SvgElement, context: Context, sources: Sources) -> Context:
+    """Returns the context within an element: with its style, and in its units."""
+    style = sources.sheets.inherit_style(element, context.style)
     declared = sources.sheets.declared(element)
     inside = context if style is context.style else replace(context, style=style)
-    matrix = own_transform(element, declared, inside, sources)
+    matrix = read_transform(element, declared, inside, sources)
     if matrix is None:
         return inside
     return replace(inside, matrix=multiplied(context.matrix, matrix))
 
 
-def used(
+def resolve_use(
     element: SvgElement, context: Context, sources: Sources
 ) -> Iterator[tuple[SvgElement, Context]]:
-    """Yields what a `use` refers to, with its context."""
+    """Yields the target of a `use`, with its context."""
     target = sources.document.ids.get(element.href)
     if target is None:
         sources.warnings.broken(
@@ -73,13 +73,13 @@ def used(
         matrix=multiplied(context.matrix, (1.0, 0.0, 0.0, 1.0, x, y)),
         uses=(*context.uses, target),
         use=element,
-        paints=paints_of(element, context),
+        paints=context_paints(element, context),
     )
     yield target, context
 
 
-def viewport(element: SvgElement, context: Context, sources: Sources) -> Context | None:
-    """The context inside of an `svg` or `symbol`; None where nothing shows."""
+def enter_viewport(element: SvgElement, context: Context, sources: Sources) -> Context | None:
+    """Returns the context within an `svg` or `symbol`; None if its viewport is empty."""
     declared = sources.sheets.declared(element)
     sizes = []
     for name in ("width", "height"):
@@ -97,11 +97,11 @@ def viewport(element: SvgElement, context: Context, sources: Sources) -> Context
     matrix = (1.0, 0.0, 0.0, 1.0, x, y)
     size = (width, height)
     clips = context.clips
-    if declared.get("overflow", "hidden") not in SHOWN:
-        clips = (*clips, box_clip((x, y, x + width, y + height), context.matrix))
-    view = as_view_box(declared.get("viewBox"))
+    if declared.get("overflow", "hidden") not in VISIBLE_OVERFLOW:
+        clips = (*clips, make_box_clip((x, y, x + width, y + height), context.matrix))
+    view = parse_view_box(declared.get("viewBox"))
     if view is not None:
-        fitted = placed(view, declared.get("preserveAspectRatio", ""), width, height)
+        fitted = fit_view_box(view, declared.get("preserveAspectRatio", ""), width, height)
         matrix = multiplied(matrix, fitted)
         size = (view.width, view.height)
     matrix = multiplied(context.matrix, matrix)
@@ -109,7 +109,7 @@ def viewport(element: SvgElement, context: Context, sources: Sources) -> Context
 
 
 def ancestors(element: SvgElement) -> Iterator[SvgElement]:
-    """Yields an element and those that it is in."""
+    """Yields an element and its ancestors."""
     at: SvgElement | None = element
     while at is not None:
         yield at

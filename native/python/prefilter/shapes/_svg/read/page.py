@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""How large a drawing is, and where its units lie in it."""
+"""The page of a drawing: its size, and the view box within it."""
 
 from dataclasses import dataclass
 
@@ -9,8 +9,8 @@ import numpy as np
 from ...affine import Matrix, multiplied
 from ..model.gradients import Colors
 from ..model.tree import Box
-from ..model.values import Length, as_background
-from ..model.view_boxes import MOST_UNITS, ViewBox, as_view_box, placed
+from ..model.values import Length, parse_background
+from ..model.view_boxes import MAX_UNITS, ViewBox, fit_view_box, parse_view_box
 from .context import Sources
 from .lengths import read_length
 
@@ -19,14 +19,14 @@ _WHOLE = Length(100.0, "%")
 
 @dataclass(frozen=True, slots=True)
 class Page:
-    """How large a drawing is.
+    """Size and view box of a drawing.
 
     Attributes:
         width: In pixels.
         height: In pixels.
-        view: In its units.
-        aspect: How the view is fitted: `preserveAspectRatio`.
-        has_size: Whether the file says a width or a height.
+        view: In user units.
+        aspect: `preserveAspectRatio`.
+        has_size: Whether the file gives a width or a height.
     """
 
     width: float
@@ -36,25 +36,25 @@ class Page:
     has_size: bool = True
 
     def placement(self, width: float, height: float) -> Matrix:
-        """From the drawing's units to pixels of an image, with y upwards."""
+        """Returns the matrix from user units to pixels of an image, y upwards."""
         upwards = (1.0, 0.0, 0.0, -1.0, 0.0, height)
-        return multiplied(upwards, placed(self.view, self.aspect, width, height))
+        return multiplied(upwards, fit_view_box(self.view, self.aspect, width, height))
 
     def shown(self) -> Box:
-        """What the page shows, in the drawing's units: the view box, and what is beside it."""
-        a, _, _, d, e, f = placed(self.view, self.aspect, self.width, self.height)
+        """Returns the visible box in user units: the view box and its surroundings."""
+        a, _, _, d, e, f = fit_view_box(self.view, self.aspect, self.width, self.height)
         return (-e / a, -f / d, (self.width - e) / a, (self.height - f) / d)
 
 
 def read_page(sources: Sources) -> Page:
-    """The page of a drawing.
+    """Reads the page of a drawing.
 
     Raises:
-        ValueError: The file says a size that no drawing has.
+        ValueError: Width or height is not valid.
     """
     root = sources.document.root
     declared = sources.sheets.declared(root)
-    view = as_view_box(declared.get("viewBox"))
+    view = parse_view_box(declared.get("viewBox"))
     if view is None and "viewBox" in declared:
         sources.warnings.broken("viewBox", "ignored", root.line)
     sizes = []
@@ -62,15 +62,15 @@ def read_page(sources: Sources) -> Page:
         length = read_length(root, declared, name, sources.warnings) or _WHOLE
         font_size = sources.sheets.style(root).font_size
         pixels = length.pixels(1.0, font_size)
-        if not 0.0 < pixels < MOST_UNITS:
+        if not 0.0 < pixels < MAX_UNITS:
             raise ValueError(
                 f"{sources.document.name}, line {root.line}: {name} '{declared[name]}'; a "
-                f"drawing needs a positive one below {MOST_UNITS:g} pixels"
+                f"drawing needs a positive one below {MAX_UNITS:g} pixels"
             )
         sizes.append(None if length.unit == "%" else pixels)
     width, height = sizes
     has_size = sizes != [None, None]
-    # What a file does not say follows from its view box, and without one is CSS's 300 x 150.
+    # Missing sizes follow from the view box, or are CSS's default of 300 x 150.
     if view is not None:
         if width is None:
             width = view.width if height is None else height * view.width / view.height
@@ -80,11 +80,11 @@ def read_page(sources: Sources) -> Page:
     return Page(width, height, view, declared.get("preserveAspectRatio", ""), has_size)
 
 
-def background_of(sources: Sources, colors: Colors) -> tuple[float, ...] | None:
-    """The color that the style of the outermost element gives to the page; None where none."""
+def read_background(sources: Sources, colors: Colors) -> tuple[float, ...] | None:
+    """Returns the background color of the root element; None if it has none."""
     root = sources.document.root
     declared = sources.sheets.declared(root)
-    color = as_background(declared.get("background-color", declared.get("background", "")))
+    color = parse_background(declared.get("background-color", declared.get("background", "")))
     if color == "current":
         color = sources.sheets.style(root).color
     if color is None or isinstance(color, str) or color[3] == 0.0:

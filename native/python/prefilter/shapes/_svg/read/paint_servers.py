@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Gradients: what their attributes say, directly and by reference, as gradients of shapes."""
+"""Gradient elements, with attributes inherited by reference."""
 
 from collections.abc import Iterator, Mapping
 
 from ...affine import IDENTITY, determinant, multiplied
 from ..model.colors import Color
-from ..model.gradients import Colors, Gradient, Stop, pieces_between
-from ..model.values import Length, as_number, as_transform
+from ..model.gradients import Colors, Gradient, Stop, sample_stops
+from ..model.values import Length, parse_number, parse_transform
 from ..model.warnings import Warnings
 from .document import Document, SvgElement
 from .lengths import Units, about_origin, read_length
@@ -29,8 +29,8 @@ _DEFAULTS = {
     "r": Length(50.0, "%"),
     "fr": Length(0.0),
 }
-# The share of a circle's radius that its focus has where that is the same circle.
-_NEARLY = 1.0 - 1e-6
+# Radius of the focal circle, relative to the end circle, if both circles are the same.
+_COINCIDENT_FOCUS_RADIUS = 1.0 - 1e-6
 
 
 class PaintServers:
@@ -43,9 +43,9 @@ class PaintServers:
         self._known: dict[SvgElement, tuple[dict[str, str], list[Stop]]] = {}
 
     def has_colors(self, element: SvgElement) -> bool:
-        """Whether a gradient has stops, and a transform that leaves it an area."""
+        """Returns whether a gradient has stops and a regular transform."""
         attributes, stops = self._chain(element)
-        own = as_transform(attributes.get("gradientTransform", ""))
+        own = parse_transform(attributes.get("gradientTransform", ""))
         return bool(stops) and (own is None or determinant(own) != 0.0)
 
     def resolve(
@@ -56,17 +56,17 @@ class PaintServers:
         bounds: tuple[float, float, float, float] | None,
         colors: Colors,
     ) -> Gradient | Color | None:
-        """What a gradient paints.
+        """Evaluates a gradient for an outline.
 
         Args:
-            element: The gradient.
-            opacity: Of the paint, in [0, 1].
-            units: Where it is used.
-            bounds: Of the outline to paint: left, top, right, bottom.
-            colors: How colors are kept.
+            element: The gradient element.
+            opacity: Opacity of the paint, in [0, 1].
+            units: Units of the outline's element.
+            bounds: Bounding box of the outline: left, top, right, bottom.
+            colors: The encoding of colors.
 
         Returns:
-            A single color where it comes to that; None where it cannot be used.
+            The gradient; a color if it is uniform; None if it cannot be used.
         """
         attributes, stops = self._chain(element)
         if not stops:
@@ -83,7 +83,7 @@ class PaintServers:
                 return None
             matrix = (right - left, 0.0, 0.0, bottom - top, left, top)
             units = Units(1.0, 1.0, units.font_size)
-        own = as_transform(attributes.get("gradientTransform", ""))
+        own = parse_transform(attributes.get("gradientTransform", ""))
         if own is None:
             self._warnings.broken("gradientTransform", "ignored", element.line)
             own = IDENTITY
@@ -101,10 +101,10 @@ class PaintServers:
         if spread not in ("pad", "reflect", "repeat"):
             self._warnings.broken("spreadMethod", "ignored", element.line)
             spread = "pad"
-        return Gradient(is_radial, numbers, list(pieces_between(stops, colors)), spread, matrix)
+        return Gradient(is_radial, numbers, list(sample_stops(stops, colors)), spread, matrix)
 
     def _chain(self, element: SvgElement) -> tuple[dict[str, str], list[Stop]]:
-        """The attributes and stops of a gradient, and of those that it refers to."""
+        """Collects attributes and stops along the chain of references."""
         if element not in self._known:
             attributes: dict[str, str] = {}
             stops: list[Stop] = []
@@ -132,8 +132,8 @@ class PaintServers:
                 continue
             assert isinstance(child, SvgElement)
             style = self._sheets.style(child)
-            given = as_number(self._sheets.declared(child).get("offset", "0"))
-            offset = max(offset, min(max(given or 0.0, 0.0), 1.0))
+            offset_value = parse_number(self._sheets.declared(child).get("offset", "0"))
+            offset = max(offset, min(max(offset_value or 0.0, 0.0), 1.0))
             color = style.color if isinstance(style.stop_color, str) else style.stop_color
             yield Stop(offset, (*color[:3], color[3] * style.stop_opacity))
 
@@ -143,16 +143,16 @@ class PaintServers:
         attributes: Mapping[str, str],
         units: Units,
     ) -> tuple[float, ...]:
-        found: dict[str, float] = {}
+        pixels: dict[str, float] = {}
         for name in _GEOMETRY[element.tag]:
             length = read_length(element, attributes, name, self._warnings) or _DEFAULTS.get(name)
-            # A focus is in the center, where nothing is said of it.
-            found[name] = found["c" + name[1]] if length is None else units.pixels(length, name)
-        return tuple(found.values())
+            # The focus defaults to the center.
+            pixels[name] = pixels["c" + name[1]] if length is None else units.pixels(length, name)
+        return tuple(pixels.values())
 
 
 def _circles(numbers: tuple[float, ...]) -> tuple[float, ...]:
-    """Center, radius, focus and its radius, where both circles are not the same one."""
+    """Returns the numbers of a radial gradient; shrinks a focal circle equal to the end circle."""
     cx, cy, r, fx, fy, fr = numbers
     fr = max(fr, 0.0)
-    return cx, cy, r, fx, fy, (r * _NEARLY if (cx, cy, r) == (fx, fy, fr) else fr)
+    return cx, cy, r, fx, fy, (r * _COINCIDENT_FOCUS_RADIUS if (cx, cy, r) == (fx, fy, fr) else fr)

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""References between elements: how many elements they repeat."""
+"""Number of elements drawn through references."""
 
 from collections.abc import Iterator
 
 from ..model import limits
 from ..model.limits import TOO_MANY_USED, TooLargeError
-from ..model.values import as_paint
+from ..model.values import parse_paint
 from .document import Document, SvgElement
 from .styles import StyleSheets
 from .tags import NOT_DRAWN
@@ -14,9 +14,9 @@ from .tags import NOT_DRAWN
 _REFERRING = {"mask", "fill", "stroke", "marker-start", "marker-mid", "marker-end"}
 
 
-def check_uses(document: Document, sheets: StyleSheets) -> None:
-    """Raises TooLargeError where `use`, masks and others that elements refer to repeat too many
-    elements, before any is drawn.
+def check_repetition(document: Document, sheets: StyleSheets) -> None:
+    """Raises TooLargeError if references by `use`, masks, patterns and markers repeat too many
+    elements. Nothing is drawn before.
     """
     counts: dict[SvgElement, int] = {}
     waiting = [(document.root, False)]
@@ -27,22 +27,22 @@ def check_uses(document: Document, sheets: StyleSheets) -> None:
                 counts.get(each, 0) for each in _drawn_by(element, document, sheets)
             )
         elif element not in counts:
-            # It is inside of itself where it is met again before it is done.
+            # An element met again before it is finished contains itself, and counts 0.
             counts[element] = 0
             waiting.append((element, True))
             waiting.extend((each, False) for each in _drawn_by(element, document, sheets))
-    if counts[document.root] > document.count + limits.MOST_USED:
-        raise TooLargeError(TOO_MANY_USED.format(limits.MOST_USED))
+    if counts[document.root] > document.count + limits.MAX_USED:
+        raise TooLargeError(TOO_MANY_USED.format(limits.MAX_USED))
 
 
 def _drawn_by(element: SvgElement, document: Document, sheets: StyleSheets) -> Iterator[SvgElement]:
-    """Yields the elements that one draws."""
+    """Yields the elements that an element draws directly."""
     declared = sheets.declared(element)
     for name in _REFERRING & declared.keys():
-        paint = as_paint(declared[name])
-        brought = document.ids.get(paint.server[1:]) if paint is not None else None
-        if brought is not None and brought.tag in ("mask", "pattern", "marker"):
-            yield brought
+        paint = parse_paint(declared[name])
+        target_of_paint = document.ids.get(paint.server[1:]) if paint is not None else None
+        if target_of_paint is not None and target_of_paint.tag in ("mask", "pattern", "marker"):
+            yield target_of_paint
     if element.tag == "use":
         target = document.ids.get(element.href)
         if target is not None:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Which properties an element has: by attributes, style sheets, its style, and its parent."""
+"""Computed styles of elements: attributes, style sheets, the attribute `style`, and inheritance."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -17,31 +17,31 @@ from ..model.values import (
     Length,
     Paint,
     UnknownUnitError,
-    as_color,
-    as_length,
-    as_lengths,
-    as_number,
-    as_paint,
     as_path,
-    remembered,
+    cache_short_texts,
+    parse_color,
+    parse_length,
+    parse_lengths,
+    parse_number,
+    parse_paint,
 )
 from ..model.warnings import Warnings
 from .document import Document, SvgElement
 from .style_rules import StyleRules, declarations_in
 from .text_style import (
+    DEFAULT_TEXT_STYLE,
     NO_ATTRIBUTES,
     OWN_PROPERTIES,
     PROPERTIES,
-    USUAL_TEXT,
     FontRule,
     TextStyle,
-    expanded_font,
-    text_style_below,
+    expand_font_shorthand,
+    inherit_text_style,
 )
-from .variables import uses_variables, variables, with_variables
+from .variables import resolve_variables, substitute, uses_variables
 
-MOST_ANCESTORS = 20_000_000
-"""That selectors may look at: those of several parts look at them again and again."""
+MAX_ANCESTORS = 20_000_000
+"""Ancestors visited when matching selectors; those of several compounds visit them repeatedly."""
 _DEFAULT_FONT_SIZE = 16.0
 _BLACK, _NOTHING = Paint(BLACK), Paint(None)
 _ZERO, _ONE = Length(0.0), Length(1.0)
@@ -58,9 +58,9 @@ _FONT_SIZES = {
 
 @dataclass(frozen=True, slots=True)
 class Style:
-    """The properties of an element that count here."""
+    """Properties of an element."""
 
-    # Those of the parent, where an element says nothing.
+    # Inherited properties.
     color: Color = BLACK
     fill: Paint = _BLACK
     fill_opacity: float = 1.0
@@ -84,9 +84,9 @@ class Style:
     marker_start: str = "none"
     marker_mid: str = "none"
     marker_end: str = "none"
-    text: TextStyle = USUAL_TEXT
-    custom: tuple[tuple[str, str], ...] = ()  # properties whose names begin with --
-    # Those of the element itself.
+    text: TextStyle = DEFAULT_TEXT_STYLE
+    custom: tuple[tuple[str, str], ...] = ()  # custom properties
+    # Properties that are not inherited.
     opacity: float = 1.0
     mix_blend_mode: str = "normal"
     isolation: str = "auto"
@@ -99,7 +99,14 @@ class Style:
             object.__setattr__(self, "font_size", _DEFAULT_FONT_SIZE)
 
 
-_OWN = ("opacity", "mix_blend_mode", "isolation", "mask_type", "stop_color", "stop_opacity")
+_NOT_INHERITED = (
+    "opacity",
+    "mix_blend_mode",
+    "isolation",
+    "mask_type",
+    "stop_color",
+    "stop_opacity",
+)
 
 
 def _one_of(*names: str) -> Callable[[str], str | None]:
@@ -107,41 +114,41 @@ def _one_of(*names: str) -> Callable[[str], str | None]:
 
 
 def _share(text: str) -> float | None:
-    value = as_number(text)
+    value = parse_number(text)
     return None if value is None else min(max(value, 0.0), 1.0)
 
 
 def _positive_length(text: str) -> Length | None:
-    length = as_length(text)
+    length = parse_length(text)
     return length if length and length.value >= 0.0 else None
 
 
 def _dashes(text: str) -> tuple[Length, ...] | None:
     if text.lower() == "none":
         return ()
-    found = as_lengths(text)
-    return None if found is None or any(length.value < 0.0 for length in found) else found
+    lengths = parse_lengths(text)
+    return None if lengths is None or any(length.value < 0.0 for length in lengths) else lengths
 
 
 def _miter_limit(text: str) -> float | None:
-    value = as_number(text)
+    value = parse_number(text)
     return value if value is not None and value >= 1.0 else None
 
 
 _PARSERS: dict[str, Callable[[str], Any]] = {
-    "color": as_color,
-    "fill": as_paint,
+    "color": parse_color,
+    "fill": parse_paint,
     "fill-opacity": _share,
     "fill-rule": _one_of("nonzero", "evenodd"),
     "paint-order": lambda text: text.lower(),
-    "stroke": as_paint,
+    "stroke": parse_paint,
     "stroke-opacity": _share,
     "stroke-width": _positive_length,
     "stroke-linecap": _one_of("butt", "round", "square"),
     "stroke-linejoin": _one_of("miter", "round", "bevel", "miter-clip", "arcs"),
     "stroke-miterlimit": _miter_limit,
     "stroke-dasharray": _dashes,
-    "stroke-dashoffset": as_length,
+    "stroke-dashoffset": parse_length,
     "visibility": _one_of("visible", "hidden", "collapse"),
     "clip-rule": _one_of("nonzero", "evenodd"),
     "color-interpolation": _one_of("auto", "srgb", "linearrgb"),
@@ -157,25 +164,25 @@ _PARSERS: dict[str, Callable[[str], Any]] = {
     "mix-blend-mode": _one_of(*BLEND_MODES),
     "isolation": _one_of("auto", "isolate"),
     "mask-type": _one_of("luminance", "alpha"),
-    "stop-color": as_color,
+    "stop-color": parse_color,
     "stop-opacity": _share,
 }
-_STYLED = frozenset((*_PARSERS, *PROPERTIES))
+_STYLE_PROPERTIES = frozenset((*_PARSERS, *PROPERTIES))
 _FIELDS = {name: name.replace("-", "_") for name in (*_PARSERS, "font-size")}
 
-# What draws in another way than it would here, with the values that do nothing.
+# Properties that change rendering, with the values that are supported.
 UNSUPPORTED = {
     "vector-effect": ("none", "non-scaling-stroke"),
 }
-# Attributes that are properties too, so that style sheets may set them.
-_PLACES = ("x", "y", "cx", "cy", "r", "rx", "ry", "width", "height", "transform", "d")
+# Geometry attributes that are also properties, so that style sheets may set them.
+_GEOMETRY = ("x", "y", "cx", "cy", "r", "rx", "ry", "width", "height", "transform", "d")
 INDIVIDUAL = {"translate": "--translate", "rotate": "--rotate", "scale": "--scale"}
-"""Transforms that are properties and not attributes, and what they are called among both."""
-_OTHER: tuple[str, ...] = ("background", "background-color", "clip-path", "display", "filter")
-_OTHER += ("mask", "overflow", "flood-color", "flood-opacity", "lighting-color")
-_OTHER += ("transform-origin", "transform-box")
-# Those that are no attributes.
-_IN_SHEETS_ONLY = frozenset(
+"""Transform properties that are not attributes, and their names in `StyleSheets.declared`."""
+_UNPARSED: tuple[str, ...] = ("background", "background-color", "clip-path", "display", "filter")
+_UNPARSED += ("mask", "overflow", "flood-color", "flood-opacity", "lighting-color")
+_UNPARSED += ("transform-origin", "transform-box")
+# Properties that are not presentation attributes.
+_NO_ATTRIBUTES = frozenset(
     (
         "background",
         "background-color",
@@ -190,8 +197,8 @@ _PROPERTIES = frozenset(
     (
         *_PARSERS,
         *UNSUPPORTED,
-        *_PLACES,
-        *_OTHER,
+        *_GEOMETRY,
+        *_UNPARSED,
         *PROPERTIES,
         *OWN_PROPERTIES,
         *INDIVIDUAL,
@@ -201,10 +208,10 @@ _PROPERTIES = frozenset(
 _SHORTHANDS = ("font", "marker")
 
 
-_HELD = frozenset(INDIVIDUAL.values())
+_TRANSFORM_KEYS = frozenset(INDIVIDUAL.values())
 _KEYWORDS = ("initial", "unset", "revert", "revert-layer")
-# What pictures that stand still do not show, or what says again how it is drawn anyway.
-_WITHOUT_EFFECT = frozenset(
+# Properties without effect on a static image, or on its rendering here.
+_IGNORED = frozenset(
     (
         *("cursor", "pointer-events", "user-select", "touch-action", "will-change", "src"),
         *("text-rendering", "color-rendering", "enable-background", "solid-color", "speak"),
@@ -220,7 +227,7 @@ _WITHOUT_EFFECT = frozenset(
 )
 
 
-def _style_below(declared: Mapping[str, str], parent: Style, font_size: float) -> Style:
+def _inherit_style(declared: Mapping[str, str], parent: Style, font_size: float) -> Style:
     changed: dict[str, Any] = {}
     own = tuple((name, text) for name, text in declared.items() if name.startswith("--"))
     if own:
@@ -228,106 +235,108 @@ def _style_below(declared: Mapping[str, str], parent: Style, font_size: float) -
     if font_size != parent.font_size:
         changed["font_size"] = font_size
     if declared.keys() & PROPERTIES.keys():
-        changed["text"] = text_style_below(declared, parent.text, font_size)
+        changed["text"] = inherit_text_style(declared, parent.text, font_size)
     for name in declared.keys() & _PARSERS.keys():
         field, text = _FIELDS[name], declared[name]
         if text in ("inherit", "initial"):
             value = getattr(parent, field) if text == "inherit" else _INITIAL[field]
         else:
-            value = _parsed(name, text)
+            value = _parse_property(name, text)
         if value is not None and not (name == "color" and value == "current"):
             changed[field] = value
-    for name in _OWN:
+    for name in _NOT_INHERITED:
         if name not in changed and getattr(parent, name) != _INITIAL[name]:
             changed[name] = _INITIAL[name]
     return replace(parent, **changed) if changed else parent
 
 
-class _Matched(cssselect2.ElementWrapper):  # type: ignore[misc]
-    """An element as selectors see it, where the root counts what they look at."""
+class _CountingWrapper(cssselect2.ElementWrapper):  # type: ignore[misc]
+    """An element as selectors see it; the root counts visited ancestors."""
 
-    def __init__(self, element: SvgElement, parent: "_Matched | None", *rest: Any, **more: Any):
+    def __init__(
+        self, element: SvgElement, parent: "_CountingWrapper | None", *rest: Any, **more: Any
+    ):
         super().__init__(element, parent, *rest, **more)
-        self._root: _Matched = self if parent is None else parent._root
-        self._ancestors_left = MOST_ANCESTORS
+        self._root: _CountingWrapper = self if parent is None else parent._root
+        self._ancestors_left = MAX_ANCESTORS
 
     @property
     def ancestors(self) -> Any:
-        found = super().ancestors
-        self._root._ancestors_left -= len(found)
+        ancestors_found = super().ancestors
+        self._root._ancestors_left -= len(ancestors_found)
         if self._root._ancestors_left < 0:
-            raise TooLargeError(f"selectors look at more than {MOST_ANCESTORS} elements")
-        return found
+            raise TooLargeError(f"selectors look at more than {MAX_ANCESTORS} elements")
+        return ancestors_found
 
 
 class StyleSheets:
-    """The style sheets of a document, and what its elements declare.
+    """The style sheets of a document, and the declarations of its elements.
 
     Attributes:
-        font_rules: The rules `@font-face`.
+        font_rules: The `@font-face` rules.
     """
 
     def __init__(
-        self, document: Document, warnings: Warnings, tell: Callable[[float], None]
+        self, document: Document, warnings: Warnings, report: Callable[[float], None]
     ) -> None:
         self._warnings = warnings
         self._styles: dict[SvgElement, Style] = {}
         self._declared: dict[SvgElement, dict[str, str]] = {}
-        self._written: dict[SvgElement, dict[str, str]] = {}
-        """What is declared, of elements that have or use variables."""
+        self._unsubstituted: dict[SvgElement, dict[str, str]] = {}
+        """Unsubstituted declarations of elements that declare or use variables."""
         self._custom: dict[SvgElement, dict[str, str]] = {}
-        # By the parent, which is kept so that its number stays its own, and what is declared.
-        self._below: dict[tuple[Any, ...], tuple[Style, Style]] = {}
-        found = StyleRules(document, warnings)
-        self.font_rules: list[FontRule] = found.font_rules
-        matcher = None if found.is_empty else found.matcher
-        wrapper = _Matched.from_xml_root(document.root)
+        # Cached styles. The parent is kept, so that its id stays unique.
+        self._cache: dict[tuple[Any, ...], tuple[Style, Style]] = {}
+        rules = StyleRules(document, warnings)
+        self.font_rules: list[FontRule] = rules.font_rules
+        matcher = None if rules.is_empty else rules.matcher
+        wrapper = _CountingWrapper.from_xml_root(document.root)
         elements = document.root.iter() if matcher is None else wrapper.iter_subtree()
         for index, each in enumerate(elements):
             if index % 50 == 0:
-                tell(index / document.count)
+                report(index / document.count)
             if matcher is None:
                 self._declared[each] = self._declarations(each, ())
             else:
-                rules = [match[3] for match in matcher.match(each) if match[2] is None]
-                self._declared[each.etree_element] = self._declarations(each.etree_element, rules)
+                matched = [match[3] for match in matcher.match(each) if match[2] is None]
+                self._declared[each.etree_element] = self._declarations(each.etree_element, matched)
 
     def declared(self, element: SvgElement) -> Mapping[str, str]:
-        """The values of properties and attributes, as they stand in the file."""
+        """Returns the properties and attributes of an element, as text."""
         return self._declared[element]
 
     def style(self, element: SvgElement) -> Style:
-        """The properties of an element where it stands."""
-        line: list[SvgElement] = []
-        at: SvgElement | None = element
-        while at is not None and at not in self._styles:
-            line.append(at)
-            at = at.parent
-        style = self._styles[at] if at is not None else Style()
-        for each in reversed(line):
-            style = self._styles[each] = self.style_below(each, style)
+        """Returns the computed style of an element."""
+        chain: list[SvgElement] = []
+        ancestor: SvgElement | None = element
+        while ancestor is not None and ancestor not in self._styles:
+            chain.append(ancestor)
+            ancestor = ancestor.parent
+        style = self._styles[ancestor] if ancestor is not None else Style()
+        for each in reversed(chain):
+            style = self._styles[each] = self.inherit_style(each, style)
         return style
 
-    def style_below(self, element: SvgElement, parent: Style) -> Style:
-        """The properties of an element in a place where its parent has those given."""
+    def inherit_style(self, element: SvgElement, parent: Style) -> Style:
+        """Returns the style of an element within a given parent style."""
         declared = self._declared[element]
-        if element in self._written:
-            # Variables have the values that they have where the element is brought.
-            declared = substituted(self._written[element], parent.custom)
+        if element in self._unsubstituted:
+            # Variables take their values from where `use` places the element.
+            declared = substitute_variables(self._unsubstituted[element], parent.custom)
         size = parent.font_size
         if "font-size" in declared:
             size = self._font_size(declared["font-size"], parent, element)
-        # Words of a text, and parts of a diagram, mostly say the same again and again.
-        said = tuple(
+        # Many elements, such as words of a text, have the same declarations.
+        declarations = tuple(
             (name, text)
             for name, text in declared.items()
-            if name in _STYLED or (name.startswith("--") and name not in _HELD)
+            if name in _STYLE_PROPERTIES or (name.startswith("--") and name not in _TRANSFORM_KEYS)
         )
-        key = (id(parent), size, said)
-        found = self._below.get(key)
-        if found is None:
-            found = self._below[key] = (parent, _style_below(dict(said), parent, size))
-        return found[1]
+        key = (id(parent), size, declarations)
+        cached = self._cache.get(key)
+        if cached is None:
+            cached = self._cache[key] = (parent, _inherit_style(dict(declarations), parent, size))
+        return cached[1]
 
     def _font_size(self, text: str, parent: Style, element: SvgElement) -> float:
         if text.lower() in _FONT_SIZES:
@@ -335,7 +344,7 @@ class StyleSheets:
         if text.lower() in ("larger", "smaller"):
             return parent.font_size * (1.2 if text.lower() == "larger" else 1.0 / 1.2)
         try:
-            length = as_length(text)
+            length = parse_length(text)
         except UnknownUnitError as error:
             self._warnings.unsupported(f"unit '{error}'", "ignored", element.line)
             length = None
@@ -344,67 +353,74 @@ class StyleSheets:
         return length.pixels(parent.font_size, parent.font_size)
 
     def _declarations(self, element: SvgElement, rules: Any) -> dict[str, str]:
-        """By attributes, then by rules, then by the style; then those that are important."""
-        found = {
+        """Applies attributes, rules, the attribute `style`, then important declarations."""
+        declared = {
             name: value.strip()
             for name, value in element.attrib.items()
-            if name not in _IN_SHEETS_ONLY
+            if name not in _NO_ATTRIBUTES
         }
-        own = _parsed_declarations(found.pop("style")) if "style" in found else ()
+        own = _parse_declarations(declared.pop("style")) if "style" in declared else ()
         if not rules and not own:
-            return self._inherited(element, self._with_variables(element, found))
+            return self._inherited(element, self._with_variables(element, declared))
         for important in (False, True):
             for declarations in (*rules, own):
                 for name, value, is_important in declarations:
                     if is_important != important:
                         continue
-                    self._declare(name, value, found, element)
-        return self._inherited(element, self._with_variables(element, found))
+                    self._declare(name, value, declared, element)
+        return self._inherited(element, self._with_variables(element, declared))
 
-    def _declare(self, name: str, value: str, found: dict[str, str], element: SvgElement) -> None:
-        """Adds what a rule says of a property."""
+    def _declare(
+        self, name: str, value: str, declared: dict[str, str], element: SvgElement
+    ) -> None:
+        """Applies a declaration."""
         if name.startswith("--"):
-            found[name] = value
+            declared[name] = value
         elif uses_variables(value):
             if name in _SHORTHANDS or name in _PROPERTIES:
-                found[INDIVIDUAL.get(name, name)] = value
+                declared[INDIVIDUAL.get(name, name)] = value
             else:
                 self._report_unknown(name, element)
         elif name in _SHORTHANDS:
-            found.update(expanded(name, value))
+            declared.update(expand_shorthand(name, value))
         elif name not in _PROPERTIES:
             self._report_unknown(name, element)
-        elif value.lower() in _KEYWORDS and name in (*_PARSERS, *_OTHER, *_PLACES, *INDIVIDUAL):
-            is_initial = value.lower() == "initial" or _FIELDS.get(name) in _OWN
+        elif value.lower() in _KEYWORDS and name in (
+            *_PARSERS,
+            *_UNPARSED,
+            *_GEOMETRY,
+            *INDIVIDUAL,
+        ):
+            is_initial = value.lower() == "initial" or _FIELDS.get(name) in _NOT_INHERITED
             if is_initial and name in _PARSERS:
-                found[name] = "initial"
+                declared[name] = "initial"
             else:
-                found.pop(INDIVIDUAL.get(name, name), None)
+                declared.pop(INDIVIDUAL.get(name, name), None)
         elif self._is_valid(name, value, element):
-            found[INDIVIDUAL.get(name, name)] = as_path(value) or "" if name == "d" else value
+            declared[INDIVIDUAL.get(name, name)] = as_path(value) or "" if name == "d" else value
         else:
             self._report_value(name, value, element)
 
-    def _with_variables(self, element: SvgElement, found: dict[str, str]) -> dict[str, str]:
-        """The same, with the values of variables."""
-        around = {} if element.parent is None else self._custom.get(element.parent, {})
-        has_own = any(name.startswith("--") and name not in _HELD for name in found)
-        if not has_own and not any(uses_variables(text) for text in found.values()):
-            if around:
-                self._custom[element] = around
-            return found
-        self._written[element] = found
-        resolved = substituted(found, tuple(around.items()))
-        self._custom[element] = around | {
+    def _with_variables(self, element: SvgElement, declared: dict[str, str]) -> dict[str, str]:
+        """Substitutes variables."""
+        inherited = {} if element.parent is None else self._custom.get(element.parent, {})
+        has_own = any(name.startswith("--") and name not in _TRANSFORM_KEYS for name in declared)
+        if not has_own and not any(uses_variables(text) for text in declared.values()):
+            if inherited:
+                self._custom[element] = inherited
+            return declared
+        self._unsubstituted[element] = declared
+        resolved = substitute_variables(declared, tuple(inherited.items()))
+        self._custom[element] = inherited | {
             name: text for name, text in resolved.items() if name.startswith("--")
         }
-        for name in found.keys() - resolved.keys():
+        for name in declared.keys() - resolved.keys():
             if not name.startswith("--") and name not in _SHORTHANDS:
-                self._warnings.broken(f"{name} '{found[name][:40]}'", "ignored", element.line)
+                self._warnings.broken(f"{name} '{declared[name][:40]}'", "ignored", element.line)
         return resolved
 
     def _report_unknown(self, name: str, element: SvgElement) -> None:
-        if name not in _WITHOUT_EFFECT and not name.startswith("-"):
+        if name not in _IGNORED and not name.startswith("-"):
             self._warnings.unsupported(name, "ignored", element.line)
 
     def _report_value(self, name: str, value: str, element: SvgElement) -> None:
@@ -414,81 +430,88 @@ class StyleSheets:
         else:
             self._warnings.broken(f"{name} '{value[:40]}'", "ignored", element.line)
 
-    def _inherited(self, element: SvgElement, found: dict[str, str]) -> dict[str, str]:
-        """The same, where properties that are not inherited by themselves have parents' values."""
-        if "inherit" in found.values():
+    def _inherited(self, element: SvgElement, declared: dict[str, str]) -> dict[str, str]:
+        """Resolves `inherit` for properties that are not inherited by default."""
+        if "inherit" in declared.values():
             parent = self._declared[element.parent] if element.parent is not None else {}
-            for name in [name for name in _OTHER if found.get(name) == "inherit"]:
-                del found[name]
+            for name in [name for name in _UNPARSED if declared.get(name) == "inherit"]:
+                del declared[name]
                 if name == "overflow":
-                    # What elements of other kinds begin with.
-                    found[name] = "visible"
+                    # The initial value of other elements than `svg`.
+                    declared[name] = "visible"
                 if name in parent:
-                    found[name] = parent[name]
-        self._report(element, found)
-        return found
+                    declared[name] = parent[name]
+        self._report(element, declared)
+        return declared
 
     def _is_valid(self, name: str, value: str, element: SvgElement) -> bool:
         if name == "d":
             return as_path(value) is not None
         if name not in _PARSERS or value == "inherit":
             return True
-        return _parsed(name, value) is not None
+        return _parse_property(name, value) is not None
 
-    def _report(self, element: SvgElement, found: Mapping[str, str]) -> None:
-        for name in found.keys() & _PARSERS.keys():
-            if found[name] in ("inherit", "initial") or _parsed(name, found[name]) is not None:
+    def _report(self, element: SvgElement, declared: Mapping[str, str]) -> None:
+        for name in declared.keys() & _PARSERS.keys():
+            if (
+                declared[name] in ("inherit", "initial")
+                or _parse_property(name, declared[name]) is not None
+            ):
                 continue
-            unit = _unknown_unit(name, found[name])
+            unit = _unknown_unit(name, declared[name])
             if unit:
                 self._warnings.unsupported(f"unit '{unit}'", "ignored", element.line)
             else:
-                self._warnings.broken(f"{name} '{found[name][:40]}'", "ignored", element.line)
+                self._warnings.broken(f"{name} '{declared[name][:40]}'", "ignored", element.line)
 
 
-def substituted(declared: Mapping[str, str], custom: tuple[tuple[str, str], ...]) -> dict[str, str]:
-    """What is declared with the values of variables; what has none that is valid is left out.
+def substitute_variables(
+    declared: Mapping[str, str], custom: tuple[tuple[str, str], ...]
+) -> dict[str, str]:
+    """Substitutes variables in declarations; those without a valid result are omitted.
 
     Args:
-        declared: With the element's own variables.
-        custom: The variables of its parent.
+        declared: Declarations, including the element's custom properties.
+        custom: Custom properties of the parent.
     """
     own = {
-        name: text for name, text in declared.items() if name.startswith("--") and name not in _HELD
+        name: text
+        for name, text in declared.items()
+        if name.startswith("--") and name not in _TRANSFORM_KEYS
     }
-    values = variables(own, dict(custom))
-    found: dict[str, str] = {}
+    values = resolve_variables(own, dict(custom))
+    substituted: dict[str, str] = {}
     for name, written in declared.items():
         if name in own:
-            found[name] = values.get(name, "initial")
+            substituted[name] = values.get(name, "initial")
             continue
         text: str | None = written
         if uses_variables(written):
-            text = with_variables(written, values)
+            text = substitute(written, values)
         if text is None:
             continue
         if name in _SHORTHANDS:
-            found.update(expanded(name, text))
+            substituted.update(expand_shorthand(name, text))
         elif text is not written and name == "d":
-            found[name] = as_path(text) or ""
-        elif text is written or name not in _PARSERS or _parsed(name, text) is not None:
-            found[name] = text
+            substituted[name] = as_path(text) or ""
+        elif text is written or name not in _PARSERS or _parse_property(name, text) is not None:
+            substituted[name] = text
         elif text.lower() in ("inherit", "initial"):
-            found[name] = text.lower()
-    return found
+            substituted[name] = text.lower()
+    return substituted
 
 
-def expanded(name: str, value: str) -> dict[str, str]:
-    """The properties that a shorthand sets."""
-    return dict.fromkeys(_MARKERS, value) if name == "marker" else expanded_font(value)
+def expand_shorthand(name: str, value: str) -> dict[str, str]:
+    """Expands a shorthand."""
+    return dict.fromkeys(_MARKERS, value) if name == "marker" else expand_font_shorthand(value)
 
 
 _INITIAL = {field.name: field.default for field in fields(Style)}
 
 
-@remembered
-def _parsed(name: str, text: str) -> Any:
-    """The value of a property; None where the text is none."""
+@cache_short_texts
+def _parse_property(name: str, text: str) -> Any:
+    """Parses a property; returns None if invalid."""
     try:
         return _PARSERS[name](text)
     except UnknownUnitError:
@@ -503,6 +526,6 @@ def _unknown_unit(name: str, text: str) -> str:
     return ""
 
 
-@remembered
-def _parsed_declarations(text: str) -> tuple[tuple[str, str, bool], ...]:
+@cache_short_texts
+def _parse_declarations(text: str) -> tuple[tuple[str, str, bool], ...]:
     return tuple(declarations_in(text))

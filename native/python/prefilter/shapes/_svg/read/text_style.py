@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The properties of letters: which font they have, and how they follow each other."""
+"""Text properties: fonts, spacing, direction."""
 
 import math
 import re
@@ -10,8 +10,8 @@ from typing import Any
 
 import tinycss2
 
-from ..model.values import UnknownUnitError, as_length, as_number
-from .external_resources import Place
+from ..model.values import UnknownUnitError, parse_length, parse_number
+from .external_resources import BaseFolder
 
 _STRETCHES = {
     "ultra-condensed": 50.0,
@@ -36,23 +36,23 @@ _LIGHTER = ((100.0, 0.0), (550.0, 100.0), (750.0, 400.0), (math.inf, 700.0))
 
 @dataclass(frozen=True, slots=True)
 class TextStyle:
-    """What an element's text takes from those around it.
+    """Inherited text properties of an element.
 
     Attributes:
-        families: The best first; none where the file names none.
-        weight: From 1 to 1000.
-        stretch: In percent of the normal width.
+        families: Font families in order of preference; empty if the file names none.
+        weight: 1 to 1000.
+        stretch: Percentage of the normal width.
         slant: "normal", "italic" or "oblique".
-        variations: Values of axes of the font.
-        has_small_capitals: Whether small letters are small capitals.
-        has_kerning: Whether pairs are moved together.
-        letter_spacing: Behind each letter, in pixels.
-        word_spacing: At each space, likewise.
-        anchor: What of it is at its position: "start", "middle" or "end".
+        variations: Axis values of variable fonts.
+        has_small_capitals: Whether lower-case letters become small capitals.
+        has_kerning: Whether kerning is on.
+        letter_spacing: After each letter, in pixels.
+        word_spacing: At each space, in pixels.
+        anchor: The part of a line at its position: "start", "middle" or "end".
         direction: "ltr" or "rtl".
-        baseline: What of a letter is at its position: as `dominant-baseline`.
-        spaces: "collapse", "preserve", or "" for what `xml:space` says.
-        is_vertical: Whether lines go downwards: as `writing-mode` of the text element says.
+        baseline: The height within a letter that is at the position: `dominant-baseline`.
+        spaces: "collapse", "preserve", or "" to follow `xml:space`.
+        is_vertical: Whether lines go downwards: `writing-mode` of the text element.
     """
 
     families: tuple[str, ...] = ()
@@ -71,32 +71,34 @@ class TextStyle:
     is_vertical: bool = False
 
 
-USUAL_TEXT = TextStyle()
-"""That of text of which a file says nothing."""
+DEFAULT_TEXT_STYLE = TextStyle()
+"""Initial values."""
 
 
 @dataclass(frozen=True, slots=True)
 class FontRule:
-    """A rule `@font-face` of a style sheet.
+    """An `@font-face` rule.
 
     Attributes:
-        line: Where it is.
-        said: What it declares.
-        place: Where addresses in it lead from.
+        line: Line in the drawing.
+        said: descriptors: Descriptors by name.
+        place: base: Folders to resolve addresses.
     """
 
     line: int
-    said: Mapping[str, str]
-    place: Place | None = None
+    descriptors: Mapping[str, str]
+    base: BaseFolder | None = None
 
 
-def text_style_below(declared: Mapping[str, str], parent: TextStyle, font_size: float) -> TextStyle:
-    """The style of an element's text in a place where its parent has that given.
+def inherit_text_style(
+    declared: Mapping[str, str], parent: TextStyle, font_size: float
+) -> TextStyle:
+    """Returns the text properties of an element whose parent has the given ones.
 
     Args:
-        declared: What the element declares.
-        parent: The style of its parent.
-        font_size: Of the element.
+        declared: The element's declarations.
+        parent: The parent's text properties.
+        font_size: Font size of the element.
     """
     changed: dict[str, Any] = {}
     for name in declared.keys() & PROPERTIES.keys():
@@ -105,48 +107,48 @@ def text_style_below(declared: Mapping[str, str], parent: TextStyle, font_size: 
         if text.lower() == "inherit":
             continue
         if text.lower() in ("initial", "unset"):
-            found = getattr(USUAL_TEXT, field)
+            value = getattr(DEFAULT_TEXT_STYLE, field)
         elif name == "font-weight":
-            found = _weight(text.lower(), parent.weight)
+            value = _weight(text.lower(), parent.weight)
         elif name in ("letter-spacing", "word-spacing"):
-            found = _spacing(text, font_size)
+            value = _spacing(text, font_size)
         else:
-            found = parse(text)
-        if found is not None:
-            changed[field] = found
+            value = parse(text)
+        if value is not None:
+            changed[field] = value
     return replace(parent, **changed) if changed else parent
 
 
-def expanded_font(text: str) -> dict[str, str]:
-    """What the shorthand `font` declares; nothing where it is not valid."""
+def expand_font_shorthand(text: str) -> dict[str, str]:
+    """Expands the shorthand `font`; returns nothing if it is invalid."""
     words = text.split()
-    found = dict.fromkeys(_SHORTHAND, "normal")
+    longhands = dict.fromkeys(_SHORTHAND, "normal")
     for index, word in enumerate(words):
-        small = word.lower()
-        size = small.partition("/")[0]
-        if size in _GENERIC_SIZES or (_SIZE.match(small) and not _is_weight(small)):
+        word_lower = word.lower()
+        size = word_lower.partition("/")[0]
+        if size in _GENERIC_SIZES or (_SIZE.match(word_lower) and not _is_weight(word_lower)):
             rest = words[index + 1 :]
             if rest[:1] and rest[0].startswith("/"):
                 rest = rest[2:] if rest[0] == "/" else rest[1:]
-            elif small.endswith("/"):
+            elif word_lower.endswith("/"):
                 rest = rest[1:]
             if not rest:
                 return {}
             return {
-                **found,
+                **longhands,
                 "font-kerning": "auto",
                 "font-size": size,
                 "font-family": " ".join(rest),
             }
-        if small in ("italic", "oblique"):
-            found["font-style"] = small
-        elif small == "small-caps":
-            found["font-variant"] = small
-        elif small in _STRETCHES and small != "normal":
-            found["font-stretch"] = small
-        elif small in ("bold", "bolder", "lighter") or _is_weight(small):
-            found["font-weight"] = small
-        elif small != "normal":
+        if word_lower in ("italic", "oblique"):
+            longhands["font-style"] = word_lower
+        elif word_lower == "small-caps":
+            longhands["font-variant"] = word_lower
+        elif word_lower in _STRETCHES and word_lower != "normal":
+            longhands["font-stretch"] = word_lower
+        elif word_lower in ("bold", "bolder", "lighter") or _is_weight(word_lower):
+            longhands["font-weight"] = word_lower
+        elif word_lower != "normal":
             return {}
     return {}
 
@@ -155,25 +157,25 @@ _SHORTHAND = ("font-style", "font-variant", "font-stretch", "font-weight")
 
 
 def _is_weight(text: str) -> bool:
-    value = as_number(text)
+    value = parse_number(text)
     return value is not None and value >= 1.0 and text.isdigit()
 
 
 def _families(text: str) -> tuple[str, ...] | None:
-    """Names in their order; those in quotes may hold anything."""
-    found: list[str] = []
+    """Parses a list of families; quoted names may contain anything."""
+    families: list[str] = []
     words: list[str] = []
     for token in [*tinycss2.parse_component_value_list(text, skip_comments=True), ","]:
         if token == ",":
             if not words:
                 return None
-            found.append(" ".join(words))
+            families.append(" ".join(words))
             words = []
         elif token.type in ("string", "ident"):
             words.append(token.value)
         elif token.type != "whitespace":
             words.append(tinycss2.serialize([token]))
-    return tuple(found)
+    return tuple(families)
 
 
 def _weight(text: str, parent: float) -> float | None:
@@ -182,7 +184,7 @@ def _weight(text: str, parent: float) -> float | None:
             return next(to or parent for below, to in table if parent < below)
     if text in ("normal", "bold"):
         return 700.0 if text == "bold" else 400.0
-    value = as_number(text)
+    value = parse_number(text)
     return value if value is not None and 1.0 <= value <= 1000.0 else None
 
 
@@ -190,7 +192,7 @@ def _stretch(text: str) -> float | None:
     small = text.lower()
     if small in _STRETCHES:
         return _STRETCHES[small]
-    value = as_number(small[:-1]) if small.endswith("%") else None
+    value = parse_number(small[:-1]) if small.endswith("%") else None
     return value if value is not None and value >= 0.0 else None
 
 
@@ -203,7 +205,7 @@ def _spacing(text: str, font_size: float) -> float | None:
     if text.lower() == "normal":
         return 0.0
     try:
-        length = as_length(text)
+        length = parse_length(text)
     except UnknownUnitError:
         return None
     return None if length is None else length.pixels(font_size, font_size)
@@ -212,32 +214,32 @@ def _spacing(text: str, font_size: float) -> float | None:
 def _variations(text: str) -> tuple[tuple[str, float], ...] | None:
     if text.lower() == "normal":
         return ()
-    found = []
+    settings = []
     for part in text.split(","):
         match = re.fullmatch(r"""\s*["']([ -~]{4})["']\s+(\S+)\s*""", part)
-        value = as_number(match[2]) if match else None
+        value = parse_number(match[2]) if match else None
         if match is None or value is None:
             return None
-        found.append((match[1], value))
-    return tuple(found)
+        settings.append((match[1], value))
+    return tuple(settings)
 
 
 def _one_of(*names: str) -> Callable[[str], str | None]:
     return lambda text: text.lower() if text.lower() in names else None
 
 
-_DOWNWARDS = ("tb", "tb-rl", "vertical-rl", "vertical-lr")
-_ONWARDS = ("lr", "lr-tb", "rl", "rl-tb", "horizontal-tb")
+_VERTICAL_MODES = ("tb", "tb-rl", "vertical-rl", "vertical-lr")
+_HORIZONTAL_MODES = ("lr", "lr-tb", "rl", "rl-tb", "horizontal-tb")
 
 
 def _is_vertical(text: str) -> bool | None:
     small = text.lower()
-    return small in _DOWNWARDS if small in (*_DOWNWARDS, *_ONWARDS) else None
+    return small in _VERTICAL_MODES if small in (*_VERTICAL_MODES, *_HORIZONTAL_MODES) else None
 
 
-_KEPT_BASELINES = ("no-change", "reset-size", "use-script")
+_IGNORED_BASELINES = ("no-change", "reset-size", "use-script")
 _ANCHORS = _one_of("start", "middle", "end")
-# The field of each property, and what reads it.
+# Field and parser of each property.
 PROPERTIES: Mapping[str, tuple[str, Callable[[str], Any]]] = {
     "font-family": ("families", _families),
     "font-weight": ("weight", lambda text: None),
@@ -254,7 +256,7 @@ PROPERTIES: Mapping[str, tuple[str, Callable[[str], Any]]] = {
     "direction": ("direction", _one_of("ltr", "rtl")),
     "dominant-baseline": (
         "baseline",
-        lambda text: None if text.lower() in _KEPT_BASELINES else text.lower(),
+        lambda text: None if text.lower() in _IGNORED_BASELINES else text.lower(),
     ),
     "writing-mode": ("is_vertical", _is_vertical),
     "white-space": ("spaces", lambda text: _SPACES.get(text.lower())),
@@ -264,9 +266,9 @@ OWN_PROPERTIES = (
     *("alignment-baseline", "baseline-shift", "text-decoration", "text-decoration-line"),
     "unicode-bidi",
 )
-"""Those that only count for the element itself."""
+"""Properties that are not inherited."""
 NO_ATTRIBUTES = (
     *("font", "font-kerning", "font-variation-settings", "font-variant-caps", "font-width"),
     *("text-decoration-line", "white-space-collapse"),
 )
-"""Those that are no attributes."""
+"""Properties that are not presentation attributes."""

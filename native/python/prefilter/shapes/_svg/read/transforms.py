@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What moves an element: `transform`, `translate`, `rotate` and `scale`, about an origin."""
+"""Transforms of elements: `transform`, `translate`, `rotate` and `scale`, with their origin."""
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from ...affine import IDENTITY, Matrix, multiplied
 from ..model.tree import Box
-from ..model.values import as_origin, as_rotate, as_transform, needs_whole
+from ..model.values import has_relative_lengths, parse_origin, parse_rotate, parse_transform
 from .document import SvgElement
 from .lengths import Units, about_origin
 from .styles import INDIVIDUAL
@@ -19,21 +19,19 @@ _FILL_BOXES = ("fill-box", "content-box")
 _STROKE_BOXES = ("stroke-box", "border-box")
 
 
-def own_transform(
+def read_transform(
     element: SvgElement, declared: Mapping[str, str], context: "Context", sources: "Sources"
 ) -> Matrix | None:
-    """From the units of an element to those of its parent; None where they are the same.
+    """Returns the matrix from an element's units to its parent's; None if they are the same.
 
     Args:
-        element: The element.
         declared: Its attributes and properties.
-        context: With its style, in its parent's units.
-        sources: What it is read with.
+        context: The context with its style, in its parent's units.
     """
-    turn, origin = declared.get("transform", ""), declared.get("transform-origin", "")
+    transform_text, origin = declared.get("transform", ""), declared.get("transform-origin", "")
     parts = {name: declared[key] for name, key in INDIVIDUAL.items() if key in declared}
-    if not turn and not parts:
-        if origin and as_origin(origin) is None:
+    if not transform_text and not parts:
+        if origin and parse_origin(origin) is None:
             sources.warnings.broken("transform-origin", "ignored", element.line)
         return None
     box = _reference_box(element, declared, context, sources)
@@ -41,17 +39,17 @@ def own_transform(
         return None
     units = Units(box[2] - box[0], box[3] - box[1], context.style.font_size)
     matrix = IDENTITY
-    # In this order, whatever order they are declared in.
+    # The order is fixed, whatever the order of declarations.
     for name in ("translate", "rotate", "scale"):
         text = parts.get(name, "none").strip()
         if text.lower() == "none":
             continue
-        part = as_rotate(text) if name == "rotate" else _listed(f"{name}({text})", units)
+        part = parse_rotate(text) if name == "rotate" else _listed(f"{name}({text})", units)
         if part is None:
             sources.warnings.broken(f"{name} '{text[:40]}'", "ignored", element.line)
             continue
         matrix = multiplied(matrix, part)
-    own = _listed(turn, units)
+    own = _listed(transform_text, units)
     if own is None:
         sources.warnings.broken("transform", "ignored", element.line)
         own = IDENTITY
@@ -64,15 +62,15 @@ def own_transform(
 
 
 def _listed(text: str, units: Units) -> Matrix | None:
-    if not needs_whole(text):
-        return as_transform(text)
-    return as_transform(text, units.width, units.height, units.font_size)
+    if not has_relative_lengths(text):
+        return parse_transform(text)
+    return parse_transform(text, units.width, units.height, units.font_size)
 
 
 def _reference_box(
     element: SvgElement, declared: Mapping[str, str], context: "Context", sources: "Sources"
 ) -> Box | None:
-    """The box that `transform-box` names; None for one that the element does not have."""
+    """Returns the box named by `transform-box`; None if the element has no such box."""
     name = declared.get("transform-box", "view-box").strip().lower()
     if name not in _FILL_BOXES and name not in _STROKE_BOXES:
         return (0.0, 0.0, *context.viewport)

@@ -8,12 +8,12 @@ from dataclasses import dataclass, field, replace
 
 from ...affine import IDENTITY
 from ..model.outline import read_path
-from ..model.values import Length, UnknownUnitError, as_length, as_transform
+from ..model.values import Length, UnknownUnitError, parse_length, parse_transform
 from ..read.basic_shapes import BASIC_SHAPES, read_shape
 from ..read.context import Context, Sources
 from ..read.document import SvgElement
 from ..read.lengths import Units, read_length
-from ..read.nesting import is_wanted
+from ..read.nesting import passes_conditions
 from ..read.styles import Style
 from ..read.text_style import TextStyle
 from .tracks import Track
@@ -27,7 +27,7 @@ _ZERO = Length(0.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Place:
+class BaseFolder:
     """A path that text runs along.
 
     Attributes:
@@ -74,7 +74,7 @@ class Span:
     lines: tuple[str, ...] = ()
     baseline: str = "auto"
     shift: str = "baseline"
-    place: Place | None = None
+    place: BaseFolder | None = None
     fitted: Fitted | None = None
     forced: str = ""
     language: str = ""
@@ -173,9 +173,9 @@ class TextReader:
         for child in element:
             assert isinstance(child, SvgElement)
             declared = self._sources.sheets.declared(child)
-            is_shown = declared.get("display", "") != "none" and is_wanted(child)
+            is_shown = declared.get("display", "") != "none" and passes_conditions(child)
             if child.tag in INNER and is_shown:
-                below = self._sources.sheets.style_below(child, style)
+                below = self._sources.sheets.inherit_style(child, style)
                 inner_keeps = self._keeps_spaces(child, below, keeps)
                 self._walk(child, below, (*around, span), found, inner_keeps)
             self._add(child.tail, span, keeps, found)
@@ -251,7 +251,7 @@ class TextReader:
     def _units(self, style: Style) -> Units:
         return replace(self._context, style=style).units
 
-    def _place(self, element: SvgElement, style: Style) -> Place | None:
+    def _place(self, element: SvgElement, style: Style) -> BaseFolder | None:
         """The path of a `textPath`; None where there is none."""
         sources, units = self._sources, self._units(style)
         declared = sources.sheets.declared(element)
@@ -263,7 +263,7 @@ class TextReader:
             if shape is not None and shape.tag in BASIC_SHAPES:
                 values = sources.sheets.declared(shape)
                 outline = read_shape(shape, values, units, sources.warnings)
-                matrix = as_transform(values.get("transform", "")) or IDENTITY
+                matrix = parse_transform(values.get("transform", "")) or IDENTITY
         if outline is None or len(outline) < 2:
             sources.warnings.broken(
                 "<textPath>", "left out, as its path is not there", element.line
@@ -280,7 +280,7 @@ class TextReader:
         said = _number(sources.sheets.declared(shape).get("pathLength")) if shape is not None else 0
         if said > 0.0 and length.unit != "%":
             offset *= track.length / said
-        return Place(track, offset)
+        return BaseFolder(track, offset)
 
     def _fitted(self, element: SvgElement, style: Style) -> Fitted | None:
         declared = self._sources.sheets.declared(element)
@@ -313,7 +313,7 @@ class TextReader:
         found = []
         for text in _listed(self._sources.sheets.declared(span.element).get(name, "")):
             try:
-                length = as_length(text)
+                length = parse_length(text)
             except UnknownUnitError as error:
                 warnings = self._sources.warnings
                 warnings.unsupported(f"unit '{error}'", "ignored", span.element.line)

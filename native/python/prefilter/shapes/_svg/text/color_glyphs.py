@@ -9,15 +9,15 @@ from ..._fonts.bitmaps import Bitmap
 from ..._fonts.color_layers import ColorFill, ColorGroup, ColorStop
 from ..._fonts.font import Font
 from ...affine import Matrix, determinant, inverse, multiplied
-from ..model.clips import clip_of
+from ..model.clips import make_clip
 from ..model.colors import Color
-from ..model.gradients import Colors, Gradient, Stop, pieces_between
+from ..model.gradients import Colors, Gradient, Stop, sample_stops
 from ..model.outline import Outline
-from ..model.tree import Clip, ClipPart, Group, Mask, Painted, Picture, carried
+from ..model.tree import Clip, ClipPart, Group, Mask, Painted, Picture, transform_box
 from ..model.values import BLACK
 from ..read.context import Context, Sources
 from ..read.document import SvgElement
-from ..read.image_files import PictureError, read_picture, size_of
+from ..read.image_files import ImageError, decode_image, image_size
 from ..read.styles import Style
 
 # The side of what a color fills where no glyph says how far, in heights of the font.
@@ -105,19 +105,19 @@ class _Letters:
     def _draw_bitmap(
         self, bitmap: Bitmap, matrix: Matrix, clips: tuple[Clip, ...], target: Group
     ) -> None:
-        width, height = size_of(bitmap.data)
+        width, height = image_size(bitmap.data)
         known = self._sources.letters
         if bitmap not in known:
             self._sources.budget.take_texels(width * height)
             try:
-                known[bitmap] = read_picture(bitmap.data)
-            except PictureError as error:
+                known[bitmap] = decode_image(bitmap.data)
+            except ImageError as error:
                 self._sources.warnings.broken("letter", f"left out, {error}", self._line)
                 return
         wide, high = width * bitmap.unit, height * bitmap.unit
         top = bitmap.edge if bitmap.is_top else bitmap.edge + high
         unit = multiplied(matrix, (wide, 0.0, 0.0, -high, bitmap.left, top))
-        box = carried((0.0, 0.0, 1.0, 1.0), unit)
+        box = transform_box((0.0, 0.0, 1.0, 1.0), unit)
         is_linear = self._colors.is_linear
         target.items.append(Picture(known[bitmap], unit, False, is_linear, clips, box, self._line))
 
@@ -136,7 +136,7 @@ class _Letters:
             outline = self._outline(font, glyph)
             self._sources.budget.take_segments(len(outline), 0.0)
             part = ClipPart(outline, "nonzero", multiplied(matrix, place))
-            clip = clip_of([part], ())
+            clip = make_clip([part], ())
             if clip.bounds is None:
                 return
             clips = (*clips, clip)
@@ -169,17 +169,17 @@ class _Letters:
             return
         self._sources.budget.take_segments(len(outline), 0.0)
         whole = multiplied(matrix, fill.matrix)
-        box = carried(bounds, whole)
+        box = transform_box(bounds, whole)
         paint = self._paint(fill)
         target.items.append(Painted(outline, "nonzero", whole, paint, None, clips, box, self._line))
 
     def _paint(self, fill: ColorFill) -> tuple[float, ...] | Gradient:
         stops = [Stop(stop.offset, self._color_of(stop)) for stop in fill.stops]
         if fill.kind == "solid" or determinant(fill.paint_matrix) == 0.0:
-            return next(iter(pieces_between(stops[:1], self._colors)))[1]
+            return next(iter(sample_stops(stops[:1], self._colors)))[1]
         is_radial = fill.kind == "radial"
         matrix = multiplied(inverse(fill.matrix), fill.paint_matrix)
-        pieces = list(pieces_between(stops, self._colors))
+        pieces = list(sample_stops(stops, self._colors))
         return Gradient(is_radial, fill.numbers, pieces, fill.spread, matrix)
 
     def _color_of(self, stop: ColorStop) -> Color:

@@ -9,7 +9,7 @@ from ..._fonts.bitmaps import Bitmap
 from ..._fonts.collection import Fonts, Wanted
 from ..._fonts.color_layers import ColorGroup
 from ..._fonts.font import Font, Glyph
-from ..model.values import UnknownUnitError, as_length
+from ..model.values import UnknownUnitError, parse_length
 from ..model.warnings import Warnings
 from .characters import Character, Span
 
@@ -97,7 +97,7 @@ class Lettering:
             half = 0.5 * (metrics.ascent - metrics.descent) * size
             return half if span.shift == "super" else -half
         try:
-            length = as_length(span.shift)
+            length = parse_length(span.shift)
         except UnknownUnitError:
             length = None
         return length.pixels(size, size) if length is not None else 0.0

@@ -9,7 +9,7 @@ from ...affine import Matrix
 from ..model.outline import Outline
 
 _STEPS = 256
-_MOST_STEPS = 1_000_000
+_MAX_STEPS = 1_000_000
 _FloatArray = npt.NDArray[np.float64]
 
 
@@ -57,7 +57,7 @@ def _chords(
 ) -> tuple[_FloatArray, _FloatArray, _FloatArray, _FloatArray]:
     """Starts and ends of all chords, and the curve's directions at both."""
     count = sum(1 for kind, _ in outline.segments() if kind in "QCW")
-    steps = max(8, min(_STEPS, _MOST_STEPS // max(count, 1)))
+    steps = max(8, min(_STEPS, _MAX_STEPS // max(count, 1)))
     turn, move = np.array(matrix[:4]).reshape(2, 2), np.array(matrix[4:])
     found: list[tuple[_FloatArray, _FloatArray]] = []
     at = begin = np.zeros(2)
