@@ -420,14 +420,14 @@ def test_filters_of_what_is_turned_are_turned(turn):
 
 
 def test_what_rounding_leaves_of_colors_stays_small():
-    from prefilter.shapes._svg.filters.evaluation import filtered
+    from prefilter.shapes._svg.filters.evaluation import apply_filter
     from prefilter.shapes._svg.model.tree import Filter, Group, Step
 
     def blurred(pixels):
         identity = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
         blur = Step("feGaussianBlur", ("SourceGraphic",), "", (1.0, 1.0), "", True, None)
         filter_ = Filter((blur,), None, identity, is_linear=False)
-        return filtered(lambda _: pixels, Group([]), filter_, identity, (0, 0, 7, 6))
+        return apply_filter(lambda _: pixels, Group([]), filter_, identity, (0, 0, 7, 6))
 
     clean = np.zeros((6, 7, 4), np.float32)
     clean[4, 5] = 0.1, 0.2, 0.3, 0.4

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""From a tree to an image: runs of outlines rasterized together, and layers over each other.
+"""Compositing of a tree into an image.
 
-Images are (height, width, 4) with row 0 at the bottom, colors multiplied by alpha.
+Runs of outlines are rasterized together; groups with layers are drawn apart and blended. Images are
+(height, width, 4) with row 0 at the bottom, colors premultiplied by alpha.
 """
 
 import math
@@ -19,7 +20,7 @@ from ...affine import Matrix, inverse, multiplied
 from ...rasterization import rasterize
 from ...shape import Shape
 from ..filters.layers import filtered_layer
-from ..filters.warping import picture_pixels, tiled_pixels
+from ..filters.warping import draw_image_pixels, fill_with_tile
 from ..model.blending import blend
 from ..model.limits import TooLargeError
 from ..model.tree import (
@@ -34,36 +35,36 @@ from ..model.tree import (
     transform_box,
 )
 from .drawing import Drawing
-from .layers import LayerPlanner, PlacedItem, bounds_of, filtered_region, is_plain, leaf_count
+from .layers import LayerPlanner, PlacedItem, filtered_region, is_plain, item_bounds, leaf_count
 from .outlines import ShapeBuilder
 
 FloatArray = npt.NDArray[np.float32]
 Window = tuple[int, int, int, int]
-"""Pixels: left, low, right, high; the last two are not in it."""
+"""Pixels: left, low, right, high; right and high are exclusive."""
 
-# A pattern is drawn tile by tile up to so many outlines.
+# Outlines up to which a pattern is drawn tile by tile, rather than as an image.
 _MAX_TILED = 20_000
 _MAX_TILES = 4_000
 _SMALLEST_TILE, _LARGEST_TILE = 16, 2048
-# Pixels: of tiles that are smaller all filters see the mean alone, to a thousandth of 1/255.
-_LEAST_SEEN = 1 / 16
-# Layers within layers: each holds an image.
+# Pixels. Smaller tiles look uniform through any filter, to a thousandth of 1/255.
+_MIN_RESOLVED_TILE = 1 / 16
+# Nested layers, each of which holds an image.
 _MAX_DEPTH = 48
 MAX_LAYER_PIXELS = 1 << 32
 MAX_LAYERS = 50_000
-# A pattern with layers in it is drawn tile by tile up to so many tiles.
+# Tiles up to which a pattern with layers is drawn tile by tile.
 _MAX_LAYERED_TILES = 64
-# What luminance is made of, of linear colors; SVG has the same for encoded ones.
+# Luminance weights, for linear colors; SVG uses them for encoded colors, too.
 _LUMINANCE = tuple(np.float32(share) for share in (0.2125, 0.7154, 0.0721))
 
 
 class Compositor:
-    """Draws trees.
+    """Draws trees into images.
 
     Args:
-        filter_name: Of shapes, as of `prefilter.rasterize`.
-        threads: How many to use; 0 for all processors.
-        tell: Called with the fraction done; raises to stop.
+        filter_name: Pixel filter of shapes; see `prefilter.rasterize`.
+        threads: Number of threads; 0 for all processors.
+        tell: report: Called with the fraction done; raises an exception to stop.
     """
 
     def __init__(self, filter_name: str, threads: int, report: Callable[[float], None]) -> None:
@@ -71,9 +72,13 @@ class Compositor:
         self._threads = threads
         self._report = report
         self._share = 0.0
-        self._reach = next(found.radius for found in PIXEL_FILTERS if found.name == filter_name)
-        self._layering = LayerPlanner()
-        self._outlining = ShapeBuilder()
+        self._reach = next(
+            pixel_filter.radius
+            for pixel_filter in PIXEL_FILTERS
+            if pixel_filter.name == filter_name
+        )
+        self._layers = LayerPlanner()
+        self._shapes = ShapeBuilder()
         self._depth = 0
         self._pixels_left = MAX_LAYER_PIXELS
         self._layers_left = MAX_LAYERS
@@ -81,56 +86,56 @@ class Compositor:
     def draw(
         self, drawing: Drawing, matrix: Matrix, size: tuple[int, int], around: tuple[Clip, ...]
     ) -> FloatArray:
-        """Draws a drawing.
+        """Draws a drawing into an image.
 
         Args:
             drawing: The drawing.
-            matrix: From its units to pixels, with y upwards.
+            matrix: From the tree's units to pixels, y upwards.
             size: Width and height of the image.
-            around: What all of it is cut off at.
+            around: Clips that apply to everything.
 
         Raises:
-            TooLargeError: It has too many layers.
+            TooLargeError: The drawing has too many layers.
         """
-        placed = list(self._layering.placed(drawing.tree, matrix, around))
+        placed = list(self._layers.placed(drawing.tree, matrix, around))
         background = drawing.background_in(matrix)
         below = [background] if background is not None else []
-        return self._painted(self._telling(placed), (0, 0, *size), below)
+        return self._draw_items(self._report_items(placed), (0, 0, *size), below)
 
-    def _telling(self, placed: list[PlacedItem]) -> Iterator[PlacedItem]:
+    def _report_items(self, placed: list[PlacedItem]) -> Iterator[PlacedItem]:
         for index, each in enumerate(placed):
             self._share = index / len(placed)
             self._report(self._share)
             yield each
 
-    def _painted(
+    def _draw_items(
         self, placed: Iterable[PlacedItem], window: Window, below: Sequence[Shape] = ()
     ) -> FloatArray:
-        """Items over each other, and over shapes."""
-        canvas = self._blank(window)
+        """Draws items over each other, and over shapes."""
+        canvas = self._new_layer(window)
         run = list(below)
         for each in placed:
             if is_plain(each.item):
                 assert isinstance(each.item, Painted)
-                shape = self._outlining.shape(each.item, each.matrix, each.opacity, each.around)
+                shape = self._shapes.shape(each.item, each.matrix, each.opacity, each.around)
                 if shape is not None:
                     run.append(shape)
                 continue
-            self._put_shapes(run, canvas, window)
+            self._draw_run(run, canvas, window)
             run = []
-            part = self._part(each, window)
+            part = self._touched_part(each, window)
             if part is not None:
-                layer = self._layer(each, part)
+                layer = self._draw_layer(each, part)
                 mode = each.item.blend if isinstance(each.item, Group) else "normal"
-                _put(canvas, window, layer, part, mode)
-        self._put_shapes(run, canvas, window)
+                _blend_part(canvas, window, layer, part, mode)
+        self._draw_run(run, canvas, window)
         return canvas
 
-    def _blank(self, window: Window) -> FloatArray:
-        self._take(window)
+    def _new_layer(self, window: Window) -> FloatArray:
+        self._count_layer(window)
         return np.zeros((window[3] - window[1], window[2] - window[0], 4), np.float32)
 
-    def _take(self, window: Window) -> None:
+    def _count_layer(self, window: Window) -> None:
         """Counts a layer."""
         width, height = window[2] - window[0], window[3] - window[1]
         self._pixels_left -= width * height
@@ -140,123 +145,123 @@ class Compositor:
                 f"more than {MAX_LAYERS} layers, or of more than {MAX_LAYER_PIXELS} pixels"
             )
 
-    def _put_shapes(self, shapes: list[Shape], canvas: FloatArray, window: Window) -> None:
+    def _draw_run(self, shapes: list[Shape], canvas: FloatArray, window: Window) -> None:
         boxes = [shape.bounds for shape in shapes]
         corners = [(*box[0], *box[1]) for box in boxes if box is not None]
-        part = window_of(corners, window, self._reach)
+        part = touched_window(corners, window, self._reach)
         if part is not None:
-            _put(canvas, window, self._rasterized(shapes, part), part, "normal")
+            _blend_part(canvas, window, self._rasterize(shapes, part), part, "normal")
 
-    def _rasterized(self, shapes: list[Shape], window: Window) -> FloatArray:
+    def _rasterize(self, shapes: list[Shape], window: Window) -> FloatArray:
         left, low, right, high = window
         move = [[1.0, 0.0, -left], [0.0, 1.0, -low]]
         if left or low:
             shapes = [shape.transformed(move) for shape in shapes]
-        found = rasterize(
+        image = rasterize(
             shapes,
             right - left,
             high - low,
             filter=cast("Any", self._filter),
-            progress=self._go_on,
+            progress=self._keep_going,
             threads=self._threads,
         )
-        assert found.dtype == np.float32
-        return found  # type: ignore[return-value]
+        assert image.dtype == np.float32
+        return image  # type: ignore[return-value]
 
-    def _go_on(self, _: float) -> bool:
+    def _keep_going(self, _: float) -> bool:
         self._report(self._share)
         return True
 
     def _coverage(self, shape: Shape, window: Window) -> FloatArray:
         shape = shape._with(shape._outline, shape._paint)
         shape.color = (1.0,)
-        return self._rasterized([shape], window)
+        return self._rasterize([shape], window)
 
-    def _part(self, placed: PlacedItem, window: Window) -> Window | None:
-        """The part of a window that an item shows in."""
+    def _touched_part(self, placed: PlacedItem, window: Window) -> Window | None:
+        """Returns the part of a window that an item touches."""
         boxes: list[Box] = []
-        for box in bounds_of(placed.item):
+        for box in item_bounds(placed.item):
             shown: Box | None = box
             for clip in placed.around:
                 shown = intersect_boxes(shown, clip.bounds) if shown and clip.bounds else None
             if shown is not None:
                 boxes.append(transform_box(shown, placed.matrix))
-        return window_of(boxes, window, self._reach)
+        return touched_window(boxes, window, self._reach)
 
-    def _layer(self, placed: PlacedItem, window: Window) -> FloatArray:
-        """A group, a picture, or an outline with a pattern."""
+    def _draw_layer(self, placed: PlacedItem, window: Window) -> FloatArray:
+        """Draws a group, an image, or an outline with a pattern."""
         item = placed.item
         if isinstance(item, Group):
-            return self._group(item, placed, window)
+            return self._draw_group(item, placed, window)
         if isinstance(item, Painted):
-            shape = self._outlining.shape(item, placed.matrix, 1.0, placed.around)
+            shape = self._shapes.shape(item, placed.matrix, 1.0, placed.around)
         else:
-            shape = self._outlining.frame(item, placed.matrix, placed.around)
+            shape = self._shapes.image_area(item, placed.matrix, placed.around)
         if shape is None:
-            return self._blank(window)
+            return self._new_layer(window)
         opacity = placed.opacity
         if isinstance(item, Picture):
-            layer = self._picture(item, placed.matrix, window)
+            layer = self._draw_image(item, placed.matrix, window)
         else:
             assert isinstance(item.paint, Pattern)
-            layer = self._pattern(item.paint, multiplied(placed.matrix, item.matrix), window)
+            layer = self._draw_pattern(item.paint, multiplied(placed.matrix, item.matrix), window)
             opacity *= item.paint.opacity
         layer *= np.float32(opacity) * self._coverage(shape, window)
         return layer
 
-    def _group(self, group: Group, placed: PlacedItem, window: Window) -> FloatArray:
-        inside = self._layering.placed(group, placed.matrix, placed.around)
+    def _draw_group(self, group: Group, placed: PlacedItem, window: Window) -> FloatArray:
+        inside = self._layers.placed(group, placed.matrix, placed.around)
         if group.filter is not None:
-            layer = self._filtered(group, placed, window)
+            layer = self._draw_filtered(group, placed, window)
         else:
-            layer = self._nested(inside, window)
+            layer = self._draw_nested(inside, window)
         for mask in group.masks:
-            layer *= self._mask(mask, placed.matrix, window)
+            layer *= self._mask_coverage(mask, placed.matrix, window)
         opacity = placed.opacity * group.opacity
         if opacity < 1.0:
             layer *= np.float32(opacity)
         return layer
 
-    def _filtered(self, group: Group, placed: PlacedItem, window: Window) -> FloatArray:
-        """A group after its filter, cut off at its clips after that."""
+    def _draw_filtered(self, group: Group, placed: PlacedItem, window: Window) -> FloatArray:
+        """Draws a group, applies its filter, and clips the result."""
         box = filtered_region(group)
         clips = (*placed.around, *group.clips)
         if box is None:
-            return self._blank(window)
+            return self._new_layer(window)
 
         def draw(shown: Group, matrix: Matrix, part: Window) -> FloatArray:
-            return self._nested(self._layering.placed(shown, matrix), part)
+            return self._draw_nested(self._layers.placed(shown, matrix), part)
 
-        self._take(window)
+        self._count_layer(window)
         layer = filtered_layer(draw, group, box, placed.matrix, window, self._threads)
-        for shape in self._outlining.filtered(group, clips, placed.matrix):
+        for shape in self._shapes.filter_clip(group, clips, placed.matrix):
             layer *= self._coverage(shape, window)
         return layer
 
-    def _nested(self, placed: Iterable[PlacedItem], window: Window) -> FloatArray:
+    def _draw_nested(self, placed: Iterable[PlacedItem], window: Window) -> FloatArray:
         if self._depth >= _MAX_DEPTH:
             raise TooLargeError(f"layers are nested more than {_MAX_DEPTH} deep")
         self._depth += 1
-        layer = self._painted(placed, window)
+        layer = self._draw_items(placed, window)
         self._depth -= 1
         return layer
 
-    def _mask(self, mask: Mask, matrix: Matrix, window: Window) -> FloatArray:
-        layer = self._nested(self._layering.placed(mask.group, matrix), window)
+    def _mask_coverage(self, mask: Mask, matrix: Matrix, window: Window) -> FloatArray:
+        layer = self._draw_nested(self._layers.placed(mask.group, matrix), window)
         if mask.is_luminance:
             red, green, blue = (layer[..., k] * _LUMINANCE[k] for k in range(3))
-            found: FloatArray = red + green + blue
+            coverage: FloatArray = red + green + blue
         else:
-            found = layer[..., 3]
-        return found.clip(0.0, 1.0)[..., None]
+            coverage = layer[..., 3]
+        return coverage.clip(0.0, 1.0)[..., None]
 
-    def _picture(self, picture: Picture, matrix: Matrix, window: Window) -> FloatArray:
+    def _draw_image(self, picture: Picture, matrix: Matrix, window: Window) -> FloatArray:
         left, low, right, high = window
         moved = multiplied((1.0, 0.0, 0.0, 1.0, -left, -low), matrix)
-        return picture_pixels(picture, moved, right - left, high - low, self._threads)
+        return draw_image_pixels(picture, moved, right - left, high - low, self._threads)
 
-    def _pattern(self, pattern: Pattern, matrix: Matrix, window: Window) -> FloatArray:
-        """A pattern all over a window; the matrix leads from the outline's units to pixels."""
+    def _draw_pattern(self, pattern: Pattern, matrix: Matrix, window: Window) -> FloatArray:
+        """Fills a window with a pattern; the matrix leads from the outline's units to pixels."""
         whole = multiplied(matrix, pattern.matrix)
         left, top, right, bottom = pattern.tile
         width, height = right - left, bottom - top
@@ -265,13 +270,13 @@ class Compositor:
         rows = range(math.floor((box[1] - top) / height), math.ceil((box[3] - top) / height))
         tiles = (columns.stop - columns.start) * (rows.stop - rows.start)
         most = min(_MAX_TILES, _MAX_TILED // max(leaf_count(pattern.group), 1))
-        if not all(is_plain(each.item) for each in self._layering.placed(pattern.group, whole)):
+        if not all(is_plain(each.item) for each in self._layers.placed(pattern.group, whole)):
             most = min(most, _MAX_LAYERED_TILES)
         if tiles > most:
-            return self._tiled(pattern, whole, window)
-        return self._nested(
+            return self._draw_tiled(pattern, whole, window)
+        return self._draw_nested(
             chain.from_iterable(
-                self._layering.placed(
+                self._layers.placed(
                     pattern.group,
                     multiplied(whole, (1.0, 0.0, 0.0, 1.0, column * width, row * height)),
                 )
@@ -281,8 +286,8 @@ class Compositor:
             window,
         )
 
-    def _tiled(self, pattern: Pattern, whole: Matrix, window: Window) -> FloatArray:
-        """The same by one tile as an image."""
+    def _draw_tiled(self, pattern: Pattern, whole: Matrix, window: Window) -> FloatArray:
+        """Fills a window with an image of one tile."""
         left, top, right, bottom = pattern.tile
         sides = (
             _native.hypot(*whole[:2]) * (right - left),
@@ -291,18 +296,18 @@ class Compositor:
         columns, rows = (min(max(math.ceil(side), _SMALLEST_TILE), _LARGEST_TILE) for side in sides)
         scale = (columns / (right - left), 0.0, 0.0, rows / (bottom - top), 0.0, 0.0)
         to_tile = multiplied(scale, (1.0, 0.0, 0.0, 1.0, -left, -top))
-        tile = self._nested(self._layering.placed(pattern.group, to_tile), (0, 0, columns, rows))
+        tile = self._draw_nested(self._layers.placed(pattern.group, to_tile), (0, 0, columns, rows))
         moved = multiplied(to_tile, inverse(whole))
         moved = multiplied(moved, (1.0, 0.0, 0.0, 1.0, window[0], window[1]))
         size = window[2] - window[0], window[3] - window[1]
-        if max(sides) < _LEAST_SEEN:
+        if max(sides) < _MIN_RESOLVED_TILE:
             mean = tile.sum(axis=0, dtype=np.float64).sum(axis=0) / (columns * rows)
             return np.broadcast_to(mean.astype(np.float32), (size[1], size[0], 4)).copy()
-        return tiled_pixels(tile, moved, *size, self._threads)
+        return fill_with_tile(tile, moved, *size, self._threads)
 
 
-def window_of(boxes: Sequence[Box], window: Window, reach: float) -> Window | None:
-    """The pixels of a window that see something of boxes; None where none does."""
+def touched_window(boxes: Sequence[Box], window: Window, reach: float) -> Window | None:
+    """Returns the pixels of a window within `reach` of boxes; None if there are none."""
     if not boxes:
         return None
     lefts, lows, rights, highs = zip(*boxes, strict=True)
@@ -315,8 +320,10 @@ def window_of(boxes: Sequence[Box], window: Window, reach: float) -> Window | No
     return math.floor(left), math.floor(low), math.ceil(right), math.ceil(high)
 
 
-def _put(canvas: FloatArray, window: Window, layer: FloatArray, part: Window, mode: str) -> None:
-    """Puts a layer over a part of a canvas."""
+def _blend_part(
+    canvas: FloatArray, window: Window, layer: FloatArray, part: Window, mode: str
+) -> None:
+    """Blends a layer into a part of a canvas."""
     rows = slice(part[1] - window[1], part[3] - window[1])
     columns = slice(part[0] - window[0], part[2] - window[0])
     canvas[rows, columns] = blend(canvas[rows, columns], layer, mode)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""From elements to a tree of what is painted, in the order in which it is."""
+"""Building the tree of a document."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -18,11 +18,11 @@ from ..model.values import Paint
 from ..model.view_boxes import fit_view_box
 from ..model.warnings import Warnings
 from ..paint.bounds import object_bounds
-from ..paint.clip_paths import clipped
+from ..paint.clip_paths import apply_clip_path
 from ..paint.images import Images, draw_image
 from ..paint.markers import MARKED, draw_markers
-from ..paint.masks import masks_of
-from ..paint.paints import paint_order, resolved, stroke_of
+from ..paint.masks import read_masks
+from ..paint.paints import paint_order, resolve_paint, resolve_stroke
 from ..read.basic_shapes import BASIC_SHAPES
 from ..read.context import Context, Sources
 from ..read.document import Document, SvgElement, read_document
@@ -45,21 +45,21 @@ from ..read.tags import NOT_DRAWN
 
 Tell = Callable[[float], None]
 
-# Squares of larger coordinates might not be finite.
+# Squares of larger coordinates might overflow.
 _LARGEST = 1e100
 _SMALLEST_DETERMINANT = 1e-40
 _MAX_NESTED = 8
-# Of the larger side: what rounding makes of a page that fits.
-_SLACK = 1e-9
+# Relative rounding error allowed when comparing the page with an image.
+_PAGE_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
-class _Drawn:
-    """An outline that is painted.
+class _PaintableOutline:
+    """An outline to paint.
 
     Attributes:
-        box: Around it.
-        bounds: The box that shares of it are of; None where there is none.
+        box: Its bounding box.
+        bounds: The bounding box for relative units; None if there is none.
     """
 
     outline: Outline
@@ -68,12 +68,12 @@ class _Drawn:
 
 
 class Drawing:
-    """What a document paints.
+    """A document's tree, with its page.
 
     Attributes:
-        page: How large it is.
-        tree: What is on it, in its units.
-        background: The color of the page; None where it has none.
+        page: The size and view box.
+        tree: The contents, in user units of the root.
+        background: The background color; None if there is none.
     """
 
     def __init__(
@@ -84,40 +84,40 @@ class Drawing:
         report: Tell,
         fonts: FontSources,
     ) -> None:
-        walk = TreeBuilder(document, warnings, report, 0, Budget(document.count), fonts)
-        self.page = walk.page
+        builder = TreeBuilder(document, warnings, report, 0, Budget(document.count), fonts)
+        self.page = builder.page
         self.tree = Group(is_isolated=True)
         self._is_open = (
-            walk.sources.sheets.declared(document.root).get("overflow") in VISIBLE_OVERFLOW
+            builder.sources.sheets.declared(document.root).get("overflow") in VISIBLE_OVERFLOW
         )
-        self.background = read_background(walk.sources, colors)
-        walk.draw_in(IDENTITY, (), self.tree, colors)
+        self.background = read_background(builder.sources, colors)
+        builder.draw_in(IDENTITY, (), self.tree, colors)
 
     def placement(self, width: float, height: float) -> tuple[Matrix, tuple[Clip, ...]]:
-        """From the tree's units to pixels of an image, with y upwards; and what it is cut off at.
+        """Returns the matrix from the tree's units to pixels of an image, y upwards, and the clips.
 
-        The page is all of an image that has its proportions.
+        An image with the proportions of the page needs no clips.
         """
         to_pixels = self.page.placement(width, height)
         left, low, right, high = transform_box(self.page.shown(), to_pixels)
-        slack = _SLACK * max(width, height)
+        slack = _PAGE_TOLERANCE * max(width, height)
         if left <= slack and low <= slack and right >= width - slack and high >= height - slack:
             return to_pixels, ()
         return to_pixels, self._clips()
 
     def placed(self, scale: float, x: float, y: float) -> tuple[Matrix, tuple[Clip, ...]]:
-        """The same where the lower left corner of the page is at (x, y), enlarged by a factor."""
+        """Returns the same for a page scaled by a factor, with its lower left corner at (x, y)."""
         to_pixels = self.page.placement(scale * self.page.width, scale * self.page.height)
         return multiplied((1.0, 0.0, 0.0, 1.0, x, y), to_pixels), self._clips()
 
     def _clips(self) -> tuple[Clip, ...]:
-        """What the drawing is cut off at: its page."""
+        """Returns the clip at the page, unless overflow is visible."""
         if self._is_open:
             return ()
         return (make_box_clip(self.page.shown(), IDENTITY),)
 
     def background_in(self, to_pixels: Matrix) -> Shape | None:
-        """The page as a shape of its color; None where it has none."""
+        """Returns the page filled with the background color; None if there is none."""
         if self.background is None:
             return None
         left, low, right, high = transform_box(self.page.shown(), to_pixels)
@@ -127,7 +127,7 @@ class Drawing:
 
 
 class TreeBuilder:
-    """Draws the elements of a document."""
+    """Builds a tree from the elements of a document."""
 
     def __init__(
         self,
@@ -141,7 +141,7 @@ class TreeBuilder:
         sheets = StyleSheets(document, warnings, lambda share: report(0.5 * share))
         servers = PaintServers(document, sheets, warnings)
         check_repetition(document, sheets)
-        own = fonts.with_rules(sheets.font_rules, warnings)
+        document_fonts = fonts.with_rules(sheets.font_rules, warnings)
         self._fonts = fonts
         self.sources = Sources(
             document,
@@ -149,19 +149,19 @@ class TreeBuilder:
             servers,
             warnings,
             budget,
-            own,
+            document_fonts,
             document.folder,
             measure=object_bounds,
         )
         self.page: Page = read_page(self.sources)
         self._report = report
         self._depth = depth
-        self._images = Images(self._nested)
+        self._images = Images(self._read_nested)
 
     def draw_in(
         self, matrix: Matrix, clips: tuple[Clip, ...], target: Group, colors: Colors
     ) -> None:
-        """Draws all of it; the matrix leads from its units to those of the tree."""
+        """Adds all items to a group; the matrix leads from the document's units to the tree's."""
         sources = self.sources
         size = (self.page.view.width, self.page.view.height)
         root = sources.document.root
@@ -171,13 +171,13 @@ class TreeBuilder:
             element, context = sources.waiting.pop()
             count += 1
             if count % 100 == 0:
-                # With `use` there may be more than there are elements.
+                # `use` may repeat more elements than the file has.
                 self._report(0.5 + 0.5 * min(count / sources.document.count, 0.99))
             sources.budget.take_element()
             sources.schedule(self._visit(element, context))
 
     def _visit(self, element: SvgElement, context: Context) -> Iterator[tuple[SvgElement, Context]]:
-        """Paints an element; yields those in it."""
+        """Paints an element; yields its children."""
         sources = self.sources
         tag, declared = element.tag, sources.sheets.declared(element)
         if tag == "script":
@@ -195,7 +195,7 @@ class TreeBuilder:
         if foreign:
             effect = "replaced by what follows it" if element[-1] not in foreign else "left out"
             sources.warnings.unsupported(f"<{FOREIGN}>", effect, element.line)
-        inside = self._within(element, enter_element(element, context, sources))
+        inside = self._enter_effects(element, enter_element(element, context, sources))
         if inside is None:
             return
         if tag in BASIC_SHAPES:
@@ -210,11 +210,11 @@ class TreeBuilder:
             if tag in ("svg", "symbol") and element is not sources.document.root:
                 inside = enter_viewport(element, inside, sources)
             if inside is not None:
-                place = replace(inside, use=None)
-                yield from ((child, place) for child in rendered_children(element))
+                child_context = replace(inside, use=None)
+                yield from ((child, child_context) for child in rendered_children(element))
 
-    def _within(self, element: SvgElement, context: Context) -> Context | None:
-        """The context within an element's opacity, mask and clip path; None where nothing shows."""
+    def _enter_effects(self, element: SvgElement, context: Context) -> Context | None:
+        """Applies opacity, filters, masks and clip path; returns None if nothing is visible."""
         style, sources = context.style, self.sources
         if abs(determinant(context.matrix)) < _SMALLEST_DETERMINANT or style.opacity == 0.0:
             return None
@@ -222,9 +222,9 @@ class TreeBuilder:
         for name in declared.keys() & UNSUPPORTED.keys():
             if declared[name].lower() not in UNSUPPORTED[name]:
                 sources.warnings.unsupported(name, "ignored", element.line)
-        inside = clipped(element, context, sources)
+        inside = apply_clip_path(element, context, sources)
         filters = filters_of(element, context, sources, self._images)
-        masks = masks_of(element, context, sources)
+        masks = read_masks(element, context, sources)
         if inside is None or masks is None:
             return None
         is_isolated = (
@@ -258,10 +258,10 @@ class TreeBuilder:
         outline = self.sources.outline(element, context.units)
         box = outline.bounds() if outline is not None else None
         if outline is not None and box is not None and context.style.visibility == "visible":
-            self._paint_outline(element, context, _Drawn(outline, box, box))
+            self._paint_outline(element, context, _PaintableOutline(outline, box, box))
 
     def _paint_text(self, element: SvgElement, context: Context) -> None:
-        # Fonts take modules that those who draw no text need not wait for.
+        # Font modules load slowly, and drawings without text do not need them.
         from ..text.color_glyphs import ColoredPiece, draw_colored
         from ..text.text_elements import drawn_text
 
@@ -270,13 +270,15 @@ class TreeBuilder:
             if isinstance(piece, ColoredPiece):
                 draw_colored(piece, context, self.sources)
                 continue
-            place = replace(context, style=piece.style)
-            outline = _Drawn(piece.outline, piece.box, drawn.bounds)
-            self._paint_outline(piece.element, place, outline)
+            piece_context = replace(context, style=piece.style)
+            outline = _PaintableOutline(piece.outline, piece.box, drawn.bounds)
+            self._paint_outline(piece.element, piece_context, outline)
 
-    def _paint_outline(self, element: SvgElement, context: Context, drawn: _Drawn) -> None:
+    def _paint_outline(
+        self, element: SvgElement, context: Context, drawn: _PaintableOutline
+    ) -> None:
         style, outline = context.style, drawn.outline
-        stroke = stroke_of(element, context, outline, self.sources)
+        stroke = resolve_stroke(element, context, outline, self.sources)
         for part in paint_order(style.paint_order):
             if part == "fill" and element.tag != "line":
                 self._add(element, context, drawn, style.fill, style.fill_opacity, None)
@@ -289,16 +291,16 @@ class TreeBuilder:
         self,
         element: SvgElement,
         context: Context,
-        drawn: _Drawn,
+        drawn: _PaintableOutline,
         paint: Paint,
         opacity: float,
         stroke: Stroke | None,
     ) -> None:
-        found = resolved(element, context, drawn.bounds, paint, opacity, self.sources)
-        if found is None:
+        resolved_paint = resolve_paint(element, context, drawn.bounds, paint, opacity, self.sources)
+        if resolved_paint is None:
             return
         if stroke is not None and self._is_unscaled(element):
-            context, drawn, found = self._on_page(context, drawn, found)
+            context, drawn, resolved_paint = self._to_page(context, drawn, resolved_paint)
         outline = drawn.outline
         margin = 0.0
         if stroke is not None:
@@ -312,7 +314,7 @@ class TreeBuilder:
                 f"<{element.tag}>", "left out, as it is too far away", element.line
             )
             return
-        # As browsers: what is drawn fast has no soft edges either.
+        # As in browsers, optimizeSpeed turns off antialiasing, too.
         is_crisp = element.tag != "text" and context.style.shape_rendering in (
             "crispedges",
             "optimizespeed",
@@ -321,18 +323,23 @@ class TreeBuilder:
         rule = context.style.fill_rule
         matrix, clips = context.matrix, context.clips
         context.target.items.append(
-            Painted(outline, rule, matrix, found, stroke, clips, box, element.line, is_crisp)
+            Painted(
+                outline, rule, matrix, resolved_paint, stroke, clips, box, element.line, is_crisp
+            )
         )
 
     def _is_unscaled(self, element: SvgElement) -> bool:
-        """Whether strokes are as wide as they say on the page, however an element is moved."""
+        """Returns whether the stroke width is in pixels of the page, whatever the transform."""
         effect = self.sources.sheets.declared(element).get("vector-effect", "none")
         return effect.strip().lower() == "non-scaling-stroke"
 
-    def _on_page(
-        self, context: Context, drawn: _Drawn, paint: tuple[float, ...] | Gradient | Pattern
-    ) -> tuple[Context, _Drawn, tuple[float, ...] | Gradient | Pattern]:
-        """The same in pixels of the page."""
+    def _to_page(
+        self,
+        context: Context,
+        drawn: _PaintableOutline,
+        paint: tuple[float, ...] | Gradient | Pattern,
+    ) -> tuple[Context, _PaintableOutline, tuple[float, ...] | Gradient | Pattern]:
+        """Converts an outline and its paint to pixels of the page."""
         page = self.page
         to_page = fit_view_box(page.view, page.aspect, page.width, page.height)
         own = multiplied(to_page, context.matrix)
@@ -341,10 +348,10 @@ class TreeBuilder:
             paint = replace(paint, matrix=multiplied(own, paint.matrix))
         box = outline.bounds() or drawn.box
         context = replace(context, matrix=inverse(to_page))
-        return context, _Drawn(outline, box, drawn.bounds), paint
+        return context, _PaintableOutline(outline, box, drawn.bounds), paint
 
-    def _nested(self, data: bytes, name: str) -> "TreeBuilder":
-        """A drawing in this one; nothing in it comes from other files."""
+    def _read_nested(self, data: bytes, name: str) -> "TreeBuilder":
+        """Reads a nested drawing, which may not refer to files."""
         if self._depth >= _MAX_NESTED:
             raise ValueError(f"as drawings are nested more than {_MAX_NESTED} deep")
         document = read_document(data, lambda _: None)

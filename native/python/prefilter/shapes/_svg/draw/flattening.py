@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""A tree as shapes one over another, as far as these show the same."""
+"""Flattening: a tree as shapes over each other, as far as these can show it."""
 
 from collections.abc import Iterator
 
@@ -15,24 +15,24 @@ class FlatTree:
 
     Args:
         group: The tree.
-        warnings: Gets what looks different without layers.
+        warnings: Receives effects that need layers.
 
     Attributes:
-        painted: First what is below, each with the opacity of the groups around it.
+        painted: Outlines from bottom to top, each with the product of its groups' opacities.
     """
 
     def __init__(self, group: Group, warnings: Warnings) -> None:
-        self._layering = LayerPlanner()
+        self._layers = LayerPlanner()
         self._warnings = warnings
         self.painted = list(self._outlines(group, IDENTITY, 1.0))
 
     def _outlines(
         self, group: Group, matrix: Matrix, opacity: float
     ) -> Iterator[tuple[Painted, float]]:
-        for placed in self._layering.placed(group, matrix, (), opacity):
+        for placed in self._layers.placed(group, matrix, (), opacity):
             item = placed.item
             if isinstance(item, Group):
-                self._report(item)
+                self._warn(item)
                 yield from self._outlines(item, matrix, placed.opacity * item.opacity)
             elif isinstance(item, Picture):
                 self._warnings.unsupported("<image>", "left out", item.line)
@@ -41,7 +41,7 @@ class FlatTree:
             else:
                 yield item, placed.opacity
 
-    def _report(self, group: Group) -> None:
+    def _warn(self, group: Group) -> None:
         if group.filter is not None:
             self._warnings.unsupported("filter", "ignored", group.line)
         if group.masks:

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Which groups of a tree need a layer of their own, and which show the same item by item."""
+"""Decides which groups need a layer, and which look the same drawn item by item."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ...affine import IDENTITY, Matrix
-from ..filters.evaluation import reach_of
+from ..filters.evaluation import filter_reach
 from ..model.tree import (
     Box,
     Clip,
@@ -25,12 +25,12 @@ _MAX_COMPARED = 200
 
 @dataclass(frozen=True, slots=True)
 class PlacedItem:
-    """What is drawn by itself.
+    """An item to draw by itself.
 
     Attributes:
-        matrix: From its tree's units to pixels.
-        opacity: Of the groups around it.
-        around: What it is cut off at beside its own clips.
+        matrix: From the tree's units to pixels.
+        opacity: Product of its groups' opacities.
+        around: Clips of its groups, in addition to its own.
     """
 
     item: Item
@@ -40,7 +40,7 @@ class PlacedItem:
 
 
 class LayerPlanner:
-    """Takes trees apart; knows the groups that it has seen."""
+    """Splits trees into items; caches the decision for each group."""
 
     def __init__(self) -> None:
         self._known: dict[Group, bool] = {}
@@ -48,7 +48,7 @@ class LayerPlanner:
     def placed(
         self, group: Group, matrix: Matrix, around: tuple[Clip, ...] = (), opacity: float = 1.0
     ) -> Iterator[PlacedItem]:
-        """Yields outlines, pictures and groups with layers, first what is below."""
+        """Yields outlines, images and groups with layers, bottom first."""
         for item in group.items:
             if isinstance(item, Group) and not self.needs_layer(item):
                 yield from self.placed(item, matrix, around, opacity * item.opacity)
@@ -56,7 +56,7 @@ class LayerPlanner:
                 yield PlacedItem(item, matrix, opacity, around)
 
     def needs_layer(self, group: Group) -> bool:
-        """Whether a group looks different from its items, drawn one by one."""
+        """Returns whether a group would look different drawn item by item."""
         if group not in self._known:
             self._known[group] = (
                 bool(group.masks)
@@ -68,7 +68,7 @@ class LayerPlanner:
         return self._known[group]
 
     def _is_mixing(self, group: Group) -> bool:
-        """Whether something in a group is mixed with what is below it."""
+        """Returns whether items of a group blend with their backdrop."""
         inner = [item for item in group.items if isinstance(item, Group)]
         return any(
             item.blend != "normal" or (not self.needs_layer(item) and self._is_mixing(item))
@@ -76,7 +76,7 @@ class LayerPlanner:
         )
 
     def _is_overlapping(self, group: Group) -> bool:
-        items = [placed.item for placed in self.placed(group, _UNUSED)]
+        items = [placed.item for placed in self.placed(group, _ANY_MATRIX)]
         if any(isinstance(item, Group) for item in items) or len(items) > _MAX_COMPARED:
             return True
         boxes = [item.box for item in items if not isinstance(item, Group)]
@@ -87,16 +87,16 @@ class LayerPlanner:
         )
 
 
-_UNUSED: Matrix = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
+_ANY_MATRIX: Matrix = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
 
 
 def is_plain(item: Item) -> bool:
-    """Whether an item is an outline of a color or gradient."""
+    """Returns whether an item is an outline with a color or gradient."""
     return isinstance(item, Painted) and not isinstance(item.paint, Pattern)
 
 
-def bounds_of(item: Item) -> Iterator[Box]:
-    """Yields boxes, in the tree's units, that hold what shows of an item."""
+def item_bounds(item: Item) -> Iterator[Box]:
+    """Yields boxes that contain an item's visible parts, in the tree's units."""
     box: Box | None
     if not isinstance(item, Group):
         box = item.box
@@ -104,7 +104,7 @@ def bounds_of(item: Item) -> Iterator[Box]:
         box = filtered_region(item)
     else:
         for inner in item.items:
-            yield from bounds_of(inner)
+            yield from item_bounds(inner)
         return
     for clip in item.clips:
         box = intersect_boxes(box, clip.bounds) if box and clip.bounds else None
@@ -113,21 +113,21 @@ def bounds_of(item: Item) -> Iterator[Box]:
 
 
 def filtered_region(group: Group) -> Box | None:
-    """Where the result of a group's filter ends, in the tree's units; None where it is nothing."""
+    """Returns the box of a filter's result, in the tree's units; None if it is empty."""
     filter_ = group.filter
     assert filter_ is not None
     if filter_.region is not None:
         return transform_box(filter_.region, filter_.matrix)
     box: Box | None = None
     for item in group.items:
-        for inner in bounds_of(item):
+        for inner in item_bounds(item):
             box = unite_boxes(box, inner)
     if box is None:
         return None
-    more = reach_of(filter_, IDENTITY)
+    more = filter_reach(filter_, IDENTITY)
     return box[0] - more, box[1] - more, box[2] + more, box[3] + more
 
 
 def leaf_count(group: Group) -> int:
-    """How many outlines and pictures there are."""
+    """Counts outlines and images."""
     return sum(1 for _ in leaves(group))

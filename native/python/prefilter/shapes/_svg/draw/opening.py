@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""From a file to a drawing."""
+"""Opening of drawings."""
 
 import os
 from collections.abc import Callable, Iterable, Iterator
@@ -22,10 +22,10 @@ def open_drawing(
     report: Callable[[float], None],
     fonts: Iterable[str | os.PathLike[str]] | None,
 ) -> tuple[str, Drawing, Warnings]:
-    """Reads a drawing, and images beside it if it is to. See `prefilter.read_svg`.
+    """Reads a drawing, with images in its folder if `reads_files`. See `prefilter.read_svg`.
 
     Returns:
-        What messages call it, the drawing, and what is wrong with it.
+        Its name in messages, the drawing, and warnings.
     """
     places = FontSources(fonts)
     document = read_document(source, lambda share: report(0.3 * share))
@@ -41,7 +41,7 @@ def open_drawing(
 
 @contextmanager
 def as_value_errors(name: str) -> Iterator[None]:
-    """Has what is too large or too deep refused as a ValueError that names the drawing."""
+    """Converts limit and recursion errors into a ValueError that names the drawing."""
     try:
         yield
     except RecursionError:

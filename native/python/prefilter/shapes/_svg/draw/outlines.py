@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Outlines of a tree as shapes in pixels, cut off exactly at what they are clipped by."""
+"""Outlines of a tree as shapes in pixels, clipped exactly."""
 
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -15,15 +15,14 @@ from ..model.gradients import Gradient
 from ..model.limits import TooLargeError
 from ..model.tree import Box, Clip, Group, Painted, Picture, contains_box, intersect_boxes
 
-# Pixels farther away than this are not looked at: what an outline has there is drawn together, so
-# that one far point takes nothing from what is near.
-_FARTHEST = float(1 << 21)
-# How far the outline of a stroke may be off, in pixels: 8-bit images do not show it.
+# Pixels. Coordinates beyond are clamped, so that one distant point costs no precision nearby.
+_MAX_COORDINATE = float(1 << 21)
+# Largest error of a stroke's outline, in pixels: invisible in 8-bit images.
 _STROKE_TOLERANCE = 1.0 / 1024.0
 
 
 class ShapeBuilder:
-    """Makes shapes, and keeps what clips let through."""
+    """Makes shapes; caches the regions of clips."""
 
     def __init__(self) -> None:
         self._regions: dict[tuple[Clip, Matrix], Shape] = {}
@@ -31,13 +30,13 @@ class ShapeBuilder:
     def shape(
         self, painted: Painted, matrix: Matrix, opacity: float, around: Sequence[Clip] = ()
     ) -> Shape | None:
-        """An outline with its paint; white for a pattern. None where nothing of it shows.
+        """Makes a shape with its paint, or white for a pattern; returns None if it is invisible.
 
         Args:
             painted: The outline.
-            matrix: From the tree's units to pixels, with y upwards.
+            matrix: From the tree's units to pixels, y upwards.
             opacity: Multiplies the paint.
-            around: What it is cut off at beside its own clips.
+            around: Clips in addition to the outline's own.
         """
         box, clips = painted.box, (*around, *painted.clips)
         if any(clip.bounds is None or intersect_boxes(box, clip.bounds) is None for clip in clips):
@@ -51,17 +50,17 @@ class ShapeBuilder:
             pen = asdict(painted.stroke)
             del pen["dash_count"]
             shape = shape.stroked(**pen, tolerance=_STROKE_TOLERANCE / scale)
-        shape = _near(shape.transformed(_rows(whole)))
+        shape = _clamp(shape.transformed(_rows(whole)))
         if painted.is_crisp:
-            shape = _crisp(shape)
+            shape = _snap_to_pixels(shape)
         if isinstance(painted.paint, Gradient):
             painted.paint.apply(shape, whole, opacity)
         elif isinstance(painted.paint, tuple):
             shape.color = tuple(opacity * value for value in painted.paint)
-        return self.clipped(shape, box, clips, matrix)
+        return self.clip(shape, box, clips, matrix)
 
-    def frame(self, picture: Picture, matrix: Matrix, around: Sequence[Clip]) -> Shape | None:
-        """What shows of a picture, likewise; None for nothing."""
+    def image_area(self, picture: Picture, matrix: Matrix, around: Sequence[Clip]) -> Shape | None:
+        """Makes a shape of an image's visible area; returns None if it is empty."""
         clips = (*around, *picture.clips)
         whole = multiplied(matrix, picture.matrix)
         hidden = any(
@@ -71,12 +70,12 @@ class ShapeBuilder:
             return None
         shape = Shape()
         shape.add_polygon([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
-        return self.clipped(shape.transformed(_rows(whole)), picture.box, clips, matrix)
+        return self.clip(shape.transformed(_rows(whole)), picture.box, clips, matrix)
 
-    def filtered(self, group: Group, clips: Sequence[Clip], matrix: Matrix) -> list[Shape]:
-        """What the result of a group's filter is cut off at: nothing, or a shape.
+    def filter_clip(self, group: Group, clips: Sequence[Clip], matrix: Matrix) -> list[Shape]:
+        """Returns the shape that clips a filter's result, or no shape if it is not clipped.
 
-        Pixels at the edges of an upright region are whole, so that clips alone cut it off.
+        Filter regions end at whole pixels if upright, and need no clip.
         """
         filter_ = group.filter
         assert filter_ is not None
@@ -90,19 +89,19 @@ class ShapeBuilder:
             shape.add_polygon([(left, top), (right, top), (right, bottom), (left, bottom)])
             shapes.append(shape.transformed(_rows(to_pixels)))
         while len(shapes) > 1:
-            shapes[-2:] = [_combined(shapes[-2], shapes[-1], "intersection")]
+            shapes[-2:] = [_combine(shapes[-2], shapes[-1], "intersection")]
         return shapes
 
-    def clipped(self, shape: Shape, box: Box, clips: Sequence[Clip], matrix: Matrix) -> Shape:
-        """What clips leave of a shape that lies within a box of the tree."""
+    def clip(self, shape: Shape, box: Box, clips: Sequence[Clip], matrix: Matrix) -> Shape:
+        """Clips a shape that lies within a box of the tree."""
         for clip in clips:
             if clip.is_box and clip.bounds is not None and contains_box(clip.bounds, box):
                 continue
-            shape = _combined(shape, self._region(clip, matrix), "intersection")
+            shape = _combine(shape, self._region(clip, matrix), "intersection")
         return shape
 
     def _region(self, clip: Clip, matrix: Matrix) -> Shape:
-        """What a clip lets through."""
+        """Returns the region of a clip."""
         key = (clip, matrix)
         if key not in self._regions:
             region: Shape | None = None
@@ -110,42 +109,42 @@ class ShapeBuilder:
                 whole = multiplied(matrix, part.matrix)
                 if determinant(whole) == 0.0:
                     continue
-                shape = _near(part.outline.shape(part.fill_rule).transformed(_rows(whole)))
+                shape = _clamp(part.outline.shape(part.fill_rule).transformed(_rows(whole)))
                 for inner in part.clips:
-                    shape = _combined(shape, self._region(inner, matrix), "intersection")
-                region = shape if region is None else _combined(region, shape, "union")
+                    shape = _combine(shape, self._region(inner, matrix), "intersection")
+                region = shape if region is None else _combine(region, shape, "union")
             region = Shape() if region is None else region
             for outer in clip.clips:
-                region = _combined(region, self._region(outer, matrix), "intersection")
+                region = _combine(region, self._region(outer, matrix), "intersection")
             self._regions[key] = region
         return self._regions[key]
 
 
-def _combined(first: Shape, second: Shape, operation: str) -> Shape:
-    """A set operation of what two shapes fill, with the paint of the first."""
+def _combine(first: Shape, second: Shape, operation: str) -> Shape:
+    """Combines the fills of two shapes; the first one's paint remains."""
     rules = first.fill_rule, second.fill_rule
     try:
         outline = first._outline.combined(rules[0], second._outline, rules[1], operation)
     except ValueError:
         raise TooLargeError("clip paths cannot cut what is more than 1e100 pixels away") from None
-    made = first._with(outline, first._paint)
-    made._fill_rule, made._winds_once = "nonzero", True
-    return made
+    combined = first._with(outline, first._paint)
+    combined._fill_rule, combined._winds_once = "nonzero", True
+    return combined
 
 
-def _near(shape: Shape) -> Shape:
-    """What a shape fills not too far away."""
+def _clamp(shape: Shape) -> Shape:
+    """Clamps a shape to coordinates below the limit."""
     bounds = shape.bounds
-    if bounds is None or max(abs(value) for point in bounds for value in point) <= _FARTHEST:
+    if bounds is None or max(abs(value) for point in bounds for value in point) <= _MAX_COORDINATE:
         return shape
-    return shape._with(shape._outline.within(_FARTHEST), shape._paint)
+    return shape._with(shape._outline.within(_MAX_COORDINATE), shape._paint)
 
 
-def _crisp(shape: Shape) -> Shape:
-    """The pixels whose centers a shape fills."""
-    made = shape._with(shape._outline.pixels(shape.fill_rule), shape._paint)
-    made._fill_rule, made._winds_once = "nonzero", True
-    return made
+def _snap_to_pixels(shape: Shape) -> Shape:
+    """Returns the pixels whose centers are inside a shape."""
+    snapped = shape._with(shape._outline.pixels(shape.fill_rule), shape._paint)
+    snapped._fill_rule, snapped._winds_once = "nonzero", True
+    return snapped
 
 
 def _rows(matrix: Matrix) -> np.ndarray:

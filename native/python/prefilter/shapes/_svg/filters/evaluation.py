@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What filters make of layers: W3C, Filter Effects Level 1.
+"""Evaluation of filters on pixels: W3C, Filter Effects Level 1.
 
-Images are (height, width, 4) with row 0 at the bottom, colors multiplied by alpha.
+Images are (height, width, 4) with row 0 at the bottom, colors premultiplied by alpha.
 """
 
 import math
@@ -28,21 +28,21 @@ Slices = tuple[slice, slice]
 """Rows and columns."""
 
 MAX_KEPT = 64
-"""Results of steps that later ones read: each is as large as the layer."""
-_AT_ONCE = 1 << 16
+"""Results kept for later steps; each is as large as the layer."""
+_PIXELS_PER_NOISE_BATCH = 1 << 16
 
 
 @dataclass
 class _Result:
-    """Pixels, whether their colors are decoded, and where a step ended."""
+    """Pixels of a step, whether their colors are decoded, and the step's subregion."""
 
     pixels: FloatArray
     is_linear: bool
     region: Slices
 
 
-def reach_of(filter_: Filter, matrix: Matrix) -> float:
-    """How far pixels may look for others, in pixels; the matrix leads to them from the tree."""
+def filter_reach(filter_: Filter, matrix: Matrix) -> float:
+    """Returns how far pixels depend on others, in pixels; `matrix` leads to them from the tree."""
     matrix = multiplied(matrix, filter_.matrix)
     total = 0.0
     for step in filter_.steps:
@@ -59,27 +59,27 @@ def reach_of(filter_: Filter, matrix: Matrix) -> float:
     return total + 1.0
 
 
-def filtered(
+def apply_filter(
     draw: Callable[[Group], FloatArray],
     group: Group,
     filter_: Filter,
     matrix: Matrix,
     window: tuple[int, int, int, int],
 ) -> FloatArray:
-    """What a filter makes of a group.
+    """Applies a filter to a group.
 
     Args:
-        draw: Returns the pixels of what is in a group.
+        draw: Returns the pixels of a group's contents.
         group: The group.
         filter_: The filter.
-        matrix: From the filter's units to pixels, without turns but by right angles.
-        window: The pixels that are drawn: left, low, right, high.
+        matrix: From the filter's units to pixels, with rotations by right angles only.
+        window: Pixels to return: left, low, right, high.
     """
-    return _Filtering(draw, group, filter_, matrix, window).result()
+    return _FilterRun(draw, group, filter_, matrix, window).result()
 
 
-class _Filtering:
-    """The steps of a filter and what they have made so far."""
+class _FilterRun:
+    """The steps of a filter, with the results so far."""
 
     def __init__(
         self,
@@ -95,7 +95,7 @@ class _Filtering:
         self._matrix = matrix
         self._corner = left, low
         self._shape = high - low, right - left
-        # To pixels of the window, from its upper left corner.
+        # From the filter's units to pixels of the window, y downwards from its top.
         self._down = multiplied((1.0, 0.0, 0.0, -1.0, -left, high), matrix)
         self._region = self._slices(filter_.region)
         self._source = _cut(draw(group), self._region)
@@ -109,30 +109,30 @@ class _Filtering:
         }
 
     def result(self) -> FloatArray:
-        """What the last step makes, in the layer's colors."""
+        """Returns the last step's result, in the layer's color encoding."""
         if not self._filter.steps:
             return np.zeros_like(self._source)
         for index, step in enumerate(self._filter.steps):
             inputs = [self._named.get(name, self._last) for name in step.inputs]
             region = self._region_of(step, inputs)
-            # What `feImage` shows is drawn as the layer is.
+            # The contents of `feImage` are drawn in the layer's encoding.
             is_linear = self._filter.is_linear if step.kind == "feImage" else step.is_linear
-            made = self._made(step, inputs, region)
-            self._last = _Result(_cut(made, region), is_linear, region)
+            pixels = self._evaluate(step, inputs, region)
+            self._last = _Result(_cut(pixels, region), is_linear, region)
             if step.result:
                 self._named[step.result] = self._last
             self._forget(index)
         return _with_colors(self._last, self._filter.is_linear)
 
     def _forget(self, index: int) -> None:
-        """Lets results go that no step after that one reads."""
+        """Drops results that no later step reads."""
         read = {name for step in self._filter.steps[index + 1 :] for name in step.inputs}
         self._named = {name: kept for name, kept in self._named.items() if name in read}
         if len(self._named) > MAX_KEPT:
             raise TooLargeError(f"a filter keeps the results of more than {MAX_KEPT} steps")
 
     def _region_of(self, step: Step, inputs: list[_Result]) -> Slices:
-        """Where a step ends: as it says, or with its inputs."""
+        """Returns a step's subregion: its own, or the union of its inputs'."""
         if step.region is not None:
             return _common(self._region, self._slices(step.region))
         if not inputs or step.kind == "feTile":
@@ -143,7 +143,7 @@ class _Filtering:
         )
         return rows, columns
 
-    def _made(self, step: Step, inputs: list[_Result], region: Slices) -> FloatArray:
+    def _evaluate(self, step: Step, inputs: list[_Result], region: Slices) -> FloatArray:
         if step.kind == "feMerge":
             return self._merged(inputs, step.is_linear)
         images = [_with_colors(each, step.is_linear) for each in inputs]
@@ -172,9 +172,9 @@ class _Filtering:
                 return extreme(images[0], x, y, is_largest=step.name == "dilate")
             case "feConvolveMatrix":
                 change = partial(convolved, numbers=numbers, edge_mode=step.name)
-                return self._changed(images[0], change)
+                return self._map_region(images[0], change)
             case "feDiffuseLighting" | "feSpecularLighting":
-                return self._changed(images[0], partial(self._lit, step=step))
+                return self._map_region(images[0], partial(self._lit, step=step))
             case "feTurbulence":
                 return self._noise(step, region)
             case "feImage" if step.group is not None:
@@ -182,21 +182,21 @@ class _Filtering:
             case _:
                 return np.zeros_like(self._source)
 
-    def _changed(
+    def _map_region(
         self, pixels: FloatArray, change: Callable[[FloatArray], FloatArray]
     ) -> FloatArray:
-        """The filter's region after a change, which takes it with the top row first."""
-        found = np.zeros_like(pixels)
+        """Applies a function of images with the top row first to the filter region."""
+        mapped = np.zeros_like(pixels)
         if pixels[self._region].size:
-            found[self._region] = change(pixels[self._region][::-1])[::-1]
-        return found
+            mapped[self._region] = change(pixels[self._region][::-1])[::-1]
+        return mapped
 
     def _lit(self, pixels: FloatArray, step: Step) -> FloatArray:
         numbers = list(step.numbers)
         color = np.array([[numbers[3:6]]], np.float32)
         numbers[3:6] = (to_linear(color) if step.is_linear else color)[0, 0].tolist()
         a, b, c, d, e, f = self._down
-        # Heights grow along with the picture, so that slopes stay.
+        # Heights scale with the image, so that slopes are preserved.
         scale = math.sqrt((a * a + b * b + c * c + d * d) / 2.0)
         numbers[0] *= scale
         if step.name != "feDistantLight":
@@ -211,7 +211,7 @@ class _Filtering:
         return lit(alpha, step.kind, step.name, tuple(numbers))
 
     def _noise(self, step: Step, region: Slices) -> FloatArray:
-        found = np.zeros_like(self._source)
+        pixels = np.zeros_like(self._source)
         a, b, c, d, e, f = inverse(self._down)
         rows, columns = region
         top, bottom = self._shape[0] - rows.stop, self._shape[0] - rows.start
@@ -220,9 +220,9 @@ class _Filtering:
             box = (float(columns.start), float(top), float(columns.stop), float(bottom))
             left, upper, right, lower = transform_box(box, (a, b, c, d, e, f))
             tile = left, upper, right - left, lower - upper
-        inside = found[region][::-1]
-        # Some rows at a time, as numbers on the way take much memory.
-        count = max(_AT_ONCE // max(columns.stop - columns.start, 1), 1)
+        inside = pixels[region][::-1]
+        # Limits the memory of intermediate results.
+        count = max(_PIXELS_PER_NOISE_BATCH // max(columns.stop - columns.start, 1), 1)
         for begin in range(0, bottom - top, count):
             part = inside[begin : begin + count]
             x, y = np.meshgrid(
@@ -239,7 +239,7 @@ class _Filtering:
             )
             straight[..., :3] *= straight[..., 3:]
             part[...] = straight
-        return found
+        return pixels
 
     def _merged(self, inputs: list[_Result], is_linear: bool) -> FloatArray:
         merged = np.zeros_like(self._source)
@@ -248,9 +248,11 @@ class _Filtering:
         return merged
 
     def _flood(self, color: tuple[float, ...], is_linear: bool) -> FloatArray:
-        one = np.array([[[*(value * color[3] for value in color[:3]), color[3]]]], np.float32)
-        one = _with_colors(_Result(one, False, self._region), is_linear)
-        return np.broadcast_to(one, self._source.shape).copy()
+        color_pixel = np.array(
+            [[[*(value * color[3] for value in color[:3]), color[3]]]], np.float32
+        )
+        color_pixel = _with_colors(_Result(color_pixel, False, self._region), is_linear)
+        return np.broadcast_to(color_pixel, self._source.shape).copy()
 
     def _shadowed(self, step: Step, source: FloatArray) -> FloatArray:
         numbers = step.numbers
@@ -260,7 +262,7 @@ class _Filtering:
         return blend(self._flood(color, step.is_linear) * alpha, source, "normal")
 
     def _slices(self, region: Box | None) -> Slices:
-        """The pixels that a region touches."""
+        """Returns the pixels that a region touches."""
         height, width = self._shape
         if region is None:
             return slice(0, height), slice(0, width)
@@ -285,20 +287,20 @@ def _common(one: Slices, other: Slices) -> Slices:
 
 
 def _cut(pixels: FloatArray, region: Slices) -> FloatArray:
-    """The pixels of a region; others are transparent."""
-    found = np.zeros_like(pixels)
-    found[region] = pixels[region]
-    return found
+    """Makes pixels outside a region transparent."""
+    cut = np.zeros_like(pixels)
+    cut[region] = pixels[region]
+    return cut
 
 
 def is_upright(matrix: Matrix) -> bool:
-    """Whether a matrix turns by right angles alone."""
+    """Returns whether a matrix rotates by right angles only."""
     a, b, c, d = map(abs, matrix[:4])
     return max(b, c) <= 1e-9 * max(a, d) or max(a, d) <= 1e-9 * max(b, c)
 
 
 def _lengths(lengths: tuple[float, ...], matrix: Matrix) -> tuple[float, float]:
-    """Along x and y, in pixels."""
+    """Converts lengths along x and y to pixels."""
     a, b, c, d = matrix[:4]
     x, y = lengths[0] * math.sqrt(a * a + b * b), lengths[1] * math.sqrt(c * c + d * d)
     return (x, y) if abs(a) >= abs(b) else (y, x)
@@ -310,12 +312,12 @@ def _direction(move: tuple[float, ...], matrix: Matrix) -> tuple[float, float]:
 
 
 def _with_colors(result: _Result, is_linear: bool) -> FloatArray:
-    """Pixels with decoded colors, or with encoded ones."""
+    """Returns pixels with decoded or encoded colors."""
     pixels = result.pixels
     if result.is_linear == is_linear:
         return pixels
-    found = pixels.copy()
+    converted = pixels.copy()
     colors = straight_colors(pixels)
     changed = to_linear(colors) if is_linear else to_srgb(colors)
-    found[..., :3] = changed * pixels[..., 3:]
-    return found
+    converted[..., :3] = changed * pixels[..., 3:]
+    return converted

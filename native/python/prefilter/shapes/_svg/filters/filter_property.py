@@ -9,7 +9,7 @@ from ..model.tree import Box, Filter, Group, Step, transform_box
 from ..model.values import Length
 from ..paint.bounds import object_bounds
 from ..paint.images import Images, put_image
-from ..paint.masks import box_in_units, shares_of
+from ..paint.masks import fractions_to_box, read_region
 from ..read.context import Context, Sources
 from ..read.document import SvgElement
 from ..read.lengths import Units
@@ -64,10 +64,12 @@ def _referred(
 ) -> Filter:
     box = object_bounds(element, context, sources)
     context = replace(context, uses=(*context.uses, element))
-    region, matrix = box_in_units(found, "filterUnits", _DEFAULTS, box, context, sources)
+    region, matrix = read_region(found, "filterUnits", _DEFAULTS, box, context, sources)
     if region is None:
         return Filter((), _NOTHING, context.matrix, context.colors.is_linear)
-    units = shares_of(box) if found.get("primitiveUnits") == "objectBoundingBox" else IDENTITY
+    units = (
+        fractions_to_box(box) if found.get("primitiveUnits") == "objectBoundingBox" else IDENTITY
+    )
     place = FilterPlace(units or IDENTITY, transform_box(region, matrix))
     steps = tuple(
         _step(child, place, context, sources, images)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Layers of groups with a filter: upright, or as the group was before it was turned."""
+"""Layers of filtered groups, evaluated without rotation and then warped into place."""
 
 import math
 from collections.abc import Callable
@@ -12,47 +12,47 @@ import numpy.typing as npt
 from .... import _native
 from ...affine import Matrix, inverse, multiplied
 from ..model.tree import Box, Filter, Group, intersect_boxes, transform_box
-from .evaluation import filtered, is_upright, reach_of
-from .warping import turned_pixels
+from .evaluation import apply_filter, filter_reach, is_upright
+from .warping import warp_image
 
 FloatArray = npt.NDArray[np.float32]
 Window = tuple[int, int, int, int]
-"""Pixels: left, low, right, high; the last two are not in it."""
+"""Pixels: left, low, right, high; right and high are exclusive."""
 Draw = Callable[[Group, Matrix, Window], FloatArray]
-"""Returns the pixels of what is in a group; the matrix leads to them from the tree."""
+"""Returns the pixels of a group's contents; the matrix leads from the tree to pixels."""
 
-# What pixels of a turned image look at beside them.
-_SPARE = 3
+# Pixels around a region that warping reads.
+_MARGIN = 3
 
 
 def filtered_layer(
     draw: Draw, group: Group, box: Box, matrix: Matrix, window: Window, threads: int
 ) -> FloatArray:
-    """What the filter of a group makes of it.
+    """Draws a group and applies its filter.
 
     Args:
-        draw: Draws groups.
+        draw: Draws a group's contents.
         group: The group.
-        box: Where the result ends, in the tree's units.
-        matrix: From there to pixels.
-        window: The pixels to return.
-        threads: How many to use.
+        box: Bounds of the result, in the tree's units.
+        matrix: From the tree's units to pixels.
+        window: Pixels to return.
+        threads: Number of threads.
     """
     filter_ = _filter_of(group)
     to_pixels = multiplied(matrix, filter_.matrix)
-    # What is farther away than half a side is left out: it would take too much memory.
+    # Pixels beyond half a side are ignored, to limit memory.
     most = max(window[2] - window[0], window[3] - window[1]) / 2.0
-    reach = math.ceil(min(reach_of(filter_, matrix), most))
+    reach = math.ceil(min(filter_reach(filter_, matrix), most))
     left, low, right, high = window
     around = (float(left - reach), float(low - reach), float(right + reach), float(high + reach))
     if is_upright(to_pixels):
-        return _upright(
+        return _draw_upright(
             draw, group, transform_box(box, matrix), around, (matrix, to_pixels), window
         )
-    return _turned(draw, group, box, around, (matrix, to_pixels), window, threads)
+    return _draw_warped(draw, group, box, around, (matrix, to_pixels), window, threads)
 
 
-def _upright(
+def _draw_upright(
     draw: Draw, group: Group, box: Box, around: Box, ways: tuple[Matrix, Matrix], window: Window
 ) -> FloatArray:
     layer = np.zeros((window[3] - window[1], window[2] - window[0], 4), np.float32)
@@ -60,19 +60,19 @@ def _upright(
     shared = intersect_boxes((*map(float, window),), (*map(float, region),)) if region else None  # type: ignore[arg-type]
     if region is None or shared is None:
         return layer
-    made = _made(draw, group, ways, region)
+    pixels = _filter_region(draw, group, ways, region)
     left, low, right, high = map(int, shared)
     rows, columns = (
         slice(low - window[1], high - window[1]),
         slice(left - window[0], right - window[0]),
     )
-    layer[rows, columns] = made[
+    layer[rows, columns] = pixels[
         low - region[1] : high - region[1], left - region[0] : right - region[0]
     ]
     return layer
 
 
-def _turned(
+def _draw_warped(
     draw: Draw,
     group: Group,
     box: Box,
@@ -81,7 +81,7 @@ def _turned(
     window: Window,
     threads: int,
 ) -> FloatArray:
-    """The group is drawn as if it was not turned, and its filter's result is."""
+    """Draws and filters the group upright, and warps the result."""
     to_pixels = ways[1]
     filter_ = _filter_of(group)
     width, height = window[2] - window[0], window[3] - window[1]
@@ -97,33 +97,37 @@ def _turned(
     upright, region = placed()
     largest = max(region[2] - region[0], region[3] - region[1]) if region else 0
     if largest > most:
-        # What is sheared much would take many pixels.
+        # Limits the resolution under strong shear.
         across, along = (side * most / largest for side in (across, along))
         upright, region = placed()
     if region is None:
         return np.zeros((height, width, 4), np.float32)
     to_upright = multiplied(upright, inverse(filter_.matrix))
-    made = _made(draw, _grown(group, across, along), (to_upright, upright), region)
+    pixels = _filter_region(
+        draw, _extend_region(group, across, along), (to_upright, upright), region
+    )
     back = multiplied(
         (1.0, 0.0, 0.0, 1.0, -region[0], -region[1]), multiplied(upright, inverse(to_pixels))
     )
     back = multiplied(back, (1.0, 0.0, 0.0, 1.0, window[0], window[1]))
-    return turned_pixels(made, back, width, height, threads)
+    return warp_image(pixels, back, width, height, threads)
 
 
-def _made(draw: Draw, group: Group, ways: tuple[Matrix, Matrix], region: Window) -> FloatArray:
-    return filtered(
+def _filter_region(
+    draw: Draw, group: Group, ways: tuple[Matrix, Matrix], region: Window
+) -> FloatArray:
+    return apply_filter(
         lambda shown: draw(shown, ways[0], region), group, _filter_of(group), ways[1], region
     )
 
 
-def _grown(group: Group, across: float, along: float) -> Group:
-    """A group whose filter goes on beyond its region: what is turned is cut off later."""
+def _extend_region(group: Group, across: float, along: float) -> Group:
+    """Extends a filter's region by a margin for warping, which is clipped later."""
     filter_ = _filter_of(group)
     if filter_.region is None:
         return group
     left, top, right, bottom = filter_.region
-    x, y = _SPARE / across, _SPARE / along
+    x, y = _MARGIN / across, _MARGIN / along
     region = (left - x, top - y, right + x, bottom + y)
     return replace(group, filter=replace(filter_, region=region))
 
@@ -134,8 +138,8 @@ def _filter_of(group: Group) -> Filter:
 
 
 def _pixels(box: Box | None) -> Window | None:
-    """Those that a box touches, and some more."""
+    """Returns the pixels that a box touches, with a margin."""
     if box is None:
         return None
-    left, low = math.floor(box[0]) - _SPARE, math.floor(box[1]) - _SPARE
-    return left, low, math.ceil(box[2]) + _SPARE, math.ceil(box[3]) + _SPARE
+    left, low = math.floor(box[0]) - _MARGIN, math.floor(box[1]) - _MARGIN
+    return left, low, math.ceil(box[2]) + _MARGIN, math.ceil(box[3]) + _MARGIN

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Pictures and tiles of patterns, as pixels of an image see them."""
+"""Resampling of images and pattern tiles under affine maps."""
 
 import math
 from typing import Final
@@ -19,44 +19,43 @@ FloatArray = npt.NDArray[np.float32]
 
 _PICTURE_FILTER: Final = "lanczos2"
 _TILE_FILTER: Final = "mitchell"
-# From here on a picture that is shrunk more in one direction is shrunk in that one first.
-_UNEVEN = 1.25
+# Ratio of the two scales from which on an image is first shrunk in one direction alone.
+_MIN_ANISOTROPY = 1.25
 
 
-def picture_pixels(
+def draw_image_pixels(
     picture: Picture, matrix: Matrix, width: int, height: int, threads: int
 ) -> FloatArray:
-    """A picture on an image; what is beside it goes on as at its edges.
+    """Resamples an image of the tree; its edges extend outwards.
 
     Args:
-        picture: The picture.
-        matrix: From its tree's units to pixels.
-        width: Of the image, in pixels.
-        height: Likewise.
-        threads: How many to use.
+        matrix: From the tree's units to pixels.
+        width: In pixels.
+        height: In pixels.
+        threads: Number of threads.
     """
     rows, columns = picture.texels.shape[:2]
     whole = multiplied(matrix, picture.matrix)
     if picture.is_pixelated and _is_enlarged(whole, columns, rows):
         return _nearest(picture, whole, width, height)
     texels = _premultiplied(picture.texels, picture.is_linear)
-    texels = _evened(texels, whole, threads)
+    texels = _equalize_scales(texels, whole, threads)
     rows, columns = texels.shape[:2]
     to_texels = multiplied((columns, 0.0, 0.0, rows, 0.0, 0.0), inverse(whole))
-    return turned_pixels(texels, to_texels, width, height, threads)
+    return warp_image(texels, to_texels, width, height, threads)
 
 
-def tiled_pixels(
+def fill_with_tile(
     tile: FloatArray, to_tile: Matrix, width: int, height: int, threads: int
 ) -> FloatArray:
-    """A tile that is repeated, on an image.
+    """Resamples a repeating tile.
 
     Args:
         tile: (height, width, 4).
-        to_tile: From pixels to those of the tile.
-        width: Of the image, in pixels.
-        height: Likewise.
-        threads: How many to use.
+        to_tile: From pixels to the tile's pixels.
+        width: In pixels.
+        height: In pixels.
+        threads: Number of threads.
     """
     return resample(
         tile,
@@ -71,19 +70,19 @@ def tiled_pixels(
     )
 
 
-def turned_pixels(
+def warp_image(
     pixels: FloatArray, to_pixels: Matrix, width: int, height: int, threads: int
 ) -> FloatArray:
-    """An image on another one; what is beside it goes on as at its edges.
+    """Resamples an image under an affine map; its edges extend outwards.
 
     Args:
-        pixels: (height, width, 4), with colors multiplied by alpha.
+        pixels: (height, width, 4), colors premultiplied by alpha.
         to_pixels: From pixels of the result to those of the image.
-        width: Of the result, in pixels.
-        height: Likewise.
-        threads: How many to use.
+        width: Width of the result, in pixels.
+        height: Height of the result, in pixels.
+        threads: Number of threads.
     """
-    found = resample(
+    warped = resample(
         pixels,
         _rows(to_pixels),
         width,
@@ -93,9 +92,9 @@ def turned_pixels(
         premultiplied=True,
         threads=threads,
     )
-    # What rings leaves the range of colors.
-    np.clip(found, 0.0, 1.0, out=found)
-    return np.minimum(found, found[..., 3:])
+    # Ringing leaves the range of colors.
+    np.clip(warped, 0.0, 1.0, out=warped)
+    return np.minimum(warped, warped[..., 3:])
 
 
 def _is_enlarged(whole: Matrix, columns: int, rows: int) -> bool:
@@ -112,20 +111,20 @@ def _nearest(picture: Picture, whole: Matrix, width: int, height: int) -> FloatA
 
 
 def _premultiplied(texels: npt.NDArray[np.uint8], is_linear: bool) -> FloatArray:
-    found = texels.astype(np.float32) / np.float32(255.0)
+    colors = texels.astype(np.float32) / np.float32(255.0)
     if is_linear:
-        found[..., :3] = to_linear(found[..., :3])
-    found[..., :3] *= found[..., 3:]
-    return found
+        colors[..., :3] = to_linear(colors[..., :3])
+    colors[..., :3] *= colors[..., 3:]
+    return colors
 
 
-def _evened(texels: FloatArray, whole: Matrix, threads: int) -> FloatArray:
-    """Fewer texels in the direction in which a picture is shrunk more than in the other."""
+def _equalize_scales(texels: FloatArray, whole: Matrix, threads: int) -> FloatArray:
+    """Shrinks texels in the direction with the smaller scale, until both scales are equal."""
     rows, columns = texels.shape[:2]
     across = _native.hypot(*whole[:2]) / columns
     along = _native.hypot(*whole[2:4]) / rows
     least = min(across, along)
-    if least >= 1.0 or max(across, along) < _UNEVEN * least:
+    if least >= 1.0 or max(across, along) < _MIN_ANISOTROPY * least:
         return texels
     most = min(max(across, along), 1.0)
     width = columns if across > along else max(1, math.ceil(columns * across / most))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The box around an element, which units called objectBoundingBox are shares of."""
+"""Bounding boxes of elements: the objectBoundingBox of units."""
 
 from dataclasses import replace
 
@@ -17,21 +17,19 @@ _ZERO = Length(0.0)
 
 
 def object_bounds(element: SvgElement, context: Context, sources: Sources) -> Box | None:
-    """The box around what an element fills, in its own units; None where it fills nothing.
+    """Returns the bounding box of an element's fill, in its own units; None if it is empty.
 
     Args:
-        element: The element.
-        context: Within it.
-        sources: What it is read with.
+        context: The context within it.
     """
-    waiting = [(element, replace(context, matrix=IDENTITY))]
-    found: Box | None = None
-    while waiting:
+    pending = [(element, replace(context, matrix=IDENTITY))]
+    bounds: Box | None = None
+    while pending:
         sources.budget.take_measured()
-        each, place = waiting.pop()
-        found = unite_boxes(found, _own_bounds(each, place, sources))
-        waiting.extend(_inner(each, place, sources, is_outermost=each is element))
-    return found
+        each, inner_context = pending.pop()
+        bounds = unite_boxes(bounds, _own_bounds(each, inner_context, sources))
+        pending.extend(_inner(each, inner_context, sources, is_outermost=each is element))
+    return bounds
 
 
 def _own_bounds(element: SvgElement, context: Context, sources: Sources) -> Box | None:
@@ -40,7 +38,7 @@ def _own_bounds(element: SvgElement, context: Context, sources: Sources) -> Box 
         box = outline.bounds() if outline is not None else None
         return transform_box(box, context.matrix) if box is not None else None
     if element.tag == "text":
-        # Fonts take modules that those who draw no text need not wait for.
+        # Font modules load slowly, and drawings without text do not need them.
         from ..text.text_elements import drawn_text
 
         box = drawn_text(element, context, sources).bounds
@@ -57,20 +55,20 @@ def _own_bounds(element: SvgElement, context: Context, sources: Sources) -> Box 
 def _inner(
     element: SvgElement, context: Context, sources: Sources, *, is_outermost: bool
 ) -> list[tuple[SvgElement, Context]]:
-    """The elements in another one, each in its own units."""
+    """Returns an element's children, each with the context within it."""
     if element.tag == "use":
         inside = list(resolve_use(element, context, sources))
     elif element.tag in GROUPS:
-        place: Context | None = context
+        child_context: Context | None = context
         if element.tag in ("svg", "symbol") and not is_outermost:
-            place = enter_viewport(element, context, sources)
-        if place is None:
+            child_context = enter_viewport(element, context, sources)
+        if child_context is None:
             return []
-        inside = [(child, replace(place, use=None)) for child in rendered_children(element)]
+        inside = [(child, replace(child_context, use=None)) for child in rendered_children(element)]
     else:
         return []
     return [
-        (child, enter_element(child, place, sources))
-        for child, place in inside
+        (child, enter_element(child, child_context, sources))
+        for child, child_context in inside
         if child.tag not in NOT_DRAWN and sources.sheets.declared(child).get("display") != "none"
     ]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Clip paths: what is seen of an element is what their shapes fill."""
+"""Clip paths."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -17,11 +17,8 @@ from ..read.tags import NOT_DRAWN
 from .bounds import object_bounds
 
 
-def clipped(element: SvgElement, context: Context, sources: Sources) -> Context | None:
-    """The context within the clip path of an element, if it has one; None where nothing shows.
-
-    `context` is that within the element.
-    """
+def apply_clip_path(element: SvgElement, context: Context, sources: Sources) -> Context | None:
+    """Clips the context within an element at its clip path; returns None if nothing is visible."""
     text = sources.sheets.declared(element).get("clip-path", "none")
     if text.lower() == "none":
         return context
@@ -43,55 +40,59 @@ def clipped(element: SvgElement, context: Context, sources: Sources) -> Context 
 
 
 def _clip(path: SvgElement, element: SvgElement, context: Context, sources: Sources) -> Clip | None:
-    """What a clip path leaves of an element; None where that is nothing."""
-    place = replace(context, clips=(), uses=(*context.uses, path), use=None)
-    around = clipped(path, place, sources)
-    if around is None:
+    """Reads a clip path; returns None if it is empty."""
+    path_context = replace(context, clips=(), uses=(*context.uses, path), use=None)
+    outer = apply_clip_path(path, path_context, sources)
+    if outer is None:
         return None
-    inside = enter_element(path, place, sources)
+    inside = enter_element(path, path_context, sources)
     if path.get("clipPathUnits") == "objectBoundingBox":
         box = object_bounds(element, context, sources)
         if box is None or box[2] <= box[0] or box[3] <= box[1]:
             return None
-        shares = (box[2] - box[0], 0.0, 0.0, box[3] - box[1], box[0], box[1])
-        inside = replace(inside, matrix=multiplied(inside.matrix, shares), viewport=(1.0, 1.0))
+        to_box = (box[2] - box[0], 0.0, 0.0, box[3] - box[1], box[0], box[1])
+        inside = replace(inside, matrix=multiplied(inside.matrix, to_box), viewport=(1.0, 1.0))
     inside = replace(inside, style=sources.sheets.style(path))
     parts: list[ClipPart] = []
     for child in path:
         assert isinstance(child, SvgElement)
         if child.tag not in NOT_DRAWN:
             parts.extend(_parts(child, inside, sources))
-    clip = make_clip(parts, around.clips)
+    clip = make_clip(parts, outer.clips)
     return clip if clip.bounds is not None else None
 
 
 def _parts(child: SvgElement, context: Context, sources: Sources) -> Iterator[ClipPart]:
-    """Yields what a child of a clip path lets through."""
+    """Yields the outlines of a child of a clip path."""
     declared = sources.sheets.declared(child)
     if declared.get("display", "") == "none":
         return
-    place = clipped(child, enter_element(child, replace(context, clips=()), sources), sources)
-    if place is None:
+    child_context = apply_clip_path(
+        child, enter_element(child, replace(context, clips=()), sources), sources
+    )
+    if child_context is None:
         return
     if child.tag == "use":
-        for target, inside in resolve_use(child, place, sources):
+        for target, inside in resolve_use(child, child_context, sources):
             if target.tag in BASIC_SHAPES or target.tag == "text":
                 for part in _parts(target, inside, sources):
-                    yield replace(part, clips=(*place.clips, *part.clips))
+                    yield replace(part, clips=(*child_context.clips, *part.clips))
         return
     if child.tag == "text":
-        # Fonts take modules that those who draw no text need not wait for.
+        # Font modules load slowly, and drawings without text do not need them.
         from ..text.text_elements import TextPiece, drawn_text
 
-        for piece in drawn_text(child, place, sources).pieces:
+        for piece in drawn_text(child, child_context, sources).pieces:
             if not isinstance(piece, TextPiece):
                 continue
             sources.budget.take_segments(len(piece.outline), 0.0)
-            yield ClipPart(piece.outline, "nonzero", place.matrix, place.clips)
+            yield ClipPart(piece.outline, "nonzero", child_context.matrix, child_context.clips)
     if child.tag not in BASIC_SHAPES or child.tag == "line":
         return
-    outline = sources.outline(child, place.units)
-    if outline is None or place.style.visibility != "visible":
+    outline = sources.outline(child, child_context.units)
+    if outline is None or child_context.style.visibility != "visible":
         return
     sources.budget.take_segments(len(outline), 0.0)
-    yield ClipPart(outline, place.style.clip_rule, place.matrix, place.clips)
+    yield ClipPart(
+        outline, child_context.style.clip_rule, child_context.matrix, child_context.clips
+    )

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Images in drawings: those that are embedded, and files beside the drawing."""
+"""Images, embedded or in files of the drawing's folder."""
 
 from collections.abc import Callable
 from typing import Protocol
@@ -27,31 +27,31 @@ _PIXELATED = ("pixelated", "crisp-edges", "optimizespeed", "-moz-crisp-edges")
 MAX_BYTES = 1 << 28
 
 
-class Inner(Protocol):
-    """A drawing in a drawing."""
+class NestedDrawing(Protocol):
+    """A nested drawing."""
 
     @property
     def page(self) -> Page:
-        """How large it is."""
+        """The drawing's page."""
 
     def draw_in(
         self, matrix: Matrix, clips: tuple[Clip, ...], target: Group, colors: Colors
     ) -> None:
-        """Draws it; the matrix leads from its units to those of the tree."""
+        """Adds its items to a group; the matrix leads from its units to the tree's."""
 
 
-Read = Callable[[bytes, str], Inner]
-"""Reads a drawing in a drawing, of its bytes and its name."""
-Contents = npt.NDArray[np.uint8] | Inner
+Read = Callable[[bytes, str], NestedDrawing]
+"""Reads a nested drawing from its bytes and its name in messages."""
+Contents = npt.NDArray[np.uint8] | NestedDrawing
 Bounds = tuple[float, float, float, float]
 """Left, top, width, height."""
 
 
 class Images:
-    """The images of a drawing, each of which is read once.
+    """The images of a drawing, each read once.
 
     Args:
-        read: Reads a drawing in this one.
+        read: Reads a nested drawing.
     """
 
     def __init__(self, read: Read) -> None:
@@ -59,19 +59,19 @@ class Images:
         self._known: dict[SvgElement, Contents | Exception] = {}
 
     def contents(self, element: SvgElement, sources: Sources) -> Contents:
-        """The texels of an image, or a drawing. Raises what says why there are none."""
+        """Returns texels or a nested drawing. Raises the reason if there are none."""
         if element not in self._known:
             try:
                 self._known[element] = self._contents(element, sources)
             except (NotLocalError, UnusableError, ImageError, ValueError) as error:
                 self._known[element] = error
-        found = self._known[element]
-        if isinstance(found, Exception):
-            raise found
-        return found
+        contents = self._known[element]
+        if isinstance(contents, Exception):
+            raise contents
+        return contents
 
     def _contents(self, element: SvgElement, sources: Sources) -> Contents:
-        data, name = _bytes_of(element, sources)
+        data, name = _read_bytes(element, sources)
         if image_extension(data):
             width, height = image_size(data)
             sources.budget.take_texels(width * height)
@@ -82,7 +82,7 @@ class Images:
 
 
 def draw_image(element: SvgElement, context: Context, sources: Sources, images: Images) -> None:
-    """Draws an `image`."""
+    """Draws an `image` element."""
     if context.style.visibility == "visible":
         put_image(element, None, context, sources, images)
 
@@ -90,24 +90,22 @@ def draw_image(element: SvgElement, context: Context, sources: Sources, images: 
 def put_image(
     element: SvgElement, box: Bounds | None, context: Context, sources: Sources, images: Images
 ) -> None:
-    """Draws what an element refers to.
+    """Draws the image that an element refers to.
 
     Args:
-        element: The element.
-        box: Left, top, width and height of where that is; None for what the element says.
-        context: Within it.
-        sources: What it is read with.
-        images: Those of the drawing.
+        box: Left, top, width and height; None for those of the element's attributes.
+        context: The context within the element.
+        images: Images of the drawing.
     """
     try:
         contents = images.contents(element, sources)
         if isinstance(contents, np.ndarray):
-            own = float(contents.shape[1]), float(contents.shape[0])
+            own_size = float(contents.shape[1]), float(contents.shape[0])
         else:
-            own = contents.page.width, contents.page.height
-        place = _box_of(element, own, context, sources) if box is None else box
-        if place[2] > 0.0 and place[3] > 0.0:
-            _draw(element, contents, own, place, context, sources)
+            own_size = contents.page.width, contents.page.height
+        bounds = _image_box(element, own_size, context, sources) if box is None else box
+        if bounds[2] > 0.0 and bounds[3] > 0.0:
+            _draw(element, contents, own_size, bounds, context, sources)
     except TooLargeError:
         raise
     except NotLocalError as error:
@@ -116,10 +114,10 @@ def put_image(
         sources.warnings.broken(f"<{element.tag}>", f"left out, {error}", element.line)
 
 
-def _box_of(
+def _image_box(
     element: SvgElement, own: tuple[float, float], context: Context, sources: Sources
 ) -> Bounds:
-    """Where an image is. What its sides do not say follows from its proportions."""
+    """Returns an image's box. Missing sides follow from its proportions."""
     x, y = (sources.pixels(element, key, _ZERO, context.units) for key in ("x", "y"))
     width, height = (
         sources.pixels(element, key, _AUTO, context.units) for key in ("width", "height")
@@ -144,12 +142,12 @@ def _draw(
     x, y, width, height = box
     aspect = declared.get("preserveAspectRatio", "")
     if not isinstance(contents, np.ndarray) and not contents.page.has_size:
-        # As in browsers it is as large as its place, and fits itself into that.
+        # As in browsers, a drawing without a size takes that of the box, and fits itself into it.
         own = own if aspect.strip() == "none" else (width, height)
     own_width, own_height = own
     page = ViewBox(0.0, 0.0, own_width, own_height)
-    fitted = multiplied((1.0, 0.0, 0.0, 1.0, x, y), fit_view_box(page, aspect, width, height))
-    matrix = multiplied(context.matrix, fitted)
+    view_matrix = multiplied((1.0, 0.0, 0.0, 1.0, x, y), fit_view_box(page, aspect, width, height))
+    matrix = multiplied(context.matrix, view_matrix)
     clips = context.clips
     if declared.get("overflow", "hidden") not in VISIBLE_OVERFLOW and aspect.strip().endswith(
         "slice"
@@ -172,16 +170,16 @@ def _draw(
         group = Group(is_isolated=True, line=element.line)
         context.target.items.append(group)
         clips = (*clips, make_box_clip((0.0, 0.0, own_width, own_height), matrix))
-        fitted = fit_view_box(contents.page.view, contents.page.aspect, own_width, own_height)
-        contents.draw_in(multiplied(matrix, fitted), clips, group, context.colors)
+        view_matrix = fit_view_box(contents.page.view, contents.page.aspect, own_width, own_height)
+        contents.draw_in(multiplied(matrix, view_matrix), clips, group, context.colors)
 
 
-def _bytes_of(element: SvgElement, sources: Sources) -> tuple[bytes, str]:
-    """The bytes that an image refers to, and what messages call it."""
+def _read_bytes(element: SvgElement, sources: Sources) -> tuple[bytes, str]:
+    """Returns the bytes that an image refers to, and their name in messages."""
     address = element.address
     if not address or address.startswith("#"):
         raise UnusableError("as it refers to no image")
     folder = sources.folder
-    place = None if folder is None else BaseFolder(folder, folder)
-    data, path = read_address(address, place, MAX_BYTES)
+    base = None if folder is None else BaseFolder(folder, folder)
+    data, path = read_address(address, base, MAX_BYTES)
     return data, "<image>" if path is None else path.name

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Markers: symbols at the corners of paths and lines."""
+"""Markers at the vertices of paths and lines."""
 
 import math
 from collections.abc import Iterator
@@ -19,17 +19,17 @@ from ..read.nesting import VISIBLE_OVERFLOW, rendered_children
 
 MARKED = ("path", "line", "polyline", "polygon")
 _ZERO, _THREE = Length(0.0), Length(3.0)
-_PLACES = {"left": 0.0, "top": 0.0, "center": 0.5, "right": 1.0, "bottom": 1.0}
+_REFERENCE_FRACTIONS = {"left": 0.0, "top": 0.0, "center": 0.5, "right": 1.0, "bottom": 1.0}
 _Direction = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
-class Corner:
-    """A point between two segments, or at an end.
+class Vertex:
+    """A vertex of an outline.
 
     Attributes:
-        before: The direction in which the outline comes there; None where it begins.
-        after: That in which it goes on; None where it ends.
+        before: Direction in which the outline arrives; None at a start.
+        after: Direction in which it leaves; None at an end.
     """
 
     x: float
@@ -39,7 +39,7 @@ class Corner:
 
     @property
     def angle(self) -> float:
-        """Of the bisector, in degrees."""
+        """Angle of the bisector, in degrees."""
         before, after = self.before or self.after, self.after or self.before
         if before is None or after is None:
             return 0.0
@@ -52,7 +52,7 @@ class Corner:
 def draw_markers(element: SvgElement, context: Context, outline: Outline, sources: Sources) -> None:
     """Draws the markers of an outline."""
     style = context.style
-    found = {
+    markers = {
         name: _marker(text, element, context, sources)
         for name, text in (
             ("start", style.marker_start),
@@ -60,20 +60,20 @@ def draw_markers(element: SvgElement, context: Context, outline: Outline, source
             ("end", style.marker_end),
         )
     }
-    if all(marker is None for marker in found.values()):
+    if all(marker is None for marker in markers.values()):
         return
-    corners = list(corners_of(outline))
+    vertices = list(outline_vertices(outline))
     context = replace(context, paints=context_paints(element, context))
-    for index, corner in enumerate(corners):
-        at_start, at_end = index == 0, index == len(corners) - 1
+    for index, vertex in enumerate(vertices):
+        at_start, at_end = index == 0, index == len(vertices) - 1
         for name, is_there in (
             ("start", at_start),
             ("mid", not at_start and not at_end),
             ("end", at_end),
         ):
-            marker = found[name]
+            marker = markers[name]
             if is_there and marker is not None:
-                _draw(marker, corner, name == "start", context, sources)
+                _draw(marker, vertex, name == "start", context, sources)
 
 
 def _marker(
@@ -92,22 +92,22 @@ def _marker(
 
 
 def _draw(
-    marker: SvgElement, corner: Corner, is_start: bool, context: Context, sources: Sources
+    marker: SvgElement, vertex: Vertex, is_start: bool, context: Context, sources: Sources
 ) -> None:
     declared = sources.sheets.declared(marker)
     style = sources.sheets.style(marker)
-    place = replace(context, style=style)
+    marker_context = replace(context, style=style)
     width, height = (
-        sources.pixels(marker, name, _THREE, place.units)
+        sources.pixels(marker, name, _THREE, marker_context.units)
         for name in ("markerWidth", "markerHeight")
     )
     if width <= 0.0 or height <= 0.0:
         return
     orient = declared.get("orient", "0").strip()
-    angle = corner.angle if orient.startswith("auto") else _degrees(orient)
+    angle = vertex.angle if orient.startswith("auto") else _degrees(orient)
     if orient == "auto-start-reverse" and is_start:
         angle += 180.0
-    matrix = multiplied((1.0, 0.0, 0.0, 1.0, corner.x, corner.y), rotation(angle))
+    matrix = multiplied((1.0, 0.0, 0.0, 1.0, vertex.x, vertex.y), rotation(angle))
     if declared.get("markerUnits", "strokeWidth") != "userSpaceOnUse":
         scale = context.units.pixels(context.style.stroke_width, "stroke-width")
         matrix = multiplied(matrix, (scale, 0.0, 0.0, scale, 0.0, 0.0))
@@ -119,23 +119,23 @@ def _draw(
         fitted = fit_view_box(view, declared.get("preserveAspectRatio", ""), width, height)
         size = (view.width, view.height)
     ref_x, ref_y = (
-        _PLACES[declared[name]] * side
-        if declared.get(name) in _PLACES
-        else sources.pixels(marker, name, _ZERO, place.units)
+        _REFERENCE_FRACTIONS[declared[name]] * side
+        if declared.get(name) in _REFERENCE_FRACTIONS
+        else sources.pixels(marker, name, _ZERO, marker_context.units)
         for name, side in (("refX", size[0]), ("refY", size[1]))
     )
     a, b, c, d = fitted[:4]
     reference = (a * ref_x + c * ref_y + fitted[4], b * ref_x + d * ref_y + fitted[5])
     matrix = multiplied(matrix, (1.0, 0.0, 0.0, 1.0, -reference[0], -reference[1]))
-    around = multiplied(context.matrix, matrix)
+    to_tree = multiplied(context.matrix, matrix)
     clips = context.clips
     if declared.get("overflow", "hidden") not in VISIBLE_OVERFLOW:
-        clips = (*clips, make_box_clip(region, around))
+        clips = (*clips, make_box_clip(region, to_tree))
     group = Group(line=marker.line)
     context.target.items.append(group)
     inside = replace(
-        place,
-        matrix=multiplied(around, fitted),
+        marker_context,
+        matrix=multiplied(to_tree, fitted),
         viewport=size,
         target=group,
         clips=clips,
@@ -153,28 +153,28 @@ def _degrees(text: str) -> float:
     return parse_number(text) or 0.0
 
 
-def corners_of(outline: Outline) -> Iterator[Corner]:
-    """Yields the points of an outline at which markers are, with its directions there."""
+def outline_vertices(outline: Outline) -> Iterator[Vertex]:
+    """Yields the vertices of an outline, with the directions there."""
     points: list[tuple[float, float]] = []
-    # The direction in which each point is left and reached.
+    # Directions in which the outline leaves and reaches each point.
     leaving: list[_Direction | None] = []
     reaching: list[_Direction | None] = []
-    at = begin = (0.0, 0.0)
-    begun = 0
+    current = begin = (0.0, 0.0)
+    first = 0
     for kind, numbers in outline.segments():
         if kind == "M":
-            at = begin = (numbers[0], numbers[1])
-            begun = len(points)
-            points.append(at)
+            current = begin = (numbers[0], numbers[1])
+            first = len(points)
+            points.append(current)
             leaving.append(None)
             reaching.append(None)
             continue
         end = begin if kind == "Z" else (numbers[-2], numbers[-1])
         inner = numbers[:2] if kind == "W" else numbers[:-2]
-        controls = [at, *zip(inner[::2], inner[1::2], strict=True), end]
-        if kind == "Z" and end == at and len(points) > begun + 1:
-            # It is there already: where it begins and ends, directions are those of both.
-            reaching[begun], leaving[-1] = reaching[-1], leaving[begun]
+        controls = [current, *zip(inner[::2], inner[1::2], strict=True), end]
+        if kind == "Z" and end == current and len(points) > first + 1:
+            # The contour already ends at its start: merge the directions of both.
+            reaching[first], leaving[-1] = reaching[-1], leaving[first]
             continue
         leaving[-1] = _direction(controls)
         back = _direction(controls[::-1])
@@ -182,14 +182,14 @@ def corners_of(outline: Outline) -> Iterator[Corner]:
         leaving.append(None)
         reaching.append((-back[0], -back[1]) if back else None)
         if kind == "Z":
-            reaching[begun], leaving[-1] = reaching[-1], leaving[begun]
-        at = end
+            reaching[first], leaving[-1] = reaching[-1], leaving[first]
+        current = end
     for (x, y), before, after in zip(points, reaching, leaving, strict=True):
-        yield Corner(x, y, before, after)
+        yield Vertex(x, y, before, after)
 
 
 def _direction(controls: list[tuple[float, float]]) -> _Direction | None:
-    """In which a curve leaves its first point, as a unit vector."""
+    """Returns the unit direction at the first point of a curve; None if it has no length."""
     x, y = controls[0]
     for other_x, other_y in controls[1:]:
         length = _native.hypot(other_x - x, other_y - y)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Masks: what is seen of an element follows from the luminance or alpha of others."""
+"""Masks, by luminance or alpha."""
 
 from dataclasses import replace
 
@@ -18,11 +18,11 @@ from .bounds import object_bounds
 _DEFAULTS = {"x": -10.0, "y": -10.0, "width": 120.0, "height": 120.0}
 
 
-def masks_of(element: SvgElement, context: Context, sources: Sources) -> tuple[Mask, ...] | None:
-    """The masks of an element; None where they let nothing through.
+def read_masks(element: SvgElement, context: Context, sources: Sources) -> tuple[Mask, ...] | None:
+    """Reads the masks of an element; returns None if they hide everything.
 
-    `context` is that within the element. As in browsers a mask has no mask itself; elements in it
-    may have some. A reference that closes a circle is ignored from then on.
+    `context` is that within the element. As in browsers, a mask itself has no mask, but elements in
+    it may have some. A circular reference is ignored.
     """
     text = sources.sheets.declared(element).get("mask", "none")
     if text.lower() == "none":
@@ -37,14 +37,14 @@ def masks_of(element: SvgElement, context: Context, sources: Sources) -> tuple[M
     if element in sources.circular:
         return ()
     box = object_bounds(element, context, sources)
-    region, matrix = box_in_units(mask, "maskUnits", _DEFAULTS, box, context, sources)
+    region, matrix = read_region(mask, "maskUnits", _DEFAULTS, box, context, sources)
     if region is None:
         return None
     style = sources.sheets.style(mask)
     group = Group(is_isolated=True, line=mask.line)
     clips = (*context.clips, make_box_clip(region, multiplied(context.matrix, matrix)))
-    # Masks are as bright as they look.
-    place = replace(
+    # Luminance is that of the mask's own color interpolation.
+    mask_context = replace(
         context,
         style=style,
         target=group,
@@ -54,22 +54,24 @@ def masks_of(element: SvgElement, context: Context, sources: Sources) -> tuple[M
         use=None,
     )
     if mask.get("maskContentUnits") == "objectBoundingBox":
-        shares = shares_of(box)
-        if shares is None:
+        to_box = fractions_to_box(box)
+        if to_box is None:
             return None
-        place = replace(place, matrix=multiplied(context.matrix, shares), viewport=(1.0, 1.0))
-    sources.schedule((child, place) for child in rendered_children(mask))
-    return (Mask(group, style.mask_type == "luminance", place.colors.is_linear),)
+        mask_context = replace(
+            mask_context, matrix=multiplied(context.matrix, to_box), viewport=(1.0, 1.0)
+        )
+    sources.schedule((child, mask_context) for child in rendered_children(mask))
+    return (Mask(group, style.mask_type == "luminance", mask_context.colors.is_linear),)
 
 
-def shares_of(box: Box | None) -> Matrix | None:
-    """From shares of a box to its units; None where it has no area."""
+def fractions_to_box(box: Box | None) -> Matrix | None:
+    """Returns the matrix from fractions of a box to its units; None if the box has no area."""
     if box is None or box[2] <= box[0] or box[3] <= box[1]:
         return None
     return (box[2] - box[0], 0.0, 0.0, box[3] - box[1], box[0], box[1])
 
 
-def box_in_units(
+def read_region(
     element: SvgElement,
     name: str,
     defaults: dict[str, float],
@@ -77,21 +79,20 @@ def box_in_units(
     context: Context,
     sources: Sources,
 ) -> tuple[Box | None, Matrix]:
-    """The region that x, y, width and height of an element make, and what its units are.
+    """Returns the region given by x, y, width and height of an element, and the matrix of its
+    units.
 
     Args:
-        element: The element.
-        name: Of the attribute that says what the units are; by default shares of a box.
-        defaults: Of the four, in percent.
-        box: The box.
-        context: Of what refers to the element.
-        sources: What it is read with.
+        name: Attribute that names the units; the default is fractions of `box`.
+        defaults: Defaults of the four attributes, in percent.
+        box: Bounding box of the element that refers to it.
+        context: Context of the element that refers to it.
     """
-    is_share = element.get(name, "objectBoundingBox") != "userSpaceOnUse"
-    matrix = shares_of(box) if is_share else (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
+    is_fraction = element.get(name, "objectBoundingBox") != "userSpaceOnUse"
+    matrix = fractions_to_box(box) if is_fraction else (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
     if matrix is None:
         return None, (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
-    units = Units(1.0, 1.0, context.style.font_size) if is_share else context.units
+    units = Units(1.0, 1.0, context.style.font_size) if is_fraction else context.units
     x, y, width, height = (
         sources.pixels(element, key, Length(value, "%"), units) for key, value in defaults.items()
     )

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What an outline is filled and stroked with."""
+"""Fill and stroke of outlines."""
 
 from dataclasses import replace
 
@@ -16,13 +16,13 @@ from ..read.context import Context, ContextPaint, Sources
 from ..read.document import SvgElement
 from ..read.tags import GRADIENTS, OTHER_PAINTS
 from .bounds import object_bounds
-from .masks import shares_of
-from .patterns import pattern_of
+from .masks import fractions_to_box
+from .patterns import read_pattern
 
 _MAX_DASHES = 100_000
 
 
-def resolved(
+def resolve_paint(
     element: SvgElement,
     context: Context,
     bounds: Box | None,
@@ -30,23 +30,25 @@ def resolved(
     opacity: float,
     sources: Sources,
 ) -> tuple[float, ...] | Gradient | Pattern | None:
-    """What to paint with; None for nothing."""
+    """Resolves a paint to a color, gradient or pattern; returns None if nothing is painted."""
     if isinstance(paint.color, str) and paint.color in context.paints:
         held = context.paints[paint.color]
         if held.paint.server:
-            return _resolved_there(held, context, opacity, sources)
+            return _resolve_context_paint(held, context, opacity, sources)
         paint = held.paint
-    found: Gradient | Color | None = None
-    is_here = paint.server.startswith("#")
-    server = sources.document.ids.get(paint.server[1:]) if is_here else None
+    server_paint: Gradient | Color | None = None
+    is_local = paint.server.startswith("#")
+    server = sources.document.ids.get(paint.server[1:]) if is_local else None
     if server is not None and server.tag in GRADIENTS:
         if not sources.servers.has_colors(server):
-            return None  # As in browsers: the color is for where there is no gradient.
-        found = sources.servers.resolve(server, opacity, context.units, bounds, context.colors)
+            return None  # as in browsers, no fallback color
+        server_paint = sources.servers.resolve(
+            server, opacity, context.units, bounds, context.colors
+        )
     elif server is not None and server.tag == "pattern":
-        pattern = pattern_of(server, opacity, context, bounds, sources)
-        # Shares of a box without an area are nothing, and the color is for that.
-        if pattern is not None or shares_of(bounds) is not None:
+        pattern = read_pattern(server, opacity, context, bounds, sources)
+        # An invalid pattern paints nothing, but a box without an area has the fallback color.
+        if pattern is not None or fractions_to_box(bounds) is not None:
             return pattern
     elif server is not None:
         is_paint = server.tag in OTHER_PAINTS
@@ -54,36 +56,36 @@ def resolved(
         report(f"<{server.tag}> as paint", "left out", element.line)
     elif paint.server:
         sources.warnings.broken(f"url({paint.server[:60]})", "not there", element.line)
-    if isinstance(found, Gradient):
-        return found
-    if found is None:
-        # What `context-fill` stands for is nothing where nothing refers to the element.
+    if isinstance(server_paint, Gradient):
+        return server_paint
+    if server_paint is None:
+        # `context-fill` without a referring element is none.
         color = context.style.color if paint.color == "current" else paint.color
         if color is None or isinstance(color, str):
             return None
-        found = (*color[:3], context.colors.opacity(color[3] * opacity))
-    if found[3] == 0.0:
+        server_paint = (*color[:3], context.colors.opacity(color[3] * opacity))
+    if server_paint[3] == 0.0:
         return None
-    return context.colors.premultiplied(np.array([found]))[0]
+    return context.colors.premultiplied(np.array([server_paint]))[0]
 
 
-def _resolved_there(
+def _resolve_context_paint(
     held: ContextPaint, context: Context, opacity: float, sources: Sources
 ) -> tuple[float, ...] | Gradient | Pattern | None:
-    """What another element is painted with, where that is, in units of this one."""
-    there = replace(held.context, colors=context.colors)
-    bounds = object_bounds(held.element, there, sources)
-    found = resolved(held.element, there, bounds, held.paint, opacity, sources)
-    if found is None or isinstance(found, tuple):
-        return found
-    to_here = multiplied(inverse(context.matrix), there.matrix)
-    return replace(found, matrix=multiplied(to_here, found.matrix))
+    """Resolves the paint of another element, and converts it to the units of this one."""
+    owner_context = replace(held.context, colors=context.colors)
+    bounds = object_bounds(held.element, owner_context, sources)
+    paint = resolve_paint(held.element, owner_context, bounds, held.paint, opacity, sources)
+    if paint is None or isinstance(paint, tuple):
+        return paint
+    to_here = multiplied(inverse(context.matrix), owner_context.matrix)
+    return replace(paint, matrix=multiplied(to_here, paint.matrix))
 
 
-def stroke_of(
+def resolve_stroke(
     element: SvgElement, context: Context, outline: Outline, sources: Sources
 ) -> Stroke | None:
-    """How an outline is stroked; None where it is not."""
+    """Resolves the stroke of an outline; returns None if there is none."""
     style = context.style
     if style.stroke.color is None and not style.stroke.server:
         return None
@@ -118,9 +120,9 @@ def stroke_of(
 
 
 def paint_order(text: str) -> list[str]:
-    """Fill, stroke and markers in the order that the property of that name says."""
-    usual = ["fill", "stroke", "markers"]
+    """Returns fill, stroke and markers in the order given by `paint-order`."""
+    default = ["fill", "stroke", "markers"]
     named = list(dict.fromkeys(text.split()))
-    if not set(named) <= set(usual) or len(named) < len(text.split()):
-        return usual
-    return [*named, *(name for name in usual if name not in named)]
+    if not set(named) <= set(default) or len(named) < len(text.split()):
+        return default
+    return [*named, *(name for name in default if name not in named)]

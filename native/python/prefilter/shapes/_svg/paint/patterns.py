@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Patterns: what outlines are painted with again and again."""
+"""Patterns."""
 
 from collections.abc import Mapping
 
@@ -13,24 +13,23 @@ from ..read.context import Context, Sources
 from ..read.document import SvgElement
 from ..read.lengths import Units, about_origin, read_length
 from ..read.nesting import VISIBLE_OVERFLOW, rendered_children
-from .masks import shares_of
+from .masks import fractions_to_box
 
 _NAMES = ("x", "y", "width", "height")
 _INHERITED: tuple[str, ...] = (*_NAMES, "patternUnits", "patternContentUnits", "patternTransform")
 _INHERITED += ("viewBox", "preserveAspectRatio", "overflow", "transform-origin")
 
 
-def pattern_of(
+def read_pattern(
     element: SvgElement, opacity: float, context: Context, bounds: Box | None, sources: Sources
 ) -> Pattern | None:
-    """What a pattern paints; None for nothing.
+    """Reads a pattern as a paint; returns None if it paints nothing.
 
     Args:
-        element: The pattern.
-        opacity: Of the paint, in [0, 1].
-        context: Within the element that is painted.
-        bounds: Of its outline.
-        sources: What the pattern is read with.
+        element: The pattern element.
+        opacity: Opacity of the paint, in [0, 1].
+        context: The context within the painted element.
+        bounds: Bounding box of its outline.
     """
     if element in context.uses:
         sources.warnings.broken("<pattern>", "left out, as it is inside of itself", element.line)
@@ -44,15 +43,15 @@ def pattern_of(
     own = about_origin(own, attributes.get("transform-origin", ""), context.units) or own
     if contents is None or tile is None or determinant(own) == 0.0:
         return None
-    found = _contents_place(attributes, tile, bounds)
-    if found is None:
+    placement = _place_contents(attributes, tile, bounds)
+    if placement is None:
         return None
-    matrix, size = found
+    matrix, size = placement
     group = Group(is_isolated=True, line=element.line)
     clips: tuple[Clip, ...] = ()
     if attributes.get("overflow", "hidden") not in VISIBLE_OVERFLOW:
         clips = (make_box_clip(tile, IDENTITY),)
-    place = Context(
+    contents_context = Context(
         sources.sheets.style(contents),
         matrix,
         size or context.viewport,
@@ -61,7 +60,7 @@ def pattern_of(
         clips,
         (*context.uses, element),
     )
-    sources.schedule((child, place) for child in rendered_children(contents))
+    sources.schedule((child, contents_context) for child in rendered_children(contents))
     return Pattern(group, tile, own, opacity)
 
 
@@ -72,18 +71,18 @@ def _tile(
     bounds: Box | None,
     sources: Sources,
 ) -> Box | None:
-    """What is repeated, in the units of the outline; None where it is nothing."""
-    is_share = attributes.get("patternUnits") != "userSpaceOnUse"
-    units = Units(1.0, 1.0, context.units.font_size) if is_share else context.units
+    """Returns the tile in the outline's units; None if it is empty."""
+    is_fraction = attributes.get("patternUnits") != "userSpaceOnUse"
+    units = Units(1.0, 1.0, context.units.font_size) if is_fraction else context.units
     x, y, width, height = (
         units.pixels(read_length(element, attributes, name, sources.warnings) or Length(0.0), name)
         for name in _NAMES
     )
-    if is_share:
-        shares = shares_of(bounds)
-        if shares is None:
+    if is_fraction:
+        to_box = fractions_to_box(bounds)
+        if to_box is None:
             return None
-        a, _, _, d, e, f = shares
+        a, _, _, d, e, f = to_box
         x, y, width, height = e + x * a, f + y * d, width * a, height * d
     if width <= 0.0 or height <= 0.0:
         return None
@@ -93,10 +92,12 @@ def _tile(
     return x, y, x + width, y + height
 
 
-def _contents_place(
+def _place_contents(
     attributes: Mapping[str, str], tile: Box, bounds: Box | None
 ) -> tuple[Matrix, tuple[float, float] | None] | None:
-    """From the units of what is in a pattern to those of the outline, and its own viewport."""
+    """Returns the matrix from the contents' units to the outline's, and the contents' viewport if
+    they have one of their own.
+    """
     matrix: Matrix = (1.0, 0.0, 0.0, 1.0, tile[0], tile[1])
     view = parse_view_box(attributes.get("viewBox"))
     if view is not None:
@@ -104,16 +105,18 @@ def _contents_place(
         fitted = fit_view_box(view, aspect, tile[2] - tile[0], tile[3] - tile[1])
         return multiplied(matrix, fitted), (view.width, view.height)
     if attributes.get("patternContentUnits") == "objectBoundingBox":
-        shares = shares_of(bounds)
-        if shares is None:
+        to_box = fractions_to_box(bounds)
+        if to_box is None:
             return None
-        scale = (shares[0], 0.0, 0.0, shares[3], 0.0, 0.0)
+        scale = (to_box[0], 0.0, 0.0, to_box[3], 0.0, 0.0)
         return multiplied(matrix, scale), (1.0, 1.0)
     return matrix, None
 
 
 def _chain(element: SvgElement, sources: Sources) -> tuple[dict[str, str], SvgElement | None]:
-    """The attributes of a pattern and of those that it refers to, and the first with children."""
+    """Collects attributes along the chain of references; returns the first pattern with children,
+    too.
+    """
     attributes: dict[str, str] = {}
     contents: SvgElement | None = None
     seen: set[SvgElement] = set()
