@@ -134,12 +134,12 @@ def test_the_real_system_agrees():
 
 def test_without_fontconfig(monkeypatch):
     monkeypatch.setattr(substitutes.shutil, "which", lambda name: None)
-    substitutes._answers.cache_clear()
+    substitutes._query_fontconfig.cache_clear()
     assert list(substitutes.from_fontconfig("sans-serif")) == []
-    substitutes._answers.cache_clear()
+    substitutes._query_fontconfig.cache_clear()
     for platform, first in (("win32", "consolas"), ("darwin", "menlo"), ("linux", "courier new")):
         monkeypatch.setattr(sys, "platform", platform)
-        assert substitutes.generic("monospace")[0] == first
+        assert substitutes.generic_families("monospace")[0] == first
 
 
 @pytest.mark.parametrize(

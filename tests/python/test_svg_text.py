@@ -368,22 +368,22 @@ def test_without_fonts_text_is_left_out_with_a_warning():
     ],
 )
 def test_letters_are_ordered_by_the_rules_of_unicode(letters, base, shown):
-    from prefilter.shapes._fonts.bidi import levels_of, visual_order
+    from prefilter.shapes._fonts.bidi import embedding_levels, visual_order
 
     hebrew = letters.translate(str.maketrans("AB", "\u05d0\u05d1"))
-    assert "".join(letters[k] for k in visual_order(levels_of(hebrew, base))) == shown
+    assert "".join(letters[k] for k in visual_order(embedding_levels(hebrew, base))) == shown
 
 
 def test_directions_are_those_of_another_program():
     bidi = pytest.importorskip("bidi")
-    from prefilter.shapes._fonts.bidi import levels_of, visual_order
+    from prefilter.shapes._fonts.bidi import embedding_levels, visual_order
 
     rng = np.random.default_rng(31)
     letters = "aB \u05d0\u0627\u0661\u06f11,.+%$-()[]!\u0300"
     for _ in range(3000):
         sample = "".join(rng.choice(list(letters), rng.integers(1, 12))).strip()
         for base, name in ((0, "L"), (1, "R")):
-            levels = levels_of(sample, base)
+            levels = embedding_levels(sample, base)
             order = visual_order(levels)
             found = "".join(sample[k] for k in order)
             assert found == bidi.get_display(sample, base_dir=name), (sample, base)

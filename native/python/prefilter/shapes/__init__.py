@@ -1,3 +1,3 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Shapes in a plane: rasterized, and read from drawings."""
+"""Vector shapes: rasterization, and SVG drawings."""

@@ -2,7 +2,7 @@
 
 """Affine matrices of drawings and fonts.
 
-(a, b, c, d, e, f) leads from (x, y) to (a x + c y + e, b x + d y + f).
+(a, b, c, d, e, f) maps (x, y) to (a x + c y + e, b x + d y + f).
 """
 
 from typing import TypeAlias
@@ -12,7 +12,7 @@ IDENTITY: Matrix = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
 
 
 def multiplied(outer: Matrix, inner: Matrix) -> Matrix:
-    """What applies the inner matrix, then the outer one."""
+    """Returns the matrix that applies `inner`, then `outer`."""
     a, b, c, d, e, f = outer
     g, h, i, j, k, m = inner
     return (
@@ -30,7 +30,7 @@ def determinant(matrix: Matrix) -> float:
 
 
 def inverse(matrix: Matrix) -> Matrix:
-    """What undoes a matrix whose determinant is not 0."""
+    """Returns the inverse of a regular matrix."""
     a, b, c, d, e, f = matrix
     scale = 1.0 / determinant(matrix)
     a, b, c, d = d * scale, -b * scale, -c * scale, a * scale

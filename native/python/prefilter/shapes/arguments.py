@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Points, colors, maps and stops of gradients, as callers give them."""
+"""Conversion of arguments: points, colors, matrices and gradient stops."""
 
 from collections.abc import Iterable, Sequence
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Contours drawn step by step: lines, Bezier curves and conics."""
+"""Contours of lines, Bezier curves and conics, built segment by segment."""
 
 from typing import cast
 
@@ -16,7 +16,7 @@ _MAX_DEGREE = 60
 
 
 class Contours:
-    """Contours of lines, Bezier curves and conics; coordinates are pixels.
+    """Contours of lines, Bezier curves and conics, in pixels.
 
     Pixel (i, j) is [i, i + 1) x [j, j + 1), and row 0 is the bottom row.
     """
@@ -27,7 +27,7 @@ class Contours:
 
     @property
     def bounds(self) -> tuple[tuple[float, float], tuple[float, float]] | None:
-        """The low and the high corner of the box of all control points, which holds the shape."""
+        """Low and high corner of the bounding box of all control points."""
         return self._outline.bounds()
 
     def move_to(self, x: float, y: float) -> None:
@@ -49,21 +49,21 @@ class Contours:
         self._outline.line_to(*as_point("x, y", (x, y)))
 
     def curve_to(self, *control_points: npt.ArrayLike) -> None:
-        """Adds a Bezier curve of as many degrees as points are given.
+        """Adds a Bezier curve; its degree is the number of points.
 
         Args:
-            control_points: One to 60 points, of which the last is the end: pairs (x, y), or the
-                coordinates one after another.
+            control_points: One to 60 points, the last of which is the end: pairs (x, y), or a flat
+                list of coordinates.
 
         Raises:
-            ValueError: The points are not as said or not finite, or no contour has begun.
+            ValueError: The points are invalid or not finite, or no contour has begun.
         """
         self._check_begun("curve_to")
-        found = as_array("control_points", cast(npt.ArrayLike, control_points))
-        numbers = found.dtype.kind in "fiu"
-        if not numbers or found.size % 2 or found.ndim not in (1, 2) or found.shape[-1] % 2:
+        array = as_array("control_points", cast(npt.ArrayLike, control_points))
+        numbers = array.dtype.kind in "fiu"
+        if not numbers or array.size % 2 or array.ndim not in (1, 2) or array.shape[-1] % 2:
             raise ValueError("control_points: found no pairs (x, y)")
-        points = np.ascontiguousarray(found, np.float64).reshape(-1, 2)
+        points = np.ascontiguousarray(array, np.float64).reshape(-1, 2)
         if not 1 <= len(points) <= _MAX_DEGREE:
             raise ValueError(f"control_points: {len(points)} points; 1 to {_MAX_DEGREE} are needed")
         check_finite("control_points", points)
@@ -72,17 +72,18 @@ class Contours:
     def conic_to(self, x1: float, y1: float, weight: float, x2: float, y2: float) -> None:
         """Adds a rational quadratic curve: an arc of an ellipse, a parabola or a hyperbola.
 
-        A quarter of a circle has the corner of its tangents as (x1, y1) and the weight sqrt(1/2).
+        For a quarter of a circle, (x1, y1) is the intersection of the tangents, and the weight is
+        sqrt(1/2).
 
         Args:
-            x1: The x of the control point in the middle.
-            y1: Its y.
-            weight: Its weight, above 0; the ends have 1.
-            x2: The x of the end.
-            y2: Its y.
+            x1: x of the middle control point.
+            y1: y of the middle control point.
+            weight: Its weight, above 0; the end points have weight 1.
+            x2: x of the end.
+            y2: y of the end.
 
         Raises:
-            ValueError: A point is not finite, the weight not above 0, or no contour has begun.
+            ValueError: A point is not finite, the weight is not positive, or no contour has begun.
         """
         self._check_begun("conic_to")
         middle, end = as_point("x1, y1", (x1, y1)), as_point("x2, y2", (x2, y2))
@@ -92,17 +93,17 @@ class Contours:
         self._outline.conic_to(*middle, number, *end)
 
     def close(self) -> None:
-        """Closes the contour by a line to where it began, where it is not there yet."""
+        """Closes the contour by a line to its start."""
         self._outline.close()
 
     def add_polygon(self, points: npt.ArrayLike) -> None:
-        """Adds a closed contour of lines.
+        """Adds a closed polygon.
 
         Args:
             points: (points, 2), at least one.
 
         Raises:
-            ValueError: The points are not as said, or not finite.
+            ValueError: The points are invalid or not finite.
         """
         corners = as_points("points", points, ("points", 2))
         if len(corners) == 0:
@@ -112,15 +113,15 @@ class Contours:
         self._has_contour = True
 
     def add_beziers(self, points: npt.ArrayLike) -> None:
-        """Adds a closed contour of Bezier curves of one degree.
+        """Adds a closed contour of Bezier curves of the same degree.
 
         Args:
-            points: (curves, degree + 1, 2): the control points of each, with a degree of 1 to 60.
-                Each begins where the one before it ends; that point is taken from the one before.
+            points: (curves, degree + 1, 2): control points of each curve, with a degree of 1 to 60.
+                Each curve begins at the end of the previous one.
 
         Raises:
-            ValueError: The points are not as said, not finite, or a curve does not begin where the
-                one before it ends.
+            ValueError: The points are invalid or not finite, or a curve does not begin at the end
+                of the previous one.
         """
         controls = as_points("points", points, ("curves", "points", 2))
         degree = controls.shape[1] - 1
@@ -140,23 +141,23 @@ class Contours:
         self._has_contour = True
 
     def add_path(self, letters: str, numbers: npt.ArrayLike) -> None:
-        """Adds contours of all kinds of segments at once, which is quicker than one by one.
+        """Adds contours of several kinds of segments at once, which is faster than one by one.
 
         Args:
-            letters: One for each step: M moves, L adds a line, Q and C Bezier curves of degree 2
-                and 3, W a conic, and Z closes. The first is M.
-            numbers: What the steps take, one after another: for each the coordinates of the points
-                behind the one where it begins; W has its weight between the two.
+            letters: One per segment: M moves, L adds a line, Q and C Bezier curves of degree 2 and
+                3, W a conic, and Z closes. The first is M.
+            numbers: Coordinates of all segments, each without its start point; W has its weight
+                between its two points.
 
         Raises:
-            ValueError: There is another letter, too few or too many numbers, one that is not
-                finite, or a weight not from 1e-6 to 1e6.
+            ValueError: A letter is unknown, the number of coordinates does not match, one is not
+                finite, or a weight is not in [1e-6, 1e6].
         """
         steps = as_name("letters", letters)
-        found = as_array("numbers", numbers)
-        if found.ndim != 1 or (found.size and found.dtype.kind not in "fiu"):
-            raise ValueError(f"numbers: shape {found.shape}; a row of numbers is needed")
-        values = np.ascontiguousarray(found, np.float64)
+        array = as_array("numbers", numbers)
+        if array.ndim != 1 or (array.size and array.dtype.kind not in "fiu"):
+            raise ValueError(f"numbers: shape {array.shape}; a row of numbers is needed")
+        values = np.ascontiguousarray(array, np.float64)
         if not np.isfinite(values).all():
             raise ValueError("numbers: one is not finite")
         self._outline.add_path(steps, values)

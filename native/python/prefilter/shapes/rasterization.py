@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Images of vector shapes."""
+"""Rasterization of vector shapes."""
 
 from collections.abc import Iterable, Sequence
 from functools import partial
@@ -41,43 +41,43 @@ def rasterize(
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> FloatArray | npt.NDArray[np.uint8]:
-    """The image of shapes, each pixel the mean around its center by a filter (chapter 2).
+    """Rasterizes shapes: each pixel is a mean around its center, weighted by a filter (chapter 2).
 
-    The means are closed forms of the outlines as they are: no curve is made of lines, and no point
-    is sampled. Lines and curves are exact to rounding; arcs of conics are to 1e-7 of the value.
+    Means are closed forms of the outlines: no curve is flattened, and no point is sampled. Lines
+    and Bezier curves are exact to rounding, conics to 1e-7 of the value.
 
     Args:
-        shapes: What to draw, with as many channels each; see `Shape`.
-        width: Pixels.
-        height: Pixels.
-        filter: "box" (what a pixel covers), "tent", "bspline2", "mitchell", "lanczos2", "lanczos3",
-            "gaussian" (exp(-pi r^2)); or "radial2", "radial3", windowed jincs, of which frequencies
-            of any direction are alike. All have an integral of 1; those from "mitchell" to
-            "lanczos3", and the radial ones, have negative lobes, so values may leave the range of
-            the colors.
-        method: "scanline" (section 2.2), or "wavelet" (chapter 3), for the box filter and constant
-            colors only. Both give the same image of closed contours. "wavelet" leaves open ones
-            open, unless shapes cover each other: a gap changes values near it, and not the rows
-            beside it. Of a shape that has one the winding numbers are drawn, whatever its fill
-            rule.
-        depth: Of "wavelet": where to end. The square of the smallest power of two that holds the
-            image is halved so many times, and each pixel gets the mean over the cell that it is in.
-            0 is one cell for all; None ends at pixels.
-        background: What is behind the shapes, as many values as they have; None for 0.
-        overlap: "cover": later shapes cover those before them, with four channels as far as alpha
-            says. "add": the values of all shapes are summed, so that shapes that share an edge have
-            no seam.
-        dtype: float32, or uint8 for values from 0 to 1 as 0 to 255, rounded.
+        shapes: Shapes with the same number of channels; see `Shape`.
+        width: In pixels.
+        height: In pixels.
+        filter: "box" (area coverage), "tent", "bspline2", "mitchell", "lanczos2", "lanczos3",
+            "gaussian" (exp(-pi r^2)); or "radial2", "radial3", windowed jincs with an isotropic
+            response. All integrate to 1. From "mitchell" to "lanczos3", and for radial filters,
+            lobes are negative, so values may exceed the range of the colors.
+        method: "scanline" (section 2.2), or "wavelet" (chapter 3), which supports only the box
+            filter and constant colors. Both give the same image of closed contours. "wavelet" does
+            not close open ones, unless shapes cover each other: a gap changes values nearby only,
+            but not whole rows. A shape with an open contour is drawn by winding numbers, whatever
+            its fill rule.
+        depth: Last level of "wavelet". The square of the smallest power of two that holds the image
+            is halved this many times, and each pixel gets the mean of its cell. 0 is a single cell;
+            None goes down to pixels.
+        background: Values behind the shapes, one per channel; None for 0.
+        overlap: "cover": later shapes cover earlier ones, with four channels according to alpha.
+            "add": the values of all shapes are summed, so that shapes with a common edge have no
+            seam.
+        dtype: float32, or uint8 for values in [0, 1], scaled to 255 and rounded.
         progress: Called with the fraction done; returning False stops the work.
         threads: 0 means all processors. The result does not depend on it.
 
     Returns:
-        (height, width, channels), row 0 at the bottom. Where there are no shapes, as many channels
-        as the background has, or one.
+        (height, width, channels), row 0 at the bottom. Without shapes, there are as many channels
+        as in `background`, or one.
 
     Raises:
-        ValueError: A name is none of those, shapes differ in their channels, a point is more than
-            1e9 pixels away, a size is below 1, or the method has no such filter, color or depth.
+        ValueError: A name is unknown, shapes differ in their channels, a point is more than 1e9
+            pixels away, a size is below 1, or the method does not support the filter, color or
+            depth.
         MemoryError: The image does not fit into memory.
         Cancelled: `progress` returned False.
     """
@@ -103,7 +103,7 @@ def rasterize(
 
 
 def as_whether_bytes(dtype: npt.DTypeLike) -> bool:
-    """Whether pixels are bytes: uint8 rather than float32."""
+    """Returns whether pixels are uint8 rather than float32."""
     if dtype is np.float32 or dtype is np.uint8:
         return dtype is np.uint8
     try:
@@ -113,7 +113,7 @@ def as_whether_bytes(dtype: npt.DTypeLike) -> bool:
 
 
 def to_bytes(image: FloatArray) -> npt.NDArray[np.uint8]:
-    """0 to 1 as 0 to 255, rounded."""
+    """Scales [0, 1] to 255 and rounds."""
     levels: FloatArray = np.clip(image, 0.0, 1.0) * np.float32(255.0)
     return np.rint(levels).astype(np.uint8)
 

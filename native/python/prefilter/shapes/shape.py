@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Shapes: contours, and what fills them."""
+"""Shapes: contours with a fill rule and a paint."""
 
 from collections.abc import Iterable, Sequence
 from functools import partial
@@ -33,23 +33,22 @@ _STROKE_CHECKS: dict[str, Check] = {
 
 
 class Shape(Contours):
-    """What an outline encloses, with a color: contours of lines, Bezier curves and conics.
+    """The interior of contours, with a color or gradient.
 
-    Coordinates are pixels; pixel (i, j) is [i, i + 1) x [j, j + 1), and row 0 is the bottom row. A
-    contour that is left open is filled as if a line closed it.
+    Coordinates are in pixels; pixel (i, j) is [i, i + 1) x [j, j + 1), and row 0 is the bottom row.
+    Open contours are filled as if closed by a line.
 
     Args:
-        fill_rule: Which points are inside: "nonzero", where contours wind round a point a number of
-            times that is not 0, or "evenodd", where that number is odd.
-        color: One to four values, which a pixel takes as far as the shape covers it. Four are
-            red, green and blue multiplied by alpha, and alpha. Filtering needs scene-linear
-            values.
-        winds_once: Contours are known to wind once, counter-clockwise, round what they fill. No
-            overlaps are looked for then, which saves time where there are many curves; where there
-            are some, a place counts as often as contours wind round it.
+        fill_rule: Points inside: "nonzero" if the winding number of the contours is not 0, or
+            "evenodd" if it is odd.
+        color: One to four values, weighted by coverage. Four are red, green and blue premultiplied
+            by alpha, and alpha. Filtering needs scene-linear values.
+        winds_once: The contours are known to wind once, counter-clockwise, around their interior.
+            Overlaps are not searched for, which saves time with many curves; points inside overlaps
+            would count as often as contours wind around them.
 
     Raises:
-        ValueError: `fill_rule` is no such name, or `color` not one to four finite numbers.
+        ValueError: `fill_rule` is unknown, or `color` is not one to four finite numbers.
     """
 
     def __init__(
@@ -71,12 +70,12 @@ class Shape(Contours):
 
     @property
     def channels(self) -> int:
-        """The number of values that its color has."""
+        """The number of values of its color."""
         return self._channels
 
     @property
     def color(self) -> tuple[float, ...] | None:
-        """The values everywhere inside, or None where a gradient has been set."""
+        """The values everywhere inside; None with a gradient."""
         return self._color
 
     @color.setter
@@ -90,15 +89,15 @@ class Shape(Contours):
     def gradient(
         self, value: Sequence[float], along_x: Sequence[float], along_y: Sequence[float]
     ) -> None:
-        """Colors the shape by value + x * along_x + y * along_y at (x, y).
+        """Sets the color value + x * along_x + y * along_y at (x, y).
 
         Args:
-            value: One to four values at the origin, as `color` has them.
-            along_x: What they change by in a pixel along x.
-            along_y: What they change by in a pixel along y.
+            value: One to four values at the origin; see `color`.
+            along_x: Change of the values per pixel along x.
+            along_y: Change of the values per pixel along y.
 
         Raises:
-            ValueError: The three are not as long as each other, or not finite.
+            ValueError: The lengths differ, or a number is not finite.
         """
         values = as_color("value", value)
         slopes = as_color("along_x", along_x), as_color("along_y", along_y)
@@ -118,19 +117,19 @@ class Shape(Contours):
         spread: str = "pad",
         transform: npt.ArrayLike | None = None,
     ) -> None:
-        """Colors the shape along a line.
+        """Sets a linear gradient.
 
         Args:
             start: The point (x, y) of offset 0.
-            end: The point of offset 1; another one.
-            stops: Pairs (offset, color) with rising offsets in [0, 1]; between two of them colors
-                change linearly. At least one.
-            spread: What comes before offset 0 and after 1: "pad", the outermost colors; "repeat";
-                or "reflect", there and back.
-            transform: (2, 3), from the coordinates of `start` and `end` to those of the shape.
+            end: The point of offset 1, different from `start`.
+            stops: Pairs (offset, color) with increasing offsets in [0, 1], at least one. Colors are
+                interpolated linearly.
+            spread: Colors before offset 0 and after 1: "pad" extends the outermost ones, "repeat"
+                repeats the gradient, "reflect" alternates its direction.
+            transform: (2, 3), from the coordinates of `start` and `end` to the shape's.
 
         Raises:
-            ValueError: An argument is not as said.
+            ValueError: An argument is invalid.
         """
         begin, finish = as_point("start", start), as_point("end", end)
         if begin == finish:
@@ -148,24 +147,24 @@ class Shape(Contours):
         spread: str = "pad",
         transform: npt.ArrayLike | None = None,
     ) -> None:
-        """Colors the shape from a focus outwards.
+        """Sets a radial gradient between two circles.
 
-        Where neither circle holds the other, colors fill a cone, and beside it a shape with alpha
-        is transparent.
+        If neither circle contains the other, the gradient covers a cone; outside it, a shape with
+        alpha is transparent.
 
-        A pixel is a mean of the colors at points of it, on both sides of a stop where colors jump.
+        Pixels average the colors of several points, also on both sides of a discontinuous stop.
 
         Args:
-            center: The center (x, y) of the circle of offset 1.
-            radius: Its radius, above 0.
-            stops: As for `linear_gradient`.
-            focus: The center of the circle of offset 0; None for `center`.
-            focus_radius: Its radius, 0 or above.
-            spread: As for `linear_gradient`.
-            transform: As for `linear_gradient`.
+            center: Center (x, y) of the circle of offset 1.
+            radius: Its radius, positive.
+            stops: See `linear_gradient`.
+            focus: Center of the circle of offset 0; None for `center`.
+            focus_radius: Its radius, 0 or more.
+            spread: See `linear_gradient`.
+            transform: See `linear_gradient`.
 
         Raises:
-            ValueError: An argument is not as said.
+            ValueError: An argument is invalid.
         """
         middle = as_point("center", center)
         size, inner = as_number("radius", radius), as_number("focus_radius", focus_radius)
@@ -177,17 +176,17 @@ class Shape(Contours):
         self._set_stops(True, begin, inner, middle, size, stops, spread, transform)
 
     def transformed(self, matrix: npt.ArrayLike) -> "Shape":
-        """The shape where an affine map puts it; its color goes along.
+        """Returns the shape under an affine map, with its color.
 
         Args:
-            matrix: (2, 3): a point (x, y) goes to matrix @ (x, y, 1). Of rank 2.
+            matrix: (2, 3), of rank 2: maps a point (x, y) to matrix @ (x, y, 1).
 
         Raises:
-            ValueError: `matrix` is not as said.
+            ValueError: `matrix` is invalid.
         """
         numbers = as_matrix("matrix", matrix)
         moved = self._with(self._outline.transformed(numbers), self._paint.transformed(numbers))
-        # What a map turns over winds the other way.
+        # Reflections reverse the winding.
         moved._winds_once = self._winds_once and determinant(numbers) > 0.0
         return moved
 
@@ -202,21 +201,21 @@ class Shape(Contours):
         dash_offset: float = 0.0,
         tolerance: float = 1e-3,
     ) -> "Shape":
-        """What a pen covers along the contours, with the same color. Lengths are pixels.
+        """Returns the stroke of the contours, with the same color. Lengths are in pixels.
 
         Args:
-            width: The pen's, 0 or more.
-            join: What fills the gap outside of a corner: "miter", "round" or "bevel".
-            cap: How open contours and dashes end: "butt", "round" or "square".
-            miter_limit: A miter longer than this, in widths, becomes a bevel; 1 or more.
-            dashes: Lengths along the curve of dashes and gaps in turns; none for a solid stroke. An
-                odd number of them is gone through twice. Every contour begins anew.
-            dash_offset: How far into the dashes a contour begins.
-            tolerance: How far off curves beside curves may be, above 0. Lines stay lines, and round
-                joins and caps are arcs.
+            width: Stroke width, 0 or more.
+            join: Joins at corners: "miter", "round" or "bevel".
+            cap: Ends of open contours and dashes: "butt", "round" or "square".
+            miter_limit: Miters longer than this many widths become bevels; 1 or more.
+            dashes: Alternating lengths of dashes and gaps along the curve; empty for a solid
+                stroke. An odd number of lengths is repeated once. Each contour starts anew.
+            dash_offset: Distance into the dashes at which contours start.
+            tolerance: Largest error of offset curves, positive. Lines stay lines, and round joins
+                and caps are arcs.
 
         Raises:
-            ValueError: An argument is not as said.
+            ValueError: An argument is invalid.
         """
         defaults = Shape.stroked.__kwdefaults__
         pen = set_options(_native.StrokeOptions(), _STROKE_CHECKS, locals(), defaults)

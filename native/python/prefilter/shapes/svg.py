@@ -16,11 +16,10 @@ if TYPE_CHECKING:
 
 
 class SvgDrawing:
-    """What a drawing shows, in any size. `read_svg` makes it.
+    """A drawing as shapes, for any size. Made by `read_svg`.
 
-    The shapes are in pixels, with y upwards, as `rasterize` takes them; those that come first are
-    below, so that they want `overlap="cover"`. Their colors have red, green, blue and alpha, the
-    first three multiplied by alpha.
+    Shapes are in pixels, y upwards, as `rasterize` takes them, bottom first: rasterize them with
+    `overlap="cover"`. Colors are red, green and blue premultiplied by alpha, and alpha.
     """
 
     def __init__(self, name: str, drawing: "Drawing", light: str, warnings: Warnings) -> None:
@@ -37,22 +36,22 @@ class SvgDrawing:
 
     @property
     def width(self) -> float:
-        """What the file says of its width, in pixels; from its view box, or 300, if nothing."""
+        """Width in pixels, from the file; by default from the view box, or 300."""
         return self._drawing.page.width
 
     @property
     def height(self) -> float:
-        """What the file says of its height, in pixels; from its view box, or 150, if nothing."""
+        """Height in pixels, from the file; by default from the view box, or 150."""
         return self._drawing.page.height
 
     @property
     def light(self) -> str:
-        """What the colors are: "linear" or "srgb"."""
+        """Encoding of the colors: "linear" or "srgb"."""
         return self._light
 
     @property
     def warnings(self) -> tuple[SvgWarning, ...]:
-        """What was found in the file and is not in the shapes, in the order of the file."""
+        """Warnings about parts of the file missing in the shapes, in the order of the file."""
         return self._warnings
 
     @property
@@ -65,15 +64,15 @@ class SvgDrawing:
     def shapes_for(
         self, width: float, height: float, *, progress: ProgressCallback | None = None
     ) -> list[Shape]:
-        """The shapes for an image of another size.
+        """Returns the shapes for another size.
 
-        The drawing fills it as its preserveAspectRatio says: usually as large as fits, in the
-        middle. Strokes are made for the size.
+        The drawing is fitted into it by its preserveAspectRatio: by default as large as possible,
+        and centered. Strokes are computed for the size.
 
         Args:
             width: In pixels, positive.
             height: In pixels, positive.
-            progress: Called with the share that is done; False stops.
+            progress: Called with the fraction done; returning False stops the work.
 
         Raises:
             ValueError: A side is not positive.
@@ -109,30 +108,30 @@ def read_svg(
 ) -> SvgDrawing:
     """Reads a drawing: its paths, basic shapes and text, with colors, gradients and strokes.
 
-    Letters are outlines of their fonts. What needs layers, pictures, patterns and filters is left
-    out or ignored; the `warnings` of the result tell of it. Arcs, circles and ellipses stay exact.
+    Glyphs become outlines. Layers, images, patterns and filters are left out or ignored, with
+    `warnings` in the result. Arcs, circles and ellipses stay exact.
 
     Args:
-        source: The path of a file, plain (.svg) or compressed (.svgz); or markup, as text that
-            begins with "<", or as bytes.
-        light: SVG blends colors as they are encoded for display. "linear": they are decoded, and
-            gradients look as in a browser; what is translucent blends as light does. "srgb": they
-            stay encoded, so that all looks as in a browser; so is an image of them.
-        fonts: Files and folders of fonts for text, the best first: only these, so that the drawing
-            is the same on every system. None: the fonts of the system.
-        progress: Called with the share that is done; False stops.
+        source: Path of a file, plain (.svg) or compressed (.svgz); or markup, as text that begins
+            with "<", or as bytes.
+        light: SVG blends colors in their encoding for display. "srgb": colors stay encoded, so that
+            everything looks as in a browser; so is an image of them. "linear": colors are decoded;
+            gradients look as in a browser, but translucent shapes blend in linear light.
+        fonts: Font files and folders for text, in order of preference. Only these are used, so that
+            the drawing is the same on every system. None: the system's fonts.
+        progress: Called with the fraction done; returning False stops the work.
 
     Returns:
-        The drawing. Where the file is wrong in places, what is right, with a warning for the rest.
+        The drawing. Invalid parts of the file are left out, with warnings.
 
     Raises:
-        ValueError: There is no drawing in the source, or XML that is broken, or what would take no
-            end of memory; the message names the file and the line.
+        ValueError: The source is no drawing, its XML is not well-formed, or it exceeds a size
+            limit; the message names the file and the line.
         OSError: The file cannot be read.
         Cancelled: `progress` returned False.
     """
     as_one_of("light", light, ("linear", "srgb"))
-    # Style sheets take modules that those who read no drawings need not wait for.
+    # CSS modules load slowly, and are only needed for drawings.
     from ._svg.draw.opening import open_drawing
     from ._svg.model.gradients import Colors
 
@@ -145,7 +144,7 @@ def read_svg(
 
 
 def progress_reporter(progress: ProgressCallback | None) -> Callable[[float], None]:
-    """Returns what tells of progress, and raises Cancelled where that says so."""
+    """Returns a function that reports progress, and raises Cancelled if told to stop."""
 
     def report(share: float) -> None:
         if progress is not None and progress(share) is False:

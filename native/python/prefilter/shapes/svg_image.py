@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Images of whole SVG drawings."""
+"""Images of SVG drawings."""
 
 import os
 from collections.abc import Iterable
@@ -15,7 +15,7 @@ from ._svg.model.warnings import SvgWarning
 from .rasterization import RASTER_FILTERS, as_whether_bytes, to_bytes
 from .svg import progress_reporter
 
-_READ = 0.3
+_READING_SHARE = 0.3
 
 
 def rasterize_svg(
@@ -30,35 +30,35 @@ def rasterize_svg(
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> tuple[FloatArray | npt.NDArray[np.uint8], tuple[SvgWarning, ...]]:
-    """The image of a drawing: its shapes, and the layers that they make.
+    """Renders a drawing, with its layers and images.
 
-    Groups with an opacity, a blend mode, a mask or a filter are layers; shapes are cut off at clip
-    paths exactly. Patterns, markers and images are drawn: PNG, JPEG, GIF and WebP, read by Pillow
-    or by OpenImageIO, and SVG, embedded in the file or in its folder. The drawing fills the image
-    as its preserveAspectRatio says, and is cut off at its page. Shapes between two layers are drawn
-    as by `rasterize` with overlap="cover".
+    Groups with opacity, blend mode, mask or filter are layers; clip paths are applied exactly.
+    Patterns, markers and images are drawn: PNG, JPEG, GIF and WebP, decoded by Pillow or
+    OpenImageIO, and SVG, embedded or in the file's folder. The drawing is fitted into the image by
+    its preserveAspectRatio, and clipped at its page. Shapes between two layers are drawn as by
+    `rasterize` with overlap="cover".
 
     Args:
-        source: As of `read_svg`.
-        width: Pixels.
-        height: Pixels.
-        filter: As of `rasterize`. Images have a filter of their own.
-        light: "srgb": colors are mixed as they are encoded for display, as in browsers, opacities
-            in steps of a 255th. "linear": as light is.
-        fonts: Files and folders of fonts for text, the best first: only these, so that the image
-            is the same on every system. None: the fonts of the system.
-        dtype: float32, or uint8 for values from 0 to 1 as 0 to 255, rounded.
-        progress: Called with the fraction done; False stops.
+        source: See `read_svg`.
+        width: In pixels.
+        height: In pixels.
+        filter: Pixel filter of shapes; see `rasterize`. Images have a filter of their own.
+        light: "srgb": colors are blended in their encoding for display, with opacities in steps of
+            1/255, as in browsers. "linear": colors are blended in linear light.
+        fonts: Font files and folders for text, in order of preference. Only these are used, so that
+            the image is the same on every system. None: the system's fonts.
+        dtype: float32, or uint8 for values in [0, 1], scaled to 255 and rounded.
+        progress: Called with the fraction done; returning False stops the work.
         threads: 0 means all processors. The result does not depend on it.
 
     Returns:
-        The image, (height, width, 4) with row 0 at the bottom: red, green and blue multiplied by
-        alpha, and alpha; encoded with light="srgb", scene-linear with "linear". And what was found
-        in the file and is not in the image, in the order in which it was found.
+        The image, (height, width, 4) with row 0 at the bottom: red, green and blue premultiplied by
+        alpha, and alpha; encoded with light="srgb", scene-linear with "linear". And warnings about
+        parts of the file that the image does not show, in the order of detection.
 
     Raises:
-        ValueError: An argument is not as said, or `read_svg` would refuse the source, or its layers
-            are too many or too deep; the message names the file.
+        ValueError: An argument is invalid, `read_svg` would refuse the source, or there are too
+            many or too deeply nested layers; the message names the file.
         OSError: The file cannot be read.
         MemoryError: The image does not fit into memory.
         Cancelled: `progress` returned False.
@@ -69,15 +69,19 @@ def rasterize_svg(
     count = as_threads(threads)
     is_bytes = as_whether_bytes(dtype)
     report = as_progress(progress)
-    picture = SvgPicture(source, light, fonts, part_of(report, 0.0, _READ))
+    picture = SvgPicture(source, light, fonts, partial_progress(report, 0.0, _READING_SHARE))
     image = picture.drawn(
-        *size, None, filter_name=filter, threads=count, progress=part_of(report, _READ, 1.0)
+        *size,
+        None,
+        filter_name=filter,
+        threads=count,
+        progress=partial_progress(report, _READING_SHARE, 1.0),
     )
     return to_bytes(image) if is_bytes else image, picture.warnings
 
 
 class SvgPicture:
-    """A drawing that was read to be drawn. Arguments are as of `rasterize_svg`."""
+    """A drawing to render several times. See `rasterize_svg` for arguments."""
 
     def __init__(
         self,
@@ -97,12 +101,12 @@ class SvgPicture:
 
     @property
     def width(self) -> float:
-        """Of its page, in pixels."""
+        """Width of the page, in pixels."""
         return self._drawing.page.width
 
     @property
     def height(self) -> float:
-        """Likewise."""
+        """Height of the page, in pixels."""
         return self._drawing.page.height
 
     def drawn(
@@ -115,16 +119,16 @@ class SvgPicture:
         threads: int,
         progress: ProgressCallback | None,
     ) -> FloatArray:
-        """The image.
+        """Renders the drawing.
 
         Args:
-            width: Pixels.
-            height: Pixels.
-            place: How many pixels a pixel of the page becomes, and where its lower left corner is.
-                None for a page that fills the image.
-            filter_name: As of `rasterize`.
-            threads: As there.
-            progress: As there.
+            width: In pixels.
+            height: In pixels.
+            place: Scale of the page, and x and y of its lower left corner. None for a page that
+                fills the image.
+            filter_name: See `rasterize`.
+            threads: See `rasterize`.
+            progress: See `rasterize`.
         """
         from ._svg.draw.compositing import Compositor
         from ._svg.draw.opening import as_value_errors
@@ -140,8 +144,10 @@ class SvgPicture:
             return compositor.draw(drawing, to_pixels, (width, height), around)
 
 
-def part_of(progress: ProgressCallback | None, begin: float, end: float) -> ProgressCallback | None:
-    """Tells of a part of the work."""
+def partial_progress(
+    progress: ProgressCallback | None, begin: float, end: float
+) -> ProgressCallback | None:
+    """Maps progress to a part of the work."""
     if progress is None:
         return None
     return lambda share: progress(begin + (end - begin) * share)

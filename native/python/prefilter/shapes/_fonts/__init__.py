@@ -1,3 +1,3 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Fonts: where they are, which one a text asks for, and their glyphs, read by fontTools."""
+"""Fonts, read by fontTools: folders, selection by family and style, shaping, and glyphs."""

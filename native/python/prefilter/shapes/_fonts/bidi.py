@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The order of letters where lines go to the left and to the right.
+"""Order of characters in bidirectional text.
 
-The Unicode Bidirectional Algorithm (UAX #9), rules W1 to W7, N0 to N2, I1, I2 and L2. Characters
-that embed or isolate (X1 to X10) are ignored: elements and their properties do that in a drawing.
+The Unicode Bidirectional Algorithm (UAX #9), rules W1 to W7, N0 to N2, I1, I2 and L2. Embedding and
+isolating characters (X1 to X10) are ignored: drawings use elements and properties instead.
 """
 
 import unicodedata
@@ -17,28 +17,28 @@ _CLOSING = {closing: opening for opening, closing in _BRACKETS.items()}
 _MAX_OPEN = 63
 
 
-def levels_of(text: str, base: int, forced: Sequence[str] = ()) -> list[int]:
-    """The embedding levels of characters: odd ones go to the left.
+def embedding_levels(text: str, base: int, forced: Sequence[str] = ()) -> list[int]:
+    """Returns the embedding levels of characters; odd levels are right-to-left.
 
     Args:
         text: A paragraph.
-        base: The level of the paragraph: 0 where it goes to the right, 1 to the left.
-        forced: "L" or "R" for characters that an element overrides, "" for others; or nothing.
+        base: Level of the paragraph: 0 for left-to-right, 1 for right-to-left.
+        forced: "L" or "R" for overridden characters, "" for others; may be empty.
     """
     if base == 0 and not any(forced) and all(ord(each) < 0x590 for each in text):
         return [0] * len(text)
     kinds = [unicodedata.bidirectional(each) or "L" for each in text]
     for index, kind in enumerate(forced):
         kinds[index] = kind or kinds[index]
-    at = [index for index, kind in enumerate(kinds) if kind not in _IGNORED]
-    run = [kinds[index] for index in at]
+    kept_indices = [index for index, kind in enumerate(kinds) if kind not in _IGNORED]
+    run = [kinds[index] for index in kept_indices]
     marks = [kind == "NSM" for kind in run]
-    outer = "R" if base % 2 else "L"
-    _weak(run, outer)
-    _brackets(run, [text[index] for index in at], marks, outer)
-    _neutral(run, outer)
+    embedding = "R" if base % 2 else "L"
+    _resolve_weak(run, embedding)
+    _resolve_brackets(run, [text[index] for index in kept_indices], marks, embedding)
+    _resolve_neutral(run, embedding)
     levels = [base] * len(text)
-    for index, kind in zip(at, run, strict=True):
+    for index, kind in zip(kept_indices, run, strict=True):
         if base % 2:
             levels[index] = base + (kind != "R")
         else:
@@ -49,8 +49,8 @@ def levels_of(text: str, base: int, forced: Sequence[str] = ()) -> list[int]:
     return levels
 
 
-def _weak(run: list[str], outer: str) -> None:
-    """W1 to W7."""
+def _resolve_weak(run: list[str], outer: str) -> None:
+    """Rules W1 to W7: weak types."""
     before, strong = outer, outer
     for index, kind in enumerate(run):
         if kind == "NSM":
@@ -90,42 +90,44 @@ def _direction(kind: str) -> str:
     return {"L": "L", "R": "R", "EN": "R", "AN": "R"}.get(kind, "")
 
 
-def _brackets(run: list[str], text: Sequence[str], marks: Sequence[bool], outer: str) -> None:
-    """N0: pairs of brackets have one direction."""
+def _resolve_brackets(
+    run: list[str], text: Sequence[str], marks: Sequence[bool], outer: str
+) -> None:
+    """Rule N0: paired brackets."""
     opened: list[tuple[str, int]] = []
     pairs: list[tuple[int, int]] = []
-    for index, each in enumerate(text):
+    for index, character in enumerate(text):
         if run[index] != "ON":
             continue
-        if each in _BRACKETS:
+        if character in _BRACKETS:
             if len(opened) >= _MAX_OPEN:
                 return
-            opened.append((each, index))
-        elif each in _CLOSING:
-            for place in range(len(opened) - 1, -1, -1):
-                if opened[place][0] == _CLOSING[each]:
-                    pairs.append((opened[place][1], index))
-                    del opened[place:]
+            opened.append((character, index))
+        elif character in _CLOSING:
+            for position in range(len(opened) - 1, -1, -1):
+                if opened[position][0] == _CLOSING[character]:
+                    pairs.append((opened[position][1], index))
+                    del opened[position:]
                     break
     for first, last in sorted(pairs):
         inside = {_direction(kind) for kind in run[first + 1 : last]} - {""}
         if not inside:
             continue
-        chosen = outer
+        direction = outer
         if outer not in inside:
             before = next((found for kind in run[first::-1] if (found := _direction(kind))), outer)
-            chosen = before if before in inside else outer
-        for place in (first, last):
-            run[place] = chosen
-            # Marks on a bracket follow it.
-            after = place + 1
+            direction = before if before in inside else outer
+        for position in (first, last):
+            run[position] = direction
+            # Marks on a bracket take its direction.
+            after = position + 1
             while after < len(run) and marks[after]:
-                run[after] = chosen
+                run[after] = direction
                 after += 1
 
 
-def _neutral(run: list[str], outer: str) -> None:
-    """N1 and N2."""
+def _resolve_neutral(run: list[str], outer: str) -> None:
+    """Rules N1 and N2: neutral types."""
     index = 0
     while index < len(run):
         end = index
@@ -139,7 +141,7 @@ def _neutral(run: list[str], outer: str) -> None:
 
 
 def visual_order(levels: Sequence[int]) -> list[int]:
-    """The indices of things with these levels, from left to right (L2)."""
+    """Returns the indices of items with these levels, from left to right (rule L2)."""
     order = list(range(len(levels)))
     odd = [level for level in levels if level % 2]
     if not odd:

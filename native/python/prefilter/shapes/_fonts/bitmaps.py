@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Glyphs that are pictures: the tables CBDT and sbix."""
+"""Bitmap glyphs: the tables CBDT and sbix."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,14 +13,14 @@ _BITMAPS = ("CBDT", "sbix")
 
 @dataclass(frozen=True, slots=True)
 class Bitmap:
-    """A picture of a glyph.
+    """A bitmap of a glyph.
 
     Attributes:
-        data: Of a file, usually PNG.
-        unit: The side of a pixel, in units of the font.
-        left: Where it begins, in units of the font.
-        edge: How high its upper or lower edge is, upwards from the baseline.
-        is_top: Whether that is the upper one.
+        data: An image file, usually PNG.
+        unit: Side of a pixel, in font units.
+        left: Left edge, in font units.
+        edge: Height of the upper or lower edge above the baseline, in font units.
+        is_top: Whether `edge` is the upper edge.
     """
 
     data: bytes
@@ -31,16 +31,16 @@ class Bitmap:
 
 
 def has_bitmaps(tables: Any) -> bool:
-    """Whether a font has pictures of glyphs."""
+    """Returns whether a font has bitmap glyphs."""
     return any(tag in tables for tag in _BITMAPS)
 
 
 class BitmapTable:
-    """The largest pictures of a font's glyphs.
+    """The largest bitmaps of a font's glyphs.
 
     Args:
-        tables: Those of the font.
-        units_per_em: Of the font.
+        tables: Tables of the font.
+        units_per_em: Font units per em.
     """
 
     def __init__(self, tables: Any, units_per_em: float) -> None:
@@ -48,7 +48,7 @@ class BitmapTable:
         self._units_per_em = units_per_em
 
     def bitmap(self, name: str) -> Bitmap | None:
-        """The picture of a glyph; None where it has none."""
+        """Returns the bitmap of a glyph; None if it has none."""
         if "sbix" in self._tables:
             return self._from_sbix(name)
         return self._from_cbdt(name)
@@ -67,17 +67,17 @@ class BitmapTable:
         return Bitmap(bytes(glyph.imageData), unit, left * unit, low * unit, False)
 
     def _from_cbdt(self, name: str) -> Bitmap | None:
-        found = self._cbdt.get(name)
-        if found is None:
+        entry = self._cbdt.get(name)
+        if entry is None:
             return None
-        glyph, ppem, shared = found
+        glyph, ppem, shared = entry
         if not hasattr(glyph, "imageData"):
             return None
         metrics = getattr(glyph, "metrics", None) or shared
         if metrics is None:
             return None
         unit = self._units_per_em / max(ppem, 1)
-        # Metrics of both directions have names of their own.
+        # Metrics for both directions prefix their names with "hori".
         left = getattr(metrics, "BearingX", getattr(metrics, "horiBearingX", 0))
         top = getattr(metrics, "BearingY", getattr(metrics, "horiBearingY", 0))
         return Bitmap(bytes(glyph.imageData), unit, left * unit, top * unit, True)
@@ -89,7 +89,7 @@ class BitmapTable:
 
     @cached_property
     def _cbdt(self) -> Mapping[str, tuple[Any, int, Any]]:
-        """Glyphs of the largest strike, its size, and the metrics that glyphs share."""
+        """Glyphs of the largest strike, with its size and shared metrics."""
         strikes = self._tables["CBLC"].strikes
         if not strikes:
             return {}

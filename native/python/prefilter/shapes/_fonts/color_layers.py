@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Glyphs that are painted in layers: the tables COLR, of version 0 and 1, and CPAL."""
+"""Layered color glyphs: the tables COLR, versions 0 and 1, and CPAL."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -17,8 +17,8 @@ _TEXT_COLOR = 0xFFFF
 _SPREADS = ("pad", "repeat", "reflect")
 MAX_PAINTS = 4096
 MAX_DEPTH = 32
-# Names of CompositeMode that are blend modes of CSS, by their number.
-_BLENDED = {
+# CompositeMode numbers of CSS blend modes.
+_BLEND_MODES = {
     **{13: "screen", 14: "overlay", 15: "darken", 16: "lighten", 17: "color-dodge"},
     **{18: "color-burn", 19: "hard-light", 20: "soft-light", 21: "difference", 22: "exclusion"},
     **{23: "multiply", 24: "hue", 25: "saturation", 26: "color", 27: "luminosity"},
@@ -27,17 +27,17 @@ _CLEAR, _SOURCE, _BACKDROP, _OVER, _UNDER, _SOURCE_IN, _BACKDROP_IN = range(7)
 
 
 class UnknownPaintError(ValueError):
-    """A paint that is not drawn here; the message says which."""
+    """A paint is not supported; the message names it."""
 
 
 @dataclass(frozen=True, slots=True)
 class ColorStop:
-    """A color of a gradient, or one by itself.
+    """A gradient stop, or a single color.
 
     Attributes:
-        offset: Where it is.
-        color: Of the palette; None for that of the text.
-        alpha: Multiplies its alpha.
+        offset: Position in the gradient.
+        color: Palette color; None for the text's color.
+        alpha: Multiplies the color's alpha.
     """
 
     offset: float
@@ -47,16 +47,16 @@ class ColorStop:
 
 @dataclass(frozen=True, slots=True)
 class ColorFill:
-    """What a glyph fills, in units of the font with y upwards.
+    """A painted glyph, in font units, y upwards.
 
     Attributes:
-        glyph: Its number; None for the whole plane.
-        matrix: From its units to those of what it is in.
+        glyph: Glyph index; None for the whole plane.
+        matrix: From the glyph's units to those of the enclosing group.
         kind: "solid", "linear" or "radial".
-        numbers: Of a gradient: both ends; or center, radius, focus and its radius.
-        stops: Of a gradient, or one.
-        spread: How a gradient goes on.
-        paint_matrix: From the units of a gradient to those of what the fill is in.
+        numbers: Gradient geometry: both ends; or center, radius, focus and focal radius.
+        stops: Gradient stops, or one color.
+        spread: Spread method of a gradient.
+        paint_matrix: From the gradient's units to those of the enclosing group.
     """
 
     glyph: int | None
@@ -73,10 +73,10 @@ class ColorGroup:
     """Layers over each other.
 
     Attributes:
-        items: First what is below.
-        cut: A glyph that cuts all of them off, and its matrix; None without.
-        blend: How the whole is mixed with what is below it.
-        inside: What it is seen through, by its alpha.
+        items: Bottom first.
+        cut: Clipping glyph and its matrix; None if not clipped.
+        blend: Blend mode of the whole.
+        inside: Mask, by its alpha.
     """
 
     items: tuple["ColorFill | ColorGroup", ...]
@@ -89,7 +89,7 @@ class ColorTable:
     """The layers of a font's glyphs.
 
     Args:
-        tables: Those of the font.
+        tables: Tables of the font.
     """
 
     def __init__(self, tables: Any) -> None:
@@ -97,14 +97,14 @@ class ColorTable:
         self._numbers: Mapping[str, int] = tables.getReverseGlyphMap()
 
     def layers(self, name: str) -> ColorGroup | None:
-        """The layers of a glyph; None where it has none.
+        """Returns the layers of a glyph; None if it has none.
 
         Raises:
-            UnknownPaintError: There is something in them that is not drawn here.
+            UnknownPaintError: A layer is not supported.
         """
         paint = self._paints.get(name)
         if paint is not None:
-            return _Reading(self).group(paint)
+            return _PaintReader(self).group(paint)
         layers = self._flat_layers.get(name)
         if layers is None:
             return None
@@ -118,23 +118,23 @@ class ColorTable:
         return ColorGroup(tuple(fills))
 
     def paint_of(self, name: str) -> Any:
-        """The paint of another glyph. Raises UnknownPaintError where it has none."""
+        """Returns the paint of another glyph. Raises UnknownPaintError if it has none."""
         if name not in self._paints:
             raise UnknownPaintError("a layer that is not there")
         return self._paints[name]
 
     def number(self, name: str) -> int:
-        """The number of a glyph."""
+        """Returns the index of a glyph."""
         return self._numbers[name]
 
     def stop(self, offset: float, index: int, alpha: float) -> ColorStop:
-        """A color of the palette."""
+        """Makes a stop of a palette color."""
         if index == _TEXT_COLOR or index >= len(self._palette):
             return ColorStop(offset, None, alpha)
         return ColorStop(offset, self._palette[index], alpha)
 
     def layer_list(self, first: int, count: int) -> list[Any]:
-        """A part of the list of layers."""
+        """Returns a slice of the layer list."""
         layers = self._table.LayerList
         return list(layers.Paint[first : first + count]) if layers else []
 
@@ -164,24 +164,24 @@ class ColorTable:
         ]
 
 
-class _Reading:
+class _PaintReader:
     """Reads the paints of one glyph."""
 
     def __init__(self, table: ColorTable) -> None:
         self._table = table
-        self._left = MAX_PAINTS
+        self._paints_left = MAX_PAINTS
         self._depth = 0
 
     def group(self, paint: Any) -> ColorGroup:
         return ColorGroup(tuple(self._items(paint, IDENTITY)))
 
     def _items(self, paint: Any, matrix: Matrix) -> Iterator[ColorFill | ColorGroup]:
-        """Yields what a paint consists of; the matrix leads to the units of the glyph."""
-        self._left -= 1
-        if self._left < 0 or self._depth >= MAX_DEPTH:
+        """Yields the items of a paint; the matrix leads to the glyph's units."""
+        self._paints_left -= 1
+        if self._paints_left < 0 or self._depth >= MAX_DEPTH:
             raise UnknownPaintError("too many layers")
         self._depth += 1
-        kind = _kind_of(paint)
+        kind = _static_format(paint)
         if kind == 1:
             for each in self._table.layer_list(paint.FirstLayerIndex, paint.NumLayers):
                 yield from self._items(each, matrix)
@@ -198,15 +198,15 @@ class _Reading:
         self._depth -= 1
 
     def _cut(self, paint: Any, matrix: Matrix) -> Iterator[ColorFill | ColorGroup]:
-        """A glyph that is filled by a paint."""
+        """Yields a glyph filled with a paint."""
         glyph = self._table.number(paint.Glyph)
         inner, paint_matrix = paint.Paint, matrix
         for _ in range(MAX_DEPTH):
-            if not 12 <= _kind_of(inner) < 32:
+            if not 12 <= _static_format(inner) < 32:
                 break
             paint_matrix = multiplied(paint_matrix, _transform(inner))
             inner = inner.Paint
-        if 2 <= _kind_of(inner) < 10:
+        if 2 <= _static_format(inner) < 10:
             yield self._fill(inner, glyph, matrix, paint_matrix)
         else:
             yield ColorGroup(tuple(self._items(paint.Paint, matrix)), (glyph, matrix))
@@ -227,15 +227,15 @@ class _Reading:
             yield ColorGroup((source,), inside=backdrop)
         elif mode == _BACKDROP_IN:
             yield ColorGroup((backdrop,), inside=source)
-        elif mode in _BLENDED:
-            yield ColorGroup((backdrop, ColorGroup((source,), blend=_BLENDED[mode])))
+        elif mode in _BLEND_MODES:
+            yield ColorGroup((backdrop, ColorGroup((source,), blend=_BLEND_MODES[mode])))
         elif mode != _CLEAR:
             raise UnknownPaintError(f"composite mode {mode}")
 
     def _fill(
         self, paint: Any, glyph: int | None, matrix: Matrix, paint_matrix: Matrix
     ) -> ColorFill:
-        kind = _kind_of(paint)
+        kind = _static_format(paint)
         if kind == 2:
             stop = self._table.stop(0.0, paint.PaletteIndex, paint.Alpha)
             return ColorFill(glyph, matrix, "solid", (), (stop,), "pad", paint_matrix)
@@ -252,7 +252,7 @@ class _Reading:
         if not stops:
             raise UnknownPaintError("gradients without colors")
         spread = _SPREADS[min(int(line.Extend), 2)]
-        numbers = _line_of(paint) if kind == 4 else _circles_of(paint)
+        numbers = _linear_geometry(paint) if kind == 4 else _radial_geometry(paint)
         if numbers is None:
             return ColorFill(glyph, matrix, "solid", (), (stops[-1],), "pad", paint_matrix)
         first, last = stops[0].offset, stops[-1].offset
@@ -261,11 +261,11 @@ class _Reading:
                 ColorStop((stop.offset - first) / (last - first), stop.color, stop.alpha)
                 for stop in stops
             ]
-            numbers = _between(numbers, first, last)
+            numbers = _trim_ends(numbers, first, last)
         if kind == 6:
             x0, y0, r0, x1, y1, r1 = numbers
             if r1 <= 0.0:
-                # The last circle is the one that must have a radius.
+                # The end circle must have a radius.
                 stops = [ColorStop(1.0 - s.offset, s.color, s.alpha) for s in reversed(stops)]
                 x0, y0, r0, x1, y1, r1 = x1, y1, r1, x0, y0, r0
             if r1 <= 0.0:
@@ -275,8 +275,8 @@ class _Reading:
         return ColorFill(glyph, matrix, name, numbers, tuple(stops), spread, paint_matrix)
 
 
-def _kind_of(paint: Any) -> int:
-    """The number of a paint's format, that of paints which vary being that of the others."""
+def _static_format(paint: Any) -> int:
+    """Returns a paint's format; variable formats count as the static ones."""
     kind = int(paint.Format)
     if kind in (3, 5, 7, 9) or 12 < kind < 32:
         return kind - 1 if kind % 2 else kind
@@ -284,31 +284,31 @@ def _kind_of(paint: Any) -> int:
 
 
 def _transform(paint: Any) -> Matrix:
-    kind = _kind_of(paint)
+    kind = _static_format(paint)
     if kind == 12:
         t = paint.Transform
         return (t.xx, t.yx, t.xy, t.yy, t.dx, t.dy)
     if kind == 14:
         return (1.0, 0.0, 0.0, 1.0, paint.dx, paint.dy)
     if kind in (16, 18):
-        found = (paint.scaleX, 0.0, 0.0, paint.scaleY, 0.0, 0.0)
+        matrix = (paint.scaleX, 0.0, 0.0, paint.scaleY, 0.0, 0.0)
     elif kind in (20, 22):
-        found = (paint.scale, 0.0, 0.0, paint.scale, 0.0, 0.0)
+        matrix = (paint.scale, 0.0, 0.0, paint.scale, 0.0, 0.0)
     elif kind in (24, 26):
         angle = math.radians(paint.angle)
         cos, sin = _native.cos(angle), _native.sin(angle)
-        found = (cos, sin, -sin, cos, 0.0, 0.0)
+        matrix = (cos, sin, -sin, cos, 0.0, 0.0)
     else:
         skews = (math.radians(-paint.xSkewAngle), math.radians(paint.ySkewAngle))
-        found = (1.0, _native.tan(skews[1]), _native.tan(skews[0]), 1.0, 0.0, 0.0)
+        matrix = (1.0, _native.tan(skews[1]), _native.tan(skews[0]), 1.0, 0.0, 0.0)
     if kind not in (18, 22, 26, 30):
-        return found
+        return matrix
     x, y = float(paint.centerX), float(paint.centerY)
-    return multiplied(multiplied((1.0, 0.0, 0.0, 1.0, x, y), found), (1.0, 0.0, 0.0, 1.0, -x, -y))
+    return multiplied(multiplied((1.0, 0.0, 0.0, 1.0, x, y), matrix), (1.0, 0.0, 0.0, 1.0, -x, -y))
 
 
-def _line_of(paint: Any) -> tuple[float, ...] | None:
-    """The ends of a linear gradient, whose third point says how its lines of a color are turned."""
+def _linear_geometry(paint: Any) -> tuple[float, ...] | None:
+    """Returns the ends of a linear gradient; the third point of COLR rotates its color lines."""
     x0, y0, x1, y1 = float(paint.x0), float(paint.y0), float(paint.x1), float(paint.y1)
     x, y = paint.x2 - x0, paint.y2 - y0
     square = x * x + y * y
@@ -318,13 +318,13 @@ def _line_of(paint: Any) -> tuple[float, ...] | None:
     return x0, y0, x0 + across * y / square, y0 - across * x / square
 
 
-def _circles_of(paint: Any) -> tuple[float, ...] | None:
-    found = (paint.x0, paint.y0, paint.r0, paint.x1, paint.y1, paint.r1)
-    return None if found[:3] == found[3:] else tuple(map(float, found))
+def _radial_geometry(paint: Any) -> tuple[float, ...] | None:
+    numbers = (paint.x0, paint.y0, paint.r0, paint.x1, paint.y1, paint.r1)
+    return None if numbers[:3] == numbers[3:] else tuple(map(float, numbers))
 
 
-def _between(numbers: tuple[float, ...], first: float, last: float) -> tuple[float, ...]:
-    """Both ends moved to where the first and the last color are."""
+def _trim_ends(numbers: tuple[float, ...], first: float, last: float) -> tuple[float, ...]:
+    """Moves both ends to the first and the last stop."""
     half = len(numbers) // 2
     ends = tuple(zip(numbers[:half], numbers[half:], strict=True))
     return tuple(a + (b - a) * share for share in (first, last) for a, b in ends)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What the tables of a font file say of its faces, without their glyphs."""
+"""Faces of font files: family, weight, width, slant and axes, from tables without glyphs."""
 
 import io
 import logging
@@ -15,29 +15,29 @@ from fontTools.ttLib import TTCollection, TTFont
 from .bitmaps import has_bitmaps
 from .woff import as_sfnt
 
-# In percent of the normal width, by usWidthClass.
+# Percentages of the normal width, by usWidthClass.
 _WIDTHS = (100.0, 50.0, 62.5, 75.0, 87.5, 100.0, 112.5, 125.0, 150.0, 200.0)
 _FAMILY_NAMES = (16, 1, 21)
 OUTLINES = ("glyf", "CFF ", "CFF2")
 _MAX_FACES = 256
 DAMAGED = "it is damaged, or no font"
-"""What is said of a file whose tables cannot be read."""
+"""Message for files whose tables cannot be read."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Face:
-    """A font in a file.
+    """A face in a font file.
 
     Attributes:
         path: The file.
-        index: Which of its fonts.
-        family: As messages call it.
-        families: All names of its family, in small letters.
-        weight: The lowest and the highest.
-        stretch: Likewise, in percent of the normal width.
+        index: Index in a collection.
+        family: Name in messages.
+        families: All names of its family, in lower case.
+        weight: Lowest and highest weight.
+        stretch: Lowest and highest width, in percent of the normal one.
         slant: "normal", "italic" or "oblique".
-        axes: What varies: the lowest, usual and highest value, by tag.
-        data: The font itself, where it is in no file.
+        axes: Lowest, default and highest value of variable axes, by tag.
+        data: Contents of an embedded font.
     """
 
     path: Path
@@ -51,11 +51,11 @@ class Face:
     data: bytes | None = None
 
     def opened(self) -> Any:
-        """The tables of the font, read as they are needed."""
+        """Opens the font; tables are read when needed."""
         return TTFont(_source(self.path, self.data), fontNumber=self.index, lazy=True)
 
     def contents(self) -> bytes:
-        """The font as TrueType or OpenType."""
+        """Returns the font as TrueType or OpenType."""
         data = self.path.read_bytes() if self.data is None else self.data
         if data[:4] not in (b"wOFF", b"wOF2"):
             return data
@@ -69,17 +69,17 @@ def _source(path: Path, data: bytes | None) -> str | io.BytesIO:
     return str(path) if data is None else io.BytesIO(data)
 
 
-# It says much of what is damaged; Python prints that where nobody listens.
+# fontTools logs details of damage, which Python would print without a handler.
 logging.getLogger("fontTools").addHandler(logging.NullHandler())
 
 
 class UnreadableFontError(ValueError):
-    """A file holds no font that can be read; the message says why."""
+    """A file is no readable font; the message says why."""
 
 
 @lru_cache(maxsize=65536)
-def _faces_as_of(path: Path, stamp: tuple[int, int]) -> tuple[Face, ...]:
-    """`stamp` is the time and size of the file: what is new is read again."""
+def _read_faces(path: Path, stamp: tuple[int, int]) -> tuple[Face, ...]:
+    """`stamp` is the file's time and size, so that changed files are read again."""
     try:
         with path.open("rb") as file:
             is_collection = file.read(4) == b"ttcf"
@@ -87,8 +87,8 @@ def _faces_as_of(path: Path, stamp: tuple[int, int]) -> tuple[Face, ...]:
         if is_collection:
             with TTCollection(str(path), lazy=True) as collection:
                 count = len(collection.fonts)
-        found = (_face(path, index) for index in range(min(count, _MAX_FACES)))
-        return tuple(face for face in found if face is not None)
+        faces = (_face(path, index) for index in range(min(count, _MAX_FACES)))
+        return tuple(face for face in faces if face is not None)
     except OSError:
         raise
     except ImportError:
@@ -98,33 +98,33 @@ def _faces_as_of(path: Path, stamp: tuple[int, int]) -> tuple[Face, ...]:
 
 
 def faces_in(path: Path) -> tuple[Face, ...]:
-    """The fonts in a file that have outlines, or pictures of letters.
+    """Returns the faces of a file that have outlines or bitmaps.
 
     Raises:
-        UnreadableFontError: It is no font, or damaged.
-        OSError: It cannot be read.
+        UnreadableFontError: The file is no font, or damaged.
+        OSError: The file cannot be read.
     """
-    about = path.stat()
-    return _faces_as_of(path, (about.st_mtime_ns, about.st_size))
+    status = path.stat()
+    return _read_faces(path, (status.st_mtime_ns, status.st_size))
 
 
 def face_in(data: bytes, name: str) -> Face:
-    """The font that bytes are, which messages call by a name.
+    """Reads an embedded font; `name` is its family in messages.
 
     Raises:
-        UnreadableFontError: They are none.
+        UnreadableFontError: The bytes are no font.
     """
     try:
-        decompress = as_sfnt(data)
+        sfnt = as_sfnt(data)
     except Exception as error:
         raise UnreadableFontError(str(error)[:200] or type(error).__name__) from None
     try:
-        found = _face(Path(name), 0, decompress)
+        face = _face(Path(name), 0, sfnt)
     except Exception:
         raise UnreadableFontError(DAMAGED) from None
-    if found is None:
+    if face is None:
         raise UnreadableFontError("it has no outlines")
-    return found
+    return face
 
 
 def _face(path: Path, index: int, data: bytes | None = None) -> Face | None:
@@ -150,8 +150,8 @@ def _face(path: Path, index: int, data: bytes | None = None) -> Face | None:
             index,
             family,
             frozenset(name.lower() for name in (*names, path.stem if not names else family)),
-            _span(axes, "wght", weight),
-            _span(axes, "wdth", stretch),
+            _axis_range(axes, "wght", weight),
+            _axis_range(axes, "wdth", stretch),
             "oblique" if is_oblique else "italic" if is_italic else "normal",
             axes,
             data,
@@ -159,18 +159,18 @@ def _face(path: Path, index: int, data: bytes | None = None) -> Face | None:
 
 
 def _family_names(table: Any) -> list[str]:
-    """The names of a family, the English one that groups all its weights first."""
-    found: list[str] = []
+    """Returns the names of a family; the English typographic one first."""
+    names: list[str] = []
     for number in _FAMILY_NAMES:
         english = table.getDebugName(number)
         others = [
             record.toUnicode(errors="replace") for record in table.names if record.nameID == number
         ]
-        found.extend(name.strip() for name in ([english] if english else []) + others)
-    return list(dict.fromkeys(name for name in found if name))
+        names.extend(name.strip() for name in ([english] if english else []) + others)
+    return list(dict.fromkeys(name for name in names if name))
 
 
-def _span(
+def _axis_range(
     axes: Mapping[str, tuple[float, float, float]], tag: str, value: float
 ) -> tuple[float, float]:
     return (axes[tag][0], axes[tag][2]) if tag in axes else (value, value)

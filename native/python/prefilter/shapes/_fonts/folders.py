@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Where a system keeps its fonts."""
+"""Font folders of the system."""
 
 import os
 import sys
@@ -14,7 +14,7 @@ _FONTCONFIG = Path("/etc/fonts/fonts.conf")
 
 
 def system_folders() -> list[Path]:
-    """The folders of fonts of this system, those of the user first."""
+    """Returns the system's font folders, the user's first."""
     if sys.platform == "win32":
         local = os.environ.get("LOCALAPPDATA", "")
         user = [Path(local, "Microsoft", "Windows", "Fonts")] if local else []
@@ -25,11 +25,11 @@ def system_folders() -> list[Path]:
     data = os.environ.get("XDG_DATA_HOME") or str(home / ".local/share")
     shared = (os.environ.get("XDG_DATA_DIRS") or "/usr/local/share:/usr/share").split(":")
     folders = [home / ".fonts", *(Path(each, "fonts") for each in (data, *shared) if each)]
-    return list(dict.fromkeys((*folders, *_configured(home))))
+    return list(dict.fromkeys((*folders, *_fontconfig_folders(home))))
 
 
-def _configured(home: Path) -> Iterator[Path]:
-    """Yields the folders that fontconfig's main file names."""
+def _fontconfig_folders(home: Path) -> Iterator[Path]:
+    """Yields the folders in fontconfig's main file."""
     try:
         file = os.environ.get("FONTCONFIG_FILE") or _FONTCONFIG
         root = ElementTree.parse(file).getroot()
@@ -42,14 +42,14 @@ def _configured(home: Path) -> Iterator[Path]:
 
 
 def files_in(folder: Path) -> list[Path]:
-    """The files of fonts in a folder and those in it, by name; none where there is no folder."""
-    found: list[Path] = []
-    for place, folders, names in os.walk(folder):
+    """Returns the font files in a folder tree, sorted by name; none if there is no folder."""
+    files: list[Path] = []
+    for parent, folders, names in os.walk(folder):
         folders.sort()
-        found.extend(Path(place, name) for name in sorted(names) if _is_font(name))
-        if len(found) > _MAX_FILES:
+        files.extend(Path(parent, name) for name in sorted(names) if _is_font(name))
+        if len(files) > _MAX_FILES:
             break
-    return found[:_MAX_FILES]
+    return files[:_MAX_FILES]
 
 
 def _is_font(name: str) -> bool:

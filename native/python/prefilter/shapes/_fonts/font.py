@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Glyphs of a font, as fontTools reads them."""
+"""Glyphs and metrics of a font."""
 
 import os
 from array import array
@@ -15,22 +15,22 @@ from .bitmaps import Bitmap, BitmapTable, has_bitmaps
 from .color_layers import ColorGroup, ColorTable, UnknownPaintError
 from .faces import OUTLINES, Face
 
-# Of a glyph: components of components may be many.
+# Segments of a glyph, which nested components may multiply.
 _MAX_SEGMENTS = 200_000
-# What the table "head" says of itself, and may say of the units of an em.
+# Magic number of the table "head", and valid units per em.
 _MAGIC = 0x5F0F3CF5
-_UNITS = range(16, 16385)
-# Bytes of a glyph before its contours.
-_GLYPH_HEAD = 10
+_VALID_UNITS_PER_EM = range(16, 16385)
+# Size of a glyph's header, in bytes.
+_GLYPH_HEADER_BYTES = 10
 
 
 @dataclass(frozen=True, slots=True)
 class Glyph:
-    """What a glyph fills, in units of its font, y upwards.
+    """The outline of a glyph, in font units, y upwards.
 
     Attributes:
-        letters: M, L, Q, C and Z, a byte for each segment.
-        numbers: Coordinates of the points of all segments.
+        letters: M, L, Q, C and Z, a byte per segment.
+        numbers: Coordinates of all points.
     """
 
     letters: bytes
@@ -39,7 +39,7 @@ class Glyph:
 
 @dataclass(frozen=True, slots=True)
 class Metrics:
-    """Of a font, in shares of its size, upwards from the baseline."""
+    """Vertical metrics, in em, upwards from the baseline."""
 
     ascent: float
     descent: float
@@ -47,19 +47,19 @@ class Metrics:
 
 
 class Font:
-    """A face, with the values of what varies in it.
+    """A face at a location of its axes.
 
     Attributes:
-        face: Where it is.
-        location: Values by the tags of axes.
-        skew: How far it is to be slanted, where its family has no slanted face.
+        face: The face.
+        location: Axis values by tag.
+        skew: Synthetic slant, for families without a slanted face.
     """
 
     def __init__(self, face: Face, location: Mapping[str, float], skew: float = 0.0) -> None:
         self.face = face
         self.location = dict(location)
         self.skew = skew
-        # Not lazy: a file stays closed, and may change.
+        # Not lazy: the file is closed, and may change.
         self._file = face.opened()
         self.units_per_em = float(max(self._file["head"].unitsPerEm, 1))
         self._order = self._file.getGlyphOrder()
@@ -67,24 +67,24 @@ class Font:
         if any(tag in self._file for tag in OUTLINES):
             self._glyphs = self._file.getGlyphSet(location=self.location or None)
         self._check()
-        self._drawn: dict[int, Glyph] = {}
+        self._outlines: dict[int, Glyph] = {}
         self._damaged: set[int] = set()
         self._looks: dict[int, ColorGroup | Bitmap | str | None] = {}
 
     def _check(self) -> None:
-        """Reads all that is read later but for single glyphs; raises what goes wrong in that.
+        """Reads all tables except single glyphs, and raises an exception if they are damaged.
 
-        What is cut off would be read as glyphs without outlines.
+        fontTools reads truncated tables as empty glyphs.
         """
         _ = self.characters, self.metrics, self._file["hmtx"].metrics
         head = self._file["head"]
         if head.magicNumber != _MAGIC or not self._file["cmap"].tables:
             raise ValueError("its tables are overwritten")
-        if head.unitsPerEm not in _UNITS:
+        if head.unitsPerEm not in _VALID_UNITS_PER_EM:
             raise ValueError(f"found {head.unitsPerEm} units")
         reader = self._file.reader
         if reader.flavor == "woff2":
-            return  # Its tables are made as it is unpacked, which fails if it is cut off.
+            return  # Decompression fails if it is truncated.
         size = reader.file.seek(0, os.SEEK_END)
         if any(entry.offset + entry.length > size for entry in reader.tables.values()):
             raise ValueError("a table is cut off")
@@ -96,31 +96,31 @@ class Font:
                 raise ValueError("the outlines are cut off")
 
     def is_whole(self, number: int) -> bool:
-        """Whether the outline of a glyph can be read."""
+        """Returns whether the outline of a glyph is readable."""
         self.glyph(number)
         return number not in self._damaged
 
     def shows(self, code: int) -> bool:
-        """Whether there is a glyph for a character, and its outline can be read."""
+        """Returns whether a character has a glyph with a readable outline."""
         number = self.characters.get(code)
         return number is not None and (chr(code).isspace() or self.is_whole(number))
 
     @cached_property
     def characters(self) -> Mapping[int, int]:
-        """Glyphs by what they show: a character's code."""
+        """Glyphs by character code."""
         names = self._file.getBestCmap() or {}
         numbers = self._file.getReverseGlyphMap()
         return {code: numbers[name] for code, name in names.items() if name in numbers}
 
     @cached_property
     def is_colored(self) -> bool:
-        """Whether its letters have colors."""
+        """Whether it has colored glyphs."""
         return any(tag in self._file for tag in ("COLR", "SVG ", "sbix", "CBDT"))
 
     def look(self, number: int) -> ColorGroup | Bitmap | str | None:
-        """What a glyph looks like in colors, read once; None where it has none.
+        """Returns the colored form of a glyph, cached; None if it has none.
 
-        A text says why its colors cannot be had.
+        A str says why its colors cannot be drawn.
         """
         if number not in self._looks:
             try:
@@ -132,14 +132,14 @@ class Font:
         return self._looks[number]
 
     def _look(self, name: str) -> ColorGroup | Bitmap | str | None:
-        found: ColorGroup | Bitmap | None = None
+        look: ColorGroup | Bitmap | None = None
         if self._colors is not None:
-            found = self._colors.layers(name)
-        if found is None and self._bitmaps is not None:
-            found = self._bitmaps.bitmap(name)
-        if found is None and "SVG " in self._file and "COLR" not in self._file:
+            look = self._colors.layers(name)
+        if look is None and self._bitmaps is not None:
+            look = self._bitmaps.bitmap(name)
+        if look is None and "SVG " in self._file and "COLR" not in self._file:
             return "drawings of letters"
-        return found
+        return look
 
     @cached_property
     def _colors(self) -> ColorTable | None:
@@ -156,7 +156,7 @@ class Font:
 
     @cached_property
     def metrics(self) -> Metrics:
-        """How high letters are."""
+        """The vertical metrics."""
         em = self.units_per_em
         file = self._file
         hhea, os2 = file.get("hhea"), file.get("OS/2")
@@ -173,7 +173,7 @@ class Font:
         )
 
     def advance(self, number: int) -> float:
-        """How far a glyph leads, in units of the font."""
+        """Returns the advance width of a glyph, in font units."""
         name = self._order[number]
         if self._glyphs is None:
             return float(self._file["hmtx"].metrics[name][0])
@@ -184,8 +184,8 @@ class Font:
             return 0.0
 
     def glyph(self, number: int) -> Glyph:
-        """The outline of a glyph, read once; an empty one where it is damaged: see `is_whole`."""
-        if number not in self._drawn:
+        """Returns the outline of a glyph, cached; empty if it is damaged: see `is_whole`."""
+        if number not in self._outlines:
             pen = _Pen(self._glyphs)
             try:
                 if self._glyphs is not None:
@@ -195,19 +195,19 @@ class Font:
             except Exception:
                 pen = _Pen(self._glyphs)
                 self._damaged.add(number)
-            self._drawn[number] = Glyph(bytes(pen.letters), pen.numbers)
-        return self._drawn[number]
+            self._outlines[number] = Glyph(bytes(pen.letters), pen.numbers)
+        return self._outlines[number]
 
     def _is_overwritten(self, number: int) -> bool:
-        """Whether a glyph without an outline has more than the head of one in the file."""
+        """Returns whether a glyph without an outline has more than a header in the file."""
         if "glyf" not in self._file:
             return False
         places = self._file["loca"]
-        return bool(places[number + 1] - places[number] > _GLYPH_HEAD + 2)
+        return bool(places[number + 1] - places[number] > _GLYPH_HEADER_BYTES + 2)
 
 
 class _Pen(BasePen):  # type: ignore[misc]
-    """Keeps what a glyph draws, its components in place."""
+    """Records the segments of a glyph, with its components."""
 
     def __init__(self, glyphs: Any) -> None:
         super().__init__(glyphs)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""From characters to glyphs: by HarfBuzz where uharfbuzz is installed, otherwise by hand."""
+"""Shaping of characters into glyphs, by HarfBuzz if uharfbuzz is installed."""
 
 import unicodedata
 from collections.abc import Mapping, Sequence
@@ -18,8 +18,8 @@ except ImportError:
     uharfbuzz = None
 
 HAS_HARFBUZZ = uharfbuzz is not None
-_COMMON = ("Zyyy", "Zinh", "Zzzz")
-# Scripts whose letters change with their neighbors.
+_UNSPECIFIC_SCRIPTS = ("Zyyy", "Zinh", "Zzzz")
+# Scripts with cursive joining.
 JOINING = frozenset(("Arab", "Syrc", "Mong", "Nkoo", "Mand", "Mani", "Adlm", "Rohg"))
 COMPLEX = JOINING | frozenset(
     (
@@ -30,15 +30,15 @@ COMPLEX = JOINING | frozenset(
 
 
 @dataclass(frozen=True, slots=True)
-class Shaped:
-    """A glyph in its place.
+class ShapedGlyph:
+    """A glyph with its position.
 
     Attributes:
-        glyph: Its number in the font.
-        cluster: The index of the first character that it stands for.
-        advance: How far it leads, in units of the font.
-        x: How far it is moved, likewise.
-        y: Upwards.
+        glyph: Glyph index in the font.
+        cluster: Index of its first character.
+        advance: In font units.
+        x: Offset, in font units.
+        y: Offset upwards, in font units.
     """
 
     glyph: int
@@ -50,12 +50,12 @@ class Shaped:
 
 @dataclass(frozen=True, slots=True)
 class Features:
-    """What a font may do to letters.
+    """Font features to apply.
 
     Attributes:
-        has_kerning: Whether pairs are moved together.
-        has_ligatures: Whether letters are joined where they need not be.
-        has_small_capitals: Whether small letters are capitals of their size.
+        has_kerning: Whether pairs are kerned.
+        has_ligatures: Whether optional ligatures are formed.
+        has_small_capitals: Whether lower-case letters become small capitals.
     """
 
     has_kerning: bool = True
@@ -64,93 +64,101 @@ class Features:
 
 
 def scripts_in(text: str) -> list[str]:
-    """The script of each character; what all share is of the script before it."""
-    found = [script_of(each) for each in text]
-    for order in (range(1, len(found)), range(len(found) - 2, -1, -1)):
+    """Returns the script of each character; common characters take that of a neighbor."""
+    scripts = [script_of(each) for each in text]
+    for order in (range(1, len(scripts)), range(len(scripts) - 2, -1, -1)):
         for index in order:
-            if found[index] in _COMMON:
-                found[index] = found[index - 1 if order.step > 0 else index + 1]
-    return found
+            if scripts[index] in _UNSPECIFIC_SCRIPTS:
+                scripts[index] = scripts[index - 1 if order.step > 0 else index + 1]
+    return scripts
 
 
 def shape(
     font: Font, text: str, script: str, language: str, features: Features, is_leftward: bool
-) -> list[Shaped]:
-    """The glyphs of a run of text, from left to right."""
+) -> list[ShapedGlyph]:
+    """Shapes a run of text; returns glyphs from left to right."""
     if uharfbuzz is None:
-        return _simple(font, text, features, is_leftward)
+        return _shape_without_harfbuzz(font, text, features, is_leftward)
     buffer = uharfbuzz.Buffer()
     buffer.add_codepoints([ord(each) for each in text])
     buffer.direction = "rtl" if is_leftward else "ltr"
-    if script not in _COMMON:
+    if script not in _UNSPECIFIC_SCRIPTS:
         buffer.script = script
     if language:
         buffer.language = language
     buffer.guess_segment_properties()
-    asked: dict[str, bool] = {}
+    feature_settings: dict[str, bool] = {}
     if not features.has_kerning:
-        asked["kern"] = False
+        feature_settings["kern"] = False
     if not features.has_ligatures:
-        asked.update(dict.fromkeys(("liga", "clig", "dlig", "hlig"), False))
+        feature_settings.update(dict.fromkeys(("liga", "clig", "dlig", "hlig"), False))
     if features.has_small_capitals:
-        asked["smcp"] = True
-    uharfbuzz.shape(_harfbuzz_font(font), buffer, asked)
+        feature_settings["smcp"] = True
+    uharfbuzz.shape(_harfbuzz_font(font), buffer, feature_settings)
     return [
-        Shaped(info.codepoint, info.cluster, place.x_advance, place.x_offset, place.y_offset)
-        for info, place in zip(buffer.glyph_infos, buffer.glyph_positions, strict=True)
+        ShapedGlyph(
+            info.codepoint, info.cluster, position.x_advance, position.x_offset, position.y_offset
+        )
+        for info, position in zip(buffer.glyph_infos, buffer.glyph_positions, strict=True)
     ]
 
 
 @lru_cache(maxsize=64)
 def _harfbuzz_font(font: Font) -> Any:
     blob = uharfbuzz.Blob(font.face.contents())
-    made = uharfbuzz.Font(uharfbuzz.Face(blob, font.face.index))
+    font_at_location = uharfbuzz.Font(uharfbuzz.Face(blob, font.face.index))
     if font.location:
-        made.set_variations(font.location)
-    return made
+        font_at_location.set_variations(font.location)
+    return font_at_location
 
 
-def _simple(font: Font, text: str, features: Features, is_leftward: bool) -> list[Shaped]:
-    """A glyph a character, pairs moved as the font's tables say; marks on what they follow."""
+def _shape_without_harfbuzz(
+    font: Font, text: str, features: Features, is_leftward: bool
+) -> list[ShapedGlyph]:
+    """Maps characters to glyphs one by one, with kerning and centered marks."""
     glyphs = [
         font.characters.get(ord(_mirrored(each) if is_leftward else each), 0) for each in text
     ]
-    found: list[Shaped] = []
+    glyphs_placed: list[ShapedGlyph] = []
     for index, (each, glyph) in enumerate(zip(text, glyphs, strict=True)):
         if unicodedata.category(each) in ("Cf", "Cc"):
             continue
         advance = font.advance(glyph)
-        is_mark = unicodedata.category(each) == "Mn" and bool(found)
+        is_mark = unicodedata.category(each) == "Mn" and bool(glyphs_placed)
         if is_mark and advance > 0.0:
-            # In the middle above what it belongs to.
-            base = found[-1]
+            # Centered above its base.
+            base = glyphs_placed[-1]
             shift = -0.5 * (base.advance + advance)
-            found.append(Shaped(glyph, base.cluster, 0.0, shift))
+            glyphs_placed.append(ShapedGlyph(glyph, base.cluster, 0.0, shift))
             continue
-        found.append(Shaped(glyph, found[-1].cluster if is_mark else index, advance))
+        glyphs_placed.append(
+            ShapedGlyph(glyph, glyphs_placed[-1].cluster if is_mark else index, advance)
+        )
     if features.has_kerning:
         pairs = _kerning(font)
-        for index in range(len(found) - 1):
-            one = found[index]
-            moved = pairs.between(one.glyph, found[index + 1].glyph)
-            if moved:
-                found[index] = Shaped(one.glyph, one.cluster, one.advance + moved, one.x, one.y)
-    return found[::-1] if is_leftward else found
+        for index in range(len(glyphs_placed) - 1):
+            left_glyph = glyphs_placed[index]
+            adjustment = pairs.between(left_glyph.glyph, glyphs_placed[index + 1].glyph)
+            if adjustment:
+                glyphs_placed[index] = ShapedGlyph(
+                    left_glyph.glyph,
+                    left_glyph.cluster,
+                    left_glyph.advance + adjustment,
+                    left_glyph.x,
+                    left_glyph.y,
+                )
+    return glyphs_placed[::-1] if is_leftward else glyphs_placed
 
 
 def _mirrored(each: str) -> str:
-    """A bracket as it looks to the left."""
+    """Returns the mirrored form of a bracket."""
     pairs = "()[]{}<>\u00ab\u00bb\u2039\u203a"
-    at = pairs.find(each)
-    return each if at < 0 else pairs[at ^ 1]
+    position = pairs.find(each)
+    return each if position < 0 else pairs[position ^ 1]
 
 
 class _Kerning:
-    """How far pairs of glyphs are moved together: the feature `kern` of GPOS, or the table `kern`.
-
-    Args:
-        font: The font.
-    """
+    """Kerning of glyph pairs: the feature `kern` of GPOS, or the table `kern`."""
 
     def __init__(self, font: Font) -> None:
         self._names = font.tables.getGlyphOrder()
@@ -163,28 +171,28 @@ class _Kerning:
             self._subtables, self._pairs = [], {}
 
     def between(self, first: int, second: int) -> float:
-        """How much nearer the second of two glyphs is: a negative number of units."""
+        """Returns the change of the distance between two glyphs, in font units."""
         key = (first, second)
         if key not in self._known:
             try:
                 self._known[key] = self._between(self._names[first], self._names[second])
-            except Exception:  # Tables are read as they are needed, and may be damaged.
+            except Exception:  # Tables are parsed when needed, and may be damaged.
                 self._known[key] = 0.0
         return self._known[key]
 
     def _between(self, left: str, right: str) -> float:
-        found = [
+        values = [
             value
             for lookup in self._subtables
-            if (value := _first_of(lookup, left, right)) is not None
+            if (value := _pair_adjustment(lookup, left, right)) is not None
         ]
-        return float(sum(found) if found else self._pairs.get((left, right), 0.0))
+        return float(sum(values) if values else self._pairs.get((left, right), 0.0))
 
     def _read(self, tables: Any) -> None:
         if "GPOS" in tables and tables["GPOS"].table.LookupList:
             table = tables["GPOS"].table
             records = table.FeatureList.FeatureRecord if table.FeatureList else []
-            wanted = sorted(
+            lookup_indices = sorted(
                 {
                     index
                     for record in records
@@ -192,7 +200,7 @@ class _Kerning:
                     for index in record.Feature.LookupListIndex
                 }
             )
-            for index in wanted:
+            for index in lookup_indices:
                 lookup = table.LookupList.Lookup[index]
                 inner = [getattr(each, "ExtSubTable", each) for each in lookup.SubTable]
                 self._subtables.append([each for each in inner if each.LookupType == 2])
@@ -203,8 +211,8 @@ class _Kerning:
             self._pairs = pairs
 
 
-def _first_of(subtables: Sequence[Any], left: str, right: str) -> float | None:
-    """What the first subtable that knows a pair says of it."""
+def _pair_adjustment(subtables: Sequence[Any], left: str, right: str) -> float | None:
+    """Returns the adjustment in the first subtable that has the pair; None if there is none."""
     for table in subtables:
         if left not in table.Coverage.glyphs:
             continue

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Families that stand for generic ones, and for those that are missing, as the system has them."""
+"""Substitutes for generic and missing font families."""
 
 import os
 import re
@@ -11,8 +11,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 
-# What stands for a generic family, and for well-known ones where they are missing: the first that
-# is there. The first ones of each have the same advances.
+# Substitutes of generic and of well-known missing families, in order of preference. The first ones
+# of each list have the same advances.
 SERIF: tuple[str, ...] = ("times new roman", "times", "liberation serif", "tinos", "nimbus roman")
 SERIF += ("dejavu serif", "noto serif", "georgia")
 SANS: tuple[str, ...] = ("arial", "helvetica", "liberation sans", "arimo", "nimbus sans")
@@ -32,9 +32,9 @@ GENERIC: Mapping[str, Sequence[str]] = {
     "ui-serif": SERIF,
     "ui-monospace": MONO,
 }
-"""By the names that CSS has for them, in any place."""
-# What browsers take first.
-_OF_SYSTEMS: Mapping[str, Mapping[str, str]] = {
+"""By CSS's names of generic families, on every system."""
+# Families that browsers prefer, by system.
+_PREFERRED_BY_SYSTEM: Mapping[str, Mapping[str, str]] = {
     "win32": {"monospace": "consolas"},
     "darwin": {
         "sans-serif": "helvetica",
@@ -54,51 +54,51 @@ SAME_ADVANCES: Sequence[frozenset[str]] = (
     frozenset(("cambria", "caladea")),
     frozenset(("georgia", "gelasio")),
 )
-"""Families of which each may stand for the others, as lines are as long with it."""
-_SPECIAL = re.compile(r"([\\\-:,=])")
+"""Families with the same advances, which may replace each other without changing line lengths."""
+_SPECIAL_CHARACTERS = re.compile(r"([\\\-:,=])")
 _MAX_SECONDS = 20
-_LONGEST_NAME = 200
-_MAX_ANSWERS = 50
+_MAX_NAME_LENGTH = 200
+_MAX_MATCHES = 50
 
 
-def generic(name: str) -> Sequence[str]:
-    """Families that stand for a generic one on this system, the best first, in small letters."""
+def generic_families(name: str) -> Sequence[str]:
+    """Returns families for a generic one, in order of preference and in lower case."""
     base = name.removeprefix("ui-")
-    first = _OF_SYSTEMS.get(sys.platform, {}).get(base)
+    first = _PREFERRED_BY_SYSTEM.get(sys.platform, {}).get(base)
     return (*([first] if first else []), *GENERIC[name])
 
 
 def from_fontconfig(name: str) -> Iterator[tuple[Path, int]]:
-    """Yields what fontconfig takes for a family: files, and the numbers of fonts in them.
+    """Yields fontconfig's matches for a family: files, and face indices.
 
-    There is nothing where there is no fontconfig.
+    Yields nothing without fontconfig.
     """
     base = name.removeprefix("ui-") if name in GENERIC else name
-    best = _answers(base, is_sorted=False, key=_surroundings())
+    best = _query_fontconfig(base, is_sorted=False, key=_environment())
     yield from best
-    # What it takes may be of a kind that is not read here.
-    rest = _answers(base, is_sorted=True, key=_surroundings()) if best else ()
-    yield from (each for each in rest if each not in best)
+    # The best match may be in an unsupported format.
+    others = _query_fontconfig(base, is_sorted=True, key=_environment()) if best else ()
+    yield from (each for each in others if each not in best)
 
 
-def _surroundings() -> tuple[str | None, ...]:
-    """What decides the answers of fontconfig, beside its files."""
+def _environment() -> tuple[str | None, ...]:
+    """Returns the environment variables that affect fontconfig."""
     names = ("FONTCONFIG_FILE", "FONTCONFIG_PATH", "FONTCONFIG_SYSROOT", "HOME", "XDG_CONFIG_HOME")
     return tuple(os.environ.get(name) for name in names)
 
 
 @lru_cache(maxsize=512)
-def _answers(
+def _query_fontconfig(
     name: str, *, is_sorted: bool, key: tuple[str | None, ...]
 ) -> tuple[tuple[Path, int], ...]:
     del key
     program = None if sys.platform in ("win32", "darwin") else shutil.which("fc-match")
-    if program is None or not name.isprintable() or len(name) > _LONGEST_NAME:
+    if program is None or not name.isprintable() or len(name) > _MAX_NAME_LENGTH:
         return ()
     words = [program, *(["--sort"] if is_sorted else []), "--format", "%{index}\t%{file}\n"]
     try:
-        done = subprocess.run(
-            [*words, _SPECIAL.sub(r"\\\1", name)],
+        process = subprocess.run(
+            [*words, _SPECIAL_CHARACTERS.sub(r"\\\1", name)],
             stdin=subprocess.DEVNULL,
             capture_output=True,
             timeout=_MAX_SECONDS,
@@ -106,10 +106,10 @@ def _answers(
         )
     except (OSError, ValueError, subprocess.SubprocessError):
         return ()
-    found = []
-    for line in os.fsdecode(done.stdout).splitlines()[:_MAX_ANSWERS]:
+    matches = []
+    for line in os.fsdecode(process.stdout).splitlines()[:_MAX_MATCHES]:
         index, _, file = line.partition("\t")
         if file and index.isdigit():
-            # The upper half of the number is that of an instance of a variable font.
-            found.append((Path(file), int(index) & 0xFFFF))
-    return tuple(found)
+            # The upper 16 bits are the instance of a variable font.
+            matches.append((Path(file), int(index) & 0xFFFF))
+    return tuple(matches)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Fonts compressed as WOFF and WOFF 2: unpacked within limits, as a drawing may hold any."""
+"""WOFF and WOFF 2: decompression within limits, as embedded fonts are untrusted."""
 
 import struct
 import zlib
@@ -11,24 +11,24 @@ _HEADER = struct.Struct(">4s4sIHHIHHIIIII")
 _ENTRY = struct.Struct(">4sIIII")
 _TOO_LARGE = f"it is larger than {MAX_BYTES >> 20} MiB when unpacked"
 _WOFF2_HEADER = 48
-# A few bytes may become 16 MiB, and no fewer than one can be unpacked.
-_UNPACKED_AT_ONCE = 16
-# Of a table's flags: its name follows, and which tables are `glyf` and `loca`.
-_NAMED, _GLYPHS = 63, (10, 11)
+# Few compressed bytes may become 16 MiB; brotli cannot stop within a chunk.
+_CHUNK_BYTES = 16
+# Table flags: an explicit tag follows; indices of `glyf` and `loca`.
+_EXPLICIT_TAG, _GLYPHS = 63, (10, 11)
 _SFNT = (b"\x00\x01\x00\x00", b"OTTO", b"true", b"ttcf")
 
 
 class DamagedFontError(ValueError):
-    """Bytes that are no font; the message says why."""
+    """The bytes are no font; the message says why."""
 
 
 def as_sfnt(data: bytes) -> bytes:
-    """A TrueType or OpenType font that is WOFF, or itself.
+    """Converts WOFF to TrueType or OpenType; returns these unchanged.
 
-    WOFF 2 stays as it is, as fontTools unpacks it; it is made sure that it may.
+    WOFF 2 is returned unchanged, too, for fontTools to decompress, once its size is checked.
 
     Raises:
-        DamagedFontError: It is neither, or too large when unpacked.
+        DamagedFontError: The data are no font, or too large when decompressed.
     """
     if data[:4] in _SFNT:
         return data
@@ -40,72 +40,72 @@ def as_sfnt(data: bytes) -> bytes:
     flavor, count = data[4:8], int.from_bytes(data[12:14], "big")
     if len(data) < _HEADER.size + count * _ENTRY.size:
         raise DamagedFontError("it ends early")
-    head = bytearray(struct.pack(">4sHHHH", flavor, count, *_search(count)))
+    head = bytearray(struct.pack(">4sHHHH", flavor, count, *_search_fields(count)))
     body = bytearray()
     begin = len(head) + 16 * count
-    left = MAX_BYTES
+    bytes_left = MAX_BYTES
     for index in range(count):
         tag, offset, packed, size, checksum = _ENTRY.unpack_from(
             data, _HEADER.size + index * _ENTRY.size
         )
-        left -= size
-        if left < 0:
+        bytes_left -= size
+        if bytes_left < 0:
             raise DamagedFontError(_TOO_LARGE)
-        table = _unpacked(data[offset : offset + packed], size)
+        table = _decompress(data[offset : offset + packed], size)
         head += struct.pack(">4sIII", tag, checksum, begin + len(body), size)
         body += table + bytes(-len(table) % 4)
     return bytes(head + body)
 
 
-def _search(count: int) -> tuple[int, int, int]:
-    """What a font says for a search among its tables."""
+def _search_fields(count: int) -> tuple[int, int, int]:
+    """Returns searchRange, entrySelector and rangeShift for a number of tables."""
     steps = max(count, 1).bit_length() - 1
     return 16 << steps, steps, 16 * count - (16 << steps)
 
 
 def _check_woff2(data: bytes) -> None:
-    """Raises DamagedFontError where a font is larger than allowed, before all of it is unpacked."""
+    """Raises DamagedFontError if a font is too large, without decompressing all of it."""
     try:
         brotli = import_module("brotli")
     except ImportError:
         raise DamagedFontError("WOFF 2 needs the Python package brotli") from None
-    begin = _WOFF2_HEADER + _size_of_directory(data)
+    begin = _WOFF2_HEADER + _directory_size(data)
     packed = data[begin : begin + int.from_bytes(data[20:24], "big")]
-    unpacker, left = brotli.Decompressor(), MAX_BYTES
+    decompressor, bytes_left = brotli.Decompressor(), MAX_BYTES
     try:
-        for at in range(0, len(packed), _UNPACKED_AT_ONCE):
-            left -= len(unpacker.process(packed[at : at + _UNPACKED_AT_ONCE]))
-            if left < 0:
+        for position in range(0, len(packed), _CHUNK_BYTES):
+            bytes_left -= len(decompressor.process(packed[position : position + _CHUNK_BYTES]))
+            if bytes_left < 0:
                 raise DamagedFontError(_TOO_LARGE)
     except brotli.error as error:
         raise DamagedFontError(f"it is damaged: {error}") from None
 
 
-def _size_of_directory(data: bytes) -> int:
-    """How many bytes the list of tables of a WOFF 2 font has."""
-    at = _WOFF2_HEADER
+def _directory_size(data: bytes) -> int:
+    """Returns the size of a WOFF 2 table directory, in bytes."""
+    position = _WOFF2_HEADER
     for _ in range(int.from_bytes(data[12:14], "big")):
-        flags = data[at : at + 1]
+        flags = data[position : position + 1]
         if not flags:
             raise DamagedFontError("it ends early")
         kind, version = flags[0] & 0x3F, flags[0] >> 6
-        at += 1 if kind != _NAMED else 5
-        # `glyf` and `loca` are transformed in version 0, others in all but that.
+        position += 1 if kind != _EXPLICIT_TAG else 5
+        # Version 0 means transformed for `glyf` and `loca`, and untransformed for other tables.
         is_transformed = version != 3 if kind in _GLYPHS else version != 0
         for _ in range(2 if is_transformed else 1):
-            while at < len(data) and data[at] & 0x80:
-                at += 1
-            at += 1
-    return at - _WOFF2_HEADER
+            while position < len(data) and data[position] & 0x80:
+                position += 1
+            position += 1
+    return position - _WOFF2_HEADER
 
 
-def _unpacked(data: bytes, size: int) -> bytes:
+def _decompress(data: bytes, size: int) -> bytes:
     if len(data) == size:
         return data
     try:
-        found = zlib.decompressobj().decompress(data, size + 1)
+        table = zlib.decompressobj().decompress(data, size + 1)
     except zlib.error as error:
         raise DamagedFontError(f"it is damaged: {error}") from None
-    if len(found) != size:
+    if len(table) != size:
         raise DamagedFontError("its tables have other sizes than it says")
-    return found
+    return table

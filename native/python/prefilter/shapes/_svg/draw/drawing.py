@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 from ...affine import IDENTITY, Matrix, determinant, inverse, multiplied
 from ...shape import Shape
-from ..filters.filter_property import filters_of
+from ..filters.filter_property import read_filters
 from ..model.clips import make_box_clip
 from ..model.gradients import Colors, Gradient
 from ..model.limits import Budget
@@ -223,7 +223,7 @@ class TreeBuilder:
             if declared[name].lower() not in UNSUPPORTED[name]:
                 sources.warnings.unsupported(name, "ignored", element.line)
         inside = apply_clip_path(element, context, sources)
-        filters = filters_of(element, context, sources, self._images)
+        filters = read_filters(element, context, sources, self._images)
         masks = read_masks(element, context, sources)
         if inside is None or masks is None:
             return None
@@ -263,9 +263,9 @@ class TreeBuilder:
     def _paint_text(self, element: SvgElement, context: Context) -> None:
         # Font modules load slowly, and drawings without text do not need them.
         from ..text.color_glyphs import ColoredPiece, draw_colored
-        from ..text.text_elements import drawn_text
+        from ..text.text_elements import lay_out_text
 
-        drawn = drawn_text(element, context, self.sources)
+        drawn = lay_out_text(element, context, self.sources)
         for piece in drawn.pieces:
             if isinstance(piece, ColoredPiece):
                 draw_colored(piece, context, self.sources)

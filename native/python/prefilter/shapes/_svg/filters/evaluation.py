@@ -18,9 +18,9 @@ from ...affine import Matrix, inverse, multiplied
 from ..model.blending import blend, straight_colors
 from ..model.limits import TooLargeError
 from ..model.tree import Box, Filter, Group, Step, transform_box
-from .lighting import lit
-from .neighborhoods import convolved, extreme, tiled
-from .pixels import blurred, composited, recolored, shifted, transferred
+from .lighting import light_surface
+from .neighborhoods import apply_morphology, convolve, repeat_tile
+from .pixels import apply_color_matrix, blur, composite, shift, transfer_components
 from .turbulence import noise
 
 FloatArray = npt.NDArray[np.float32]
@@ -150,28 +150,28 @@ class _FilterRun:
         numbers = step.numbers
         match step.kind:
             case "feGaussianBlur":
-                return blurred(images[0], *_lengths(numbers, self._matrix))
+                return blur(images[0], *_lengths(numbers, self._matrix))
             case "feOffset":
-                return shifted(images[0], *_direction(numbers, self._matrix))
+                return shift(images[0], *_direction(numbers, self._matrix))
             case "feFlood":
                 return self._flood(numbers, step.is_linear)
             case "feDropShadow":
                 return self._shadowed(step, images[0])
             case "feComposite":
-                return composited(images[0], images[1], step.name, numbers)
+                return composite(images[0], images[1], step.name, numbers)
             case "feBlend":
                 return blend(images[1].copy(), images[0], step.name)
             case "feColorMatrix":
-                return recolored(images[0], np.array(numbers, np.float32).reshape(4, 5))
+                return apply_color_matrix(images[0], np.array(numbers, np.float32).reshape(4, 5))
             case "feComponentTransfer":
-                return transferred(images[0], numbers)
+                return transfer_components(images[0], numbers)
             case "feTile":
-                return tiled(images[0], inputs[0].region, region)
+                return repeat_tile(images[0], inputs[0].region, region)
             case "feMorphology":
                 x, y = (math.floor(length + 0.5) for length in _lengths(numbers, self._matrix))
-                return extreme(images[0], x, y, is_largest=step.name == "dilate")
+                return apply_morphology(images[0], x, y, is_largest=step.name == "dilate")
             case "feConvolveMatrix":
-                change = partial(convolved, numbers=numbers, edge_mode=step.name)
+                change = partial(convolve, numbers=numbers, edge_mode=step.name)
                 return self._map_region(images[0], change)
             case "feDiffuseLighting" | "feSpecularLighting":
                 return self._map_region(images[0], partial(self._lit, step=step))
@@ -208,7 +208,7 @@ class _FilterRun:
                 numbers[at + 1] = b * x + d * y + f - top
                 numbers[at + 2] = scale * z
         alpha = pixels[..., 3].astype(np.float64)
-        return lit(alpha, step.kind, step.name, tuple(numbers))
+        return light_surface(alpha, step.kind, step.name, tuple(numbers))
 
     def _noise(self, step: Step, region: Slices) -> FloatArray:
         pixels = np.zeros_like(self._source)
@@ -256,9 +256,9 @@ class _FilterRun:
 
     def _shadowed(self, step: Step, source: FloatArray) -> FloatArray:
         numbers = step.numbers
-        blur, move, color = numbers[:2], numbers[2:4], numbers[4:]
-        alpha = blurred(source[..., 3:], *_lengths(blur, self._matrix))
-        alpha = shifted(alpha, *_direction(move, self._matrix))
+        deviations, move, color = numbers[:2], numbers[2:4], numbers[4:]
+        alpha = blur(source[..., 3:], *_lengths(deviations, self._matrix))
+        alpha = shift(alpha, *_direction(move, self._matrix))
         return blend(self._flood(color, step.is_linear) * alpha, source, "normal")
 
     def _slices(self, region: Box | None) -> Slices:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Filters: what becomes of a group's pixels, step by step, as the file says it."""
+"""Reading of the property `filter`, and of `filter` elements."""
 
 from dataclasses import replace
 
@@ -15,82 +15,92 @@ from ..read.document import SvgElement
 from ..read.lengths import Units
 from ..read.nesting import ancestors
 from ..read.styles import Style
-from .functions import InvalidFunctionError, filter_by_function, listed
-from .primitives import STEPS, FilterPlace, UnknownStepError
+from .functions import InvalidFunctionError, filter_by_function, parse_filter_list
+from .primitives import PRIMITIVE_READERS, FilterUnits, UnsupportedPrimitiveError
 
-# Products of larger numbers would leave the range of floats.
+# Products of larger numbers could overflow float32.
 _LARGEST = 1e9
-# What no browser has, and that is for them as if it was not said.
-_REPLACED = ("BackgroundImage", "BackgroundAlpha", "FillPaint", "StrokePaint")
-_NOTHING = (0.0, 0.0, 0.0, 0.0)
+# Inputs that no browser supports; browsers treat them as missing.
+_UNSUPPORTED_INPUTS = ("BackgroundImage", "BackgroundAlpha", "FillPaint", "StrokePaint")
+_EMPTY_BOX = (0.0, 0.0, 0.0, 0.0)
 _DEFAULTS = {"x": -10.0, "y": -10.0, "width": 120.0, "height": 120.0}
 
 
-def filters_of(
+def read_filters(
     element: SvgElement, context: Context, sources: Sources, images: Images
 ) -> tuple[Filter, ...]:
-    """The filters of an element, the first to be applied first; none where one is wrong.
+    """Reads an element's filters in the order of application; none if one is invalid.
 
     `context` is that within the element.
     """
     text = sources.sheets.declared(element).get("filter", "none")
     if text.lower() == "none":
         return ()
-    found: list[Filter] = []
+    filters: list[Filter] = []
     try:
-        for each in listed(text):
+        for each in parse_filter_list(text):
             if isinstance(each, str):
                 target = sources.document.ids.get(each[1:]) if each.startswith("#") else None
                 if target is None or target.tag != "filter":
                     sources.warnings.broken("filter", "ignored", element.line)
                     continue
-                found.append(_referred(element, target, context, sources, images))
+                filters.append(_read_filter(element, target, context, sources, images))
             else:
                 color, is_linear = context.style.color, context.colors.is_linear
-                found.append(
+                filters.append(
                     filter_by_function(each, context.matrix, context.units, color, is_linear)
                 )
     except InvalidFunctionError:
         sources.warnings.broken("filter", "ignored", element.line)
         return ()
-    except UnknownStepError as error:
+    except UnsupportedPrimitiveError as error:
         sources.warnings.unsupported(f"filter with {error}", "ignored", element.line)
         return ()
-    return tuple(found)
+    return tuple(filters)
 
 
-def _referred(
-    element: SvgElement, found: SvgElement, context: Context, sources: Sources, images: Images
+def _read_filter(
+    element: SvgElement,
+    filter_element: SvgElement,
+    context: Context,
+    sources: Sources,
+    images: Images,
 ) -> Filter:
     box = object_bounds(element, context, sources)
     context = replace(context, uses=(*context.uses, element))
-    region, matrix = read_region(found, "filterUnits", _DEFAULTS, box, context, sources)
+    region, matrix = read_region(filter_element, "filterUnits", _DEFAULTS, box, context, sources)
     if region is None:
-        return Filter((), _NOTHING, context.matrix, context.colors.is_linear)
+        return Filter((), _EMPTY_BOX, context.matrix, context.colors.is_linear)
     units = (
-        fractions_to_box(box) if found.get("primitiveUnits") == "objectBoundingBox" else IDENTITY
+        fractions_to_box(box)
+        if filter_element.get("primitiveUnits") == "objectBoundingBox"
+        else IDENTITY
     )
-    place = FilterPlace(units or IDENTITY, transform_box(region, matrix))
+    filter_units = FilterUnits(units or IDENTITY, transform_box(region, matrix))
     steps = tuple(
-        _step(child, place, context, sources, images)
-        for child in found
+        _read_step(child, filter_units, context, sources, images)
+        for child in filter_element
         if isinstance(child, SvgElement) and child.tag.startswith("fe")
     )
-    return Filter(steps, place.region, context.matrix, context.colors.is_linear)
+    return Filter(steps, filter_units.region, context.matrix, context.colors.is_linear)
 
 
-def _step(
-    element: SvgElement, place: FilterPlace, context: Context, sources: Sources, images: Images
+def _read_step(
+    element: SvgElement,
+    filter_units: FilterUnits,
+    context: Context,
+    sources: Sources,
+    images: Images,
 ) -> Step:
-    kind = STEPS.get(element.tag)
+    kind = PRIMITIVE_READERS.get(element.tag)
     if kind is None:
-        raise UnknownStepError(f"<{element.tag}>")
-    inputs, numbers, name = kind(element, place, sources)
+        raise UnsupportedPrimitiveError(f"<{element.tag}>")
+    inputs, numbers, name = kind(element, filter_units, sources)
     for each in inputs:
-        if each in _REPLACED:
+        if each in _UNSUPPORTED_INPUTS:
             sources.warnings.unsupported(each, "replaced by the result before it", element.line)
     style = sources.sheets.style(element)
-    region = _subregion(element, place, context, sources)
+    region = _subregion(element, filter_units, context, sources)
     return Step(
         element.tag if name != "nothing" else name,
         tuple(inputs),
@@ -99,23 +109,23 @@ def _step(
         name,
         style.color_interpolation_filters != "srgb",
         region,
-        _shown(element, region or place.region, context, sources, images),
+        _image_contents(element, region or filter_units.region, context, sources, images),
     )
 
 
 def _subregion(
-    element: SvgElement, place: FilterPlace, context: Context, sources: Sources
+    element: SvgElement, filter_units: FilterUnits, context: Context, sources: Sources
 ) -> Box | None:
-    """Where the result of a step ends, in the element's units; None for that of the filter."""
+    """Returns the subregion of a primitive, in the element's units; None for the default."""
     declared = sources.sheets.declared(element)
     if not any(name in declared for name in _DEFAULTS):
         return None
-    left, top, right, bottom = place.region
+    left, top, right, bottom = filter_units.region
     sides = {"x": left, "y": top, "width": right - left, "height": bottom - top}
     units = context.units
-    if place.units != IDENTITY:
+    if filter_units.units != IDENTITY:
         units = Units(1.0, 1.0, units.font_size)
-    a, _, _, d, e, f = place.units
+    a, _, _, d, e, f = filter_units.units
     for name in sides:
         if name in declared:
             value = sources.pixels(element, name, Length(0.0), units)
@@ -125,14 +135,14 @@ def _subregion(
     return x, y, x + max(width, 0.0), y + max(height, 0.0)
 
 
-def _shown(
+def _image_contents(
     element: SvgElement,
     region: Box,
     context: Context,
     sources: Sources,
     images: Images,
 ) -> Group | None:
-    """What an `feImage` shows; None for other steps."""
+    """Returns the contents of `feImage`; None for other primitives."""
     if element.tag != "feImage":
         return None
     group = Group(is_isolated=True, line=element.line)
@@ -143,7 +153,7 @@ def _shown(
         inside = replace(inside, style=sources.sheets.style(element))
         put_image(element, (left, top, right - left, bottom - top), inside, sources, images)
     elif any(target in ancestors(used) for used in context.uses):
-        raise InvalidFunctionError  # It is inside of itself.
+        raise InvalidFunctionError  # The image contains itself.
     else:
         parent = target.parent
         inside = replace(

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The functions of the property `filter`: `blur()`, `drop-shadow()` and those of colors."""
+"""Filter functions: `blur()`, `drop-shadow()`, and color functions."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -13,7 +13,7 @@ from ..model.colors import Color
 from ..model.tree import Filter, Step
 from ..model.values import parse_color, parse_length, parse_url
 from ..read.lengths import Units
-from .primitives import Matrix5, saturating, turning_hues
+from .primitives import Matrix5, hue_rotation_matrix, saturation_matrix
 
 MAX_FUNCTIONS = 32
 _DEGREES = {"deg": 1.0, "grad": 0.9, "rad": 180.0 / np.pi, "turn": 360.0}
@@ -25,42 +25,42 @@ _SEPIA = np.array([[0.393, 0.769, 0.189], [0.349, 0.686, 0.168], [0.272, 0.534, 
 
 
 class InvalidFunctionError(Exception):
-    """A text is no list of filters."""
+    """A value of `filter` is invalid."""
 
 
-def listed(text: str) -> list[Any]:
-    """The functions and addresses in the value of `filter`: tokens, or texts of addresses.
+def parse_filter_list(text: str) -> list[Any]:
+    """Parses a value of `filter` into function tokens, and addresses as text.
 
     Raises:
-        InvalidFunctionError: It holds something else.
+        InvalidFunctionError: The value is invalid.
     """
-    found: list[Any] = []
+    filters: list[Any] = []
     for token in tinycss2.parse_component_value_list(text, skip_comments=True):
         if token.type == "whitespace":
             continue
         address = parse_url(token)
         if address is None and token.type != "function":
             raise InvalidFunctionError
-        found.append(token if address is None else address)
-    if not found or len(found) > MAX_FUNCTIONS:
+        filters.append(token if address is None else address)
+    if not filters or len(filters) > MAX_FUNCTIONS:
         raise InvalidFunctionError
-    return found
+    return filters
 
 
 def filter_by_function(
     function: Any, matrix: Matrix, units: Units, color: Color, is_linear: bool
 ) -> Filter:
-    """What a function does.
+    """Converts a filter function to a filter.
 
     Args:
-        function: Its token.
-        matrix: From the units of the element to those of the tree.
-        units: What lengths are relative to.
+        function: Token of the function.
+        matrix: From the element's units to the tree's.
+        units: References of relative lengths.
         color: The property `color`.
         is_linear: Whether the group's colors are decoded.
 
     Raises:
-        InvalidFunctionError: It is none.
+        InvalidFunctionError: The function is invalid.
     """
     arguments = [
         token for token in function.arguments if token.type not in ("whitespace", "comment")
@@ -68,7 +68,7 @@ def filter_by_function(
     name = function.lower_name
     if name == "blur":
         deviation = _length(arguments[0], units) if arguments else 0.0
-        # Browsers want a unit here, and not of shadows.
+        # Browsers require a unit here, but not in drop-shadow().
         is_bare = bool(arguments) and arguments[0].type == "number" and deviation != 0.0
         if len(arguments) > 1 or deviation < 0.0 or is_bare:
             raise InvalidFunctionError
@@ -76,7 +76,7 @@ def filter_by_function(
     elif name == "drop-shadow":
         step = _step("feDropShadow", _shadow(arguments, units, color))
     elif name in _NAMES:
-        step = _step("feColorMatrix", _recoloring(name, arguments).ravel().tolist())
+        step = _step("feColorMatrix", _color_matrix(name, arguments).ravel().tolist())
     else:
         raise InvalidFunctionError
     return Filter((step,), None, matrix, is_linear)
@@ -87,7 +87,7 @@ def _step(kind: str, numbers: Sequence[float]) -> Step:
 
 
 def _length(token: Any, units: Units) -> float:
-    """In pixels. As in other attributes of SVG, numbers need no unit."""
+    """Converts to pixels. As in SVG attributes, numbers need no unit."""
     if token.type not in ("number", "dimension"):
         raise InvalidFunctionError
     try:
@@ -100,14 +100,14 @@ def _length(token: Any, units: Units) -> float:
 
 
 def _shadow(arguments: list[Any], units: Units, current: Color) -> list[float]:
-    """Deviations, distances and the color, which stands before or behind the lengths."""
+    """Returns deviations, offsets and color; the color precedes or follows the lengths."""
     color: Color = current
     for place in (0, -1):
         if arguments and arguments[place].type not in ("number", "dimension"):
-            found = parse_color(arguments.pop(place).serialize())
-            if found is None:
+            parsed = parse_color(arguments.pop(place).serialize())
+            if parsed is None:
                 raise InvalidFunctionError
-            color = current if isinstance(found, str) else found
+            color = current if isinstance(parsed, str) else parsed
             break
     lengths = [_length(token, units) for token in arguments]
     if len(lengths) not in (2, 3) or (len(lengths) == 3 and lengths[2] < 0.0):
@@ -116,8 +116,8 @@ def _shadow(arguments: list[Any], units: Units, current: Color) -> list[float]:
     return [deviation, deviation, x, y, *color]
 
 
-def _recoloring(name: str, arguments: list[Any]) -> Matrix5:
-    """Rows of red, green, blue and alpha."""
+def _color_matrix(name: str, arguments: list[Any]) -> Matrix5:
+    """Returns a color matrix: rows of red, green, blue and alpha."""
     amount = 0.0 if name == "hue-rotate" else 1.0
     if len(arguments) > 1:
         raise InvalidFunctionError
@@ -141,23 +141,23 @@ def _recoloring(name: str, arguments: list[Any]) -> Matrix5:
         case "sepia":
             colors[:, :3] = _SEPIA + (1.0 - amount) * (np.eye(3) - _SEPIA)
         case "grayscale":
-            matrix = saturating(1.0 - amount)
+            matrix = saturation_matrix(1.0 - amount)
         case "saturate":
-            matrix = saturating(amount)
+            matrix = saturation_matrix(amount)
         case _:
-            matrix = turning_hues(amount)
+            matrix = hue_rotation_matrix(amount)
     return matrix
 
 
 def _amount(token: Any) -> float:
-    """A number, or a percentage as its hundredth, that is not negative."""
+    """Parses a nonnegative number or percentage."""
     if token.type not in ("number", "percentage") or not 0.0 <= token.value < 1e9:
         raise InvalidFunctionError
     return float(token.value) * (0.01 if token.type == "percentage" else 1.0)
 
 
 def _angle(token: Any) -> float:
-    """In degrees."""
+    """Converts to degrees."""
     if token.type == "number" and token.value == 0:
         return 0.0
     if token.type != "dimension" or token.lower_unit not in _DEGREES or abs(token.value) > 1e9:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`feDiffuseLighting` and `feSpecularLighting`: light on a surface as high as alpha.
+"""`feDiffuseLighting` and `feSpecularLighting`: lighting of a surface whose height is alpha.
 
-Images have the top row first, and places are in pixels, with y downwards.
+Images have the top row first; positions are in pixels, y downwards.
 """
 
 import numpy as np
@@ -13,95 +13,95 @@ from .... import _native
 Values = npt.NDArray[np.float64]
 FloatArray = npt.NDArray[np.float32]
 
-# Where the edge of a spot's cone is soft, in cosines.
-_SOFT = 0.016
-_AT_ONCE = 1 << 16
+# Width of the soft edge of a spot's cone, in cosines.
+_CONE_EDGE = 0.016
+_PIXELS_PER_BATCH = 1 << 16
 
 
-def lit(alpha: Values, kind: str, light: str, numbers: tuple[float, ...]) -> FloatArray:
-    """The light that pixels send to the eye.
+def light_surface(alpha: Values, kind: str, light: str, numbers: tuple[float, ...]) -> FloatArray:
+    """Returns the light reflected towards the viewer.
 
     Args:
         alpha: (height, width).
         kind: "feDiffuseLighting" or "feSpecularLighting".
         light: "feDistantLight", "fePointLight" or "feSpotLight".
-        numbers: The height of what is opaque, the strength, the shininess, three of the color, and
-            of a distant light the direction to it; of others their place and what they point at,
-            in pixels, the exponent and the cosine of the cone.
+        numbers: Surface scale, strength, shininess, color; then the direction of a distant light,
+            or the position of another one in pixels, and a spot's target, exponent, and cosine of
+            the cone.
 
     Returns:
-        (height, width, 4): colors multiplied by alpha.
+        (height, width, 4), colors premultiplied by alpha.
     """
-    slopes = _smoothed(_differences(alpha, 1), 0), _smoothed(_differences(alpha, 0), 1)
-    found = np.empty((*alpha.shape, 4), np.float32)
-    # Some rows at a time, as vectors take much memory.
-    count = max(_AT_ONCE // max(alpha.shape[1], 1), 1)
+    slopes = _smooth(_differences(alpha, 1), 0), _smooth(_differences(alpha, 0), 1)
+    image = np.empty((*alpha.shape, 4), np.float32)
+    # Some rows at a time, to limit the memory for vectors.
+    count = max(_PIXELS_PER_BATCH // max(alpha.shape[1], 1), 1)
     for begin in range(0, alpha.shape[0], count):
         rows = slice(begin, begin + count)
         normals = _normals(slopes[0][rows], slopes[1][rows], numbers[0])
         surface = numbers[0] * alpha[rows]
         directions, share = _directions(surface, begin, light, numbers[6:])
-        found[rows] = _sent(normals, directions, share, kind, numbers[1:6])
-    return found
+        image[rows] = _reflect(normals, directions, share, kind, numbers[1:6])
+    return image
 
 
-def _sent(
+def _reflect(
     normals: Values, directions: Values, share: Values, kind: str, numbers: tuple[float, ...]
 ) -> Values:
-    """The light that is sent on, by its strength, shininess and color."""
+    """Returns reflected light by strength, shininess and color."""
     strength, shininess, color = numbers[0], numbers[1], np.array(numbers[2:5])
-    found = np.ones((*share.shape, 4))
+    reflected = np.ones((*share.shape, 4))
     if kind == "feDiffuseLighting":
         amount = strength * (normals * directions).sum(-1) * share
-        found[..., :3] = (amount[..., None] * color).clip(0.0, 1.0)
-        return found
+        reflected[..., :3] = (amount[..., None] * color).clip(0.0, 1.0)
+        return reflected
     halves = directions + np.array([0.0, 0.0, 1.0])
     lengths = np.sqrt((halves * halves).sum(-1))
     cosines = np.zeros_like(lengths)
     np.divide((normals * halves).sum(-1), lengths, out=cosines, where=lengths > 0.0)
     amount = strength * _native.powers(cosines.clip(0.0, None), shininess) * share
-    found[..., :3] = (amount[..., None] * color).clip(0.0, 1.0)
-    found[..., 3] = found[..., :3].max(-1)
-    return found
+    reflected[..., :3] = (amount[..., None] * color).clip(0.0, 1.0)
+    reflected[..., 3] = reflected[..., :3].max(-1)
+    return reflected
 
 
 def _normals(across: Values, along: Values, height: float) -> Values:
-    """Of length 1, of slopes as Filter Effects has them: the differences of pixels two apart."""
+    """Returns unit normals; slopes are differences of pixels two apart, as in Filter Effects."""
     x, y = -height * across, -height * along
     lengths = np.sqrt(x * x + y * y + 1.0)
     return np.stack([x, y, np.ones_like(x)], -1) / lengths[..., None]
 
 
 def _differences(values: Values, axis: int) -> Values:
-    """Of the pixels to both sides: twice the slope."""
+    """Returns central differences over two pixels: twice the slope."""
     if values.shape[axis] < 2:
         return np.zeros_like(values)
     values = np.moveaxis(values, axis, 0)
-    found = np.empty_like(values)
-    found[1:-1] = values[2:] - values[:-2]
-    found[0] = 2.0 * (values[1] - values[0])
-    found[-1] = 2.0 * (values[-1] - values[-2])
-    return np.moveaxis(found, 0, axis)
+    differences = np.empty_like(values)
+    differences[1:-1] = values[2:] - values[:-2]
+    differences[0] = 2.0 * (values[1] - values[0])
+    differences[-1] = 2.0 * (values[-1] - values[-2])
+    return np.moveaxis(differences, 0, axis)
 
 
-def _smoothed(values: Values, axis: int) -> Values:
-    """The mean of three pixels, the middle one twice."""
+def _smooth(values: Values, axis: int) -> Values:
+    """Averages three pixels with weights 1, 2, 1."""
     if values.shape[axis] < 2:
         return values
     values = np.moveaxis(values, axis, 0)
-    found = np.empty_like(values)
-    found[1:-1] = 0.25 * (values[2:] + 2.0 * values[1:-1] + values[:-2])
-    found[0] = (2.0 * values[0] + values[1]) / 3.0
-    found[-1] = (2.0 * values[-1] + values[-2]) / 3.0
-    return np.moveaxis(found, 0, axis)
+    smoothed = np.empty_like(values)
+    smoothed[1:-1] = 0.25 * (values[2:] + 2.0 * values[1:-1] + values[:-2])
+    smoothed[0] = (2.0 * values[0] + values[1]) / 3.0
+    smoothed[-1] = (2.0 * values[-1] + values[-2]) / 3.0
+    return np.moveaxis(smoothed, 0, axis)
 
 
 def _directions(
     surface: Values, top: int, light: str, about: tuple[float, ...]
 ) -> tuple[Values, Values]:
-    """From each pixel to the light, of length 1, and how much light comes along that.
+    """Returns unit directions from pixels to the light, and the light's intensity.
 
-    `surface` is how high rows from `top` on are.
+    `surface` has the heights of rows from `top` on.
     """
     rows, columns = surface.shape
     if light == "feDistantLight":
@@ -119,5 +119,5 @@ def _directions(
     axis = axis / length if length > 0.0 else axis
     cosines = -(directions * axis).sum(-1)
     share = _native.powers(cosines.clip(0.0, None), about[6])
-    share *= ((cosines - about[7]) / _SOFT).clip(0.0, 1.0) if about[7] > -1.0 else 1.0
+    share *= ((cosines - about[7]) / _CONE_EDGE).clip(0.0, 1.0) if about[7] > -1.0 else 1.0
     return directions, np.where(cosines > 0.0, share, 0.0)

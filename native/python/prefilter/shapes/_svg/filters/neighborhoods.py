@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Steps of filters that look at the pixels around each: extremes, weighted sums, tiles."""
+"""Filter primitives that read neighboring pixels: morphology, convolution, tiling."""
 
 import numpy as np
 import numpy.typing as npt
@@ -12,10 +12,10 @@ FloatArray = npt.NDArray[np.float32]
 _PADDING = {"duplicate": "edge", "wrap": "wrap", "none": "constant"}
 
 
-def extreme(pixels: FloatArray, x: int, y: int, *, is_largest: bool) -> FloatArray:
-    """The largest or smallest value of each channel among so many pixels to each side.
+def apply_morphology(pixels: FloatArray, x: int, y: int, *, is_largest: bool) -> FloatArray:
+    """Returns the largest or smallest value of each channel within x and y pixels to each side.
 
-    Beyond the edges all is 0.
+    Pixels beyond the edges are 0.
     """
     pick = np.maximum if is_largest else np.minimum
     for axis, radius in ((1, x), (0, y)):
@@ -25,15 +25,17 @@ def extreme(pixels: FloatArray, x: int, y: int, *, is_largest: bool) -> FloatArr
             continue
         padding = [(0, 0)] * pixels.ndim
         padding[axis] = (radius, radius)
-        found = np.pad(pixels, padding)
-        # Of as many as a power of two, then of two such rows that overlap.
-        size, wanted = 1, 2 * radius + 1
-        while size < wanted:
-            step = min(size, wanted - size)
-            count = found.shape[axis] - step
-            found = pick(_part(found, 0, count, axis), _part(found, step, step + count, axis))
+        extremes = np.pad(pixels, padding)
+        # Windows double in size; the last step overlaps two of them.
+        size, full_size = 1, 2 * radius + 1
+        while size < full_size:
+            step = min(size, full_size - size)
+            count = extremes.shape[axis] - step
+            extremes = pick(
+                _part(extremes, 0, count, axis), _part(extremes, step, step + count, axis)
+            )
             size += step
-        pixels = found
+        pixels = extremes
     return pixels
 
 
@@ -41,14 +43,14 @@ def _part(pixels: FloatArray, begin: int, end: int, axis: int) -> FloatArray:
     return pixels[:, begin:end] if axis == 1 else pixels[begin:end]
 
 
-def convolved(pixels: FloatArray, numbers: tuple[float, ...], edge_mode: str) -> FloatArray:
-    """Weighted sums: `feConvolveMatrix`.
+def convolve(pixels: FloatArray, numbers: tuple[float, ...], edge_mode: str) -> FloatArray:
+    """Applies `feConvolveMatrix`.
 
     Args:
-        pixels: The top row first, colors multiplied by alpha.
-        numbers: Columns and rows of the weights, the column and row that stand for the pixel
-            itself, whether alpha stays, what is added, and the weights.
-        edge_mode: What is beyond the edges: "duplicate", "wrap", or "none" for transparent.
+        pixels: Top row first, colors premultiplied by alpha.
+        numbers: Columns and rows of the kernel, target column and row, whether alpha is preserved,
+            bias, and weights.
+        edge_mode: "duplicate", "wrap", or "none" for transparent black.
     """
     columns, rows, x, y = map(int, numbers[:4])
     keeps_alpha, bias = numbers[4] != 0.0, np.float32(numbers[5])
@@ -58,30 +60,32 @@ def convolved(pixels: FloatArray, numbers: tuple[float, ...], edge_mode: str) ->
     source = straight_colors(pixels) if keeps_alpha else pixels
     around = ((y, rows - 1 - y), (x, columns - 1 - x), (0, 0))
     padded = np.pad(source, around, _PADDING[edge_mode])  # type: ignore[call-overload]
-    found = np.zeros_like(source)
+    sums = np.zeros_like(source)
     for row in range(rows):
         for column in range(columns):
-            # The weights are turned half around.
+            # Convolution rotates the kernel by 180 degrees.
             weight = weights[rows - 1 - row, columns - 1 - column]
             if weight != 0.0:
-                found += weight * padded[row : row + height, column : column + width]
+                sums += weight * padded[row : row + height, column : column + width]
     if keeps_alpha:
-        found = (found[..., :3] + bias).clip(0.0, 1.0) * alpha
-        return np.concatenate([found, alpha], -1)
-    found = (found + bias).clip(0.0, 1.0)
-    found[..., :3] = np.minimum(found[..., :3], found[..., 3:])
-    return found
+        sums = (sums[..., :3] + bias).clip(0.0, 1.0) * alpha
+        return np.concatenate([sums, alpha], -1)
+    sums = (sums + bias).clip(0.0, 1.0)
+    sums[..., :3] = np.minimum(sums[..., :3], sums[..., 3:])
+    return sums
 
 
-def tiled(pixels: FloatArray, tile: tuple[slice, slice], region: tuple[slice, slice]) -> FloatArray:
-    """Rows and columns of a tile, again and again all over a region."""
-    found = np.zeros_like(pixels)
+def repeat_tile(
+    pixels: FloatArray, tile: tuple[slice, slice], region: tuple[slice, slice]
+) -> FloatArray:
+    """Repeats a tile all over a region."""
+    filled = np.zeros_like(pixels)
     inside = pixels[tile]
     if inside.size == 0:
-        return found
+        return filled
     rows, columns = (
         np.arange(whole.start, whole.stop) - part.start
         for whole, part in zip(region, tile, strict=True)
     )
-    found[region] = inside[rows % inside.shape[0]][:, columns % inside.shape[1]]
-    return found
+    filled[region] = inside[rows % inside.shape[0]][:, columns % inside.shape[1]]
+    return filled

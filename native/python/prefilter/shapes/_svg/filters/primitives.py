@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The steps of filters: what each element says of itself."""
+"""Reading of filter primitives."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -24,70 +24,70 @@ _EDGE_MODES = ("duplicate", "wrap", "none")
 _LIGHTS = ("feDistantLight", "fePointLight", "feSpotLight")
 _MAX_WEIGHTS = 400
 _MAX_OCTAVES = 10
-# Of red, green and blue, as Filter Effects has them.
+# Luminance weights in Filter Effects.
 _RED, _GREEN, _BLUE = 0.213, 0.715, 0.072
 _SATURATION = np.array([[_RED, _GREEN, _BLUE]] * 3)
 
 
-class UnknownStepError(Exception):
-    """A filter needs something that is not supported; the message names it."""
+class UnsupportedPrimitiveError(Exception):
+    """A filter uses an unsupported feature, named in the message."""
 
 
 @dataclass(frozen=True)
-class FilterPlace:
-    """Where a filter is applied.
+class FilterUnits:
+    """Units and region of a filter.
 
     Attributes:
-        units: From those of the steps' lengths to the element's: shares of a box, or its own.
-        region: Of the filter, in the element's units.
+        units: From the primitives' units, which may be fractions of a box, to the element's.
+        region: The filter region, in the element's units.
     """
 
     units: Matrix
     region: Box
 
 
-Found = tuple[list[str], list[float], str]
-"""The names of inputs, numbers, and the name of an operator or mode."""
+Parameters = tuple[list[str], list[float], str]
+"""Names of inputs, numeric parameters, and the name of an operator or mode."""
 Matrix5 = npt.NDArray[np.float64]
 
 
 def _numbers(text: str | None, default: list[float]) -> list[float]:
-    found, is_whole = leading_numbers(text or "")
-    return found if found and is_whole else default
+    numbers, is_whole = leading_numbers(text or "")
+    return numbers if numbers and is_whole else default
 
 
 def _number(element: SvgElement, name: str, default: float) -> float:
-    found = parse_number(element.get(name, ""))
-    return default if found is None else found
+    number = parse_number(element.get(name, ""))
+    return default if number is None else number
 
 
-def _in(element: SvgElement, name: str = "in") -> str:
+def _input(element: SvgElement, name: str = "in") -> str:
     return element.get(name, "").strip()
 
 
-def _blur(element: SvgElement, place: FilterPlace, _: Sources) -> Found:
-    return [_in(element)], _deviations(element, 0.0, place), ""
+def _blur(element: SvgElement, filter_units: FilterUnits, _: Sources) -> Parameters:
+    return [_input(element)], _deviations(element, 0.0, filter_units), ""
 
 
-def _deviations(element: SvgElement, default: float, place: FilterPlace) -> list[float]:
+def _deviations(element: SvgElement, default: float, filter_units: FilterUnits) -> list[float]:
     numbers = _numbers(element.get("stdDeviation"), [default])
     if len(numbers) > 2 or min(numbers) < 0.0:
         numbers = [0.0]
-    return _scales(numbers[0], numbers[-1], place)
+    return _scales(numbers[0], numbers[-1], filter_units)
 
 
-def _scales(x: float, y: float, place: FilterPlace) -> list[float]:
-    """Lengths along x and y in the element's units."""
-    return [x * place.units[0], y * place.units[3]]
+def _scales(x: float, y: float, filter_units: FilterUnits) -> list[float]:
+    """Scales lengths along x and y to the element's units."""
+    return [x * filter_units.units[0], y * filter_units.units[3]]
 
 
-def _offset(element: SvgElement, place: FilterPlace, _: Sources) -> Found:
+def _offset(element: SvgElement, filter_units: FilterUnits, _: Sources) -> Parameters:
     x, y = _number(element, "dx", 0.0), _number(element, "dy", 0.0)
-    return [_in(element)], _scales(x, y, place), ""
+    return [_input(element)], _scales(x, y, filter_units), ""
 
 
-def _flood(element: SvgElement, place: FilterPlace, sources: Sources) -> Found:
-    del place
+def _flood(element: SvgElement, filter_units: FilterUnits, sources: Sources) -> Parameters:
+    del filter_units
     color = _color(element, "flood-color", (0.0, 0.0, 0.0, 1.0), sources)
     opacity = parse_number(sources.sheets.declared(element).get("flood-opacity", "1"))
     alpha = color[3] * (1.0 if opacity is None else min(max(opacity, 0.0), 1.0))
@@ -101,41 +101,41 @@ def _color(element: SvgElement, name: str, default: Color, sources: Sources) -> 
     return sources.sheets.style(element).color if isinstance(color, str) else color
 
 
-def _shadow(element: SvgElement, place: FilterPlace, sources: Sources) -> Found:
-    _, color, _ = _flood(element, place, sources)
-    move = _scales(_number(element, "dx", 2.0), _number(element, "dy", 2.0), place)
-    return [_in(element)], [*_deviations(element, 2.0, place), *move, *color], ""
+def _shadow(element: SvgElement, filter_units: FilterUnits, sources: Sources) -> Parameters:
+    _, color, _ = _flood(element, filter_units, sources)
+    move = _scales(_number(element, "dx", 2.0), _number(element, "dy", 2.0), filter_units)
+    return [_input(element)], [*_deviations(element, 2.0, filter_units), *move, *color], ""
 
 
-def _merge(element: SvgElement, _: FilterPlace, sources: Sources) -> Found:
+def _merge(element: SvgElement, _: FilterUnits, sources: Sources) -> Parameters:
     del sources
     nodes = [node for node in element if node.tag == "feMergeNode"]
-    return [_in(node) for node in nodes if isinstance(node, SvgElement)], [], ""
+    return [_input(node) for node in nodes if isinstance(node, SvgElement)], [], ""
 
 
-def _composite(element: SvgElement, _: FilterPlace, sources: Sources) -> Found:
+def _composite(element: SvgElement, _: FilterUnits, sources: Sources) -> Parameters:
     del sources
     name = element.get("operator", "over").strip()
     factors = [_number(element, f"k{k}", 0.0) for k in range(1, 5)]
-    inputs = [_in(element), _in(element, "in2")]
+    inputs = [_input(element), _input(element, "in2")]
     return inputs, factors, name if name in _OPERATORS else "over"
 
 
-def _blend(element: SvgElement, _: FilterPlace, sources: Sources) -> Found:
+def _blend(element: SvgElement, _: FilterUnits, sources: Sources) -> Parameters:
     del sources
     name = element.get("mode", "normal").strip()
-    return [_in(element), _in(element, "in2")], [], name if name in BLEND_MODES else "normal"
+    return [_input(element), _input(element, "in2")], [], name if name in BLEND_MODES else "normal"
 
 
-def saturating(share: float) -> Matrix5:
-    """Rows of red, green, blue and alpha that keep a share of what differs from gray."""
+def saturation_matrix(share: float) -> Matrix5:
+    """Returns a color matrix that scales saturation."""
     matrix = np.eye(4, 5)
     matrix[:3, :3] = _SATURATION + share * (np.eye(3) - _SATURATION)
     return matrix
 
 
-def turning_hues(degrees: float) -> Matrix5:
-    """Rows likewise that turn hues."""
+def hue_rotation_matrix(degrees: float) -> Matrix5:
+    """Returns a color matrix that rotates hues."""
     angle = degrees * (np.pi / 180.0)
     cos, sin = _native.cos(angle), _native.sin(angle)
     turn = np.array([[-0.213, -0.715, 0.928], [0.143, 0.140, -0.283], [-0.787, 0.715, 0.072]])
@@ -144,7 +144,7 @@ def turning_hues(degrees: float) -> Matrix5:
     return matrix
 
 
-def _color_matrix(element: SvgElement, _: FilterPlace, sources: Sources) -> Found:
+def _color_matrix(element: SvgElement, _: FilterUnits, sources: Sources) -> Parameters:
     del sources
     kind = element.get("type", "matrix").strip()
     matrix = np.eye(4, 5)
@@ -152,18 +152,20 @@ def _color_matrix(element: SvgElement, _: FilterPlace, sources: Sources) -> Foun
         matrix = np.zeros((4, 5))
         matrix[3, :3] = _RED, _GREEN, _BLUE
     elif kind == "saturate":
-        matrix = saturating(_numbers(element.get("values"), [1.0])[0])
+        matrix = saturation_matrix(_numbers(element.get("values"), [1.0])[0])
     elif kind == "hueRotate":
-        matrix = turning_hues(_numbers(element.get("values"), [0.0])[0])
+        matrix = hue_rotation_matrix(_numbers(element.get("values"), [0.0])[0])
     else:
         values = _numbers(element.get("values"), [])
         if len(values) == 20:
             matrix = np.array(values).reshape(4, 5)
-    return [_in(element)], matrix.ravel().tolist(), ""
+    return [_input(element)], matrix.ravel().tolist(), ""
 
 
-def _transfer(element: SvgElement, _: FilterPlace, sources: Sources) -> Found:
-    """For each channel: how many numbers, and the values at equal distances, or a step each."""
+def _transfer(element: SvgElement, _: FilterUnits, sources: Sources) -> Parameters:
+    """Parameters: per channel a count and as many table values; a negative count means steps, 0
+    gamma.
+    """
     del sources
     numbers: list[float] = []
     for name in _CHANNELS:
@@ -171,7 +173,7 @@ def _transfer(element: SvgElement, _: FilterPlace, sources: Sources) -> Found:
         function = functions[-1] if functions else None
         kind = function.get("type", "identity").strip() if function is not None else "identity"
         if isinstance(function, SvgElement) and kind == "gamma":
-            # No values, and a power instead.
+            # No table, but a power.
             numbers += [0.0, _number(function, "amplitude", 1.0)]
             numbers += [_number(function, "exponent", 1.0), _number(function, "offset", 0.0)]
             continue
@@ -185,30 +187,30 @@ def _transfer(element: SvgElement, _: FilterPlace, sources: Sources) -> Found:
             kind == "discrete" and function is not None and "tableValues" in function.attrib
         )
         numbers += [-len(values) if is_discrete else len(values), *values]
-    return [_in(element)], numbers, ""
+    return [_input(element)], numbers, ""
 
 
-def _morphology(element: SvgElement, place: FilterPlace, _: Sources) -> Found:
+def _morphology(element: SvgElement, filter_units: FilterUnits, _: Sources) -> Parameters:
     numbers = _numbers(element.get("radius"), [0.0])
     if len(numbers) > 2 or min(numbers) < 0.0:
         numbers = [0.0]
     is_dilating = element.get("operator", "erode").strip() == "dilate"
-    lengths = _scales(numbers[0], numbers[-1], place)
-    return [_in(element)], lengths, "dilate" if is_dilating else "erode"
+    lengths = _scales(numbers[0], numbers[-1], filter_units)
+    return [_input(element)], lengths, "dilate" if is_dilating else "erode"
 
 
-def _nothing(element: SvgElement) -> Found:
-    """A step of wrong attributes: its result is transparent."""
-    return [_in(element)], [], "nothing"
+def _nothing(element: SvgElement) -> Parameters:
+    """Invalid attributes: the result is transparent."""
+    return [_input(element)], [], "nothing"
 
 
-def _tile(element: SvgElement, _: FilterPlace, sources: Sources) -> Found:
+def _tile(element: SvgElement, _: FilterUnits, sources: Sources) -> Parameters:
     del sources
-    return [_in(element)], [], ""
+    return [_input(element)], [], ""
 
 
-def _convolution(element: SvgElement, _: FilterPlace, sources: Sources) -> Found:
-    """Columns, rows, the target's column and row, whether alpha stays, bias, and weights."""
+def _convolution(element: SvgElement, _: FilterUnits, sources: Sources) -> Parameters:
+    """Parameters: columns, rows, target column and row, preserveAlpha, bias, weights."""
     del sources
     sizes = _numbers(element.get("order"), [] if "order" in element.attrib else [3.0])
     weights = _numbers(element.get("kernelMatrix"), [])
@@ -218,7 +220,7 @@ def _convolution(element: SvgElement, _: FilterPlace, sources: Sources) -> Found
     if columns * rows != len(weights):
         return _nothing(element)
     if len(weights) > _MAX_WEIGHTS:
-        raise UnknownStepError(f"more than {_MAX_WEIGHTS} weights of <feConvolveMatrix>")
+        raise UnsupportedPrimitiveError(f"more than {_MAX_WEIGHTS} weights of <feConvolveMatrix>")
     x = _number(element, "targetX", columns // 2)
     y = _number(element, "targetY", rows // 2)
     if not (0 <= x < columns and 0 <= y < rows):
@@ -228,11 +230,11 @@ def _convolution(element: SvgElement, _: FilterPlace, sources: Sources) -> Found
     numbers = [columns, rows, math.floor(x), math.floor(y), float(keeps_alpha)]
     numbers += [_number(element, "bias", 0.0), *(weight / divisor for weight in weights)]
     mode = element.get("edgeMode", "duplicate").strip()
-    return [_in(element)], numbers, mode if mode in _EDGE_MODES else "duplicate"
+    return [_input(element)], numbers, mode if mode in _EDGE_MODES else "duplicate"
 
 
-def _turbulence(element: SvgElement, _: FilterPlace, sources: Sources) -> Found:
-    """Frequencies, octaves, the seed, and whether tiles fit."""
+def _turbulence(element: SvgElement, _: FilterUnits, sources: Sources) -> Parameters:
+    """Parameters: frequencies, octaves, seed, and whether tiles are seamless."""
     del sources
     numbers = _numbers(element.get("baseFrequency"), [0.0])
     if len(numbers) > 2 or min(numbers) < 0.0:
@@ -241,14 +243,14 @@ def _turbulence(element: SvgElement, _: FilterPlace, sources: Sources) -> Found:
     if octaves < 1.0:
         return _nothing(element)
     fits = element.get("stitchTiles", "noStitch").strip() == "stitch"
-    found = [numbers[0], numbers[-1], float(min(int(octaves), _MAX_OCTAVES))]
-    found += [float(int(_number(element, "seed", 0.0))), float(fits)]
+    parameters = [numbers[0], numbers[-1], float(min(int(octaves), _MAX_OCTAVES))]
+    parameters += [float(int(_number(element, "seed", 0.0))), float(fits)]
     is_fractal = element.get("type", "turbulence").strip() == "fractalNoise"
-    return [], found, "fractalNoise" if is_fractal else "turbulence"
+    return [], parameters, "fractalNoise" if is_fractal else "turbulence"
 
 
-def _lighting(element: SvgElement, place: FilterPlace, sources: Sources) -> Found:
-    """Height, strength, shininess, color, and what the light says of itself."""
+def _lighting(element: SvgElement, filter_units: FilterUnits, sources: Sources) -> Parameters:
+    """Parameters: surface scale, strength, shininess, color, and those of the light source."""
     color = _color(element, "lighting-color", (1.0, 1.0, 1.0, 1.0), sources)
     lights = [child for child in element if child.tag in _LIGHTS]
     if not lights or not isinstance(lights[0], SvgElement):
@@ -257,11 +259,13 @@ def _lighting(element: SvgElement, place: FilterPlace, sources: Sources) -> Foun
     strength = _number(element, "diffuseConstant" if is_diffuse else "specularConstant", 1.0)
     shininess = min(max(_number(element, "specularExponent", 1.0), 1.0), 128.0)
     numbers = [_number(element, "surfaceScale", 1.0), max(strength, 0.0), shininess, *color[:3]]
-    return [_in(element)], [*numbers, *_light(lights[0], place)], lights[0].tag
+    return [_input(element)], [*numbers, *_light(lights[0], filter_units)], lights[0].tag
 
 
-def _light(light: SvgElement, place: FilterPlace) -> list[float]:
-    """Of a distant one its direction; of others their place, and what they point at."""
+def _light(light: SvgElement, filter_units: FilterUnits) -> list[float]:
+    """Returns the direction of a distant light; for others the position, then that of a spot's
+    target.
+    """
     if light.tag == "feDistantLight":
         angles = (
             _number(light, name, 0.0) * (math.pi / 180.0) for name in ("azimuth", "elevation")
@@ -270,29 +274,31 @@ def _light(light: SvgElement, place: FilterPlace) -> list[float]:
         flat = _native.cos(elevation)
         x, y = flat * _native.cos(azimuth), flat * _native.sin(azimuth)
         return [x, y, _native.sin(elevation)]
-    found = _place_of(light, ("x", "y", "z"), place)
+    parameters = _position(light, ("x", "y", "z"), filter_units)
     if light.tag == "feSpotLight":
-        found += _place_of(light, ("pointsAtX", "pointsAtY", "pointsAtZ"), place)
+        parameters += _position(light, ("pointsAtX", "pointsAtY", "pointsAtZ"), filter_units)
         exponent = _number(light, "specularExponent", 1.0)
-        # Browsers take an angle of 0 for one that is not said.
+        # As in browsers, an angle of 0 counts as missing.
         cone = _number(light, "limitingConeAngle", 0.0) or 180.0
-        found += [min(max(exponent, 1.0), 128.0)]
-        found += [_native.cos(min(abs(cone), 180.0) * (math.pi / 180.0))]
-    return found
+        parameters += [min(max(exponent, 1.0), 128.0)]
+        parameters += [_native.cos(min(abs(cone), 180.0) * (math.pi / 180.0))]
+    return parameters
 
 
-def _place_of(light: SvgElement, names: tuple[str, str, str], place: FilterPlace) -> list[float]:
+def _position(
+    light: SvgElement, names: tuple[str, str, str], filter_units: FilterUnits
+) -> list[float]:
     x, y, z = (_number(light, name, 0.0) for name in names)
-    a, _, _, d, e, f = place.units
+    a, _, _, d, e, f = filter_units.units
     return [a * x + e, d * y + f, math.sqrt((a * a + d * d) / 2.0) * z]
 
 
-def _image(element: SvgElement, _: FilterPlace, sources: Sources) -> Found:
+def _image(element: SvgElement, _: FilterUnits, sources: Sources) -> Parameters:
     del element, sources
     return [], [], ""
 
 
-STEPS: Mapping[str, Callable[[SvgElement, FilterPlace, Sources], Found]] = {
+PRIMITIVE_READERS: Mapping[str, Callable[[SvgElement, FilterUnits, Sources], Parameters]] = {
     "feGaussianBlur": _blur,
     "feOffset": _offset,
     "feFlood": _flood,

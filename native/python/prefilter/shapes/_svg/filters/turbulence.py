@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`feTurbulence`: Perlin's noise, as Filter Effects has it, number by number."""
+"""`feTurbulence`: Perlin noise with the numbers of Filter Effects."""
 
 import math
 from functools import lru_cache
@@ -14,10 +14,10 @@ Values = npt.NDArray[np.float64]
 Numbers = npt.NDArray[np.int64]
 
 _SIZE = 256
-_FAR = 4096.0
+_LATTICE_OFFSET = 4096.0
 _CHANNELS = 4
-# Beyond it numbers have no fractions.
-_FARTHEST = 2.0**53
+# Larger doubles have no fractions.
+_MAX_COORDINATE = 2.0**53
 
 
 def noise(
@@ -30,62 +30,67 @@ def noise(
     is_fractal: bool,
     tile: tuple[float, float, float, float] | None,
 ) -> Values:
-    """Red, green, blue and alpha, not multiplied by it, at places.
+    """Returns red, green, blue and straight alpha at positions.
 
     Args:
-        x: Coordinates, in an array.
-        y: Likewise.
+        x: Coordinates.
+        y: Coordinates.
         frequencies: Along x and y.
-        octaves: How many noises are added, each twice as fine as the one before.
-        seed: Of random numbers.
-        is_fractal: Whether they are added as they are, about a half; else their amounts are.
-        tile: Left, top, width and height of what is to be repeated without a seam; None for none.
+        octaves: Number of noise functions; each has twice the frequency of the one before.
+        seed: Seed of random numbers.
+        is_fractal: Whether noise is added around 0.5; otherwise absolute values are.
+        tile: Left, top, width and height of a seamless tile; None for none.
     """
     wrap = None
     if tile is not None:
-        frequencies, wrap = _fitted(frequencies, tile)
+        frequencies, wrap = _fit_frequencies(frequencies, tile)
     total = np.zeros((*x.shape, _CHANNELS))
     scale = 1.0
     u, v = x * frequencies[0], y * frequencies[1]
     for _ in range(octaves):
-        found = _noise(u, v, seed, wrap)
-        total += (found if is_fractal else np.abs(found)) / scale
+        octave = _noise(u, v, seed, wrap)
+        total += (octave if is_fractal else np.abs(octave)) / scale
         u, v, scale = 2.0 * u, 2.0 * v, 2.0 * scale
         if wrap is not None:
             width, height, right, bottom = wrap
-            wrap = (2 * width, 2 * height, 2 * right - int(_FAR), 2 * bottom - int(_FAR))
+            wrap = (
+                2 * width,
+                2 * height,
+                2 * right - int(_LATTICE_OFFSET),
+                2 * bottom - int(_LATTICE_OFFSET),
+            )
     if is_fractal:
         total = 0.5 * (total + 1.0)
-    found = total.clip(0.0, 1.0)
-    return found
+    octave = total.clip(0.0, 1.0)
+    return octave
 
 
-def _fitted(
+def _fit_frequencies(
     frequencies: tuple[float, float], tile: tuple[float, float, float, float]
 ) -> tuple[tuple[float, float], tuple[int, int, int, int]]:
-    """Frequencies of which a tile has whole numbers, and where lattices begin anew."""
-    found = []
+    """Rounds frequencies to whole periods per tile; returns the lattice's periods and ends, too."""
+    fitted = []
     for frequency, side in zip(frequencies, tile[2:], strict=True):
         if frequency != 0.0 and side > 0.0:
             low = math.floor(side * frequency) / side
             high = math.ceil(side * frequency) / side
             frequency = low if low > 0.0 and frequency / low < high / frequency else high
-        found.append(frequency)
+        fitted.append(frequency)
     width, height = (
-        int(side * frequency + 0.5) for frequency, side in zip(found, tile[2:], strict=True)
+        int(side * frequency + 0.5) for frequency, side in zip(fitted, tile[2:], strict=True)
     )
-    right = int(tile[0] * found[0]) + int(_FAR) + width
-    bottom = int(tile[1] * found[1]) + int(_FAR) + height
-    return (found[0], found[1]), (width, height, right, bottom)
+    right = int(tile[0] * fitted[0]) + int(_LATTICE_OFFSET) + width
+    bottom = int(tile[1] * fitted[1]) + int(_LATTICE_OFFSET) + height
+    return (fitted[0], fitted[1]), (width, height, right, bottom)
 
 
 def _noise(u: Values, v: Values, seed: int, wrap: tuple[int, int, int, int] | None) -> Values:
     order, gradients = _lattice(seed)
     corners = []
     for values, axis in ((u, 0), (v, 1)):
-        moved = values + _FAR
+        moved = values + _LATTICE_OFFSET
         whole = np.floor(moved)
-        first = whole.clip(-_FARTHEST, _FARTHEST).astype(np.int64)
+        first = whole.clip(-_MAX_COORDINATE, _MAX_COORDINATE).astype(np.int64)
         second = first + 1
         if wrap is not None:
             size, end = wrap[axis], wrap[axis + 2]
@@ -95,36 +100,44 @@ def _noise(u: Values, v: Values, seed: int, wrap: tuple[int, int, int, int] | No
     (x0, x1, rx), (y0, y1, ry) = corners
     i, j = order[x0], order[x1]
     sx, sy = rx * rx * (3.0 - 2.0 * rx), ry * ry * (3.0 - 2.0 * ry)
-    found = np.empty((*u.shape, _CHANNELS))
+    values_of_channels = np.empty((*u.shape, _CHANNELS))
     for channel in range(_CHANNELS):
-        own = gradients[channel]
+        channel_gradients = gradients[channel]
 
-        def at(index: Numbers, dx: Values, dy: Values, own: Values = own) -> Values:
-            gradient = own[index]
+        def gradient_slope(
+            index: Numbers, dx: Values, dy: Values, channel_gradients: Values = channel_gradients
+        ) -> Values:
+            gradient = channel_gradients[index]
             slope: Values = dx * gradient[..., 0] + dy * gradient[..., 1]
             return slope
 
-        top = _between(at(order[i + y0], rx, ry), at(order[j + y0], rx - 1.0, ry), sx)
-        below = _between(at(order[i + y1], rx, ry - 1.0), at(order[j + y1], rx - 1.0, ry - 1.0), sx)
-        found[..., channel] = _between(top, below, sy)
-    return found
+        top = _interpolate(
+            gradient_slope(order[i + y0], rx, ry), gradient_slope(order[j + y0], rx - 1.0, ry), sx
+        )
+        below = _interpolate(
+            gradient_slope(order[i + y1], rx, ry - 1.0),
+            gradient_slope(order[j + y1], rx - 1.0, ry - 1.0),
+            sx,
+        )
+        values_of_channels[..., channel] = _interpolate(top, below, sy)
+    return values_of_channels
 
 
-def _between(one: Values, other: Values, share: Values) -> Values:
+def _interpolate(one: Values, other: Values, share: Values) -> Values:
     return one + share * (other - one)
 
 
 @lru_cache(maxsize=16)
 def _lattice(seed: int) -> tuple[Numbers, Values]:
-    """The order of gradients, and those of each channel."""
-    largest, factor, quotient, rest = 2147483647, 16807, 127773, 2836
+    """Returns the permutation of gradients, and the gradients of each channel."""
+    largest, factor, quotient, remainder = 2147483647, 16807, 127773, 2836
     if seed <= 0:
         seed = -seed % (largest - 1) + 1
     seed = min(seed, largest - 1)
 
-    def following(value: int) -> int:
-        found = factor * (value % quotient) - rest * (value // quotient)
-        return found if found > 0 else found + largest
+    def next_random(value: int) -> int:
+        value_or_negative = factor * (value % quotient) - remainder * (value // quotient)
+        return value_or_negative if value_or_negative > 0 else value_or_negative + largest
 
     gradients = np.empty((_CHANNELS, 2 * _SIZE + 2, 2))
     order = list(range(_SIZE))
@@ -132,12 +145,12 @@ def _lattice(seed: int) -> tuple[Numbers, Values]:
         for index in range(_SIZE):
             pair = []
             for _ in range(2):
-                seed = following(seed)
+                seed = next_random(seed)
                 pair.append((seed % (2 * _SIZE) - _SIZE) / _SIZE)
             length = _native.hypot(*pair) or 1.0
             gradients[channel, index] = pair[0] / length, pair[1] / length
     for index in range(_SIZE - 1, 0, -1):
-        seed = following(seed)
+        seed = next_random(seed)
         other = seed % _SIZE
         order[index], order[other] = order[other], order[index]
     gradients[:, _SIZE : 2 * _SIZE] = gradients[:, :_SIZE]

@@ -18,7 +18,7 @@ from .colors import Color, color_from_token
 
 BLACK: Color = (0.0, 0.0, 0.0, 1.0)
 
-Result = TypeVar("Found")
+Result = TypeVar("Result")
 _MAX_REMEMBERED = 1 << 10
 """Characters. Longer texts are not cached, as the cache would hold their memory."""
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"

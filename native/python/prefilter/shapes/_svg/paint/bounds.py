@@ -39,9 +39,9 @@ def _own_bounds(element: SvgElement, context: Context, sources: Sources) -> Box 
         return transform_box(box, context.matrix) if box is not None else None
     if element.tag == "text":
         # Font modules load slowly, and drawings without text do not need them.
-        from ..text.text_elements import drawn_text
+        from ..text.text_elements import lay_out_text
 
-        box = drawn_text(element, context, sources).bounds
+        box = lay_out_text(element, context, sources).bounds
         return transform_box(box, context.matrix) if box is not None else None
     if element.tag == "image":
         x, y, width, height = (

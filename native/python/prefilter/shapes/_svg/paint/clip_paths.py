@@ -80,9 +80,9 @@ def _parts(child: SvgElement, context: Context, sources: Sources) -> Iterator[Cl
         return
     if child.tag == "text":
         # Font modules load slowly, and drawings without text do not need them.
-        from ..text.text_elements import TextPiece, drawn_text
+        from ..text.text_elements import TextPiece, lay_out_text
 
-        for piece in drawn_text(child, child_context, sources).pieces:
+        for piece in lay_out_text(child, child_context, sources).pieces:
             if not isinstance(piece, TextPiece):
                 continue
             sources.budget.take_segments(len(piece.outline), 0.0)

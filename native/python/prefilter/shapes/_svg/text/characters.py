@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The characters of a text element, each with its style and what is said of its place."""
+"""Characters of a text element, with their styles and positioning attributes."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -19,7 +19,7 @@ from ..read.text_style import TextStyle
 from .tracks import Track
 
 INNER = ("tspan", "textPath", "a", "tref", "altGlyph")
-"""Elements whose text is part of the text element around them."""
+"""Elements within text whose text belongs to it."""
 _XML_SPACE = "{http://www.w3.org/XML/1998/namespace}space"
 _XML_LANG = "{http://www.w3.org/XML/1998/namespace}lang"
 _LINES = ("underline", "overline", "line-through")
@@ -27,11 +27,11 @@ _ZERO = Length(0.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class BaseFolder:
-    """A path that text runs along.
+class TextPath:
+    """The path of a `textPath`.
 
     Attributes:
-        offset: Where on it the text is, as `startOffset`.
+        offset: `startOffset` along it.
     """
 
     track: Track
@@ -40,11 +40,11 @@ class BaseFolder:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Fitted:
-    """How long the text of an element is to be.
+    """`textLength` and `lengthAdjust` of an element.
 
     Attributes:
-        length: In its units.
-        is_stretched: Whether letters become wider, too.
+        length: In the element's units.
+        is_stretched: Whether glyphs are stretched.
     """
 
     length: float
@@ -53,19 +53,19 @@ class Fitted:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Span:
-    """The text of one element, without that of those in it.
+    """The text of one element, without nested elements.
 
     Attributes:
-        element: It.
-        style: Its properties.
-        around: The spans of the elements around it, the outermost first; itself the last.
-        lines: What its text is decorated with itself.
-        baseline: What of its letters is at their position.
-        shift: `baseline-shift`, as it stands in the file.
-        place: The path that it runs along.
-        fitted: How long it is to be.
-        forced: "L" or "R" where its letters go in one direction, whatever they are.
-        language: Of its text; empty where the file does not say.
+        element: The element.
+        style: Its style.
+        around: Spans of its ancestors within the text, outermost first.
+        lines: Its own text decorations.
+        baseline: The baseline to align with its position.
+        shift: `baseline-shift` as text.
+        path: The path of the text; None for a straight line.
+        fitted: The length to fit.
+        forced: "L" or "R" if a direction overrides that of the letters.
+        language: Language code; empty if unknown.
     """
 
     element: SvgElement
@@ -74,32 +74,32 @@ class Span:
     lines: tuple[str, ...] = ()
     baseline: str = "auto"
     shift: str = "baseline"
-    place: BaseFolder | None = None
+    path: TextPath | None = None
     fitted: Fitted | None = None
     forced: str = ""
     language: str = ""
 
     @property
     def text(self) -> TextStyle:
-        """The style of its letters."""
+        """The text properties."""
         return self.style.text
 
-    def line(self) -> Iterator["Span"]:
-        """Yields the spans around it and itself, the outermost first."""
+    def ancestry(self) -> Iterator["Span"]:
+        """Yields the spans of its ancestors, outermost first, and itself."""
         yield from self.around
         yield self
 
 
 @dataclass(slots=True)
 class Character:
-    """One of a text.
+    """A character with its positioning attributes.
 
     Attributes:
-        x: Where it is, where the file says so.
-        y: Likewise.
-        dx: How far it is moved.
-        dy: Likewise.
-        rotate: How far it is turned, in degrees.
+        x: Absolute position, if given.
+        y: Absolute position, if given.
+        dx: Relative offset.
+        dy: Relative offset.
+        rotate: Rotation in degrees.
     """
 
     letter: str
@@ -112,12 +112,12 @@ class Character:
 
 
 @dataclass(slots=True)
-class _Found:
-    """What was read so far.
+class _RawText:
+    """Characters read so far.
 
     Attributes:
-        raw: Letters, their span, and whether their spaces stay.
-        ranges: Spans with where they begin and end in that, outer ones first.
+        raw: Characters with their span, and whether whitespace is preserved.
+        ranges: Spans with begin and end in `raw`, outer ones first.
     """
 
     raw: list[tuple[str, Span, bool]] = field(default_factory=list)
@@ -128,8 +128,8 @@ class TextReader:
     """Reads the characters of text elements.
 
     Args:
-        sources: What elements are read with.
-        context: Within the text element.
+        sources: Shared resources.
+        context: The context within the text element.
     """
 
     def __init__(self, sources: Sources, context: Context) -> None:
@@ -137,18 +137,18 @@ class TextReader:
         self._context = context
 
     def read(self, element: SvgElement) -> list[Character]:
-        """The characters of a text element, in the order of the file."""
-        found = _Found()
-        self._walk(element, self._context.style, (), found, self._keeps_spaces(element))
-        kept = _collapsed(found.raw)
-        characters = [Character(*found.raw[index][:2]) for index in kept]
-        # How many characters are left before each of those that were read.
+        """Returns the characters of a text element in document order."""
+        raw_text = _RawText()
+        self._walk(element, self._context.style, (), raw_text, self._keeps_spaces(element))
+        remaining_indices = _collapse_spaces(raw_text.raw)
+        characters = [Character(*raw_text.raw[index][:2]) for index in remaining_indices]
+        # Number of remaining characters before each raw one.
         count, counts = 0, [0]
-        remaining = set(kept)
-        for index in range(len(found.raw)):
+        remaining = set(remaining_indices)
+        for index in range(len(raw_text.raw)):
             count += index in remaining
             counts.append(count)
-        for span, begin, end in found.ranges:
+        for span, begin, end in raw_text.ranges:
             self._position(span, characters[counts[begin] : counts[end]])
         return characters
 
@@ -157,19 +157,19 @@ class TextReader:
         element: SvgElement,
         style: Style,
         around: tuple[Span, ...],
-        found: _Found,
+        raw_text: _RawText,
         keeps: bool,
     ) -> None:
         span = self._span(element, style, around)
         if span is None:
             return
-        begin = len(found.raw)
-        at = len(found.ranges)
+        begin = len(raw_text.raw)
+        at = len(raw_text.ranges)
         if element.tag == "tref":
-            self._add_referred(element, span, keeps, found)
-            found.ranges.insert(at, (span, begin, len(found.raw)))
+            self._add_referred(element, span, keeps, raw_text)
+            raw_text.ranges.insert(at, (span, begin, len(raw_text.raw)))
             return
-        self._add(element.text, span, keeps, found)
+        self._add(element.text, span, keeps, raw_text)
         for child in element:
             assert isinstance(child, SvgElement)
             declared = self._sources.sheets.declared(child)
@@ -177,26 +177,28 @@ class TextReader:
             if child.tag in INNER and is_shown:
                 below = self._sources.sheets.inherit_style(child, style)
                 inner_keeps = self._keeps_spaces(child, below, keeps)
-                self._walk(child, below, (*around, span), found, inner_keeps)
-            self._add(child.tail, span, keeps, found)
-        found.ranges.insert(at, (span, begin, len(found.raw)))
+                self._walk(child, below, (*around, span), raw_text, inner_keeps)
+            self._add(child.tail, span, keeps, raw_text)
+        raw_text.ranges.insert(at, (span, begin, len(raw_text.raw)))
 
-    def _add_referred(self, element: SvgElement, span: Span, keeps: bool, found: _Found) -> None:
-        """Adds all text of the element that a `tref` refers to."""
+    def _add_referred(
+        self, element: SvgElement, span: Span, keeps: bool, raw_text: _RawText
+    ) -> None:
+        """Adds all text of a `tref`'s target."""
         target = self._sources.document.ids.get(element.href)
         if target is None:
             self._sources.warnings.broken("<tref>", "left out", element.line)
             return
         for text in target.itertext():
-            self._add(text, span, keeps, found)
+            self._add(text, span, keeps, raw_text)
 
-    def _add(self, text: str | None, span: Span, keeps: bool, found: _Found) -> None:
+    def _add(self, text: str | None, span: Span, keeps: bool, raw_text: _RawText) -> None:
         if not text:
             return
         self._sources.budget.take_characters(len(text))
         if span.style.text.spaces == "preserve" or keeps:
             text = text.replace("\r\n", "\n")
-        found.raw.extend((letter, span, keeps) for letter in text)
+        raw_text.raw.extend((letter, span, keeps) for letter in text)
 
     def _keeps_spaces(
         self, element: SvgElement, style: Style | None = None, inherited: bool = False
@@ -204,45 +206,45 @@ class TextReader:
         style = style or self._context.style
         if style.text.spaces:
             return style.text.spaces == "preserve"
-        at: SvgElement | None = element
-        while at is not None:
-            if _XML_SPACE in at.attrib:
-                return at.attrib[_XML_SPACE].strip() == "preserve"
-            at = at.parent
+        ancestor: SvgElement | None = element
+        while ancestor is not None:
+            if _XML_SPACE in ancestor.attrib:
+                return ancestor.attrib[_XML_SPACE].strip() == "preserve"
+            ancestor = ancestor.parent
         return inherited
 
     def _span(self, element: SvgElement, style: Style, around: tuple[Span, ...]) -> Span | None:
         sources = self._sources
         declared = sources.sheets.declared(element)
-        place = around[-1].place if around else None
+        path = around[-1].path if around else None
         if element.tag == "textPath":
-            if place is not None or not around:
+            if path is not None or not around:
                 return None
-            place = self._place(element, style)
-            if place is None:
+            path = self._read_path(element, style)
+            if path is None:
                 return None
         text_style = style.text
         override = declared.get("unicode-bidi", "").lower() in ("bidi-override", "isolate-override")
         forced = around[-1].forced if around else ""
         if override:
             forced = "R" if text_style.direction == "rtl" else "L"
-        aligned = declared.get("alignment-baseline", "auto").lower()
+        alignment = declared.get("alignment-baseline", "auto").lower()
         lines = _lines(declared)
         if not around:
-            at = element.parent
-            while at is not None:
+            ancestor = element.parent
+            while ancestor is not None:
                 lines += tuple(
-                    line for line in _lines(sources.sheets.declared(at)) if line not in lines
+                    line for line in _lines(sources.sheets.declared(ancestor)) if line not in lines
                 )
-                at = at.parent
+                ancestor = ancestor.parent
         return Span(
             element,
             style,
             around,
             lines,
-            aligned if aligned not in ("auto", "baseline", "inherit") else text_style.baseline,
+            alignment if alignment not in ("auto", "baseline", "inherit") else text_style.baseline,
             declared.get("baseline-shift", "baseline").strip().lower(),
-            place,
+            path,
             self._fitted(element, style),
             forced,
             _language(element),
@@ -251,8 +253,8 @@ class TextReader:
     def _units(self, style: Style) -> Units:
         return replace(self._context, style=style).units
 
-    def _place(self, element: SvgElement, style: Style) -> BaseFolder | None:
-        """The path of a `textPath`; None where there is none."""
+    def _read_path(self, element: SvgElement, style: Style) -> TextPath | None:
+        """Reads the path of a `textPath`; returns None if it is missing."""
         sources, units = self._sources, self._units(style)
         declared = sources.sheets.declared(element)
         outline, matrix, shape = None, IDENTITY, None
@@ -269,18 +271,20 @@ class TextReader:
                 "<textPath>", "left out, as its path is not there", element.line
             )
             return None
-        for name, usual in (("method", "align"), ("side", "left")):
-            if declared.get(name, usual) != usual:
+        for name, default in (("method", "align"), ("side", "left")):
+            if declared.get(name, default) != default:
                 sources.warnings.unsupported(
                     f"{name} '{declared[name][:40]}'", "ignored", element.line
                 )
         track = Track(outline, matrix)
         length = read_length(element, declared, "startOffset", sources.warnings) or _ZERO
         offset = length.pixels(track.length, style.font_size)
-        said = _number(sources.sheets.declared(shape).get("pathLength")) if shape is not None else 0
-        if said > 0.0 and length.unit != "%":
-            offset *= track.length / said
-        return BaseFolder(track, offset)
+        declared_length = (
+            _number(sources.sheets.declared(shape).get("pathLength")) if shape is not None else 0
+        )
+        if declared_length > 0.0 and length.unit != "%":
+            offset *= track.length / declared_length
+        return TextPath(track, offset)
 
     def _fitted(self, element: SvgElement, style: Style) -> Fitted | None:
         declared = self._sources.sheets.declared(element)
@@ -293,7 +297,7 @@ class TextReader:
         return Fitted(pixels, declared.get("lengthAdjust", "") == "spacingAndGlyphs")
 
     def _position(self, span: Span, characters: list[Character]) -> None:
-        """Puts what an element says of places into its characters."""
+        """Applies the positioning attributes of an element to its characters."""
         if span.element.tag not in ("text", "tspan", "tref"):
             return
         declared, units = self._sources.sheets.declared(span.element), self._units(span.style)
@@ -303,15 +307,15 @@ class TextReader:
                 value = units.pixels(length, along)
                 if math.isfinite(value):
                     setattr(character, name, value)
-        turns = [_number(text) for text in _listed(declared.get("rotate", ""))]
+        turns = [_number(text) for text in _split_list(declared.get("rotate", ""))]
         if turns:
             for index, character in enumerate(characters):
                 character.rotate = turns[min(index, len(turns) - 1)]
 
     def _lengths(self, span: Span, name: str) -> list[Length]:
-        """The lengths of a list, up to the first that is none."""
-        found = []
-        for text in _listed(self._sources.sheets.declared(span.element).get(name, "")):
+        """Reads a list of lengths up to the first invalid one."""
+        lengths = []
+        for text in _split_list(self._sources.sheets.declared(span.element).get(name, "")):
             try:
                 length = parse_length(text)
             except UnknownUnitError as error:
@@ -321,11 +325,11 @@ class TextReader:
             if length is None:
                 self._sources.warnings.broken(f"{name} '{text[:40]}'", "ignored", span.element.line)
                 break
-            found.append(length)
-        return found
+            lengths.append(length)
+        return lengths
 
 
-def _listed(text: str) -> list[str]:
+def _split_list(text: str) -> list[str]:
     return text.replace(",", " ").split()
 
 
@@ -344,31 +348,31 @@ def _lines(declared: Mapping[str, str]) -> tuple[str, ...]:
 
 
 def _language(element: SvgElement) -> str:
-    at: SvgElement | None = element
-    while at is not None:
-        found = at.get(_XML_LANG) or at.get("lang")
-        if found:
-            return found.strip()[:40]
-        at = at.parent
+    ancestor: SvgElement | None = element
+    while ancestor is not None:
+        language = ancestor.get(_XML_LANG) or ancestor.get("lang")
+        if language:
+            return language.strip()[:40]
+        ancestor = ancestor.parent
     return ""
 
 
-def _collapsed(raw: list[tuple[str, Span, bool]]) -> list[int]:
-    """Which characters stay; replaces line ends and tabs by spaces."""
-    kept: list[int] = []
-    # A space that was there before is one where spaces are collapsed.
-    is_open = True
+def _collapse_spaces(raw: list[tuple[str, Span, bool]]) -> list[int]:
+    """Collapses whitespace; returns the indices of the remaining characters."""
+    remaining: list[int] = []
+    # Whether a space would follow another one, or start the text.
+    after_space = True
     for index, (letter, span, keeps) in enumerate(raw):
         if letter in "\t\n\r":
             letter = " "
             raw[index] = (letter, span, keeps)
         if letter == " " and not keeps:
-            if is_open:
+            if after_space:
                 continue
-            is_open = True
+            after_space = True
         else:
-            is_open = letter == " "
-        kept.append(index)
-    if kept and raw[kept[-1]][0] == " " and not raw[kept[-1]][2]:
-        kept.pop()
-    return kept
+            after_space = letter == " "
+        remaining.append(index)
+    if remaining and raw[remaining[-1]][0] == " " and not raw[remaining[-1]][2]:
+        remaining.pop()
+    return remaining

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Letters that have colors of their own, as things of a tree."""
+"""Colored glyphs as items of a tree."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,18 +20,18 @@ from ..read.document import SvgElement
 from ..read.image_files import ImageError, decode_image, image_size
 from ..read.styles import Style
 
-# The side of what a color fills where no glyph says how far, in heights of the font.
-_PLANE = 8.0
+# Half side of the square that an unbounded fill covers, in em.
+_UNBOUNDED_EM = 8.0
 
 
 @dataclass(frozen=True, slots=True)
 class ColoredLetter:
-    """A letter.
+    """A glyph.
 
     Attributes:
         font: Its font.
-        look: Its layers, or its picture.
-        matrix: From units of the font, with y upwards, to those of the text element.
+        look: Its layers, or its bitmap.
+        matrix: From font units, y upwards, to the text element's units.
     """
 
     font: Font
@@ -41,12 +41,12 @@ class ColoredLetter:
 
 @dataclass(frozen=True, slots=True)
 class ColoredPiece:
-    """Letters of one element that have colors of their own.
+    """Colored glyphs of one element.
 
     Attributes:
         element: The element.
-        style: Its properties.
-        letters: One after the other.
+        style: Its style.
+        letters: The glyphs in order.
     """
 
     element: SvgElement
@@ -55,12 +55,10 @@ class ColoredPiece:
 
 
 def draw_colored(piece: ColoredPiece, context: Context, sources: Sources) -> None:
-    """Draws letters; the fill of the text says whether, how opaque they are, and their own color.
+    """Draws colored glyphs; the text's fill gives visibility, opacity and the current color.
 
     Args:
-        piece: They.
-        context: Within the text element.
-        sources: What it is read with.
+        context: The context within the text element.
     """
     style, line = piece.style, piece.element.line
     paint = style.fill
@@ -70,19 +68,19 @@ def draw_colored(piece: ColoredPiece, context: Context, sources: Sources) -> Non
     target = Group(opacity=context.colors.opacity(style.fill_opacity), is_isolated=True, line=line)
     context.target.items.append(target)
     own = color if isinstance(color, tuple) else BLACK
-    drawing = _Letters(context.colors, own, sources, line)
+    drawing = _GlyphDrawer(context.colors, own, sources, line)
     for letter in piece.letters:
         drawing.draw(letter, multiplied(context.matrix, letter.matrix), context.clips, target)
 
 
-class _Letters:
-    """Draws letters of one color.
+class _GlyphDrawer:
+    """Draws glyphs with one current color.
 
     Args:
-        colors: How colors are kept.
-        color: Of what has that of the text.
-        sources: What the drawing is read with.
-        line: Where the text is.
+        colors: The encoding of colors.
+        color: The current color.
+        sources: Shared resources.
+        line: Line of the text in the file.
     """
 
     def __init__(self, colors: Colors, color: Color, sources: Sources, line: int) -> None:
@@ -94,7 +92,7 @@ class _Letters:
     def draw(
         self, letter: ColoredLetter, matrix: Matrix, clips: tuple[Clip, ...], target: Group
     ) -> None:
-        """Draws a letter; the matrix leads from units of its font to those of the tree."""
+        """Draws a glyph; the matrix leads from font units to the tree's."""
         if determinant(matrix) == 0.0:
             return
         if isinstance(letter.look, Bitmap):
@@ -129,13 +127,13 @@ class _Letters:
         clips: tuple[Clip, ...],
         target: Group,
     ) -> None:
-        """Draws layers, as a group of their own where they are mixed, or seen through others."""
+        """Draws layers, in a group of their own if they are blended or masked."""
         self._sources.budget.take_element()
         if group.cut is not None:
-            glyph, place = group.cut
+            glyph, glyph_matrix = group.cut
             outline = self._outline(font, glyph)
             self._sources.budget.take_segments(len(outline), 0.0)
-            part = ClipPart(outline, "nonzero", multiplied(matrix, place))
+            part = ClipPart(outline, "nonzero", multiplied(matrix, glyph_matrix))
             clip = make_clip([part], ())
             if clip.bounds is None:
                 return
@@ -146,9 +144,9 @@ class _Letters:
                 seen = Group(is_isolated=True, line=self._line)
                 self._draw_group(font, group.inside, matrix, (), seen)
                 masks = (Mask(seen, is_luminance=False, is_linear=False),)
-            made = Group(blend=group.blend, masks=masks, is_isolated=True, line=self._line)
-            target.items.append(made)
-            target = made
+            inner_group = Group(blend=group.blend, masks=masks, is_isolated=True, line=self._line)
+            target.items.append(inner_group)
+            target = inner_group
         for item in group.items:
             if isinstance(item, ColorGroup):
                 self._draw_group(font, item, matrix, clips, target)
@@ -187,10 +185,10 @@ class _Letters:
         return (*color[:3], color[3] * min(max(stop.alpha, 0.0), 1.0))
 
     def _outline(self, font: Font, number: int | None) -> Outline:
-        """The outline of a glyph, in units of its font; that of all there is without one."""
+        """Returns the outline of a glyph in font units, or a large square for None."""
         outline = Outline()
         if number is None:
-            side = _PLANE * font.units_per_em
+            side = _UNBOUNDED_EM * font.units_per_em
             outline.rectangle(-side, -side, 2.0 * side, 2.0 * side, 0.0, 0.0)
         else:
             glyph = font.glyph(number)

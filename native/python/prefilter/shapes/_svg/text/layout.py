@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Where the glyphs of a text are: characters become clusters, and clusters follow each other."""
+"""Text layout: characters become clusters of glyphs, which follow each other."""
 
 import math
 import unicodedata
@@ -8,43 +8,43 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
-from ..._fonts.bidi import levels_of, visual_order
+from ..._fonts.bidi import embedding_levels, visual_order
 from ..._fonts.font import Font
 from ..._fonts.shaping import (
     COMPLEX,
     HAS_HARFBUZZ,
     JOINING,
     Features,
-    Shaped,
+    ShapedGlyph,
     scripts_in,
     shape,
 )
 from ...affine import Matrix, multiplied
 from ..model.values import rotation
 from .characters import Character, Fitted, Span
-from .lettering import Lettering
+from .lettering import FontSelector
 
 _SPACES = (" ", "\u00a0")
 
 
 @dataclass(slots=True)
 class Cluster:
-    """Glyphs that stand for characters together.
+    """Glyphs that represent characters together.
 
     Attributes:
-        characters: Those.
-        font: Of its glyphs.
+        characters: The characters.
+        font: Font of the glyphs.
         glyphs: From left to right.
-        advance: How far it leads, in pixels, with the space behind it.
-        spacing: That space.
-        stretch: How much wider than usual it is drawn.
-        shift: How far it is below the line that it is on.
-        matrix: From its origin on the baseline to the units of the text; None where it is not seen.
+        advance: Distance to the next cluster in pixels, spacing included.
+        spacing: Letter spacing after it.
+        stretch: Horizontal scale.
+        shift: Offset of its baseline below the line.
+        matrix: From its origin on the baseline to the text's units; None if it is not drawn.
     """
 
     characters: Sequence[Character]
     font: Font
-    glyphs: list[Shaped]
+    glyphs: list[ShapedGlyph]
     advance: float
     spacing: float = 0.0
     stretch: float = 1.0
@@ -53,18 +53,18 @@ class Cluster:
 
     @property
     def span(self) -> Span:
-        """Of its first character."""
+        """The first character's span."""
         return self.characters[0].span
 
     @property
     def scale(self) -> float:
-        """From units of the font to pixels."""
+        """Pixels per font unit."""
         return self.span.style.font_size / self.font.units_per_em
 
 
 @dataclass(slots=True)
 class _Run:
-    """Characters that are shaped together."""
+    """Characters shaped together."""
 
     begin: int
     end: int
@@ -77,40 +77,40 @@ class TextLayout:
     """Lays out text.
 
     Args:
-        lettering: The fonts.
+        lettering: Selects fonts.
     """
 
-    def __init__(self, lettering: Lettering) -> None:
-        self._lettering = lettering
+    def __init__(self, fonts: FontSelector) -> None:
+        self._fonts = fonts
         self._at = (0.0, 0.0)
 
     def lay_out(self, characters: Sequence[Character]) -> list[Cluster]:
-        """The clusters of a text, in their places."""
-        parts = [(part, self._clusters(part)) for part in _parts(characters) if part]
-        everything = [cluster for _, clusters in parts for cluster in clusters]
+        """Returns the clusters of a text, with their matrices."""
+        chunks = [(chunk, self._clusters(chunk)) for chunk in _chunks(characters) if chunk]
+        everything = [cluster for _, clusters in chunks for cluster in clusters]
         _fit(everything)
         self._at = (0.0, 0.0)
-        for part, clusters in parts:
+        for part, clusters in chunks:
             self._place(part, clusters)
         return everything
 
     def _clusters(self, part: Sequence[Character]) -> list[Cluster]:
-        """The clusters of characters on one line, from left to right."""
+        """Shapes the characters of a chunk; returns clusters from left to right."""
         text = "".join(character.letter for character in part)
-        base = 1 if next(part[0].span.line()).text.direction == "rtl" else 0
-        levels = levels_of(text, base, [character.span.forced for character in part])
+        base = 1 if next(part[0].span.ancestry()).text.direction == "rtl" else 0
+        levels = embedding_levels(text, base, [character.span.forced for character in part])
         runs = list(self._runs(part, text, levels))
         order = visual_order([run.level for run in runs])
-        found = [cluster for index in order for cluster in self._shaped(part, runs[index])]
-        # There is no space behind the last one.
-        for cluster in found[:-1]:
+        clusters = [cluster for index in order for cluster in self._shaped(part, runs[index])]
+        # No letter spacing after the last cluster.
+        for cluster in clusters[:-1]:
             cluster.advance += cluster.spacing
-        if found:
-            found[-1].spacing = 0.0
-        return found
+        if clusters:
+            clusters[-1].spacing = 0.0
+        return clusters
 
     def _runs(self, part: Sequence[Character], text: str, levels: Sequence[int]) -> Iterator[_Run]:
-        fonts = self._lettering.fonts_of(part)
+        fonts = self._fonts.fonts_of(part)
         keys = [
             (font, level, script, _key(character.span))
             for font, level, script, character in zip(
@@ -129,7 +129,7 @@ class TextLayout:
         span = characters[0].span
         style = span.text
         if run.script in COMPLEX and not HAS_HARFBUZZ:
-            self._lettering.warnings.unsupported(
+            self._fonts.warnings.unsupported(
                 f"script {run.script}",
                 "letters are not joined without uharfbuzz",
                 span.element.line,
@@ -145,33 +145,33 @@ class TextLayout:
         ends = dict(zip(starts, [*starts[1:], len(text)], strict=True))
         for start, group in groupby(glyphs, lambda glyph: glyph.cluster):
             inside = characters[start : ends[start]]
-            found = list(group)
-            cluster = Cluster(inside, run.font, found, 0.0)
-            cluster.advance = cluster.scale * sum(glyph.advance for glyph in found)
+            cluster_glyphs = list(group)
+            cluster = Cluster(inside, run.font, cluster_glyphs, 0.0)
+            cluster.advance = cluster.scale * sum(glyph.advance for glyph in cluster_glyphs)
             own = inside[0].span.text
             if run.script not in JOINING or scripts_in(inside[0].letter)[0] not in JOINING:
                 cluster.spacing = own.letter_spacing
             if inside[0].letter in _SPACES:
                 cluster.advance += own.word_spacing
-            cluster.shift = self._lettering.shift_of(inside[0].span)
+            cluster.shift = self._fonts.shift_of(inside[0].span)
             yield cluster
 
     def _place(self, part: Sequence[Character], clusters: list[Cluster]) -> None:
-        """Puts the clusters of a line one after another."""
+        """Positions the clusters of a chunk."""
         first = part[0]
-        along = first.span.place
+        along = first.span.path
         x = self._at[0] if first.x is None else first.x
         y = self._at[1] if first.y is None else first.y
         if along is not None:
             x, y = along.offset + (first.x or 0.0), 0.0
         style = first.span.text
-        is_vertical = along is None and next(first.span.line()).text.is_vertical
+        is_vertical = along is None and next(first.span.ancestry()).text.is_vertical
         low, high = _extent(clusters, is_vertical)
         share = {"start": 0.0, "middle": 0.5, "end": 1.0}[style.anchor]
         if style.direction == "rtl":
             share = 1.0 - share
-        # SVG 2, 11.5: of all glyphs of the chunk, wherever dx and dy have moved them, what the
-        # anchor names comes to where the first one is.
+        # SVG 2, 11.5: the anchor applies to the extent of all glyphs of the chunk, with dx and dy
+        # applied; that point comes to the position of the first glyph.
         shift = low + share * (high - low) - (first.dx, first.dy)[is_vertical]
         if is_vertical:
             y -= shift
@@ -195,7 +195,7 @@ class TextLayout:
 
 
 def _extent(clusters: Sequence[Cluster], is_vertical: bool) -> tuple[float, float]:
-    """The least and the greatest place along a line that its clusters reach, from its beginning."""
+    """Returns the least and greatest position of clusters along their line."""
     at = 0.0
     low, high = math.inf, -math.inf
     for cluster in clusters:
@@ -208,7 +208,7 @@ def _extent(clusters: Sequence[Cluster], is_vertical: bool) -> tuple[float, floa
 
 def _matrix(cluster: Cluster, head: Character, x: float, y: float) -> Matrix | None:
     below = y + cluster.shift
-    place = head.span.place
+    place = head.span.path
     if place is None:
         matrix: Matrix | None = (1.0, 0.0, 0.0, 1.0, x, below)
     else:
@@ -222,9 +222,10 @@ def _matrix(cluster: Cluster, head: Character, x: float, y: float) -> Matrix | N
 
 
 def _downward(cluster: Cluster, head: Character, x: float, y: float) -> Matrix:
-    """On a line downwards, turned by a right angle, and its middle on the line.
+    """Returns the matrix of a cluster in vertical text, rotated by 90 degrees and centered on the
+    line.
 
-    What stands upright in such lines, as Chinese does, is turned back about its middle.
+    Upright characters, such as Chinese, are rotated back around their centers.
     """
     metrics = cluster.font.metrics
     middle = 0.5 * (metrics.ascent + metrics.descent) * cluster.span.style.font_size
@@ -244,13 +245,13 @@ def _is_upright(letter: str) -> bool:
     return is_wide and not unicodedata.category(letter).startswith("P")
 
 
-def _parts(characters: Sequence[Character]) -> Iterator[Sequence[Character]]:
-    """Yields the characters that follow each other, from one position to the next."""
+def _chunks(characters: Sequence[Character]) -> Iterator[Sequence[Character]]:
+    """Splits characters into chunks, each with an absolute position or a path."""
     begin = 0
     for index, character in enumerate(characters):
-        before = characters[index - 1].span.place if index else character.span.place
-        is_new = character.span.place is not before
-        if character.x is not None or (character.y is not None and character.span.place is None):
+        previous_path = characters[index - 1].span.path if index else character.span.path
+        is_new = character.span.path is not previous_path
+        if character.x is not None or (character.y is not None and character.span.path is None):
             is_new = True
         if is_new and index > begin:
             yield characters[begin:index]
@@ -259,7 +260,7 @@ def _parts(characters: Sequence[Character]) -> Iterator[Sequence[Character]]:
 
 
 def _key(span: Span) -> object:
-    """What must be the same for letters to be shaped together."""
+    """Returns the properties that all characters of a run share."""
     style = span.text
     return (
         span.style.font_size,
@@ -271,15 +272,15 @@ def _key(span: Span) -> object:
 
 
 def _fit(clusters: Sequence[Cluster]) -> None:
-    """Makes the text of elements as long as they say."""
-    wanted: dict[Span, list[Cluster]] = {}
+    """Fits elements with `textLength`."""
+    clusters_by_span: dict[Span, list[Cluster]] = {}
     for cluster in clusters:
-        # What is said nearest counts.
+        # The innermost element takes precedence.
         for span in (cluster.span, *reversed(cluster.span.around)):
             if span.fitted is not None:
-                wanted.setdefault(span, []).append(cluster)
+                clusters_by_span.setdefault(span, []).append(cluster)
                 break
-    for span, inside in wanted.items():
+    for span, inside in clusters_by_span.items():
         assert span.fitted is not None
         _fit_span(inside, span.fitted)
 

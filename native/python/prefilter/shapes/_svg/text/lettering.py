@@ -1,61 +1,61 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The fonts of a drawing: which one each character has, and how lines of text lie."""
+"""Font selection and baselines of characters."""
 
 import unicodedata
 from collections.abc import Sequence
 
 from ..._fonts.bitmaps import Bitmap
-from ..._fonts.collection import Fonts, Wanted
+from ..._fonts.collection import FontQuery, Fonts
 from ..._fonts.color_layers import ColorGroup
 from ..._fonts.font import Font, Glyph
 from ..model.values import UnknownUnitError, parse_length
 from ..model.warnings import Warnings
 from .characters import Character, Span
 
-_USUAL = ("serif",)
-# Characters that are not seen, and belong to what they follow.
+_DEFAULT_FAMILIES = ("serif",)
+# Invisible characters, which take the font of the preceding one.
 _INVISIBLE = frozenset("\u200b\u200c\u200d\u2060\ufeff\u00ad\ufe0e\ufe0f")
 
 
-class Lettering:
-    """Chooses fonts.
+class FontSelector:
+    """Selects fonts.
 
     Args:
-        fonts: Those that there are.
-        warnings: Gets the names of what is missing.
+        fonts: Available fonts.
+        warnings: Receives missing and damaged fonts and characters.
     """
 
     def __init__(self, fonts: Fonts, warnings: Warnings) -> None:
         self.warnings = warnings
         self._fonts = fonts
-        self._found: dict[Span, list[Font]] = {}
+        self._fonts_by_span: dict[Span, list[Font]] = {}
         self._shifts: dict[Span, float] = {}
 
     def fonts_of(self, characters: Sequence[Character]) -> list[Font | None]:
-        """The font of each character; None where none shows it."""
-        found: list[Font | None] = []
+        """Returns the font of each character; None if no font has it."""
+        fonts: list[Font | None] = []
         for character in characters:
             letter = character.letter
-            is_joined = letter in _INVISIBLE or unicodedata.combining(letter) != 0
-            before = found[-1] if found else None
+            follows_previous = letter in _INVISIBLE or unicodedata.combining(letter) != 0
+            previous = fonts[-1] if fonts else None
             if (
-                is_joined
-                and before is not None
-                and (letter in _INVISIBLE or ord(letter) in before.characters)
+                follows_previous
+                and previous is not None
+                and (letter in _INVISIBLE or ord(letter) in previous.characters)
             ):
-                found.append(before)
+                fonts.append(previous)
             else:
-                found.append(self._font_of(letter, character.span))
-        return found
+                fonts.append(self._font_of(letter, character.span))
+        return fonts
 
     def font_of_span(self, span: Span) -> Font | None:
-        """The font that lines are measured by; None where there are no fonts."""
+        """Returns the font for line metrics; None if there are no fonts."""
         fonts = self._fonts_for(span)
         return fonts[0] if fonts else None
 
     def shift_of(self, span: Span) -> float:
-        """How far the letters of a span are below their line, in pixels."""
+        """Returns the offset of a span's baseline below its line, in pixels."""
         if span not in self._shifts:
             self._shifts[span] = self._shift_of(span)
         return self._shifts[span]
@@ -79,11 +79,13 @@ class Lettering:
             "ideographic": metrics.descent,
             "text-bottom": metrics.descent,
         }.get(span.baseline, 0.0)
-        return share * size + self.raised(span)
+        return share * size + self.baseline_shift(span)
 
-    def raised(self, span: Span) -> float:
-        """How far `baseline-shift` moves a span and those around it down, in pixels."""
-        return -sum(self._raise_of(each) for each in span.line())
+    def baseline_shift(self, span: Span) -> float:
+        """Returns the total `baseline-shift` of a span and its ancestors, in pixels, positive
+        downwards.
+        """
+        return -sum(self._raise_of(each) for each in span.ancestry())
 
     def _raise_of(self, span: Span) -> float:
         size = span.style.font_size
@@ -103,22 +105,22 @@ class Lettering:
         return length.pixels(size, size) if length is not None else 0.0
 
     def _fonts_for(self, span: Span) -> list[Font]:
-        """The fonts of a span's families; warns of those that are missing."""
-        if span not in self._found:
-            found, missing = self._fonts.first(wanted_by(span))
-            self._found[span] = found
+        """Returns the fonts of a span's families; warns of missing ones."""
+        if span not in self._fonts_by_span:
+            fonts, missing = self._fonts.match(font_query(span))
+            self._fonts_by_span[span] = fonts
             line = span.element.line
-            if not found:
+            if not fonts:
                 self.warnings.unsupported("<text>", "left out, as there are no fonts", line)
                 missing = []
-            self._warn_of_damage(line)
+            self._warn_of_damaged_files(line)
             for name in missing:
-                effect = f"drawn in {found[0].face.family}"
+                effect = f"drawn in {fonts[0].face.family}"
                 self.warnings.unsupported(f"font '{name[:60]}'", effect, line)
-        return self._found[span]
+        return self._fonts_by_span[span]
 
     def look_of(self, font: Font, glyph: int, span: Span) -> ColorGroup | Bitmap | None:
-        """What a glyph looks like in colors; None where it has none that can be drawn."""
+        """Returns the colored form of a glyph; None if it has none that can be drawn."""
         look = font.look(glyph) if font.is_colored else None
         if not isinstance(look, str):
             return look
@@ -137,23 +139,23 @@ class Lettering:
                 return font
         if not fonts or letter.isspace() or letter in _INVISIBLE:
             return fonts[0] if fonts else None
-        found = self._fonts.with_character(code, wanted_by(span))
-        self._warn_of_damage(span.element.line)
-        if found is None:
+        substitute = self._fonts.with_character(code, font_query(span))
+        self._warn_of_damaged_files(span.element.line)
+        if substitute is None:
             self.warnings.unsupported(
                 f"character U+{code:04X}", "left out, as no font has it", span.element.line
             )
-        return found
+        return substitute
 
     def outline_of(self, font: Font, glyph: int, span: Span) -> Glyph:
-        """The outline of a glyph; warns where it is damaged."""
+        """Returns the outline of a glyph; warns if it is damaged."""
         if not font.is_whole(glyph):
             name = f"font '{font.face.family[:60]}'"
             self.warnings.broken(name, "letters left out, as it is damaged", span.element.line)
         return font.glyph(glyph)
 
     def _shows(self, font: Font, code: int, span: Span) -> bool:
-        """Tells whether a font has a character; warns where it is damaged in it."""
+        """Returns whether a font can draw a character; warns if its glyph is damaged."""
         is_shown = font.shows(code)
         if not is_shown and code in font.characters:
             name = f"font '{font.face.family[:60]}'"
@@ -161,17 +163,17 @@ class Lettering:
             self.warnings.broken(name, effect, span.element.line)
         return is_shown
 
-    def _warn_of_damage(self, line: int) -> None:
-        """Warns of files that were left out while fonts were looked for."""
+    def _warn_of_damaged_files(self, line: int) -> None:
+        """Warns of font files that turned out to be unreadable."""
         for path, reason in self._fonts.take_damaged().items():
             self.warnings.broken(f"font file '{path}'", f"left out: {reason}", line)
 
 
-def wanted_by(span: Span) -> Wanted:
-    """What a span asks for."""
+def font_query(span: Span) -> FontQuery:
+    """Returns the font query of a span."""
     style = span.text
-    return Wanted(
-        style.families or _USUAL,
+    return FontQuery(
+        style.families or _DEFAULT_FAMILIES,
         style.weight,
         style.stretch,
         style.slant,

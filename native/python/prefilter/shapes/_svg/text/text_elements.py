@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Text as outlines."""
+"""Outlines of text elements."""
 
 from array import array
 from collections.abc import Iterator, Sequence
@@ -19,23 +19,23 @@ from ..read.styles import Style
 from .characters import Span, TextReader
 from .color_glyphs import ColoredLetter, ColoredPiece
 from .layout import Cluster, TextLayout
-from .lettering import Lettering
+from .lettering import FontSelector
 
-# Of lines at letters, in sizes of these.
+# Thickness of text decorations, in em.
 _LINE_THICKNESS = 0.1
-# Letters whose points are moved at once.
-_TOGETHER = 256
+# Glyphs transformed at a time.
+_GLYPHS_PER_BATCH = 256
 
 
 @dataclass(frozen=True, slots=True)
 class TextPiece:
-    """Letters of one element, or a line at them.
+    """Glyphs or a decoration of one element.
 
     Attributes:
-        element: What the line, or the letters, belong to.
-        style: Its properties.
-        outline: In the units of the text element; not empty.
-        box: Around it.
+        element: The element that paints it.
+        style: Its style.
+        outline: In the text element's units; not empty.
+        box: Bounding box.
     """
 
     element: SvgElement
@@ -49,70 +49,68 @@ class DrawnText:
     """A text element.
 
     Attributes:
-        pieces: First what is below.
-        bounds: The box around the cells of all letters: as wide as they lead, and from the highest
-            to the lowest of their font. None where there are none.
+        pieces: Bottom first.
+        bounds: Bounding box of all glyph cells: from start to advance, and from ascent to descent.
+            None without glyphs.
     """
 
     pieces: list[TextPiece | ColoredPiece]
     bounds: Box | None
 
 
-def drawn_text(element: SvgElement, context: Context, sources: Sources) -> DrawnText:
-    """The outlines of a text element.
+def lay_out_text(element: SvgElement, context: Context, sources: Sources) -> DrawnText:
+    """Lays out a text element.
 
     Args:
-        element: The element.
-        context: Within it.
-        sources: What it is read with.
+        context: The context within the element.
     """
     characters = TextReader(sources, context).read(element)
     if not characters:
         return DrawnText([], None)
-    lettering = Lettering(sources.fonts.fonts, sources.warnings)
+    fonts = FontSelector(sources.fonts.fonts, sources.warnings)
     clusters = [
         cluster
-        for cluster in TextLayout(lettering).lay_out(characters)
+        for cluster in TextLayout(fonts).lay_out(characters)
         if cluster.matrix is not None and cluster.scale > 0.0
     ]
     pieces: list[TextPiece | ColoredPiece] = []
     for span in dict.fromkeys(character.span for character in characters):
         own = [cluster for cluster in clusters if cluster.span is span]
         if own and span.style.visibility == "visible":
-            pieces.extend(_pieces(span, own, lettering))
+            pieces.extend(_pieces(span, own, fonts))
     return DrawnText(pieces, _bounds(clusters))
 
 
 def _pieces(
-    span: Span, clusters: Sequence[Cluster], lettering: Lettering
+    span: Span, clusters: Sequence[Cluster], fonts: FontSelector
 ) -> Iterator[TextPiece | ColoredPiece]:
-    """Yields the letters of a span between the lines below and above them."""
-    lines = [(line, each) for each in span.line() for line in each.lines]
+    """Yields a span's glyphs, between the decorations below and above them."""
+    lines = [(line, each) for each in span.ancestry() for line in each.lines]
     for name in ("underline", "overline"):
         for line, owner in lines:
             if line == name:
-                yield from _piece(owner, _line(name, owner, span, clusters, lettering))
+                yield from _piece(owner, _decoration(name, owner, span, clusters, fonts))
     plain, colored = [], []
     for cluster in clusters:
-        for glyph, matrix in _placed(cluster):
-            look = lettering.look_of(cluster.font, glyph, span)
+        for glyph, matrix in _place_glyphs(cluster):
+            look = fonts.look_of(cluster.font, glyph, span)
             if look is None:
-                plain.append((lettering.outline_of(cluster.font, glyph, span), matrix))
+                plain.append((fonts.outline_of(cluster.font, glyph, span), matrix))
             else:
                 colored.append(ColoredLetter(cluster.font, look, matrix))
-    yield from _piece(span, _letters(plain))
+    yield from _piece(span, _outline_of_glyphs(plain))
     if colored:
         yield ColoredPiece(span.element, span.style, colored)
     for line, owner in lines:
         if line == "line-through":
-            yield from _piece(owner, _line(line, owner, span, clusters, lettering))
+            yield from _piece(owner, _decoration(line, owner, span, clusters, fonts))
 
 
 def _piece(span: Span, outline: Outline) -> Iterator[TextPiece]:
-    """Yields an outline with the paint of a span, if there is anything in it."""
-    found = outline.shape("nonzero").bounds if len(outline) else None
-    if found is not None:
-        (left, top), (right, bottom) = found
+    """Yields an outline with a span's style, unless it is empty."""
+    bounds = outline.shape("nonzero").bounds if len(outline) else None
+    if bounds is not None:
+        (left, top), (right, bottom) = bounds
         style = span.style
         if style.fill_rule != "nonzero":
             style = replace(style, fill_rule="nonzero")
@@ -120,8 +118,8 @@ def _piece(span: Span, outline: Outline) -> Iterator[TextPiece]:
         yield TextPiece(span.element, style, outline, box)
 
 
-def _placed(cluster: Cluster) -> Iterator[tuple[int, Matrix]]:
-    """Yields glyphs, and what leads from units of their font to those of the text."""
+def _place_glyphs(cluster: Cluster) -> Iterator[tuple[int, Matrix]]:
+    """Yields glyphs with matrices from font units to the text's units."""
     assert cluster.matrix is not None
     scale, at = cluster.scale, 0.0
     wide = scale * cluster.stretch
@@ -132,11 +130,11 @@ def _placed(cluster: Cluster) -> Iterator[tuple[int, Matrix]]:
         at += shaped.advance
 
 
-def _letters(placed: Sequence[tuple[Glyph, Matrix]]) -> Outline:
-    """Glyphs where they stand, many of them at a time."""
+def _outline_of_glyphs(placed: Sequence[tuple[Glyph, Matrix]]) -> Outline:
+    """Transforms glyphs into one outline, a batch at a time."""
     outline = Outline()
-    for first in range(0, len(placed), _TOGETHER):
-        some = placed[first : first + _TOGETHER]
+    for first in range(0, len(placed), _GLYPHS_PER_BATCH):
+        some = placed[first : first + _GLYPHS_PER_BATCH]
         points = np.concatenate([np.frombuffer(glyph.numbers) for glyph, _ in some]).reshape(-1, 2)
         counts = [len(glyph.numbers) // 2 for glyph, _ in some]
         a, b, c, d, e, f = np.repeat([matrix for _, matrix in some], counts, axis=0).T
@@ -148,23 +146,25 @@ def _letters(placed: Sequence[tuple[Glyph, Matrix]]) -> Outline:
     return outline
 
 
-def _line(
-    name: str, owner: Span, span: Span, clusters: Sequence[Cluster], lettering: Lettering
+def _decoration(
+    name: str, owner: Span, span: Span, clusters: Sequence[Cluster], fonts: FontSelector
 ) -> Outline:
-    """A line of an element at letters of one in it, straight as far as they stand on one."""
+    """Makes a decoration of an ancestor for a span, in one strip as far as the baseline is
+    straight.
+    """
     outline = Outline()
-    font = lettering.font_of_span(span)
+    font = fonts.font_of_span(span)
     if font is None:
         return outline
     metrics, size = font.metrics, span.style.font_size
-    # As in browsers, whatever the font says, and as large as the letters are.
+    # As in browsers, font metrics for lines are ignored, and sizes follow the font size.
     thickness = _LINE_THICKNESS
     middle = {
         "underline": -thickness,
         "overline": metrics.ascent + thickness,
         "line-through": metrics.ascent / 3.0,
     }[name]
-    raised = lettering.shift_of(owner)
+    raised = fonts.shift_of(owner)
     strips: list[tuple[Matrix, float, float]] = []
     for cluster in clusters:
         assert cluster.matrix is not None
@@ -181,7 +181,7 @@ def _line(
 
 
 def _continues(before: Matrix, width: float, after: Matrix) -> bool:
-    """Whether what is there begins where a strip that is not turned ends."""
+    """Returns whether a cluster continues a horizontal strip."""
     is_upright = before[1] == after[1] == 0.0 and before[0] == after[0] and before[5] == after[5]
     return is_upright and abs(before[4] + width - after[4]) < 1e-6 * (1.0 + abs(width))
 
@@ -190,7 +190,7 @@ def _add_box(outline: Outline, matrix: Matrix, width: float, top: float, bottom:
     if width <= 0.0 or bottom <= top:
         return
     corners = [
-        _through(matrix, x, y) for x, y in ((0, top), (width, top), (width, bottom), (0, bottom))
+        _apply(matrix, x, y) for x, y in ((0, top), (width, top), (width, bottom), (0, bottom))
     ]
     outline.move_to(*corners[0])
     for corner in corners[1:]:
@@ -198,7 +198,7 @@ def _add_box(outline: Outline, matrix: Matrix, width: float, top: float, bottom:
     outline.close()
 
 
-def _through(matrix: Matrix, x: float, y: float) -> tuple[float, float]:
+def _apply(matrix: Matrix, x: float, y: float) -> tuple[float, float]:
     a, b, c, d, e, f = matrix
     return a * x + c * y + e, b * x + d * y + f
 

@@ -13,20 +13,20 @@ _MAX_STEPS = 1_000_000
 _FloatArray = npt.NDArray[np.float64]
 
 
-def _turned(points: _FloatArray, turn: _FloatArray) -> _FloatArray:
-    # A product of matrices may round differently on other processors.
+def _rotate(points: _FloatArray, turn: _FloatArray) -> _FloatArray:
+    # Multiplies term by term: matrix products of numpy round differently across processors.
     turned: _FloatArray = points[..., :1] * turn[0] + points[..., 1:] * turn[1]
     return turned
 
 
 class Track:
-    """An outline by its length.
+    """An outline parametrized by arc length.
 
-    Its curves are taken as chords, so short that lengths are right to a part in 100,000. Directions
-    are those of the curves.
+    Curves are approximated by chords short enough for lengths to be exact to 1e-5. Directions are
+    those of the curves.
 
     Attributes:
-        length: Of all of it; jumps between its parts do not count.
+        length: Total length, without gaps between subpaths.
     """
 
     def __init__(self, outline: Outline, matrix: Matrix) -> None:
@@ -39,7 +39,7 @@ class Track:
         self.length = float(self._ends[-1]) if len(self._ends) else 0.0
 
     def at(self, distance: float) -> Matrix | None:
-        """Where it is at a distance from its beginning, turned as it runs; None beyond its ends."""
+        """Returns the position and rotation at a distance from the start; None beyond the ends."""
         if not 0.0 <= distance <= self.length or self.length == 0.0:
             return None
         index = int(np.searchsorted(self._ends, distance))
@@ -55,40 +55,40 @@ class Track:
 def _chords(
     outline: Outline, matrix: Matrix
 ) -> tuple[_FloatArray, _FloatArray, _FloatArray, _FloatArray]:
-    """Starts and ends of all chords, and the curve's directions at both."""
+    """Returns starts and ends of all chords, and the curve's directions at both."""
     count = sum(1 for kind, _ in outline.segments() if kind in "QCW")
     steps = max(8, min(_STEPS, _MAX_STEPS // max(count, 1)))
     turn, move = np.array(matrix[:4]).reshape(2, 2), np.array(matrix[4:])
-    found: list[tuple[_FloatArray, _FloatArray]] = []
-    at = begin = np.zeros(2)
+    curves: list[tuple[_FloatArray, _FloatArray]] = []
+    current = start = np.zeros(2)
     for kind, numbers in outline.segments():
         if kind == "M":
-            at = begin = _turned(np.array(numbers), turn) + move
+            current = start = _rotate(np.array(numbers), turn) + move
             continue
         weight = numbers[2] if kind == "W" else 1.0
         values = numbers[:2] + numbers[3:] if kind == "W" else numbers
-        inner = _turned(np.array(values).reshape(-1, 2), turn) + move if values else begin[None]
-        controls = np.concatenate([at[None], inner])
+        inner = _rotate(np.array(values).reshape(-1, 2), turn) + move if values else start[None]
+        controls = np.concatenate([current[None], inner])
         if kind in "LZ":
             points, slopes = controls, np.repeat(controls[1:] - controls[:1], 2, axis=0)
         else:
             points, slopes = _samples(controls, weight, np.linspace(0.0, 1.0, steps + 1))
-        found.append((points, slopes))
-        at = controls[-1]
-    if not found:
+        curves.append((points, slopes))
+        current = controls[-1]
+    if not curves:
         nothing = np.zeros((0, 2))
         return nothing, nothing, nothing, nothing
-    starts = np.concatenate([points[:-1] for points, _ in found])
-    ends = np.concatenate([points[1:] for points, _ in found])
-    before = np.concatenate([_units(slopes)[:-1] for _, slopes in found])
-    after = np.concatenate([_units(slopes)[1:] for _, slopes in found])
+    starts = np.concatenate([points[:-1] for points, _ in curves])
+    ends = np.concatenate([points[1:] for points, _ in curves])
+    before = np.concatenate([_units(slopes)[:-1] for _, slopes in curves])
+    after = np.concatenate([_units(slopes)[1:] for _, slopes in curves])
     return starts, ends, before, after
 
 
 def _samples(
     controls: _FloatArray, weight: float, t: _FloatArray
 ) -> tuple[_FloatArray, _FloatArray]:
-    """Points of a curve, and its derivatives there but for their lengths."""
+    """Returns points of a curve, and its derivatives up to a positive factor."""
     t = t[:, None]
     s = 1.0 - t
     p = controls
@@ -103,7 +103,7 @@ def _samples(
         slopes = (
             s * s * weight * (p[1] - p[0]) + s * t * (p[2] - p[0]) + t * t * weight * (p[2] - p[1])
         )
-    # Where control points coincide, the direction is that of the chord beside it.
+    # Where control points coincide, the direction is that of the adjacent chord.
     still = (slopes * slopes).sum(axis=1) == 0.0
     if still.any():
         chords = np.diff(points, axis=0)
