@@ -15,19 +15,19 @@ _MAX_CHANNELS = 4
 
 
 def as_color(name: str, color: Sequence[float]) -> tuple[float, ...]:
-    found = as_array(name, color)
-    if found.ndim != 1 or not 1 <= found.size <= _MAX_CHANNELS or found.dtype.kind not in "fiu":
+    array = as_array(name, color)
+    if array.ndim != 1 or not 1 <= array.size <= _MAX_CHANNELS or array.dtype.kind not in "fiu":
         raise ValueError(f"{name}: {color!r}; one to {_MAX_CHANNELS} numbers are needed")
-    if not np.isfinite(found).all():
+    if not np.isfinite(array).all():
         raise ValueError(f"{name}: {color!r}; finite numbers are needed")
-    return tuple(float(value) for value in found)
+    return tuple(float(value) for value in array)
 
 
 def as_point(name: str, point: Sequence[float]) -> tuple[float, float]:
-    found = as_array(name, point)
-    if found.shape != (2,) or found.dtype.kind not in "fiu" or not np.isfinite(found).all():
+    array = as_array(name, point)
+    if array.shape != (2,) or array.dtype.kind not in "fiu" or not np.isfinite(array).all():
         raise ValueError(f"{name}: {point!r}; a pair of finite numbers is needed")
-    return float(found[0]), float(found[1])
+    return float(array[0]), float(array[1])
 
 
 def as_points(name: str, points: npt.ArrayLike, shape: Sequence[int | str]) -> np.ndarray:
@@ -40,10 +40,10 @@ def check_finite(name: str, points: np.ndarray) -> None:
 
 
 def as_matrix(name: str, matrix: npt.ArrayLike) -> list[float]:
-    found = as_array(name, matrix)
-    if found.shape != (2, 3) or found.dtype.kind not in "fiu" or not np.isfinite(found).all():
-        raise ValueError(f"{name}: shape {found.shape}; (2, 3) of finite numbers is needed")
-    numbers = [float(number) for number in found.ravel()]
+    array = as_array(name, matrix)
+    if array.shape != (2, 3) or array.dtype.kind not in "fiu" or not np.isfinite(array).all():
+        raise ValueError(f"{name}: shape {array.shape}; (2, 3) of finite numbers is needed")
+    numbers = [float(number) for number in array.ravel()]
     if determinant(numbers) == 0.0:
         raise ValueError(f"{name}: maps the plane to a line; a matrix of rank 2 is needed")
     return numbers
@@ -55,13 +55,13 @@ def determinant(matrix: Sequence[float]) -> float:
 
 def as_stops(stops: Iterable[Stop]) -> list[tuple[float, list[float]]]:
     try:
-        found = [(offset, color) for offset, color in stops]
+        listed = [(offset, color) for offset, color in stops]
     except (TypeError, ValueError) as error:
         raise ValueError("stops: pairs (offset, color) are needed") from error
-    if not found:
+    if not listed:
         raise ValueError("stops: found none; at least one is needed")
     pairs: list[tuple[float, list[float]]] = []
-    for offset, color in found:
+    for offset, color in listed:
         number = as_number("stops: offset", offset)
         if not 0.0 <= number <= 1.0 or (pairs and number < pairs[-1][0]):
             raise ValueError(f"stops: offset {offset!r}; rising numbers in [0, 1] are needed")

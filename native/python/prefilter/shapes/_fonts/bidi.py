@@ -115,7 +115,9 @@ def _resolve_brackets(
             continue
         direction = outer
         if outer not in inside:
-            before = next((found for kind in run[first::-1] if (found := _direction(kind))), outer)
+            before = next(
+                (strong for kind in run[first::-1] if (strong := _direction(kind))), outer
+            )
             direction = before if before in inside else outer
         for position in (first, last):
             run[position] = direction

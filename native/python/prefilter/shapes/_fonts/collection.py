@@ -9,8 +9,8 @@ from functools import lru_cache
 from itertools import islice
 from pathlib import Path
 
-from .faces import DAMAGED, Face, UnreadableFontError, faces_in
-from .folders import files_in, system_folders
+from .faces import DAMAGED, Face, UnreadableFontError, read_faces
+from .folders import list_font_files, system_folders
 from .font import Font
 from .substitutes import (
     GENERIC,
@@ -187,7 +187,7 @@ class Fonts:
             return ()
         for path, index in from_fontconfig(name):
             try:
-                face = next((each for each in faces_in(path) if each.index == index), None)
+                face = next((each for each in read_faces(path) if each.index == index), None)
             except (UnreadableFontError, OSError):
                 continue
             if face is not None:
@@ -297,10 +297,10 @@ def _load_faces(places: Sequence[Path], damaged: dict[Path, str]) -> Iterator[Fa
     """Yields the faces in files, which must be fonts, and in folders, which may hold others."""
     for place in places:
         if place.is_dir():
-            yield from _faces_of(files_in(place), damaged)
+            yield from _faces_of(list_font_files(place), damaged)
             continue
         try:
-            faces = faces_in(place)
+            faces = read_faces(place)
         except UnreadableFontError as error:
             raise ValueError(f"fonts: '{place}' is no font that can be read: {error}") from None
         except FileNotFoundError:
@@ -314,7 +314,7 @@ def _faces_of(files: Iterable[Path], damaged: dict[Path, str]) -> Iterator[Face]
     """Yields the faces in files; collects unreadable files in `damaged`."""
     for file in files:
         try:
-            yield from faces_in(file)
+            yield from read_faces(file)
         except UnreadableFontError as error:
             damaged[file] = str(error)
         except OSError as error:
@@ -324,6 +324,6 @@ def _faces_of(files: Iterable[Path], damaged: dict[Path, str]) -> Iterator[Face]
 @lru_cache(maxsize=1)
 def _system_faces() -> tuple[tuple[Face, ...], dict[Path, str]]:
     """Returns the system's faces, searched once, and unreadable files."""
-    files = dict.fromkeys(file for folder in system_folders() for file in files_in(folder))
+    files = dict.fromkeys(file for folder in system_folders() for file in list_font_files(folder))
     damaged: dict[Path, str] = {}
     return tuple(_faces_of(files, damaged)), damaged

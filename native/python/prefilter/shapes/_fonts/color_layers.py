@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import Any, TypeAlias
 
 from ... import _native
-from ..affine import IDENTITY, Matrix, multiplied
+from ..affine import IDENTITY, Matrix, compose
 
 Color: TypeAlias = tuple[float, float, float, float]
 
@@ -190,7 +190,7 @@ class _PaintReader:
         elif kind == 11:
             yield from self._items(self._table.paint_of(paint.Glyph), matrix)
         elif 12 <= kind < 32:
-            yield from self._items(paint.Paint, multiplied(matrix, _transform(paint)))
+            yield from self._items(paint.Paint, compose(matrix, _transform(paint)))
         elif kind == 32:
             yield from self._composite(paint, matrix)
         else:
@@ -204,7 +204,7 @@ class _PaintReader:
         for _ in range(MAX_DEPTH):
             if not 12 <= _static_format(inner) < 32:
                 break
-            paint_matrix = multiplied(paint_matrix, _transform(inner))
+            paint_matrix = compose(paint_matrix, _transform(inner))
             inner = inner.Paint
         if 2 <= _static_format(inner) < 10:
             yield self._fill(inner, glyph, matrix, paint_matrix)
@@ -304,7 +304,7 @@ def _transform(paint: Any) -> Matrix:
     if kind not in (18, 22, 26, 30):
         return matrix
     x, y = float(paint.centerX), float(paint.centerY)
-    return multiplied(multiplied((1.0, 0.0, 0.0, 1.0, x, y), matrix), (1.0, 0.0, 0.0, 1.0, -x, -y))
+    return compose(compose((1.0, 0.0, 0.0, 1.0, x, y), matrix), (1.0, 0.0, 0.0, 1.0, -x, -y))
 
 
 def _linear_geometry(paint: Any) -> tuple[float, ...] | None:

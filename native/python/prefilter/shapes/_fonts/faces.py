@@ -50,7 +50,7 @@ class Face:
     axes: Mapping[str, tuple[float, float, float]]
     data: bytes | None = None
 
-    def opened(self) -> Any:
+    def open(self) -> Any:
         """Opens the font; tables are read when needed."""
         return TTFont(_source(self.path, self.data), fontNumber=self.index, lazy=True)
 
@@ -59,7 +59,7 @@ class Face:
         data = self.path.read_bytes() if self.data is None else self.data
         if data[:4] not in (b"wOFF", b"wOF2"):
             return data
-        font, file = self.opened(), io.BytesIO()
+        font, file = self.open(), io.BytesIO()
         font.flavor = None
         font.save(file)
         return file.getvalue()
@@ -97,7 +97,7 @@ def _read_faces(path: Path, stamp: tuple[int, int]) -> tuple[Face, ...]:
         raise UnreadableFontError(DAMAGED) from None
 
 
-def faces_in(path: Path) -> tuple[Face, ...]:
+def read_faces(path: Path) -> tuple[Face, ...]:
     """Returns the faces of a file that have outlines or bitmaps.
 
     Raises:
@@ -108,7 +108,7 @@ def faces_in(path: Path) -> tuple[Face, ...]:
     return _read_faces(path, (status.st_mtime_ns, status.st_size))
 
 
-def face_in(data: bytes, name: str) -> Face:
+def read_embedded_face(data: bytes, name: str) -> Face:
     """Reads an embedded font; `name` is its family in messages.
 
     Raises:

@@ -41,7 +41,7 @@ def _fontconfig_folders(home: Path) -> Iterator[Path]:
             yield home / text[2:] if text.startswith("~") else Path(text)
 
 
-def files_in(folder: Path) -> list[Path]:
+def list_font_files(folder: Path) -> list[Path]:
     """Returns the font files in a folder tree, sorted by name; none if there is no folder."""
     files: list[Path] = []
     for parent, folders, names in os.walk(folder):

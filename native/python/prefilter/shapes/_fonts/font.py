@@ -60,7 +60,7 @@ class Font:
         self.location = dict(location)
         self.skew = skew
         # Not lazy: the file is closed, and may change.
-        self._file = face.opened()
+        self._file = face.open()
         self.units_per_em = float(max(self._file["head"].unitsPerEm, 1))
         self._order = self._file.getGlyphOrder()
         self._glyphs = None
@@ -69,7 +69,7 @@ class Font:
         self._check()
         self._outlines: dict[int, Glyph] = {}
         self._damaged: set[int] = set()
-        self._looks: dict[int, ColorGroup | Bitmap | str | None] = {}
+        self._color_glyphs: dict[int, ColorGroup | Bitmap | str | None] = {}
 
     def _check(self) -> None:
         """Reads all tables except single glyphs, and raises an exception if they are damaged.
@@ -95,7 +95,7 @@ class Font:
             if last > outlines or (last == 0 and self.characters):
                 raise ValueError("the outlines are cut off")
 
-    def is_whole(self, number: int) -> bool:
+    def is_readable(self, number: int) -> bool:
         """Returns whether the outline of a glyph is readable."""
         self.glyph(number)
         return number not in self._damaged
@@ -103,7 +103,7 @@ class Font:
     def shows(self, code: int) -> bool:
         """Returns whether a character has a glyph with a readable outline."""
         number = self.characters.get(code)
-        return number is not None and (chr(code).isspace() or self.is_whole(number))
+        return number is not None and (chr(code).isspace() or self.is_readable(number))
 
     @cached_property
     def characters(self) -> Mapping[int, int]:
@@ -117,29 +117,29 @@ class Font:
         """Whether it has colored glyphs."""
         return any(tag in self._file for tag in ("COLR", "SVG ", "sbix", "CBDT"))
 
-    def look(self, number: int) -> ColorGroup | Bitmap | str | None:
+    def color_glyph(self, number: int) -> ColorGroup | Bitmap | str | None:
         """Returns the colored form of a glyph, cached; None if it has none.
 
         A str says why its colors cannot be drawn.
         """
-        if number not in self._looks:
+        if number not in self._color_glyphs:
             try:
-                self._looks[number] = self._look(self._order[number])
+                self._color_glyphs[number] = self._read_color_glyph(self._order[number])
             except UnknownPaintError as error:
-                self._looks[number] = str(error)
+                self._color_glyphs[number] = str(error)
             except Exception:
-                self._looks[number] = "damaged tables"
-        return self._looks[number]
+                self._color_glyphs[number] = "damaged tables"
+        return self._color_glyphs[number]
 
-    def _look(self, name: str) -> ColorGroup | Bitmap | str | None:
-        look: ColorGroup | Bitmap | None = None
+    def _read_color_glyph(self, name: str) -> ColorGroup | Bitmap | str | None:
+        color_glyph: ColorGroup | Bitmap | None = None
         if self._colors is not None:
-            look = self._colors.layers(name)
-        if look is None and self._bitmaps is not None:
-            look = self._bitmaps.bitmap(name)
-        if look is None and "SVG " in self._file and "COLR" not in self._file:
+            color_glyph = self._colors.layers(name)
+        if color_glyph is None and self._bitmaps is not None:
+            color_glyph = self._bitmaps.bitmap(name)
+        if color_glyph is None and "SVG " in self._file and "COLR" not in self._file:
             return "drawings of letters"
-        return look
+        return color_glyph
 
     @cached_property
     def _colors(self) -> ColorTable | None:
@@ -184,7 +184,7 @@ class Font:
             return 0.0
 
     def glyph(self, number: int) -> Glyph:
-        """Returns the outline of a glyph, cached; empty if it is damaged: see `is_whole`."""
+        """Returns the outline of a glyph, cached; empty if it is damaged: see `is_readable`."""
         if number not in self._outlines:
             pen = _Pen(self._glyphs)
             try:

@@ -63,7 +63,7 @@ class Features:
     has_small_capitals: bool = False
 
 
-def scripts_in(text: str) -> list[str]:
+def detect_scripts(text: str) -> list[str]:
     """Returns the script of each character; common characters take that of a neighbor."""
     scripts = [script_of(each) for each in text]
     for order in (range(1, len(scripts)), range(len(scripts) - 2, -1, -1)):

@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from .... import _native
 from ....images.pixel_filters import PIXEL_FILTERS
-from ...affine import Matrix, inverse, multiplied
+from ...affine import Matrix, compose, inverse
 from ...rasterization import rasterize
 from ...shape import Shape
 from ..filters.layers import filtered_layer
@@ -84,7 +84,7 @@ class Compositor:
         self._layers_left = MAX_LAYERS
 
     def draw(
-        self, drawing: Drawing, matrix: Matrix, size: tuple[int, int], around: tuple[Clip, ...]
+        self, drawing: Drawing, matrix: Matrix, size: tuple[int, int], group_clips: tuple[Clip, ...]
     ) -> FloatArray:
         """Draws a drawing into an image.
 
@@ -92,12 +92,12 @@ class Compositor:
             drawing: The drawing.
             matrix: From the tree's units to pixels, y upwards.
             size: Width and height of the image.
-            around: Clips that apply to everything.
+            group_clips: Clips that apply to everything.
 
         Raises:
             TooLargeError: The drawing has too many layers.
         """
-        placed = list(self._layers.placed(drawing.tree, matrix, around))
+        placed = list(self._layers.placed(drawing.tree, matrix, group_clips))
         background = drawing.background_in(matrix)
         below = [background] if background is not None else []
         return self._draw_items(self._report_items(placed), (0, 0, *size), below)
@@ -117,7 +117,7 @@ class Compositor:
         for each in placed:
             if is_plain(each.item):
                 assert isinstance(each.item, Painted)
-                shape = self._shapes.shape(each.item, each.matrix, each.opacity, each.around)
+                shape = self._shapes.shape(each.item, each.matrix, each.opacity, each.group_clips)
                 if shape is not None:
                     run.append(shape)
                 continue
@@ -182,7 +182,7 @@ class Compositor:
         boxes: list[Box] = []
         for box in item_bounds(placed.item):
             shown: Box | None = box
-            for clip in placed.around:
+            for clip in placed.group_clips:
                 shown = intersect_boxes(shown, clip.bounds) if shown and clip.bounds else None
             if shown is not None:
                 boxes.append(transform_box(shown, placed.matrix))
@@ -194,9 +194,9 @@ class Compositor:
         if isinstance(item, Group):
             return self._draw_group(item, placed, window)
         if isinstance(item, Painted):
-            shape = self._shapes.shape(item, placed.matrix, 1.0, placed.around)
+            shape = self._shapes.shape(item, placed.matrix, 1.0, placed.group_clips)
         else:
-            shape = self._shapes.image_area(item, placed.matrix, placed.around)
+            shape = self._shapes.image_area(item, placed.matrix, placed.group_clips)
         if shape is None:
             return self._new_layer(window)
         opacity = placed.opacity
@@ -204,13 +204,13 @@ class Compositor:
             layer = self._draw_image(item, placed.matrix, window)
         else:
             assert isinstance(item.paint, Pattern)
-            layer = self._draw_pattern(item.paint, multiplied(placed.matrix, item.matrix), window)
+            layer = self._draw_pattern(item.paint, compose(placed.matrix, item.matrix), window)
             opacity *= item.paint.opacity
         layer *= np.float32(opacity) * self._coverage(shape, window)
         return layer
 
     def _draw_group(self, group: Group, placed: PlacedItem, window: Window) -> FloatArray:
-        inside = self._layers.placed(group, placed.matrix, placed.around)
+        inside = self._layers.placed(group, placed.matrix, placed.group_clips)
         if group.filter is not None:
             layer = self._draw_filtered(group, placed, window)
         else:
@@ -225,7 +225,7 @@ class Compositor:
     def _draw_filtered(self, group: Group, placed: PlacedItem, window: Window) -> FloatArray:
         """Draws a group, applies its filter, and clips the result."""
         box = filtered_region(group)
-        clips = (*placed.around, *group.clips)
+        clips = (*placed.group_clips, *group.clips)
         if box is None:
             return self._new_layer(window)
 
@@ -257,12 +257,12 @@ class Compositor:
 
     def _draw_image(self, picture: Picture, matrix: Matrix, window: Window) -> FloatArray:
         left, low, right, high = window
-        moved = multiplied((1.0, 0.0, 0.0, 1.0, -left, -low), matrix)
+        moved = compose((1.0, 0.0, 0.0, 1.0, -left, -low), matrix)
         return draw_image_pixels(picture, moved, right - left, high - low, self._threads)
 
     def _draw_pattern(self, pattern: Pattern, matrix: Matrix, window: Window) -> FloatArray:
         """Fills a window with a pattern; the matrix leads from the outline's units to pixels."""
-        whole = multiplied(matrix, pattern.matrix)
+        whole = compose(matrix, pattern.matrix)
         left, top, right, bottom = pattern.tile
         width, height = right - left, bottom - top
         box = transform_box((*map(float, window),), inverse(whole))  # type: ignore[arg-type]
@@ -278,7 +278,7 @@ class Compositor:
             chain.from_iterable(
                 self._layers.placed(
                     pattern.group,
-                    multiplied(whole, (1.0, 0.0, 0.0, 1.0, column * width, row * height)),
+                    compose(whole, (1.0, 0.0, 0.0, 1.0, column * width, row * height)),
                 )
                 for row in rows
                 for column in columns
@@ -295,10 +295,10 @@ class Compositor:
         )
         columns, rows = (min(max(math.ceil(side), _SMALLEST_TILE), _LARGEST_TILE) for side in sides)
         scale = (columns / (right - left), 0.0, 0.0, rows / (bottom - top), 0.0, 0.0)
-        to_tile = multiplied(scale, (1.0, 0.0, 0.0, 1.0, -left, -top))
+        to_tile = compose(scale, (1.0, 0.0, 0.0, 1.0, -left, -top))
         tile = self._draw_nested(self._layers.placed(pattern.group, to_tile), (0, 0, columns, rows))
-        moved = multiplied(to_tile, inverse(whole))
-        moved = multiplied(moved, (1.0, 0.0, 0.0, 1.0, window[0], window[1]))
+        moved = compose(to_tile, inverse(whole))
+        moved = compose(moved, (1.0, 0.0, 0.0, 1.0, window[0], window[1]))
         size = window[2] - window[0], window[3] - window[1]
         if max(sides) < _MIN_RESOLVED_TILE:
             mean = tile.sum(axis=0, dtype=np.float64).sum(axis=0) / (columns * rows)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
-from ...affine import IDENTITY, Matrix, determinant, inverse, multiplied
+from ...affine import IDENTITY, Matrix, compose, determinant, inverse
 from ...shape import Shape
 from ..filters.filter_property import read_filters
 from ..model.clips import make_box_clip
@@ -91,7 +91,7 @@ class Drawing:
             builder.sources.sheets.declared(document.root).get("overflow") in VISIBLE_OVERFLOW
         )
         self.background = read_background(builder.sources, colors)
-        builder.draw_in(IDENTITY, (), self.tree, colors)
+        builder.build(IDENTITY, (), self.tree, colors)
 
     def placement(self, width: float, height: float) -> tuple[Matrix, tuple[Clip, ...]]:
         """Returns the matrix from the tree's units to pixels of an image, y upwards, and the clips.
@@ -99,7 +99,7 @@ class Drawing:
         An image with the proportions of the page needs no clips.
         """
         to_pixels = self.page.placement(width, height)
-        left, low, right, high = transform_box(self.page.shown(), to_pixels)
+        left, low, right, high = transform_box(self.page.visible_box(), to_pixels)
         slack = _PAGE_TOLERANCE * max(width, height)
         if left <= slack and low <= slack and right >= width - slack and high >= height - slack:
             return to_pixels, ()
@@ -108,19 +108,19 @@ class Drawing:
     def placed(self, scale: float, x: float, y: float) -> tuple[Matrix, tuple[Clip, ...]]:
         """Returns the same for a page scaled by a factor, with its lower left corner at (x, y)."""
         to_pixels = self.page.placement(scale * self.page.width, scale * self.page.height)
-        return multiplied((1.0, 0.0, 0.0, 1.0, x, y), to_pixels), self._clips()
+        return compose((1.0, 0.0, 0.0, 1.0, x, y), to_pixels), self._clips()
 
     def _clips(self) -> tuple[Clip, ...]:
         """Returns the clip at the page, unless overflow is visible."""
         if self._is_open:
             return ()
-        return (make_box_clip(self.page.shown(), IDENTITY),)
+        return (make_box_clip(self.page.visible_box(), IDENTITY),)
 
     def background_in(self, to_pixels: Matrix) -> Shape | None:
         """Returns the page filled with the background color; None if there is none."""
         if self.background is None:
             return None
-        left, low, right, high = transform_box(self.page.shown(), to_pixels)
+        left, low, right, high = transform_box(self.page.visible_box(), to_pixels)
         shape = Shape(color=self.background)
         shape.add_polygon([(left, low), (right, low), (right, high), (left, high)])
         return shape
@@ -158,9 +158,7 @@ class TreeBuilder:
         self._depth = depth
         self._images = Images(self._read_nested)
 
-    def draw_in(
-        self, matrix: Matrix, clips: tuple[Clip, ...], target: Group, colors: Colors
-    ) -> None:
+    def build(self, matrix: Matrix, clips: tuple[Clip, ...], target: Group, colors: Colors) -> None:
         """Adds all items to a group; the matrix leads from the document's units to the tree's."""
         sources = self.sources
         size = (self.page.view.width, self.page.view.height)
@@ -330,8 +328,8 @@ class TreeBuilder:
 
     def _is_unscaled(self, element: SvgElement) -> bool:
         """Returns whether the stroke width is in pixels of the page, whatever the transform."""
-        effect = self.sources.sheets.declared(element).get("vector-effect", "none")
-        return effect.strip().lower() == "non-scaling-stroke"
+        vector_effect = self.sources.sheets.declared(element).get("vector-effect", "none")
+        return vector_effect.strip().lower() == "non-scaling-stroke"
 
     def _to_page(
         self,
@@ -342,10 +340,10 @@ class TreeBuilder:
         """Converts an outline and its paint to pixels of the page."""
         page = self.page
         to_page = fit_view_box(page.view, page.aspect, page.width, page.height)
-        own = multiplied(to_page, context.matrix)
+        own = compose(to_page, context.matrix)
         outline = drawn.outline.transformed(own)
         if not isinstance(paint, tuple):
-            paint = replace(paint, matrix=multiplied(own, paint.matrix))
+            paint = replace(paint, matrix=compose(own, paint.matrix))
         box = outline.bounds() or drawn.box
         context = replace(context, matrix=inverse(to_page))
         return context, _PaintableOutline(outline, box, drawn.bounds), paint

@@ -30,13 +30,13 @@ class PlacedItem:
     Attributes:
         matrix: From the tree's units to pixels.
         opacity: Product of its groups' opacities.
-        around: Clips of its groups, in addition to its own.
+        group_clips: Clips of its groups, in addition to its own.
     """
 
     item: Item
     matrix: Matrix
     opacity: float
-    around: tuple[Clip, ...]
+    group_clips: tuple[Clip, ...]
 
 
 class LayerPlanner:
@@ -46,14 +46,14 @@ class LayerPlanner:
         self._known: dict[Group, bool] = {}
 
     def placed(
-        self, group: Group, matrix: Matrix, around: tuple[Clip, ...] = (), opacity: float = 1.0
+        self, group: Group, matrix: Matrix, group_clips: tuple[Clip, ...] = (), opacity: float = 1.0
     ) -> Iterator[PlacedItem]:
         """Yields outlines, images and groups with layers, bottom first."""
         for item in group.items:
             if isinstance(item, Group) and not self.needs_layer(item):
-                yield from self.placed(item, matrix, around, opacity * item.opacity)
+                yield from self.placed(item, matrix, group_clips, opacity * item.opacity)
             else:
-                yield PlacedItem(item, matrix, opacity, around)
+                yield PlacedItem(item, matrix, opacity, group_clips)
 
     def needs_layer(self, group: Group) -> bool:
         """Returns whether a group would look different drawn item by item."""

@@ -8,7 +8,7 @@ from dataclasses import asdict
 import numpy as np
 
 from .... import _native
-from ...affine import Matrix, determinant, multiplied
+from ...affine import Matrix, compose, determinant
 from ...shape import Shape
 from ..filters.evaluation import is_upright
 from ..model.gradients import Gradient
@@ -28,7 +28,7 @@ class ShapeBuilder:
         self._regions: dict[tuple[Clip, Matrix], Shape] = {}
 
     def shape(
-        self, painted: Painted, matrix: Matrix, opacity: float, around: Sequence[Clip] = ()
+        self, painted: Painted, matrix: Matrix, opacity: float, group_clips: Sequence[Clip] = ()
     ) -> Shape | None:
         """Makes a shape with its paint, or white for a pattern; returns None if it is invisible.
 
@@ -36,12 +36,12 @@ class ShapeBuilder:
             painted: The outline.
             matrix: From the tree's units to pixels, y upwards.
             opacity: Multiplies the paint.
-            around: Clips in addition to the outline's own.
+            group_clips: Clips in addition to the outline's own.
         """
-        box, clips = painted.box, (*around, *painted.clips)
+        box, clips = painted.box, (*group_clips, *painted.clips)
         if any(clip.bounds is None or intersect_boxes(box, clip.bounds) is None for clip in clips):
             return None
-        whole = multiplied(matrix, painted.matrix)
+        whole = compose(matrix, painted.matrix)
         if determinant(whole) == 0.0:
             return None
         shape = painted.outline.shape(painted.fill_rule)
@@ -59,10 +59,12 @@ class ShapeBuilder:
             shape.color = tuple(opacity * value for value in painted.paint)
         return self.clip(shape, box, clips, matrix)
 
-    def image_area(self, picture: Picture, matrix: Matrix, around: Sequence[Clip]) -> Shape | None:
+    def image_area(
+        self, picture: Picture, matrix: Matrix, group_clips: Sequence[Clip]
+    ) -> Shape | None:
         """Makes a shape of an image's visible area; returns None if it is empty."""
-        clips = (*around, *picture.clips)
-        whole = multiplied(matrix, picture.matrix)
+        clips = (*group_clips, *picture.clips)
+        whole = compose(matrix, picture.matrix)
         hidden = any(
             clip.bounds is None or not intersect_boxes(picture.box, clip.bounds) for clip in clips
         )
@@ -81,7 +83,7 @@ class ShapeBuilder:
         assert filter_ is not None
         if any(clip.bounds is None for clip in clips):
             return [Shape()]
-        to_pixels = multiplied(matrix, filter_.matrix)
+        to_pixels = compose(matrix, filter_.matrix)
         shapes = [self._region(clip, matrix) for clip in clips]
         if filter_.region is not None and not is_upright(to_pixels):
             left, top, right, bottom = filter_.region
@@ -106,7 +108,7 @@ class ShapeBuilder:
         if key not in self._regions:
             region: Shape | None = None
             for part in clip.parts:
-                whole = multiplied(matrix, part.matrix)
+                whole = compose(matrix, part.matrix)
                 if determinant(whole) == 0.0:
                     continue
                 shape = _clamp(part.outline.shape(part.fill_rule).transformed(_rows(whole)))

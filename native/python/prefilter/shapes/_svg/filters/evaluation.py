@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ....images.color import to_linear, to_srgb
-from ...affine import Matrix, inverse, multiplied
+from ...affine import Matrix, compose, inverse
 from ..model.blending import blend, straight_colors
 from ..model.limits import TooLargeError
 from ..model.tree import Box, Filter, Group, Step, transform_box
@@ -43,7 +43,7 @@ class _Result:
 
 def filter_reach(filter_: Filter, matrix: Matrix) -> float:
     """Returns how far pixels depend on others, in pixels; `matrix` leads to them from the tree."""
-    matrix = multiplied(matrix, filter_.matrix)
+    matrix = compose(matrix, filter_.matrix)
     total = 0.0
     for step in filter_.steps:
         if step.kind in ("feGaussianBlur", "feDropShadow"):
@@ -96,7 +96,7 @@ class _FilterRun:
         self._corner = left, low
         self._shape = high - low, right - left
         # From the filter's units to pixels of the window, y downwards from its top.
-        self._down = multiplied((1.0, 0.0, 0.0, -1.0, -left, high), matrix)
+        self._down = compose((1.0, 0.0, 0.0, -1.0, -left, high), matrix)
         self._region = self._slices(filter_.region)
         self._source = _cut(draw(group), self._region)
         alpha = np.zeros_like(self._source)
@@ -134,7 +134,7 @@ class _FilterRun:
     def _region_of(self, step: Step, inputs: list[_Result]) -> Slices:
         """Returns a step's subregion: its own, or the union of its inputs'."""
         if step.region is not None:
-            return _common(self._region, self._slices(step.region))
+            return _intersect(self._region, self._slices(step.region))
         if not inputs or step.kind == "feTile":
             return self._region
         rows, columns = (
@@ -145,7 +145,7 @@ class _FilterRun:
 
     def _evaluate(self, step: Step, inputs: list[_Result], region: Slices) -> FloatArray:
         if step.kind == "feMerge":
-            return self._merged(inputs, step.is_linear)
+            return self._merge(inputs, step.is_linear)
         images = [_with_colors(each, step.is_linear) for each in inputs]
         numbers = step.numbers
         match step.kind:
@@ -156,7 +156,7 @@ class _FilterRun:
             case "feFlood":
                 return self._flood(numbers, step.is_linear)
             case "feDropShadow":
-                return self._shadowed(step, images[0])
+                return self._drop_shadow(step, images[0])
             case "feComposite":
                 return composite(images[0], images[1], step.name, numbers)
             case "feBlend":
@@ -174,7 +174,7 @@ class _FilterRun:
                 change = partial(convolve, numbers=numbers, edge_mode=step.name)
                 return self._map_region(images[0], change)
             case "feDiffuseLighting" | "feSpecularLighting":
-                return self._map_region(images[0], partial(self._lit, step=step))
+                return self._map_region(images[0], partial(self._light, step=step))
             case "feTurbulence":
                 return self._noise(step, region)
             case "feImage" if step.group is not None:
@@ -191,7 +191,7 @@ class _FilterRun:
             mapped[self._region] = change(pixels[self._region][::-1])[::-1]
         return mapped
 
-    def _lit(self, pixels: FloatArray, step: Step) -> FloatArray:
+    def _light(self, pixels: FloatArray, step: Step) -> FloatArray:
         numbers = list(step.numbers)
         color = np.array([[numbers[3:6]]], np.float32)
         numbers[3:6] = (to_linear(color) if step.is_linear else color)[0, 0].tolist()
@@ -241,7 +241,7 @@ class _FilterRun:
             part[...] = straight
         return pixels
 
-    def _merged(self, inputs: list[_Result], is_linear: bool) -> FloatArray:
+    def _merge(self, inputs: list[_Result], is_linear: bool) -> FloatArray:
         merged = np.zeros_like(self._source)
         for each in inputs:
             merged = blend(merged, _with_colors(each, is_linear), "normal")
@@ -254,7 +254,7 @@ class _FilterRun:
         color_pixel = _with_colors(_Result(color_pixel, False, self._region), is_linear)
         return np.broadcast_to(color_pixel, self._source.shape).copy()
 
-    def _shadowed(self, step: Step, source: FloatArray) -> FloatArray:
+    def _drop_shadow(self, step: Step, source: FloatArray) -> FloatArray:
         numbers = step.numbers
         deviations, move, color = numbers[:2], numbers[2:4], numbers[4:]
         alpha = blur(source[..., 3:], *_lengths(deviations, self._matrix))
@@ -268,17 +268,17 @@ class _FilterRun:
             return slice(0, height), slice(0, width)
         left, low, right, high = transform_box(region, self._matrix)
         x, y = self._corner
-        begin, end = (_limited(value - x, width) for value in (left + 1e-6, right - 1e-6))
-        bottom, top = (_limited(value - y, height) for value in (low + 1e-6, high - 1e-6))
+        begin, end = (_clamp(value - x, width) for value in (left + 1e-6, right - 1e-6))
+        bottom, top = (_clamp(value - y, height) for value in (low + 1e-6, high - 1e-6))
         rows = slice(math.floor(bottom), max(math.ceil(top), math.floor(bottom)))
         return rows, slice(math.floor(begin), max(math.ceil(end), math.floor(begin)))
 
 
-def _limited(value: float, most: int) -> float:
+def _clamp(value: float, most: int) -> float:
     return min(max(value, 0.0), float(most))
 
 
-def _common(one: Slices, other: Slices) -> Slices:
+def _intersect(one: Slices, other: Slices) -> Slices:
     rows, columns = (
         slice(max(a.start, b.start), max(min(a.stop, b.stop), a.start, b.start))
         for a, b in zip(one, other, strict=True)

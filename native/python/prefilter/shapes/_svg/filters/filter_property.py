@@ -4,11 +4,11 @@
 
 from dataclasses import replace
 
-from ...affine import IDENTITY, multiplied
+from ...affine import IDENTITY, compose
 from ..model.tree import Box, Filter, Group, Step, transform_box
 from ..model.values import Length
 from ..paint.bounds import object_bounds
-from ..paint.images import Images, put_image
+from ..paint.images import Images, place_image
 from ..paint.masks import fractions_to_box, read_region
 from ..read.context import Context, Sources
 from ..read.document import SvgElement
@@ -151,7 +151,7 @@ def _image_contents(
     inside = replace(context, target=group, clips=(), use=None)
     if target is None:
         inside = replace(inside, style=sources.sheets.style(element))
-        put_image(element, (left, top, right - left, bottom - top), inside, sources, images)
+        place_image(element, (left, top, right - left, bottom - top), inside, sources, images)
     elif any(target in ancestors(used) for used in context.uses):
         raise InvalidFunctionError  # The image contains itself.
     else:
@@ -159,7 +159,7 @@ def _image_contents(
         inside = replace(
             inside,
             style=sources.sheets.style(parent) if parent is not None else Style(),
-            matrix=multiplied(context.matrix, (1.0, 0.0, 0.0, 1.0, left, top)),
+            matrix=compose(context.matrix, (1.0, 0.0, 0.0, 1.0, left, top)),
             uses=(*context.uses, target),
             use=element,
         )

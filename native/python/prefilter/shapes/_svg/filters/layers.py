@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .... import _native
-from ...affine import Matrix, inverse, multiplied
+from ...affine import Matrix, compose, inverse
 from ..model.tree import Box, Filter, Group, intersect_boxes, transform_box
 from .evaluation import apply_filter, filter_reach, is_upright
 from .warping import warp_image
@@ -39,7 +39,7 @@ def filtered_layer(
         threads: Number of threads.
     """
     filter_ = _filter_of(group)
-    to_pixels = multiplied(matrix, filter_.matrix)
+    to_pixels = compose(matrix, filter_.matrix)
     # Pixels beyond half a side are ignored, to limit memory.
     most = max(window[2] - window[0], window[3] - window[1]) / 2.0
     reach = math.ceil(min(filter_reach(filter_, matrix), most))
@@ -90,8 +90,8 @@ def _draw_warped(
 
     def placed() -> tuple[Matrix, Window | None]:
         upright: Matrix = (across, 0.0, 0.0, -along, 0.0, 0.0)
-        whole = transform_box(box, multiplied(upright, inverse(filter_.matrix)))
-        seen = transform_box(around, multiplied(upright, inverse(to_pixels)))
+        whole = transform_box(box, compose(upright, inverse(filter_.matrix)))
+        seen = transform_box(around, compose(upright, inverse(to_pixels)))
         return upright, _pixels(intersect_boxes(whole, seen))
 
     upright, region = placed()
@@ -102,14 +102,14 @@ def _draw_warped(
         upright, region = placed()
     if region is None:
         return np.zeros((height, width, 4), np.float32)
-    to_upright = multiplied(upright, inverse(filter_.matrix))
+    to_upright = compose(upright, inverse(filter_.matrix))
     pixels = _filter_region(
         draw, _extend_region(group, across, along), (to_upright, upright), region
     )
-    back = multiplied(
-        (1.0, 0.0, 0.0, 1.0, -region[0], -region[1]), multiplied(upright, inverse(to_pixels))
+    back = compose(
+        (1.0, 0.0, 0.0, 1.0, -region[0], -region[1]), compose(upright, inverse(to_pixels))
     )
-    back = multiplied(back, (1.0, 0.0, 0.0, 1.0, window[0], window[1]))
+    back = compose(back, (1.0, 0.0, 0.0, 1.0, window[0], window[1]))
     return warp_image(pixels, back, width, height, threads)
 
 

@@ -52,8 +52,8 @@ Matrix5 = npt.NDArray[np.float64]
 
 
 def _numbers(text: str | None, default: list[float]) -> list[float]:
-    numbers, is_whole = leading_numbers(text or "")
-    return numbers if numbers and is_whole else default
+    numbers, is_complete = leading_numbers(text or "")
+    return numbers if numbers and is_complete else default
 
 
 def _number(element: SvgElement, name: str, default: float) -> float:

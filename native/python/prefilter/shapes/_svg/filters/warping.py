@@ -12,7 +12,7 @@ from .... import _native
 from ....images.color import to_linear
 from ....images.resizing import resize
 from ....sampling.resampling import resample
-from ...affine import Matrix, inverse, multiplied
+from ...affine import Matrix, compose, inverse
 from ..model.tree import Picture
 
 FloatArray = npt.NDArray[np.float32]
@@ -35,13 +35,13 @@ def draw_image_pixels(
         threads: Number of threads.
     """
     rows, columns = picture.texels.shape[:2]
-    whole = multiplied(matrix, picture.matrix)
+    whole = compose(matrix, picture.matrix)
     if picture.is_pixelated and _is_enlarged(whole, columns, rows):
         return _nearest(picture, whole, width, height)
     texels = _premultiplied(picture.texels, picture.is_linear)
     texels = _equalize_scales(texels, whole, threads)
     rows, columns = texels.shape[:2]
-    to_texels = multiplied((columns, 0.0, 0.0, rows, 0.0, 0.0), inverse(whole))
+    to_texels = compose((columns, 0.0, 0.0, rows, 0.0, 0.0), inverse(whole))
     return warp_image(texels, to_texels, width, height, threads)
 
 
@@ -103,7 +103,7 @@ def _is_enlarged(whole: Matrix, columns: int, rows: int) -> bool:
 
 def _nearest(picture: Picture, whole: Matrix, width: int, height: int) -> FloatArray:
     rows, columns = picture.texels.shape[:2]
-    a, b, c, d, e, f = multiplied((columns, 0.0, 0.0, rows, 0.0, 0.0), inverse(whole))
+    a, b, c, d, e, f = compose((columns, 0.0, 0.0, rows, 0.0, 0.0), inverse(whole))
     x, y = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
     column = np.floor(a * x + c * y + e).clip(0, columns - 1).astype(np.int64)
     row = np.floor(b * x + d * y + f).clip(0, rows - 1).astype(np.int64)

@@ -30,7 +30,7 @@ def evaluate_quantity(
         names: Identifiers with numeric values.
     """
     try:
-        quantity = _value(token, units, names or {}, 0)
+        quantity = _evaluate_value(token, units, names or {}, 0)
     except (ZeroDivisionError, OverflowError):
         return None
     if quantity is None or not all(map(math.isfinite, quantity.values())):
@@ -38,7 +38,7 @@ def evaluate_quantity(
     return quantity
 
 
-def _value(
+def _evaluate_value(
     token: Any, units: Mapping[str, tuple[str, float]], names: Mapping[str, float], depth: int
 ) -> Quantity | None:
     if depth > _MAX_NESTED:
@@ -56,20 +56,20 @@ def _value(
             value = names.get(word, _CONSTANTS.get(word) if depth else None)
             return None if value is None else {"": value}
         case "() block":
-            return _sum(token.content, units, names, depth + 1) if depth else None
+            return _evaluate_sum(token.content, units, names, depth + 1) if depth else None
         case "function" if token.lower_name in _FUNCTIONS:
-            return _function(token, units, names, depth + 1)
+            return _evaluate_function(token, units, names, depth + 1)
     return None
 
 
-def _function(token: Any, units: Any, names: Any, depth: int) -> Quantity | None:
+def _evaluate_function(token: Any, units: Any, names: Any, depth: int) -> Quantity | None:
     parts: list[list[Any]] = [[]]
     for each in token.arguments:
         if each == ",":
             parts.append([])
         else:
             parts[-1].append(each)
-    values = [_sum(part, units, names, depth) for part in parts]
+    values = [_evaluate_sum(part, units, names, depth) for part in parts]
     operands = [each for each in values if each is not None]
     if len(operands) < len(values):
         return None
@@ -84,13 +84,13 @@ def _function(token: Any, units: Any, names: Any, depth: int) -> Quantity | None
         return None
     unit = next(iter(kinds))
     numbers = [each[unit] for each in operands]
-    result = _of_numbers(name, numbers)
+    result = _apply_function(name, numbers)
     if result is None:
         return None
     return {"" if name == "sign" else unit: result}
 
 
-def _of_numbers(name: str, numbers: Sequence[float]) -> float | None:
+def _apply_function(name: str, numbers: Sequence[float]) -> float | None:
     match name, numbers:
         case "min", [_, *_]:
             return min(numbers)
@@ -111,7 +111,7 @@ def _of_numbers(name: str, numbers: Sequence[float]) -> float | None:
     return None
 
 
-def _sum(tokens: Sequence[Any], units: Any, names: Any, depth: int) -> Quantity | None:
+def _evaluate_sum(tokens: Sequence[Any], units: Any, names: Any, depth: int) -> Quantity | None:
     """Evaluates products separated by + and -, which must have whitespace on both sides."""
     tokens = [token for token in tokens if token.type != "comment"]
     total: Quantity = {}
@@ -125,7 +125,7 @@ def _sum(tokens: Sequence[Any], units: Any, names: Any, depth: int) -> Quantity 
         if token is not None and not is_sign:
             product.append(token)
             continue
-        value = _product(
+        value = _evaluate_product(
             [each for each in product if each.type != "whitespace"], units, names, depth
         )
         if value is None:
@@ -139,12 +139,12 @@ def _sum(tokens: Sequence[Any], units: Any, names: Any, depth: int) -> Quantity 
     return total
 
 
-def _product(tokens: Sequence[Any], units: Any, names: Any, depth: int) -> Quantity | None:
+def _evaluate_product(tokens: Sequence[Any], units: Any, names: Any, depth: int) -> Quantity | None:
     if len(tokens) % 2 == 0:
         return None
-    total: Quantity | None = _value(tokens[0], units, names, depth)
+    total: Quantity | None = _evaluate_value(tokens[0], units, names, depth)
     for operator, token in zip(tokens[1::2], tokens[2::2], strict=True):
-        value = _value(token, units, names, depth)
+        value = _evaluate_value(token, units, names, depth)
         if total is None or value is None:
             return None
         if operator == "*" and value.keys() == {""}:

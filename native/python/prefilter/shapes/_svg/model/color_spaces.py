@@ -69,13 +69,13 @@ def convert_color(values: Sequence[float], space: str, target: str) -> Values:
     return _from_xyz(_to_xyz(components, space), target)
 
 
-def _applied(matrix: Values, values: Values) -> Values:
+def _apply(matrix: Values, values: Values) -> Values:
     # Multiplies term by term: matrix products of numpy round differently across processors.
     applied: Values = matrix[:, 0] * values[0] + matrix[:, 1] * values[1] + matrix[:, 2] * values[2]
     return applied
 
 
-def _inverse(matrix: Values) -> Values:
+def _invert(matrix: Values) -> Values:
     """Inverts a matrix in exact fractions, so that the result is the same on every machine."""
     m = [[Fraction(float(value)) for value in row] for row in matrix]
     inverse = np.zeros((3, 3))
@@ -98,94 +98,94 @@ def _inverse(matrix: Values) -> Values:
 def _rgb_to_xyz_matrix(space: str) -> Values:
     *primaries, white, _ = RGB_SPACES[space]
     columns = np.array([[x / y, 1.0, (1.0 - x - y) / y] for x, y in primaries]).T
-    shares = _applied(_inverse(columns), np.array(_WHITE[white]))
+    shares = _apply(_invert(columns), np.array(_WHITE[white]))
     return columns * shares[None, :]
 
 
-def _adaptation(white: str, target: str) -> Values:
+def _adaptation_matrix(white: str, target: str) -> Values:
     """Returns Bradford's chromatic adaptation matrix between two white points."""
-    there = _applied(_BRADFORD, np.array(_WHITE[white]))
-    here = _applied(_BRADFORD, np.array(_WHITE[target]))
+    there = _apply(_BRADFORD, np.array(_WHITE[white]))
+    here = _apply(_BRADFORD, np.array(_WHITE[target]))
     scaled = _BRADFORD * (here / there)[:, None]
-    back = _inverse(_BRADFORD)
-    return np.stack([_applied(back, scaled[:, k]) for k in range(3)], axis=1)
+    back = _invert(_BRADFORD)
+    return np.stack([_apply(back, scaled[:, k]) for k in range(3)], axis=1)
 
 
 _MATRICES = {space: _rgb_to_xyz_matrix(space) for space in RGB_SPACES}
-_INVERSES = {space: _inverse(matrix) for space, matrix in _MATRICES.items()}
-_TO_D65, _TO_D50 = _adaptation("d50", "d65"), _adaptation("d65", "d50")
-_LMS_TO_XYZ, _OKLAB_TO_LMS = _inverse(_XYZ_TO_LMS), _inverse(_LMS_TO_OKLAB)
+_INVERSES = {space: _invert(matrix) for space, matrix in _MATRICES.items()}
+_TO_D65, _TO_D50 = _adaptation_matrix("d50", "d65"), _adaptation_matrix("d65", "d50")
+_LMS_TO_XYZ, _OKLAB_TO_LMS = _invert(_XYZ_TO_LMS), _invert(_LMS_TO_OKLAB)
 
 
 def _to_xyz(values: Values, space: str) -> Values:
     """Converts to XYZ with the D65 white point."""
     if space in RGB_SPACES:
         *_, white, curve = RGB_SPACES[space]
-        xyz = _applied(_MATRICES[space], _linear(values, curve))
-        return _applied(_TO_D65, xyz) if white == "d50" else xyz
+        xyz = _apply(_MATRICES[space], _decode(values, curve))
+        return _apply(_TO_D65, xyz) if white == "d50" else xyz
     if space in ("lch", "oklch"):
-        values, space = _rectangular(values), space.replace("lch", "lab")
+        values, space = _polar_to_rectangular(values), space.replace("lch", "lab")
     if space == "oklab":
-        lms = _applied(_OKLAB_TO_LMS, values)
-        return _applied(_LMS_TO_XYZ, lms * lms * lms)
+        lms = _apply(_OKLAB_TO_LMS, values)
+        return _apply(_LMS_TO_XYZ, lms * lms * lms)
     if space == "lab":
         values = _lab_to_xyz(values)
-    return values if space == "xyz-d65" else _applied(_TO_D65, values)
+    return values if space == "xyz-d65" else _apply(_TO_D65, values)
 
 
 def _from_xyz(xyz: Values, space: str) -> Values:
     if space in RGB_SPACES:
         *_, white, curve = RGB_SPACES[space]
-        xyz = _applied(_TO_D50, xyz) if white == "d50" else xyz
-        return _encoded(_applied(_INVERSES[space], xyz), curve)
+        xyz = _apply(_TO_D50, xyz) if white == "d50" else xyz
+        return _encode(_apply(_INVERSES[space], xyz), curve)
     if space in ("oklab", "oklch"):
-        components = _applied(_LMS_TO_OKLAB, _power(_applied(_XYZ_TO_LMS, xyz), 1.0 / 3.0))
+        components = _apply(_LMS_TO_OKLAB, _signed_power(_apply(_XYZ_TO_LMS, xyz), 1.0 / 3.0))
     elif space in ("lab", "lch"):
-        components = _xyz_to_lab(_applied(_TO_D50, xyz))
+        components = _xyz_to_lab(_apply(_TO_D50, xyz))
     else:
-        return xyz if space == "xyz-d65" else _applied(_TO_D50, xyz)
-    return _polar(components) if space in ("lch", "oklch") else components
+        return xyz if space == "xyz-d65" else _apply(_TO_D50, xyz)
+    return _rectangular_to_polar(components) if space in ("lch", "oklch") else components
 
 
-def _power(values: Values, exponent: float) -> Values:
+def _signed_power(values: Values, exponent: float) -> Values:
     """Raises absolute values to a power and restores the signs."""
     powers: Values = np.sign(values) * _native.powers(np.abs(values), exponent)
     return powers
 
 
-def _linear(values: Values, curve: str) -> Values:
+def _decode(values: Values, curve: str) -> Values:
     size = np.abs(values)
     match curve:
         case "srgb":
-            high = _power(np.sign(values) * (size + 0.055) / 1.055, 2.4)
+            high = _signed_power(np.sign(values) * (size + 0.055) / 1.055, 2.4)
             return np.where(size <= 0.04045, values / 12.92, high)
         case "a98":
-            return _power(values, 563.0 / 256.0)
+            return _signed_power(values, 563.0 / 256.0)
         case "prophoto":
-            return np.where(size <= 16.0 / 512.0, values / 16.0, _power(values, 1.8))
+            return np.where(size <= 16.0 / 512.0, values / 16.0, _signed_power(values, 1.8))
         case "rec2020":
-            high = _power(np.sign(values) * (size + _ALPHA - 1.0) / _ALPHA, 1.0 / 0.45)
+            high = _signed_power(np.sign(values) * (size + _ALPHA - 1.0) / _ALPHA, 1.0 / 0.45)
             return np.where(size < 4.5 * _BETA, values / 4.5, high)
     return values
 
 
-def _encoded(values: Values, curve: str) -> Values:
+def _encode(values: Values, curve: str) -> Values:
     size = np.abs(values)
     match curve:
         case "srgb":
             high = np.sign(values) * (1.055 * _native.powers(size, 1.0 / 2.4) - 0.055)
             return np.where(size <= 0.0031308, 12.92 * values, high)
         case "a98":
-            return _power(values, 256.0 / 563.0)
+            return _signed_power(values, 256.0 / 563.0)
         case "prophoto":
-            return np.where(size < 1.0 / 512.0, 16.0 * values, _power(values, 1.0 / 1.8))
+            return np.where(size < 1.0 / 512.0, 16.0 * values, _signed_power(values, 1.0 / 1.8))
         case "rec2020":
             high = np.sign(values) * (_ALPHA * _native.powers(size, 0.45) - (_ALPHA - 1.0))
             return np.where(size < _BETA, 4.5 * values, high)
     return values
 
 
-def _rectangular(values: Values) -> Values:
+def _polar_to_rectangular(values: Values) -> Values:
     angle = np.radians(values[2])
     return np.array(
         [
@@ -196,7 +196,7 @@ def _rectangular(values: Values) -> Values:
     )
 
 
-def _polar(values: Values) -> Values:
+def _rectangular_to_polar(values: Values) -> Values:
     chroma = _native.hypot(float(values[1]), float(values[2]))
     hue = np.degrees(_native.atan2(float(values[2]), float(values[1]))) % 360.0
     return np.array([values[0], chroma, hue])
@@ -215,7 +215,9 @@ def _lab_to_xyz(lab: Values) -> Values:
 
 def _xyz_to_lab(xyz: Values) -> Values:
     shares = xyz / np.array(_WHITE["d50"])
-    f = np.where(shares > _EPSILON, _power(shares, 1.0 / 3.0), (_KAPPA * shares + 16.0) / 116.0)
+    f = np.where(
+        shares > _EPSILON, _signed_power(shares, 1.0 / 3.0), (_KAPPA * shares + 16.0) / 116.0
+    )
     return np.array([116.0 * f[1] - 16.0, 500.0 * (f[0] - f[1]), 200.0 * (f[1] - f[2])])
 
 

@@ -50,11 +50,11 @@ def color_from_token(token: Any) -> Color | str | None:
     """Converts a token to a color, or to "current" for currentcolor; returns None if it is no
     color.
     """
-    color = _parsed(token, 0)
-    return color if color is None or isinstance(color, str) else _srgb(color)
+    color = _parse_token(token, 0)
+    return color if color is None or isinstance(color, str) else _to_srgb(color)
 
 
-def _srgb(color: SpaceColor) -> Color | None:
+def _to_srgb(color: SpaceColor) -> Color | None:
     values = convert_color([value or 0.0 for value in color.values], color.space, "srgb")
     limited = [min(max(float(value), 0.0), 1.0) for value in (*values, color.alpha or 0.0)]
     if not np.isfinite(limited).all():
@@ -62,31 +62,31 @@ def _srgb(color: SpaceColor) -> Color | None:
     return (limited[0], limited[1], limited[2], limited[3])
 
 
-def _parsed(token: Any, depth: int) -> SpaceColor | str | None:
+def _parse_token(token: Any, depth: int) -> SpaceColor | str | None:
     if depth > _MAX_NESTED or token is None:
         return None
     if token.type in ("ident", "hash"):
-        found = tinycss2.color4.parse_color(token)
-        if found is None or isinstance(found, str):
-            return "current" if found else None
-        red, green, blue = found.coordinates
-        return SpaceColor("srgb", (red, green, blue), found.alpha)
+        parsed = tinycss2.color4.parse_color(token)
+        if parsed is None or isinstance(parsed, str):
+            return "current" if parsed else None
+        red, green, blue = parsed.coordinates
+        return SpaceColor("srgb", (red, green, blue), parsed.alpha)
     if token.type != "function":
         return None
     name = _ALIASES.get(token.lower_name, token.lower_name)
     tokens = [each for each in token.arguments if each.type not in ("whitespace", "comment")]
     if name == "color-mix":
-        return _mixed(tokens, depth)
+        return _parse_color_mix(tokens, depth)
     if name == "light-dark":
-        parts = _split(tokens)
-        found = [_parsed(part[0], depth + 1) if len(part) == 1 else None for part in parts]
-        return found[0] if len(found) == 2 and None not in found else None
+        parts = _split_at_commas(tokens)
+        parsed = [_parse_token(part[0], depth + 1) if len(part) == 1 else None for part in parts]
+        return parsed[0] if len(parsed) == 2 and None not in parsed else None
     if name in _RANGES or name == "color":
-        return _function(name, tokens, depth)
+        return _parse_function(name, tokens, depth)
     return None
 
 
-def _split(tokens: Sequence[Any]) -> list[list[Any]]:
+def _split_at_commas(tokens: Sequence[Any]) -> list[list[Any]]:
     parts: list[list[Any]] = [[]]
     for token in tokens:
         if token == ",":
@@ -96,13 +96,13 @@ def _split(tokens: Sequence[Any]) -> list[list[Any]]:
     return parts
 
 
-def _function(name: str, tokens: list[Any], depth: int) -> SpaceColor | None:
+def _parse_function(name: str, tokens: list[Any], depth: int) -> SpaceColor | None:
     origin = None
     if len(tokens) > 1 and tokens[0].type == "ident" and tokens[0].lower_value == "from":
-        found = _parsed(tokens[1], depth + 1)
-        if not isinstance(found, SpaceColor):
+        origin_color = _parse_token(tokens[1], depth + 1)
+        if not isinstance(origin_color, SpaceColor):
             return None
-        origin, tokens = found, tokens[2:]
+        origin, tokens = origin_color, tokens[2:]
     space, ranges = name, _RANGES.get(name, (1.0, 1.0, 1.0))
     if name == "color":
         space = tokens[0].lower_value if tokens and tokens[0].type == "ident" else ""
@@ -110,9 +110,9 @@ def _function(name: str, tokens: list[Any], depth: int) -> SpaceColor | None:
         if space not in RGB_SPACES and space not in ("xyz-d65", "xyz-d50"):
             return None
         tokens = tokens[1:]
-    names = _names_of(name, space, origin) if origin is not None else {}
+    names = _component_names(name, space, origin) if origin is not None else {}
     if any(token == "," for token in tokens):
-        return _legacy(name, tokens) if origin is None else None
+        return _parse_legacy(name, tokens) if origin is None else None
     alpha_tokens: list[Any] | None = None
     for index, token in enumerate(tokens):
         if token == "/":
@@ -120,18 +120,20 @@ def _function(name: str, tokens: list[Any], depth: int) -> SpaceColor | None:
             break
     if len(tokens) != 3 or (alpha_tokens is not None and len(alpha_tokens) != 1):
         return None
-    values = [_component(token, whole, names) for token, whole in zip(tokens, ranges, strict=True)]
+    values = [
+        _parse_component(token, whole, names) for token, whole in zip(tokens, ranges, strict=True)
+    ]
     alpha: Any = 1.0 if origin is None else origin.alpha
     if alpha_tokens is not None:
-        alpha = _component(alpha_tokens[0], 1.0, names)
+        alpha = _parse_component(alpha_tokens[0], 1.0, names)
     if any(value == "" for value in (*values, alpha)):
         return None
     return _limit_components(name, space, values, alpha)
 
 
-def _legacy(name: str, tokens: list[Any]) -> SpaceColor | None:
+def _parse_legacy(name: str, tokens: list[Any]) -> SpaceColor | None:
     """Parses the comma syntax, which has no `none` and the same unit for red, green and blue."""
-    parts = _split(tokens)
+    parts = _split_at_commas(tokens)
     if name not in _LEGACY or len(parts) not in (3, 4) or any(len(part) != 1 for part in parts):
         return None
     tokens = [part[0] for part in parts]
@@ -141,15 +143,16 @@ def _legacy(name: str, tokens: list[Any]) -> SpaceColor | None:
     if name == "hsl" and any(token.type == "number" for token in tokens[1:3]):
         return None
     values = [
-        _component(token, whole, {}) for token, whole in zip(tokens, _RANGES[name], strict=False)
+        _parse_component(token, whole, {})
+        for token, whole in zip(tokens, _RANGES[name], strict=False)
     ]
-    alpha = _component(tokens[3], 1.0, {}) if len(tokens) == 4 else 1.0
+    alpha = _parse_component(tokens[3], 1.0, {}) if len(tokens) == 4 else 1.0
     if any(value in ("", None) for value in (*values, alpha)):
         return None
     return _limit_components(name, name, values, alpha)
 
 
-def _component(token: Any, whole: float | None, names: Mapping[str, float]) -> Any:
+def _parse_component(token: Any, whole: float | None, names: Mapping[str, float]) -> Any:
     """Parses a component: a number, None for `none`, or "" if invalid. Without `whole` it is an
     angle.
     """
@@ -181,7 +184,7 @@ def _limit_components(name: str, space: str, values: Sequence[Any], alpha: Any) 
     return SpaceColor(space, (a, b, c), None if alpha is None else min(max(alpha, 0.0), 1.0))
 
 
-def _names_of(name: str, space: str, origin: SpaceColor) -> dict[str, float]:
+def _component_names(name: str, space: str, origin: SpaceColor) -> dict[str, float]:
     """Returns the components of the origin color, by their names in a relative color."""
     target = "srgb" if name == "rgb" else space
     values = convert_color([value or 0.0 for value in origin.values], origin.space, target)
@@ -191,9 +194,9 @@ def _names_of(name: str, space: str, origin: SpaceColor) -> dict[str, float]:
     return names | {"alpha": origin.alpha or 0.0}
 
 
-def _mixed(tokens: list[Any], depth: int) -> SpaceColor | None:
+def _parse_color_mix(tokens: list[Any], depth: int) -> SpaceColor | None:
     """Evaluates `color-mix()`: CSS Color 5, section 3."""
-    parts = _split(tokens)
+    parts = _split_at_commas(tokens)
     how = [token.lower_value for token in parts[0] if token.type == "ident"]
     if len(parts) == 2:
         parts, how = [[], *parts], ["in", "oklab"]
@@ -212,14 +215,14 @@ def _mixed(tokens: list[Any], depth: int) -> SpaceColor | None:
     shares: list[float | None] = []
     for part in parts[1:]:
         share = None
-        rest = []
+        color_tokens = []
         for token in part:
-            found = evaluate_quantity(token, {})
-            if found is not None and found.keys() == {"%"}:
-                share = found["%"]
+            quantity = evaluate_quantity(token, {})
+            if quantity is not None and quantity.keys() == {"%"}:
+                share = quantity["%"]
             else:
-                rest.append(token)
-        color = _parsed(rest[0], depth + 1) if len(rest) == 1 else None
+                color_tokens.append(token)
+        color = _parse_token(color_tokens[0], depth + 1) if len(color_tokens) == 1 else None
         if not isinstance(color, SpaceColor) or (share is not None and not 0.0 <= share <= 100.0):
             return None
         colors.append(color)
@@ -230,14 +233,16 @@ def _mixed(tokens: list[Any], depth: int) -> SpaceColor | None:
     second = 100.0 - first if second is None else second
     if first + second == 0.0:
         return None
-    return _mix(colors, space, hue, second / (first + second), min((first + second) / 100.0, 1.0))
+    return _interpolate(
+        colors, space, hue, second / (first + second), min((first + second) / 100.0, 1.0)
+    )
 
 
-def _mix(
+def _interpolate(
     colors: Sequence[SpaceColor], space: str, hue: str, share: float, opacity: float
 ) -> SpaceColor:
     """Interpolates between two colors; `share` is the weight of the second one."""
-    both = [_in_space(color, space) for color in colors]
+    both = [_to_space(color, space) for color in colors]
     values: list[list[float | None]] = [list(each.values) for each in both]
     alphas = [each.alpha for each in both]
     for one, other in ((0, 1), (1, 0)):
@@ -264,17 +269,29 @@ def _mix(
 
 def _hue_difference(low: float, high: float, hue: str) -> float:
     """Returns the signed hue difference to interpolate over, in degrees."""
-    way = high - low
+    difference = high - low
     if hue == "shorter":
-        return way - 360.0 if way > 180.0 else way + 360.0 if way < -180.0 else way
+        return (
+            difference - 360.0
+            if difference > 180.0
+            else difference + 360.0
+            if difference < -180.0
+            else difference
+        )
     if hue == "longer":
-        return way - 360.0 if 0.0 < way < 180.0 else way + 360.0 if -180.0 < way <= 0.0 else way
+        return (
+            difference - 360.0
+            if 0.0 < difference < 180.0
+            else difference + 360.0
+            if -180.0 < difference <= 0.0
+            else difference
+        )
     if hue == "increasing":
-        return way + 360.0 if way < 0.0 else way
-    return way - 360.0 if way > 0.0 else way
+        return difference + 360.0 if difference < 0.0 else difference
+    return difference - 360.0 if difference > 0.0 else difference
 
 
-def _in_space(color: SpaceColor, space: str) -> SpaceColor:
+def _to_space(color: SpaceColor, space: str) -> SpaceColor:
     """Converts a color to another space; powerless hues become missing."""
     if color.space == space:
         return color

@@ -167,9 +167,9 @@ def _too_many() -> TooLargeError:
 
 def read_path(text: str) -> tuple[Outline, bool]:
     """Reads path data up to the first error; returns whether there was none, too."""
-    letters, numbers, is_whole = _native.read_path(text.encode(errors="replace"), MAX_SEGMENTS)
+    letters, numbers, is_complete = _native.read_path(text.encode(errors="replace"), MAX_SEGMENTS)
     if letters is None or numbers is None:
         raise _too_many()
     outline = Outline()
     outline.extend(letters, array("d", numbers))
-    return outline, is_whole
+    return outline, is_complete

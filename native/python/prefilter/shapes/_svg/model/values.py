@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 import tinycss2
 
 from .... import _native
-from ...affine import IDENTITY, Matrix, multiplied
+from ...affine import IDENTITY, Matrix, compose
 from .calculations import DEGREES, Quantity, evaluate_quantity, is_calculation
 from .colors import Color, color_from_token
 
@@ -73,11 +73,11 @@ def parse_length(text: str) -> Length | None:
     """Parses a length; returns None if invalid. Raises UnknownUnitError."""
     match = _LENGTH.fullmatch(text)
     if not match:
-        return _calculated_length(text) if "(" in text else None
-    return _length_of(float(match[1]), match[2].lower())
+        return _parse_calculated_length(text) if "(" in text else None
+    return _make_length(float(match[1]), match[2].lower())
 
 
-def _length_of(value: float, unit: str) -> Length | None:
+def _make_length(value: float, unit: str) -> Length | None:
     if not math.isfinite(value):
         return None
     if unit == "%" or unit in _UNITS or unit in _FONT_UNITS:
@@ -87,17 +87,17 @@ def _length_of(value: float, unit: str) -> Length | None:
     return None
 
 
-def _calculated_length(text: str) -> Length | None:
-    tokens = _tokens(text)
+def _parse_calculated_length(text: str) -> Length | None:
+    tokens = _tokenize(text)
     if len(tokens) != 1 or not is_calculation(tokens[0]):
         return None
-    return _length_of_sum(evaluate_quantity(tokens[0], _PIXELS))
+    return _length_from_quantity(evaluate_quantity(tokens[0], _PIXELS))
 
 
-def _length_of_sum(quantity: Quantity | None) -> Length | None:
+def _length_from_quantity(quantity: Quantity | None) -> Length | None:
     if quantity is None:
         return None
-    parts = [_length_of(value, unit) for unit, value in quantity.items()]
+    parts = [_make_length(value, unit) for unit, value in quantity.items()]
     lengths = [part for part in parts if part is not None]
     if len(lengths) < len(parts):
         return None
@@ -107,8 +107,8 @@ def _length_of_sum(quantity: Quantity | None) -> Length | None:
 
 def parse_lengths(text: str) -> tuple[Length, ...] | None:
     if "(" in text:
-        tokens = [token for token in _tokens(text) if token != ","]
-        lengths = [_length_of_sum(evaluate_quantity(token, _PIXELS)) for token in tokens]
+        tokens = [token for token in _tokenize(text) if token != ","]
+        lengths = [_length_from_quantity(evaluate_quantity(token, _PIXELS)) for token in tokens]
         return None if None in lengths else tuple(each for each in lengths if each is not None)
     lengths = [parse_length(part) for part in re.split(r"\s*,\s*|\s+", text.strip())]
     return tuple(each for each in lengths if each is not None) if None not in lengths else None
@@ -119,7 +119,7 @@ _ORIGINS = {"left": 0.0, "top": 0.0, "center": 50.0, "right": 100.0, "bottom": 1
 
 def parse_origin(text: str) -> tuple[Length, Length] | None:
     """Parses `transform-origin` into two lengths; returns None if invalid."""
-    names = _words(text.lower())
+    names = _split_words(text.lower())
     if not names:
         return Length(0.0), Length(0.0)
     if len(names) > 1 and (names[0] in ("top", "bottom") or names[1] in ("left", "right")):
@@ -138,18 +138,18 @@ def parse_origin(text: str) -> tuple[Length, Length] | None:
     return (x, y) if x is not None and y is not None and len(lengths) < 4 else None
 
 
-def _words(text: str) -> list[str]:
+def _split_words(text: str) -> list[str]:
     """Splits at whitespace outside parentheses."""
     if "(" not in text:
         return text.split()
-    return [tinycss2.serialize([token]) for token in _tokens(text)]
+    return [tinycss2.serialize([token]) for token in _tokenize(text)]
 
 
 def parse_number(text: str) -> float | None:
     """Parses a number, or a percentage as a fraction."""
     match = _LENGTH.fullmatch(text)
     if not match and "(" in text:
-        tokens = _tokens(text)
+        tokens = _tokenize(text)
         quantity = evaluate_quantity(tokens[0], {}) if len(tokens) == 1 else None
         if quantity is None or quantity.keys() - {"", "%"}:
             return None
@@ -203,23 +203,23 @@ def parse_color(text: str) -> Color | str | None:
 
 def parse_background(text: str) -> Color | str | None:
     """Finds the color in a value of the property `background`; see `parse_color`."""
-    colors = [color_from_token(token) for token in _tokens(text)]
+    colors = [color_from_token(token) for token in _tokenize(text)]
     return next((color for color in colors if color is not None), None)
 
 
 @cache_short_texts
 def parse_paint(text: str) -> Paint | None:
-    tokens = _tokens(text)
+    tokens = _tokenize(text)
     if not tokens:
         return None
     server = parse_url(tokens[0])
     if server is None:
-        return _plain_paint(tokens)
-    fallback = _plain_paint(tokens[1:]) if tokens[1:] else Paint(None)
+        return _parse_plain_paint(tokens)
+    fallback = _parse_plain_paint(tokens[1:]) if tokens[1:] else Paint(None)
     return Paint(fallback.color, server) if fallback else None
 
 
-def _plain_paint(tokens: Sequence[Any]) -> Paint | None:
+def _parse_plain_paint(tokens: Sequence[Any]) -> Paint | None:
     if len(tokens) != 1:
         return None
     if tokens[0].type == "ident" and tokens[0].lower_value == "none":
@@ -241,7 +241,7 @@ def parse_url(token: Any) -> str | None:
     return str(url).strip()
 
 
-def _tokens(text: str) -> list[Any]:
+def _tokenize(text: str) -> list[Any]:
     tokens = tinycss2.parse_component_value_list(text, skip_comments=True)
     return [token for token in tokens if token.type != "whitespace"]
 
@@ -258,11 +258,11 @@ def parse_transform(text: str, *whole: float) -> Matrix | None:
     if text.strip().lower() in ("", "none"):
         return IDENTITY
     matrix = IDENTITY
-    for name, arguments in _functions(text, whole or (0.0, 0.0, 0.0)):
-        transform = _transform(name, arguments)
+    for name, arguments in _parse_functions(text, whole or (0.0, 0.0, 0.0)):
+        transform = _make_transform(name, arguments)
         if transform is None:
             return None
-        matrix = multiplied(matrix, transform)
+        matrix = compose(matrix, transform)
     return matrix if all(map(math.isfinite, matrix)) else None
 
 
@@ -271,16 +271,18 @@ def has_relative_lengths(text: str) -> bool:
     return "%" in text or "em" in text or "ex" in text
 
 
-def _functions(text: str, whole: tuple[float, ...]) -> Iterator[tuple[str, list[float] | None]]:
+def _parse_functions(
+    text: str, whole: tuple[float, ...]
+) -> Iterator[tuple[str, list[float] | None]]:
     name = ""
-    for token in _tokens(text):
+    for token in _tokenize(text):
         if token.type == "ident" and not name:
             name = token.lower_value  # Whitespace precedes its parenthesis.
         elif token.type == "() block" and name:
-            yield name, _numbers_in(name, token.content, whole)
+            yield name, _parse_arguments(name, token.content, whole)
             name = ""
         elif token.type == "function" and not name:
-            yield token.lower_name, _numbers_in(token.lower_name, token.arguments, whole)
+            yield token.lower_name, _parse_arguments(token.lower_name, token.arguments, whole)
         elif token != "," or name:
             yield "", None
     if name:
@@ -290,7 +292,9 @@ def _functions(text: str, whole: tuple[float, ...]) -> Iterator[tuple[str, list[
 _IN_TRANSFORMS = _PIXELS | {unit: ("deg", factor) for unit, factor in DEGREES.items()}
 
 
-def _numbers_in(name: str, tokens: Sequence[Any], whole: tuple[float, ...]) -> list[float] | None:
+def _parse_arguments(
+    name: str, tokens: Sequence[Any], whole: tuple[float, ...]
+) -> list[float] | None:
     """Reads numbers, pixels, and angles in degrees."""
     numbers: list[float] = []
     for token in tokens:
@@ -309,7 +313,7 @@ def _numbers_in(name: str, tokens: Sequence[Any], whole: tuple[float, ...]) -> l
     return numbers if all(map(math.isfinite, numbers)) else None
 
 
-def _transform(name: str, numbers: list[float] | None) -> Matrix | None:
+def _make_transform(name: str, numbers: list[float] | None) -> Matrix | None:
     match name, numbers:
         case "matrix", [a, b, c, d, e, f]:
             return (a, b, c, d, e, f)
@@ -333,7 +337,7 @@ def _transform(name: str, numbers: list[float] | None) -> Matrix | None:
             return rotation(angle)
         case "rotate", [angle, x, y]:
             there, back = (1.0, 0.0, 0.0, 1.0, x, y), (1.0, 0.0, 0.0, 1.0, -x, -y)
-            return multiplied(multiplied(there, rotation(angle)), back)
+            return compose(compose(there, rotation(angle)), back)
         case "skewx", [angle]:
             return (1.0, 0.0, _native.tan(math.radians(angle)), 1.0, 0.0, 0.0)
         case "skewy", [angle]:
@@ -346,7 +350,7 @@ def parse_rotate(text: str) -> Matrix | None:
     axis: list[str] = []
     angle: float | None = None
     numbers: list[float] = []
-    for token in _tokens(text):
+    for token in _tokenize(text):
         quantity = evaluate_quantity(token, _IN_TRANSFORMS)
         if token.type == "ident":
             axis.append(token.lower_value)
@@ -365,7 +369,7 @@ def parse_rotate(text: str) -> Matrix | None:
 
 def as_path(text: str) -> str | None:
     """Returns the path data in a value of the property `d`; None if invalid."""
-    tokens = _tokens(text)
+    tokens = _tokenize(text)
     if len(tokens) != 1:
         return None
     token = tokens[0]

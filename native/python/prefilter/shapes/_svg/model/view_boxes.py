@@ -28,8 +28,8 @@ def parse_view_box(text: str | None) -> ViewBox | None:
     """Parses `viewBox`; returns None if invalid."""
     if text is None:
         return None
-    numbers, is_whole = leading_numbers(text)
-    if not is_whole or len(numbers) != 4 or min(numbers[2:]) < 1.0 / MAX_UNITS:
+    numbers, is_complete = leading_numbers(text)
+    if not is_complete or len(numbers) != 4 or min(numbers[2:]) < 1.0 / MAX_UNITS:
         return None
     if max(map(abs, numbers)) > MAX_UNITS:
         return None

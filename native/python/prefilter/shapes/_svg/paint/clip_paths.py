@@ -5,7 +5,7 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
-from ...affine import multiplied
+from ...affine import compose
 from ..model.clips import make_clip
 from ..model.tree import Clip, ClipPart
 from ..model.values import parse_paint
@@ -51,7 +51,7 @@ def _clip(path: SvgElement, element: SvgElement, context: Context, sources: Sour
         if box is None or box[2] <= box[0] or box[3] <= box[1]:
             return None
         to_box = (box[2] - box[0], 0.0, 0.0, box[3] - box[1], box[0], box[1])
-        inside = replace(inside, matrix=multiplied(inside.matrix, to_box), viewport=(1.0, 1.0))
+        inside = replace(inside, matrix=compose(inside.matrix, to_box), viewport=(1.0, 1.0))
     inside = replace(inside, style=sources.sheets.style(path))
     parts: list[ClipPart] = []
     for child in path:

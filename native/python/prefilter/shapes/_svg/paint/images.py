@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from ...affine import Matrix, multiplied
+from ...affine import Matrix, compose
 from ..model.clips import make_box_clip
 from ..model.gradients import Colors
 from ..model.limits import TooLargeError
@@ -34,9 +34,7 @@ class NestedDrawing(Protocol):
     def page(self) -> Page:
         """The drawing's page."""
 
-    def draw_in(
-        self, matrix: Matrix, clips: tuple[Clip, ...], target: Group, colors: Colors
-    ) -> None:
+    def build(self, matrix: Matrix, clips: tuple[Clip, ...], target: Group, colors: Colors) -> None:
         """Adds its items to a group; the matrix leads from its units to the tree's."""
 
 
@@ -84,10 +82,10 @@ class Images:
 def draw_image(element: SvgElement, context: Context, sources: Sources, images: Images) -> None:
     """Draws an `image` element."""
     if context.style.visibility == "visible":
-        put_image(element, None, context, sources, images)
+        place_image(element, None, context, sources, images)
 
 
-def put_image(
+def place_image(
     element: SvgElement, box: Bounds | None, context: Context, sources: Sources, images: Images
 ) -> None:
     """Draws the image that an element refers to.
@@ -146,15 +144,15 @@ def _draw(
         own = own if aspect.strip() == "none" else (width, height)
     own_width, own_height = own
     page = ViewBox(0.0, 0.0, own_width, own_height)
-    view_matrix = multiplied((1.0, 0.0, 0.0, 1.0, x, y), fit_view_box(page, aspect, width, height))
-    matrix = multiplied(context.matrix, view_matrix)
+    view_matrix = compose((1.0, 0.0, 0.0, 1.0, x, y), fit_view_box(page, aspect, width, height))
+    matrix = compose(context.matrix, view_matrix)
     clips = context.clips
     if declared.get("overflow", "hidden") not in VISIBLE_OVERFLOW and aspect.strip().endswith(
         "slice"
     ):
         clips = (*clips, make_box_clip((x, y, x + width, y + height), context.matrix))
     if isinstance(contents, np.ndarray):
-        unit = multiplied(matrix, (own_width, 0.0, 0.0, own_height, 0.0, 0.0))
+        unit = compose(matrix, (own_width, 0.0, 0.0, own_height, 0.0, 0.0))
         context.target.items.append(
             Picture(
                 contents,
@@ -171,7 +169,7 @@ def _draw(
         context.target.items.append(group)
         clips = (*clips, make_box_clip((0.0, 0.0, own_width, own_height), matrix))
         view_matrix = fit_view_box(contents.page.view, contents.page.aspect, own_width, own_height)
-        contents.draw_in(multiplied(matrix, view_matrix), clips, group, context.colors)
+        contents.build(compose(matrix, view_matrix), clips, group, context.colors)
 
 
 def _read_bytes(element: SvgElement, sources: Sources) -> tuple[bytes, str]:

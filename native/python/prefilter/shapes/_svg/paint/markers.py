@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from .... import _native
-from ...affine import IDENTITY, Matrix, multiplied
+from ...affine import IDENTITY, Matrix, compose
 from ..model.clips import make_box_clip
 from ..model.outline import Outline
 from ..model.tree import Group
@@ -107,10 +107,10 @@ def _draw(
     angle = vertex.angle if orient.startswith("auto") else _degrees(orient)
     if orient == "auto-start-reverse" and is_start:
         angle += 180.0
-    matrix = multiplied((1.0, 0.0, 0.0, 1.0, vertex.x, vertex.y), rotation(angle))
+    matrix = compose((1.0, 0.0, 0.0, 1.0, vertex.x, vertex.y), rotation(angle))
     if declared.get("markerUnits", "strokeWidth") != "userSpaceOnUse":
         scale = context.units.pixels(context.style.stroke_width, "stroke-width")
-        matrix = multiplied(matrix, (scale, 0.0, 0.0, scale, 0.0, 0.0))
+        matrix = compose(matrix, (scale, 0.0, 0.0, scale, 0.0, 0.0))
     fitted: Matrix = IDENTITY
     size = (width, height)
     region = (0.0, 0.0, width, height)
@@ -126,8 +126,8 @@ def _draw(
     )
     a, b, c, d = fitted[:4]
     reference = (a * ref_x + c * ref_y + fitted[4], b * ref_x + d * ref_y + fitted[5])
-    matrix = multiplied(matrix, (1.0, 0.0, 0.0, 1.0, -reference[0], -reference[1]))
-    to_tree = multiplied(context.matrix, matrix)
+    matrix = compose(matrix, (1.0, 0.0, 0.0, 1.0, -reference[0], -reference[1]))
+    to_tree = compose(context.matrix, matrix)
     clips = context.clips
     if declared.get("overflow", "hidden") not in VISIBLE_OVERFLOW:
         clips = (*clips, make_box_clip(region, to_tree))
@@ -135,7 +135,7 @@ def _draw(
     context.target.items.append(group)
     inside = replace(
         marker_context,
-        matrix=multiplied(to_tree, fitted),
+        matrix=compose(to_tree, fitted),
         viewport=size,
         target=group,
         clips=clips,

@@ -4,7 +4,7 @@
 
 from dataclasses import replace
 
-from ...affine import Matrix, multiplied
+from ...affine import Matrix, compose
 from ..model.clips import make_box_clip
 from ..model.gradients import Colors
 from ..model.tree import Box, Group, Mask
@@ -42,7 +42,7 @@ def read_masks(element: SvgElement, context: Context, sources: Sources) -> tuple
         return None
     style = sources.sheets.style(mask)
     group = Group(is_isolated=True, line=mask.line)
-    clips = (*context.clips, make_box_clip(region, multiplied(context.matrix, matrix)))
+    clips = (*context.clips, make_box_clip(region, compose(context.matrix, matrix)))
     # Luminance is that of the mask's own color interpolation.
     mask_context = replace(
         context,
@@ -58,7 +58,7 @@ def read_masks(element: SvgElement, context: Context, sources: Sources) -> tuple
         if to_box is None:
             return None
         mask_context = replace(
-            mask_context, matrix=multiplied(context.matrix, to_box), viewport=(1.0, 1.0)
+            mask_context, matrix=compose(context.matrix, to_box), viewport=(1.0, 1.0)
         )
     sources.schedule((child, mask_context) for child in rendered_children(mask))
     return (Mask(group, style.mask_type == "luminance", mask_context.colors.is_linear),)

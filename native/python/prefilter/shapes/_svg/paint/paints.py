@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...affine import inverse, multiplied
+from ...affine import compose, inverse
 from ..model.colors import Color
 from ..model.gradients import Gradient
 from ..model.outline import Outline
@@ -78,8 +78,8 @@ def _resolve_context_paint(
     paint = resolve_paint(held.element, owner_context, bounds, held.paint, opacity, sources)
     if paint is None or isinstance(paint, tuple):
         return paint
-    to_here = multiplied(inverse(context.matrix), owner_context.matrix)
-    return replace(paint, matrix=multiplied(to_here, paint.matrix))
+    to_here = compose(inverse(context.matrix), owner_context.matrix)
+    return replace(paint, matrix=compose(to_here, paint.matrix))
 
 
 def resolve_stroke(

@@ -4,14 +4,14 @@
 
 from collections.abc import Mapping
 
-from ...affine import IDENTITY, Matrix, determinant, multiplied
+from ...affine import IDENTITY, Matrix, compose, determinant
 from ..model.clips import make_box_clip
 from ..model.tree import Box, Clip, Group, Pattern
 from ..model.values import Length, parse_transform
 from ..model.view_boxes import MAX_UNITS, fit_view_box, parse_view_box
 from ..read.context import Context, Sources
 from ..read.document import SvgElement
-from ..read.lengths import Units, about_origin, read_length
+from ..read.lengths import Units, read_length, transform_about_origin
 from ..read.nesting import VISIBLE_OVERFLOW, rendered_children
 from .masks import fractions_to_box
 
@@ -40,7 +40,7 @@ def read_pattern(
     if own is None:
         sources.warnings.broken("patternTransform", "ignored", element.line)
         own = IDENTITY
-    own = about_origin(own, attributes.get("transform-origin", ""), context.units) or own
+    own = transform_about_origin(own, attributes.get("transform-origin", ""), context.units) or own
     if contents is None or tile is None or determinant(own) == 0.0:
         return None
     placement = _place_contents(attributes, tile, bounds)
@@ -103,13 +103,13 @@ def _place_contents(
     if view is not None:
         aspect = attributes.get("preserveAspectRatio", "")
         fitted = fit_view_box(view, aspect, tile[2] - tile[0], tile[3] - tile[1])
-        return multiplied(matrix, fitted), (view.width, view.height)
+        return compose(matrix, fitted), (view.width, view.height)
     if attributes.get("patternContentUnits") == "objectBoundingBox":
         to_box = fractions_to_box(bounds)
         if to_box is None:
             return None
         scale = (to_box[0], 0.0, 0.0, to_box[3], 0.0, 0.0)
-        return multiplied(matrix, scale), (1.0, 1.0)
+        return compose(matrix, scale), (1.0, 1.0)
     return matrix, None
 
 

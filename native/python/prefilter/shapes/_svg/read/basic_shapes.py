@@ -42,8 +42,8 @@ def read_shape(
 
     match element.tag:
         case "path":
-            outline, is_whole = read_path(values.get("d", ""))
-            if not is_whole:
+            outline, is_complete = read_path(values.get("d", ""))
+            if not is_complete:
                 effect = "drawn up to an error" if len(outline) else "left out"
                 warnings.broken("path data", effect, element.line)
         case "rect":
@@ -62,8 +62,8 @@ def read_shape(
             outline.move_to(pixels("x1"), pixels("y1"))
             outline.line_to(pixels("x2"), pixels("y2"))
         case _:
-            numbers, is_whole = leading_numbers(values.get("points", ""))
-            if not is_whole or len(numbers) % 2:
+            numbers, is_complete = leading_numbers(values.get("points", ""))
+            if not is_complete or len(numbers) % 2:
                 warnings.broken("points", "drawn up to an error", element.line)
             if len(numbers) < 4:
                 return None

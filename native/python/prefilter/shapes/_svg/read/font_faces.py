@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import tinycss2
 
-from ..._fonts.faces import Face, UnreadableFontError, face_in
+from ..._fonts.faces import Face, UnreadableFontError, read_embedded_face
 from ..._fonts.woff import MAX_BYTES
 from ..model.values import parse_url
 from ..model.warnings import Warnings
@@ -41,7 +41,7 @@ def _read(rule: FontRule, family: str, warnings: Warnings) -> Face | None:
         if not address or address.startswith("#"):
             continue
         try:
-            return face_in(read_address(address, rule.base, MAX_BYTES)[0], family)
+            return read_embedded_face(read_address(address, rule.base, MAX_BYTES)[0], family)
         except (NotLocalError, UnusableError) as error:
             reason = str(error)
         except UnreadableFontError as error:

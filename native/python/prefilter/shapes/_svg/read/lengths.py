@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from ...affine import IDENTITY, Matrix, multiplied
+from ...affine import IDENTITY, Matrix, compose
 from ..model.values import Length, UnknownUnitError, parse_length, parse_origin
 from ..model.warnings import Warnings
 from .document import SvgElement
@@ -40,7 +40,7 @@ class Units:
         return length.pixels(whole, self.font_size)
 
 
-def about_origin(
+def transform_about_origin(
     matrix: Matrix, text: str, units: Units, corner: tuple[float, float] = (0.0, 0.0)
 ) -> Matrix | None:
     """Applies `transform-origin` to a transform; returns None if the property is invalid.
@@ -54,8 +54,8 @@ def about_origin(
     if origin is None or matrix == IDENTITY:
         return None if origin is None else matrix
     x, y = corner[0] + units.pixels(origin[0], "x"), corner[1] + units.pixels(origin[1], "y")
-    matrix = multiplied((1.0, 0.0, 0.0, 1.0, x, y), matrix)
-    return multiplied(matrix, (1.0, 0.0, 0.0, 1.0, -x, -y))
+    matrix = compose((1.0, 0.0, 0.0, 1.0, x, y), matrix)
+    return compose(matrix, (1.0, 0.0, 0.0, 1.0, -x, -y))
 
 
 def read_length(

@@ -5,7 +5,7 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
-from ...affine import multiplied
+from ...affine import compose
 from ..model.clips import make_box_clip
 from ..model.values import Length
 from ..model.view_boxes import fit_view_box, parse_view_box
@@ -50,7 +50,7 @@ def enter_element(element: SvgElement, context: Context, sources: Sources) -> Co
     matrix = read_transform(element, declared, inside, sources)
     if matrix is None:
         return inside
-    return replace(inside, matrix=multiplied(context.matrix, matrix))
+    return replace(inside, matrix=compose(context.matrix, matrix))
 
 
 def resolve_use(
@@ -70,7 +70,7 @@ def resolve_use(
     y = sources.pixels(element, "y", _ZERO, context.units)
     context = replace(
         context,
-        matrix=multiplied(context.matrix, (1.0, 0.0, 0.0, 1.0, x, y)),
+        matrix=compose(context.matrix, (1.0, 0.0, 0.0, 1.0, x, y)),
         uses=(*context.uses, target),
         use=element,
         paints=context_paints(element, context),
@@ -102,9 +102,9 @@ def enter_viewport(element: SvgElement, context: Context, sources: Sources) -> C
     view = parse_view_box(declared.get("viewBox"))
     if view is not None:
         fitted = fit_view_box(view, declared.get("preserveAspectRatio", ""), width, height)
-        matrix = multiplied(matrix, fitted)
+        matrix = compose(matrix, fitted)
         size = (view.width, view.height)
-    matrix = multiplied(context.matrix, matrix)
+    matrix = compose(context.matrix, matrix)
     return replace(context, matrix=matrix, viewport=size, clips=clips)
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...affine import Matrix, multiplied
+from ...affine import Matrix, compose
 from ..model.gradients import Colors
 from ..model.tree import Box
 from ..model.values import Length, parse_background
@@ -38,9 +38,9 @@ class Page:
     def placement(self, width: float, height: float) -> Matrix:
         """Returns the matrix from user units to pixels of an image, y upwards."""
         upwards = (1.0, 0.0, 0.0, -1.0, 0.0, height)
-        return multiplied(upwards, fit_view_box(self.view, self.aspect, width, height))
+        return compose(upwards, fit_view_box(self.view, self.aspect, width, height))
 
-    def shown(self) -> Box:
+    def visible_box(self) -> Box:
         """Returns the visible box in user units: the view box and its surroundings."""
         a, _, _, d, e, f = fit_view_box(self.view, self.aspect, self.width, self.height)
         return (-e / a, -f / d, (self.width - e) / a, (self.height - f) / d)

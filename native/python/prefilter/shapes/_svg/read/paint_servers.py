@@ -4,13 +4,13 @@
 
 from collections.abc import Iterator, Mapping
 
-from ...affine import IDENTITY, determinant, multiplied
+from ...affine import IDENTITY, compose, determinant
 from ..model.colors import Color
 from ..model.gradients import Colors, Gradient, Stop, sample_stops
 from ..model.values import Length, parse_number, parse_transform
 from ..model.warnings import Warnings
 from .document import Document, SvgElement
-from .lengths import Units, about_origin, read_length
+from .lengths import Units, read_length, transform_about_origin
 from .styles import StyleSheets
 from .tags import GRADIENTS
 
@@ -87,8 +87,8 @@ class PaintServers:
         if own is None:
             self._warnings.broken("gradientTransform", "ignored", element.line)
             own = IDENTITY
-        own = about_origin(own, attributes.get("transform-origin", ""), units) or own
-        matrix = multiplied(matrix, own)
+        own = transform_about_origin(own, attributes.get("transform-origin", ""), units) or own
+        matrix = compose(matrix, own)
         numbers = self._numbers(element, attributes, units)
         is_radial = element.tag == "radialGradient"
         if is_radial:

@@ -42,9 +42,9 @@ class _Sheet:
 
     Attributes:
         line: Line in the drawing of the element or reference.
-        place: base: Folders to resolve addresses.
+        base: Folders to resolve addresses.
         files: The chain of importing files.
-        is_here: is_inline: Whether the rules are in the drawing itself, so that their lines count
+        is_inline: Whether the rules are in the drawing itself, so that their lines count
             from `line`.
     """
 
@@ -165,7 +165,7 @@ class StyleRules:
         except cssselect2.SelectorError as error:
             self._warnings.broken("style sheet", f"ignored a rule: {error}", line)
             return
-        declarations = tuple(declarations_in(rule.content))
+        declarations = tuple(read_declarations(rule.content))
         for selector in selectors:
             self.matcher.add_selector(selector, declarations)
         self.is_empty = False
@@ -173,7 +173,7 @@ class StyleRules:
     def _add_at_rule(self, rule: Any, line: int, sheet: _Sheet, may_import: bool) -> None:
         keyword = rule.lower_at_keyword
         if keyword == "font-face" and rule.content is not None:
-            descriptors = {name: value for name, value, _ in declarations_in(rule.content)}
+            descriptors = {name: value for name, value, _ in read_declarations(rule.content)}
             self.font_rules.append(FontRule(line, descriptors, sheet.base))
         elif keyword == "media" and rule.content is not None:
             if self._matches("@media", rule.prelude, line):
@@ -201,7 +201,7 @@ def _is_css(attributes: Mapping[str, str]) -> bool:
     return attributes.get("type", "text/css").strip().lower() in ("text/css", "")
 
 
-def declarations_in(content: Any) -> Iterator[tuple[str, str, bool]]:
+def read_declarations(content: Any) -> Iterator[tuple[str, str, bool]]:
     """Yields name, value and importance of the declarations in a rule."""
     for node in tinycss2.parse_blocks_contents(content, True, True):
         if node.type == "declaration":

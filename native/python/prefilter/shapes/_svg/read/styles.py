@@ -27,7 +27,7 @@ from ..model.values import (
 )
 from ..model.warnings import Warnings
 from .document import Document, SvgElement
-from .style_rules import StyleRules, declarations_in
+from .style_rules import StyleRules, read_declarations
 from .text_style import (
     DEFAULT_TEXT_STYLE,
     NO_ATTRIBUTES,
@@ -109,28 +109,28 @@ _NOT_INHERITED = (
 )
 
 
-def _one_of(*names: str) -> Callable[[str], str | None]:
+def _keyword_parser(*names: str) -> Callable[[str], str | None]:
     return lambda text: text.lower() if text.lower() in names else None
 
 
-def _share(text: str) -> float | None:
+def _parse_fraction(text: str) -> float | None:
     value = parse_number(text)
     return None if value is None else min(max(value, 0.0), 1.0)
 
 
-def _positive_length(text: str) -> Length | None:
+def _parse_positive_length(text: str) -> Length | None:
     length = parse_length(text)
     return length if length and length.value >= 0.0 else None
 
 
-def _dashes(text: str) -> tuple[Length, ...] | None:
+def _parse_dashes(text: str) -> tuple[Length, ...] | None:
     if text.lower() == "none":
         return ()
     lengths = parse_lengths(text)
     return None if lengths is None or any(length.value < 0.0 for length in lengths) else lengths
 
 
-def _miter_limit(text: str) -> float | None:
+def _parse_miter_limit(text: str) -> float | None:
     value = parse_number(text)
     return value if value is not None and value >= 1.0 else None
 
@@ -138,34 +138,34 @@ def _miter_limit(text: str) -> float | None:
 _PARSERS: dict[str, Callable[[str], Any]] = {
     "color": parse_color,
     "fill": parse_paint,
-    "fill-opacity": _share,
-    "fill-rule": _one_of("nonzero", "evenodd"),
+    "fill-opacity": _parse_fraction,
+    "fill-rule": _keyword_parser("nonzero", "evenodd"),
     "paint-order": lambda text: text.lower(),
     "stroke": parse_paint,
-    "stroke-opacity": _share,
-    "stroke-width": _positive_length,
-    "stroke-linecap": _one_of("butt", "round", "square"),
-    "stroke-linejoin": _one_of("miter", "round", "bevel", "miter-clip", "arcs"),
-    "stroke-miterlimit": _miter_limit,
-    "stroke-dasharray": _dashes,
+    "stroke-opacity": _parse_fraction,
+    "stroke-width": _parse_positive_length,
+    "stroke-linecap": _keyword_parser("butt", "round", "square"),
+    "stroke-linejoin": _keyword_parser("miter", "round", "bevel", "miter-clip", "arcs"),
+    "stroke-miterlimit": _parse_miter_limit,
+    "stroke-dasharray": _parse_dashes,
     "stroke-dashoffset": parse_length,
-    "visibility": _one_of("visible", "hidden", "collapse"),
-    "clip-rule": _one_of("nonzero", "evenodd"),
-    "color-interpolation": _one_of("auto", "srgb", "linearrgb"),
-    "color-interpolation-filters": _one_of("auto", "srgb", "linearrgb"),
+    "visibility": _keyword_parser("visible", "hidden", "collapse"),
+    "clip-rule": _keyword_parser("nonzero", "evenodd"),
+    "color-interpolation": _keyword_parser("auto", "srgb", "linearrgb"),
+    "color-interpolation-filters": _keyword_parser("auto", "srgb", "linearrgb"),
     "image-rendering": lambda text: text.lower(),
-    "shape-rendering": _one_of(
+    "shape-rendering": _keyword_parser(
         "auto", "optimizespeed", "crispedges", "geometricprecision", "inherit"
     ),
     "marker-start": lambda text: text,
     "marker-mid": lambda text: text,
     "marker-end": lambda text: text,
-    "opacity": _share,
-    "mix-blend-mode": _one_of(*BLEND_MODES),
-    "isolation": _one_of("auto", "isolate"),
-    "mask-type": _one_of("luminance", "alpha"),
+    "opacity": _parse_fraction,
+    "mix-blend-mode": _keyword_parser(*BLEND_MODES),
+    "isolation": _keyword_parser("auto", "isolate"),
+    "mask-type": _keyword_parser("luminance", "alpha"),
     "stop-color": parse_color,
-    "stop-opacity": _share,
+    "stop-opacity": _parse_fraction,
 }
 _STYLE_PROPERTIES = frozenset((*_PARSERS, *PROPERTIES))
 _FIELDS = {name: name.replace("-", "_") for name in (*_PARSERS, "font-size")}
@@ -296,10 +296,10 @@ class StyleSheets:
             if index % 50 == 0:
                 report(index / document.count)
             if matcher is None:
-                self._declared[each] = self._declarations(each, ())
+                self._declared[each] = self._cascade(each, ())
             else:
                 matched = [match[3] for match in matcher.match(each) if match[2] is None]
-                self._declared[each.etree_element] = self._declarations(each.etree_element, matched)
+                self._declared[each.etree_element] = self._cascade(each.etree_element, matched)
 
     def declared(self, element: SvgElement) -> Mapping[str, str]:
         """Returns the properties and attributes of an element, as text."""
@@ -352,7 +352,7 @@ class StyleSheets:
             return parent.font_size
         return length.pixels(parent.font_size, parent.font_size)
 
-    def _declarations(self, element: SvgElement, rules: Any) -> dict[str, str]:
+    def _cascade(self, element: SvgElement, rules: Any) -> dict[str, str]:
         """Applies attributes, rules, the attribute `style`, then important declarations."""
         declared = {
             name: value.strip()
@@ -361,14 +361,14 @@ class StyleSheets:
         }
         own = _parse_declarations(declared.pop("style")) if "style" in declared else ()
         if not rules and not own:
-            return self._inherited(element, self._with_variables(element, declared))
+            return self._resolve_inherit(element, self._substitute_variables(element, declared))
         for important in (False, True):
             for declarations in (*rules, own):
                 for name, value, is_important in declarations:
                     if is_important != important:
                         continue
                     self._declare(name, value, declared, element)
-        return self._inherited(element, self._with_variables(element, declared))
+        return self._resolve_inherit(element, self._substitute_variables(element, declared))
 
     def _declare(
         self, name: str, value: str, declared: dict[str, str], element: SvgElement
@@ -401,7 +401,9 @@ class StyleSheets:
         else:
             self._report_value(name, value, element)
 
-    def _with_variables(self, element: SvgElement, declared: dict[str, str]) -> dict[str, str]:
+    def _substitute_variables(
+        self, element: SvgElement, declared: dict[str, str]
+    ) -> dict[str, str]:
         """Substitutes variables."""
         inherited = {} if element.parent is None else self._custom.get(element.parent, {})
         has_own = any(name.startswith("--") and name not in _TRANSFORM_KEYS for name in declared)
@@ -430,7 +432,7 @@ class StyleSheets:
         else:
             self._warnings.broken(f"{name} '{value[:40]}'", "ignored", element.line)
 
-    def _inherited(self, element: SvgElement, declared: dict[str, str]) -> dict[str, str]:
+    def _resolve_inherit(self, element: SvgElement, declared: dict[str, str]) -> dict[str, str]:
         """Resolves `inherit` for properties that are not inherited by default."""
         if "inherit" in declared.values():
             parent = self._declared[element.parent] if element.parent is not None else {}
@@ -528,4 +530,4 @@ def _unknown_unit(name: str, text: str) -> str:
 
 @cache_short_texts
 def _parse_declarations(text: str) -> tuple[tuple[str, str, bool], ...]:
-    return tuple(declarations_in(text))
+    return tuple(read_declarations(text))

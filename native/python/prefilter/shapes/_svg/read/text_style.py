@@ -81,8 +81,8 @@ class FontRule:
 
     Attributes:
         line: Line in the drawing.
-        said: descriptors: Descriptors by name.
-        place: base: Folders to resolve addresses.
+        descriptors: Descriptors by name.
+        base: Folders to resolve addresses.
     """
 
     line: int
@@ -109,9 +109,9 @@ def inherit_text_style(
         if text.lower() in ("initial", "unset"):
             value = getattr(DEFAULT_TEXT_STYLE, field)
         elif name == "font-weight":
-            value = _weight(text.lower(), parent.weight)
+            value = _parse_weight(text.lower(), parent.weight)
         elif name in ("letter-spacing", "word-spacing"):
-            value = _spacing(text, font_size)
+            value = _parse_spacing(text, font_size)
         else:
             value = parse(text)
         if value is not None:
@@ -127,18 +127,18 @@ def expand_font_shorthand(text: str) -> dict[str, str]:
         word_lower = word.lower()
         size = word_lower.partition("/")[0]
         if size in _GENERIC_SIZES or (_SIZE.match(word_lower) and not _is_weight(word_lower)):
-            rest = words[index + 1 :]
-            if rest[:1] and rest[0].startswith("/"):
-                rest = rest[2:] if rest[0] == "/" else rest[1:]
+            following = words[index + 1 :]
+            if following[:1] and following[0].startswith("/"):
+                following = following[2:] if following[0] == "/" else following[1:]
             elif word_lower.endswith("/"):
-                rest = rest[1:]
-            if not rest:
+                following = following[1:]
+            if not following:
                 return {}
             return {
                 **longhands,
                 "font-kerning": "auto",
                 "font-size": size,
-                "font-family": " ".join(rest),
+                "font-family": " ".join(following),
             }
         if word_lower in ("italic", "oblique"):
             longhands["font-style"] = word_lower
@@ -161,7 +161,7 @@ def _is_weight(text: str) -> bool:
     return value is not None and value >= 1.0 and text.isdigit()
 
 
-def _families(text: str) -> tuple[str, ...] | None:
+def _parse_families(text: str) -> tuple[str, ...] | None:
     """Parses a list of families; quoted names may contain anything."""
     families: list[str] = []
     words: list[str] = []
@@ -178,7 +178,7 @@ def _families(text: str) -> tuple[str, ...] | None:
     return tuple(families)
 
 
-def _weight(text: str, parent: float) -> float | None:
+def _parse_weight(text: str, parent: float) -> float | None:
     for name, table in (("bolder", _HEAVIER), ("lighter", _LIGHTER)):
         if text == name:
             return next(to or parent for below, to in table if parent < below)
@@ -188,7 +188,7 @@ def _weight(text: str, parent: float) -> float | None:
     return value if value is not None and 1.0 <= value <= 1000.0 else None
 
 
-def _stretch(text: str) -> float | None:
+def _parse_stretch(text: str) -> float | None:
     small = text.lower()
     if small in _STRETCHES:
         return _STRETCHES[small]
@@ -196,12 +196,12 @@ def _stretch(text: str) -> float | None:
     return value if value is not None and value >= 0.0 else None
 
 
-def _slant(text: str) -> str | None:
+def _parse_slant(text: str) -> str | None:
     small = text.lower().split()[:1]
     return small[0] if small and small[0] in ("normal", "italic", "oblique") else None
 
 
-def _spacing(text: str, font_size: float) -> float | None:
+def _parse_spacing(text: str, font_size: float) -> float | None:
     if text.lower() == "normal":
         return 0.0
     try:
@@ -211,7 +211,7 @@ def _spacing(text: str, font_size: float) -> float | None:
     return None if length is None else length.pixels(font_size, font_size)
 
 
-def _variations(text: str) -> tuple[tuple[str, float], ...] | None:
+def _parse_variations(text: str) -> tuple[tuple[str, float], ...] | None:
     if text.lower() == "normal":
         return ()
     settings = []
@@ -224,7 +224,7 @@ def _variations(text: str) -> tuple[tuple[str, float], ...] | None:
     return tuple(settings)
 
 
-def _one_of(*names: str) -> Callable[[str], str | None]:
+def _keyword_parser(*names: str) -> Callable[[str], str | None]:
     return lambda text: text.lower() if text.lower() in names else None
 
 
@@ -232,33 +232,33 @@ _VERTICAL_MODES = ("tb", "tb-rl", "vertical-rl", "vertical-lr")
 _HORIZONTAL_MODES = ("lr", "lr-tb", "rl", "rl-tb", "horizontal-tb")
 
 
-def _is_vertical(text: str) -> bool | None:
+def _parse_writing_mode(text: str) -> bool | None:
     small = text.lower()
     return small in _VERTICAL_MODES if small in (*_VERTICAL_MODES, *_HORIZONTAL_MODES) else None
 
 
 _IGNORED_BASELINES = ("no-change", "reset-size", "use-script")
-_ANCHORS = _one_of("start", "middle", "end")
+_ANCHORS = _keyword_parser("start", "middle", "end")
 # Field and parser of each property.
 PROPERTIES: Mapping[str, tuple[str, Callable[[str], Any]]] = {
-    "font-family": ("families", _families),
+    "font-family": ("families", _parse_families),
     "font-weight": ("weight", lambda text: None),
-    "font-stretch": ("stretch", _stretch),
-    "font-width": ("stretch", _stretch),
-    "font-style": ("slant", _slant),
-    "font-variation-settings": ("variations", _variations),
+    "font-stretch": ("stretch", _parse_stretch),
+    "font-width": ("stretch", _parse_stretch),
+    "font-style": ("slant", _parse_slant),
+    "font-variation-settings": ("variations", _parse_variations),
     "font-variant": ("has_small_capitals", lambda text: "small-caps" in text.lower().split()),
     "font-variant-caps": ("has_small_capitals", lambda text: text.lower() == "small-caps"),
     "font-kerning": ("has_kerning", lambda text: text.lower() != "none"),
     "letter-spacing": ("letter_spacing", lambda text: None),
     "word-spacing": ("word_spacing", lambda text: None),
     "text-anchor": ("anchor", _ANCHORS),
-    "direction": ("direction", _one_of("ltr", "rtl")),
+    "direction": ("direction", _keyword_parser("ltr", "rtl")),
     "dominant-baseline": (
         "baseline",
         lambda text: None if text.lower() in _IGNORED_BASELINES else text.lower(),
     ),
-    "writing-mode": ("is_vertical", _is_vertical),
+    "writing-mode": ("is_vertical", _parse_writing_mode),
     "white-space": ("spaces", lambda text: _SPACES.get(text.lower())),
     "white-space-collapse": ("spaces", lambda text: _SPACES.get(text.lower(), text.lower())),
 }

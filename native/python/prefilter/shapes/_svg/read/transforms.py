@@ -5,11 +5,11 @@
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from ...affine import IDENTITY, Matrix, multiplied
+from ...affine import IDENTITY, Matrix, compose
 from ..model.tree import Box
 from ..model.values import has_relative_lengths, parse_origin, parse_rotate, parse_transform
 from .document import SvgElement
-from .lengths import Units, about_origin
+from .lengths import Units, transform_about_origin
 from .styles import INDIVIDUAL
 
 if TYPE_CHECKING:
@@ -48,13 +48,13 @@ def read_transform(
         if part is None:
             sources.warnings.broken(f"{name} '{text[:40]}'", "ignored", element.line)
             continue
-        matrix = multiplied(matrix, part)
+        matrix = compose(matrix, part)
     own = _listed(transform_text, units)
     if own is None:
         sources.warnings.broken("transform", "ignored", element.line)
         own = IDENTITY
-    matrix = multiplied(matrix, own)
-    turned = about_origin(matrix, origin, units, (box[0], box[1]))
+    matrix = compose(matrix, own)
+    turned = transform_about_origin(matrix, origin, units, (box[0], box[1]))
     if turned is None:
         sources.warnings.broken("transform-origin", "ignored", element.line)
         return matrix

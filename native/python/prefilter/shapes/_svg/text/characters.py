@@ -245,7 +245,7 @@ class TextReader:
             alignment if alignment not in ("auto", "baseline", "inherit") else text_style.baseline,
             declared.get("baseline-shift", "baseline").strip().lower(),
             path,
-            self._fitted(element, style),
+            self._read_fitted(element, style),
             forced,
             _language(element),
         )
@@ -286,7 +286,7 @@ class TextReader:
             offset *= track.length / declared_length
         return TextPath(track, offset)
 
-    def _fitted(self, element: SvgElement, style: Style) -> Fitted | None:
+    def _read_fitted(self, element: SvgElement, style: Style) -> Fitted | None:
         declared = self._sources.sheets.declared(element)
         if "textLength" not in declared:
             return None

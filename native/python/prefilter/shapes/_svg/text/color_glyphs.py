@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from ..._fonts.bitmaps import Bitmap
 from ..._fonts.color_layers import ColorFill, ColorGroup, ColorStop
 from ..._fonts.font import Font
-from ...affine import Matrix, determinant, inverse, multiplied
+from ...affine import Matrix, compose, determinant, inverse
 from ..model.clips import make_clip
 from ..model.colors import Color
 from ..model.gradients import Colors, Gradient, Stop, sample_stops
@@ -30,12 +30,12 @@ class ColoredLetter:
 
     Attributes:
         font: Its font.
-        look: Its layers, or its bitmap.
+        color_glyph: Its layers, or its bitmap.
         matrix: From font units, y upwards, to the text element's units.
     """
 
     font: Font
-    look: ColorGroup | Bitmap
+    color_glyph: ColorGroup | Bitmap
     matrix: Matrix
 
 
@@ -70,7 +70,7 @@ def draw_colored(piece: ColoredPiece, context: Context, sources: Sources) -> Non
     own = color if isinstance(color, tuple) else BLACK
     drawing = _GlyphDrawer(context.colors, own, sources, line)
     for letter in piece.letters:
-        drawing.draw(letter, multiplied(context.matrix, letter.matrix), context.clips, target)
+        drawing.draw(letter, compose(context.matrix, letter.matrix), context.clips, target)
 
 
 class _GlyphDrawer:
@@ -95,10 +95,10 @@ class _GlyphDrawer:
         """Draws a glyph; the matrix leads from font units to the tree's."""
         if determinant(matrix) == 0.0:
             return
-        if isinstance(letter.look, Bitmap):
-            self._draw_bitmap(letter.look, matrix, clips, target)
+        if isinstance(letter.color_glyph, Bitmap):
+            self._draw_bitmap(letter.color_glyph, matrix, clips, target)
         else:
-            self._draw_group(letter.font, letter.look, matrix, clips, target)
+            self._draw_group(letter.font, letter.color_glyph, matrix, clips, target)
 
     def _draw_bitmap(
         self, bitmap: Bitmap, matrix: Matrix, clips: tuple[Clip, ...], target: Group
@@ -114,7 +114,7 @@ class _GlyphDrawer:
                 return
         wide, high = width * bitmap.unit, height * bitmap.unit
         top = bitmap.edge if bitmap.is_top else bitmap.edge + high
-        unit = multiplied(matrix, (wide, 0.0, 0.0, -high, bitmap.left, top))
+        unit = compose(matrix, (wide, 0.0, 0.0, -high, bitmap.left, top))
         box = transform_box((0.0, 0.0, 1.0, 1.0), unit)
         is_linear = self._colors.is_linear
         target.items.append(Picture(known[bitmap], unit, False, is_linear, clips, box, self._line))
@@ -133,7 +133,7 @@ class _GlyphDrawer:
             glyph, glyph_matrix = group.cut
             outline = self._outline(font, glyph)
             self._sources.budget.take_segments(len(outline), 0.0)
-            part = ClipPart(outline, "nonzero", multiplied(matrix, glyph_matrix))
+            part = ClipPart(outline, "nonzero", compose(matrix, glyph_matrix))
             clip = make_clip([part], ())
             if clip.bounds is None:
                 return
@@ -166,7 +166,7 @@ class _GlyphDrawer:
         if bounds is None or determinant(fill.matrix) == 0.0:
             return
         self._sources.budget.take_segments(len(outline), 0.0)
-        whole = multiplied(matrix, fill.matrix)
+        whole = compose(matrix, fill.matrix)
         box = transform_box(bounds, whole)
         paint = self._paint(fill)
         target.items.append(Painted(outline, "nonzero", whole, paint, None, clips, box, self._line))
@@ -176,7 +176,7 @@ class _GlyphDrawer:
         if fill.kind == "solid" or determinant(fill.paint_matrix) == 0.0:
             return next(iter(sample_stops(stops[:1], self._colors)))[1]
         is_radial = fill.kind == "radial"
-        matrix = multiplied(inverse(fill.matrix), fill.paint_matrix)
+        matrix = compose(inverse(fill.matrix), fill.paint_matrix)
         pieces = list(sample_stops(stops, self._colors))
         return Gradient(is_radial, fill.numbers, pieces, fill.spread, matrix)
 

@@ -16,10 +16,10 @@ from ..._fonts.shaping import (
     JOINING,
     Features,
     ShapedGlyph,
-    scripts_in,
+    detect_scripts,
     shape,
 )
-from ...affine import Matrix, multiplied
+from ...affine import Matrix, compose
 from ..model.values import rotation
 from .characters import Character, Fitted, Span
 from .lettering import FontSelector
@@ -114,7 +114,7 @@ class TextLayout:
         keys = [
             (font, level, script, _key(character.span))
             for font, level, script, character in zip(
-                fonts, levels, scripts_in(text), part, strict=True
+                fonts, levels, detect_scripts(text), part, strict=True
             )
         ]
         begin = 0
@@ -149,7 +149,7 @@ class TextLayout:
             cluster = Cluster(inside, run.font, cluster_glyphs, 0.0)
             cluster.advance = cluster.scale * sum(glyph.advance for glyph in cluster_glyphs)
             own = inside[0].span.text
-            if run.script not in JOINING or scripts_in(inside[0].letter)[0] not in JOINING:
+            if run.script not in JOINING or detect_scripts(inside[0].letter)[0] not in JOINING:
                 cluster.spacing = own.letter_spacing
             if inside[0].letter in _SPACES:
                 cluster.advance += own.word_spacing
@@ -215,9 +215,9 @@ def _matrix(cluster: Cluster, head: Character, x: float, y: float) -> Matrix | N
         half = 0.5 * (cluster.advance - cluster.spacing)
         matrix = place.track.at(x + half)
         if matrix is not None:
-            matrix = multiplied(matrix, (1.0, 0.0, 0.0, 1.0, -half, below))
+            matrix = compose(matrix, (1.0, 0.0, 0.0, 1.0, -half, below))
     if matrix is not None and head.rotate != 0.0:
-        matrix = multiplied(matrix, rotation(head.rotate))
+        matrix = compose(matrix, rotation(head.rotate))
     return matrix
 
 
@@ -229,14 +229,12 @@ def _downward(cluster: Cluster, head: Character, x: float, y: float) -> Matrix:
     """
     metrics = cluster.font.metrics
     middle = 0.5 * (metrics.ascent + metrics.descent) * cluster.span.style.font_size
-    matrix = multiplied(
-        (0.0, 1.0, -1.0, 0.0, x, y), (1.0, 0.0, 0.0, 1.0, 0.0, cluster.shift + middle)
-    )
+    matrix = compose((0.0, 1.0, -1.0, 0.0, x, y), (1.0, 0.0, 0.0, 1.0, 0.0, cluster.shift + middle))
     if _is_upright(head.letter):
         half = (cluster.advance - cluster.spacing) / 2.0
-        matrix = multiplied(matrix, (0.0, -1.0, 1.0, 0.0, half + middle, half - middle))
+        matrix = compose(matrix, (0.0, -1.0, 1.0, 0.0, half + middle, half - middle))
     if head.rotate != 0.0:
-        matrix = multiplied(matrix, rotation(head.rotate))
+        matrix = compose(matrix, rotation(head.rotate))
     return matrix
 
 

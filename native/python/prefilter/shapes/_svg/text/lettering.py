@@ -119,14 +119,14 @@ class FontSelector:
                 self.warnings.unsupported(f"font '{name[:60]}'", effect, line)
         return self._fonts_by_span[span]
 
-    def look_of(self, font: Font, glyph: int, span: Span) -> ColorGroup | Bitmap | None:
+    def color_glyph_of(self, font: Font, glyph: int, span: Span) -> ColorGroup | Bitmap | None:
         """Returns the colored form of a glyph; None if it has none that can be drawn."""
-        look = font.look(glyph) if font.is_colored else None
-        if not isinstance(look, str):
-            return look
+        color_glyph = font.color_glyph(glyph) if font.is_colored else None
+        if not isinstance(color_glyph, str):
+            return color_glyph
         self.warnings.unsupported(
             f"font '{font.face.family[:60]}'",
-            f"drawn without its colors: it has {look}",
+            f"drawn without its colors: it has {color_glyph}",
             span.element.line,
         )
         return None
@@ -149,7 +149,7 @@ class FontSelector:
 
     def outline_of(self, font: Font, glyph: int, span: Span) -> Glyph:
         """Returns the outline of a glyph; warns if it is damaged."""
-        if not font.is_whole(glyph):
+        if not font.is_readable(glyph):
             name = f"font '{font.face.family[:60]}'"
             self.warnings.broken(name, "letters left out, as it is damaged", span.element.line)
         return font.glyph(glyph)

@@ -10,7 +10,7 @@ from typing import cast
 import numpy as np
 
 from ..._fonts.font import Glyph
-from ...affine import Matrix, multiplied
+from ...affine import Matrix, compose
 from ..model.outline import Outline
 from ..model.tree import Box
 from ..read.context import Context, Sources
@@ -93,11 +93,11 @@ def _pieces(
     plain, colored = [], []
     for cluster in clusters:
         for glyph, matrix in _place_glyphs(cluster):
-            look = fonts.look_of(cluster.font, glyph, span)
-            if look is None:
+            color_glyph = fonts.color_glyph_of(cluster.font, glyph, span)
+            if color_glyph is None:
                 plain.append((fonts.outline_of(cluster.font, glyph, span), matrix))
             else:
-                colored.append(ColoredLetter(cluster.font, look, matrix))
+                colored.append(ColoredLetter(cluster.font, color_glyph, matrix))
     yield from _piece(span, _outline_of_glyphs(plain))
     if colored:
         yield ColoredPiece(span.element, span.style, colored)
@@ -126,7 +126,7 @@ def _place_glyphs(cluster: Cluster) -> Iterator[tuple[int, Matrix]]:
     for shaped in cluster.glyphs:
         x, y = wide * (at + shaped.x), -scale * shaped.y
         own: Matrix = (wide, 0.0, wide * cluster.font.skew, -scale, x, y)
-        yield shaped.glyph, multiplied(cluster.matrix, own)
+        yield shaped.glyph, compose(cluster.matrix, own)
         at += shaped.advance
 
 
