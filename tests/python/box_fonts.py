@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Fonts for tests: letters are boxes, so that all places are known."""
+"""Fonts for tests: glyphs are boxes, so that all positions are known."""
 
 from fontTools.fontBuilder import FontBuilder
 from fontTools.pens.t2CharStringPen import T2CharStringPen
@@ -9,7 +9,8 @@ from fontTools.ttLib import TTFont
 from fontTools.ttLib.tables.TupleVariation import TupleVariation
 
 UNITS = 1000
-# Wide in units; each letter but the space is a box from its left edge to its right one, 500 high.
+# Advance widths in units; each letter except the space is a box as wide as its advance and 500
+# high.
 WIDTHS = {"A": 600, "V": 400, "i": 200, " ": 250, "\u05d0": 300, "\u05d1": 500}
 KERNING = {("A", "V"): -100}
 HIGH, ASCENT, DESCENT = 500, 800, -200
@@ -82,7 +83,7 @@ def make_font(
 
 
 def make_variable(path):
-    """A letter as wide as its weight from 400 to 900, and 200 wide at 100."""
+    """Makes a font of one letter: as wide as its weight from 400 to 900, and 200 wide at 100."""
     make_font(path, widths={"A": 400}, kerning=False)
     font = TTFont(path)
     builder = FontBuilder(font=font)

@@ -23,14 +23,14 @@ def image(shapes, width=SIZE, height=SIZE):
 
 
 def drawn(body, light="srgb", size=SIZE):
-    """A drawing of 100 x 100 units as an image whose row 0 is at the top, without warnings."""
+    """Rasterizes a drawing of 100 x 100 units without warnings; row 0 is at the top."""
     drawing = read(body, light=light)
     assert drawing.warnings == ()
     return image(drawing.shapes_for(size, size), size, size)[::-1]
 
 
 def outline(draw, rule="nonzero"):
-    """A green shape drawn by hand in units with y downwards, likewise as an image."""
+    """Rasterizes a green shape drawn in units with y downwards; row 0 is at the top."""
     shape = prefilter.Shape(fill_rule=rule, color=(0.0, 128 / 255, 0.0, 1.0))
     draw(shape)
     return image([shape.transformed([[1, 0, 0], [0, -1, SIZE]])])[::-1]
@@ -41,7 +41,7 @@ def polygon(*points):
 
 
 def box_of(drawing, index=0, size=SIZE):
-    """Left, top, right, bottom of a shape at a size, with y downwards."""
+    """Left, top, right and bottom of a shape at a size, y downwards."""
     (left, low), (right, high) = drawing.shapes_for(size, size)[index].bounds
     return left, size - high, right, size - low
 
@@ -51,7 +51,7 @@ def same(one, other):
 
 
 def whole(body, size=SIZE, attributes='viewBox="0 0 100 100"', **options):
-    """A drawing rasterized as a whole, without warnings, the top row first."""
+    """Rasterizes a whole drawing without warnings; row 0 is at the top."""
     made, warnings = prefilter.rasterize_svg(svg(body, attributes), size, size, **options)
     assert warnings == ()
     return made[::-1]
@@ -62,7 +62,7 @@ def box(left, top, right, bottom, rest=""):
 
 
 def by_hand(*boxes, size=SIZE):
-    """Boxes (left, top, right, bottom, color with alpha not multiplied) over each other."""
+    """Composites boxes (left, top, right, bottom, color with straight alpha)."""
     shapes = []
     for left, top, right, bottom, color in boxes:
         alpha = color[3] if len(color) > 3 else 1.0

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The command `rasterize`: pictures of SVG files and of UV maps."""
+"""The command `rasterize`: images of SVG files and UV maps."""
 
 import numpy as np
 import prefilter
@@ -31,7 +31,7 @@ def pixels(path, kind):
     return np.flipud(values)
 
 
-def test_svg_to_floats_is_what_the_package_draws(logo, tmp_path, capsys):
+def test_svg_to_floats_equals_rasterize_svg(logo, tmp_path, capsys):
     out = tmp_path / "out.exr"
     flags = ("--width", "64", "--height", "32", "--margin", "0", "--pixel-type", "float")
     assert run("rasterize", logo, "-o", out, *flags, "--filter", "tent") == 0
@@ -46,7 +46,7 @@ def test_svg_to_floats_is_what_the_package_draws(logo, tmp_path, capsys):
     np.testing.assert_allclose(pixels(out, "float"), np.clip(expected, 0, None), atol=1e-6)
 
 
-def test_svg_mixes_with_a_background_as_in_browsers_and_ends_at_its_page(tmp_path):
+def test_svg_blends_with_a_background_and_is_clipped_at_its_page(tmp_path):
     path, out = tmp_path / "half.svg", tmp_path / "out.png"
     path.write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="8" height="4">'
@@ -74,7 +74,7 @@ def test_svg_to_bytes(logo, tmp_path):
     assert found[0, 0].tolist() == [255, 255, 255]
 
 
-def test_text_has_the_fonts_of_a_folder(tmp_path):
+def test_fonts_of_a_folder(tmp_path):
     make_font(tmp_path / "boxes.ttf")
     drawing = tmp_path / "text.svg"
     drawing.write_text(
@@ -101,7 +101,7 @@ def test_mask_of_a_uv_map(tmp_path):
     assert (found[:, 4:] == 0).all()
 
 
-def test_what_is_refused(logo, tmp_path, capsys):
+def test_invalid_arguments_are_refused(logo, tmp_path, capsys):
     out = tmp_path / "out.png"
     for words, arguments in {
         "INPUT: found 'a.blend'": ("a.blend", out),

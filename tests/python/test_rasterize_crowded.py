@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Drawings of which more crosses than an image can show, against points by brute force."""
+"""Drawings with more crossings than pixels can show, against brute-force sampling."""
 
 import numpy as np
 import prefilter
@@ -10,14 +10,14 @@ SIDE = 12
 
 
 def ring(random: np.random.Generator, jitter: float) -> np.ndarray:
-    """A polygon near a circle that is the same for all."""
+    """A polygon near a common circle."""
     turns = np.arange(24) / 24 * 2 * np.pi
     radii = 4.5 + random.normal(0, jitter, 24)
     return SIDE / 2 + 0.1 + radii[:, None] * np.stack([np.cos(turns), np.sin(turns)], 1)
 
 
 def windings(contours, points):
-    """The winding numbers of points."""
+    """Winding numbers of points."""
     found = np.zeros(len(points), int)
     x, y = points.T
     for contour in contours:
@@ -32,7 +32,7 @@ def windings(contours, points):
 
 
 def sample_points(x, y, count):
-    """Points of a pixel, of which a line along a grid passes no more than any other."""
+    """Points of a pixel, spread so that no grid line covers more of them than another."""
     index = np.arange(count)
     return np.stack([x + (index + 0.5) / count, y + (index * 0.6180339887498949 + 0.2) % 1], 1)
 
@@ -44,8 +44,8 @@ def shape_of(contours, **arguments):
     return shape
 
 
-def test_near_equal_outlines_over_each_other():
-    """Eighty of them, which took a cube of their number of steps."""
+def test_nearly_equal_outlines():
+    """Eighty outlines once took time cubic in their number."""
     random = np.random.default_rng(1)
     rings = [ring(random, 0.3) for _ in range(80)]
     colors = [np.array([*(0.1 * random.random(3)), 0.1]) for _ in rings]
@@ -58,7 +58,7 @@ def test_near_equal_outlines_over_each_other():
             inside = windings([contour], points) != 0
             expected[inside] = color + (1 - color[3]) * expected[inside]
         assert np.abs(image[y, x] - expected.mean(0)).max() < 0.5 / 255
-    # Where no outline passes, it is exact.
+    # Exact in pixels without an outline.
     assert image[6, 6, 3] == pytest.approx(1 - 0.9**80, abs=1e-6)
 
 
@@ -73,8 +73,8 @@ def test_a_tangle_of_lines(rule):
         assert abs(image[y, x] - inside.mean()) < 0.5 / 255
 
 
-def test_a_scribble_by_a_pen():
-    """Its parts overlap thousands of times; a pen as wide as the image covers all of it."""
+def test_stroke_of_a_scribble():
+    """The stroke overlaps itself thousands of times, or covers the whole image."""
     random = np.random.default_rng(3)
     path = prefilter.Shape()
     path.move_to(6, 6)
@@ -89,7 +89,7 @@ def test_a_scribble_by_a_pen():
 
 @pytest.mark.parametrize("alpha", [1.0, 0.1])
 def test_equal_triangles(alpha):
-    """Each hides those below it as far as it is opaque."""
+    """Each triangle hides those below it, according to its opacity."""
     corners = np.array([(1.3, 1.7), (10.6, 2.9), (4.2, 11.4)])
     shapes = [shape_of([corners], color=(alpha, 0, 0, alpha)) for _ in range(2000)]
     image = prefilter.rasterize(shapes, SIDE, SIDE)

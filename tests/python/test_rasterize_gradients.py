@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Gradients by stops against quadrature of the colors over the true shape."""
+"""Gradients against quadrature of their colors over the true shape."""
 
 import numpy as np
 import prefilter
@@ -9,7 +9,7 @@ from outlines import Rows, blob, image_of_colors, mapped, polygon, to_shape
 
 WIDTH, HEIGHT = 9, 8
 SHAPE = blob(3, 3, (2.1, 1.4), (6.6, 5.7), count=3)
-STOPS = [(0.1, 0.2), (0.45, 0.9), (0.45, 0.5), (0.8, 0.1)]  # with a step
+STOPS = [(0.1, 0.2), (0.45, 0.9), (0.45, 0.5), (0.8, 0.1)]  # with a discontinuity
 TURN = np.array([(0.8, -0.5, 2.0), (0.4, 1.1, -1.0)])
 
 
@@ -23,13 +23,13 @@ def spread_offset(offset, spread):
 
 def color_at(offset, spread):
     offset = spread_offset(offset, spread)
-    # Each side of a step is a stop of its own, a trifle apart.
+    # Both sides of the discontinuity become stops, slightly apart.
     places = [place + 1e-12 * k for k, (place, _) in enumerate(STOPS)]
     return np.interp(offset, places, [value for _, value in STOPS])
 
 
 def seams(spread):
-    """The offsets at which colors are not smooth, of those that a small shape shows."""
+    """Offsets within a small shape at which colors are not smooth."""
     places = {place for place, _ in STOPS} | {0.0, 1.0}
     if spread == "pad":
         return sorted(places)
@@ -99,7 +99,7 @@ def test_radial_gradients_where_they_are_smooth():
 @pytest.mark.parametrize("spread", ["pad", "repeat"])
 @pytest.mark.parametrize("transform", [None, (0.9, -0.4), (0.05, 0.3)])
 def test_radial_gradients_against_dense_points(spread, transform):
-    """With stops, near the center and far from it, as circles and as ellipses."""
+    """Circles and ellipses, near the center and far from it."""
     center, first, radius = np.array([20.3, 17.8]), 4.0, 21.0
     matrix = np.eye(2, 3)
     if transform is not None:
@@ -123,5 +123,5 @@ def test_radial_gradients_against_dense_points(spread, transform):
         expected = values.reshape(36, finer, 40, finer).mean((1, 3))
         off = np.abs(found[..., channel] - expected)
         assert np.median(off) < 2e-5
-        # Where the color has a bend, or a jump, within a pixel.
+        # Pixels with a bend or jump of the color.
         assert off.max() < (0.005 if spread == "pad" else 0.08)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What holds for images of any shapes, by any filter."""
+"""Laws of images of any shapes, for all filters."""
 
 import numpy as np
 import prefilter
@@ -8,7 +8,7 @@ import pytest
 from outlines import Segment, blob, circle, mapped, polygon, reversed_contours, to_shape
 
 FILTERS = prefilter.RASTER_FILTERS
-ROUNDING = 5e-7  # of sums of float32, and of moments of 2^-26
+ROUNDING = 5e-7  # sums of float32, and moments of 2^-26
 
 
 def image_of(contours, width=11, height=9, filter="box", **options):
@@ -16,7 +16,7 @@ def image_of(contours, width=11, height=9, filter="box", **options):
 
 
 def drawing(seed):
-    """Contours of every kind, which lie apart; coordinates are multiples of 2^-20."""
+    """Disjoint contours of every kind, with coordinates that are multiples of 2^-20."""
     contours = [
         blob(1 + seed % 5, seed, (-1.3, 0.4), (4.9, 5.2)),
         blob(2, seed + 1, (5.2, 3.3), (10.4, 8.9), weights=[0.4, 1.0, 2.0, 0.7, 1.5]),
@@ -30,13 +30,13 @@ def drawing(seed):
 
 
 def tiling(seed, low, high, count, curved):
-    """Shapes that cover a square: cells of a crooked grid, with seams that both sides share."""
+    """Shapes that tile a square: cells of a warped grid with shared edges."""
     random = np.random.default_rng(seed)
     lines = np.linspace(low, high, count + 1)
     corners = np.stack(np.meshgrid(lines, lines, indexing="ij"), -1)
     step = (high - low) / count
     corners[1:-1, 1:-1] += random.uniform(-0.2, 0.2, (count - 1, count - 1, 2)) * step
-    # Control points of the seams along either axis, which the outer ones need not.
+    # Control points of the edges along both axes; outer edges are straight.
     bends = random.uniform(-0.12, 0.12, (2, count + 1, count + 1, 2, 2)) * step * curved
 
     def seam(axis, i, j):
@@ -64,7 +64,7 @@ def test_shapes_that_cover_the_image_leave_no_seam(filter, curved):
     ones = [to_shape([cell]) for cell in cells]
     image = prefilter.rasterize(ones, 11, 10, filter=filter, overlap="add")
     assert (image == 1.0).all()
-    # In many colors, of which one channel is the same for all.
+    # In many colors, with one channel the same for all.
     random = np.random.default_rng(1)
     many = [to_shape([cell], color=(0.7, *random.random(2))) for cell in cells]
     image = prefilter.rasterize(many, 11, 10, filter=filter, overlap="add")
@@ -118,7 +118,7 @@ def test_whole_pixels_of_translation_move_the_image(filter):
     image = image_of(contours, filter=filter)
     for by in ((3, 2), (1000, -70)):
         moved = mapped(contours, [(1, 0, by[0]), (0, 1, by[1])])
-        # What moved in from the left, to where the first image was.
+        # Without the columns that moved in from the left.
         away = prefilter.rasterize(
             [to_shape(moved)], max(by[0], 0) + 11, max(by[1], 0) + 9, filter=filter
         )
@@ -141,7 +141,7 @@ def test_mirrored_and_transposed_shapes(filter):
 
 
 @pytest.mark.parametrize("fill_rule", ["nonzero", "evenodd"])
-def test_which_way_contours_run_does_not_count(fill_rule):
+def test_orientation_of_contours_does_not_matter(fill_rule):
     contours = [*drawing(3), circle((8.0, 6.0), 0.7)]
     first = prefilter.rasterize([to_shape(contours, fill_rule=fill_rule)], 11, 9)
     turned = reversed_contours(contours)
@@ -149,7 +149,7 @@ def test_which_way_contours_run_does_not_count(fill_rule):
     assert np.abs(first - last).max() < ROUNDING
 
 
-def test_a_hole_turns_the_other_way_or_is_there_by_parity():
+def test_holes_by_orientation_or_parity():
     ring = [circle((5.0, 4.5), 4.0), circle((5.2, 4.3), 2.0)]
     hole = [ring[0], *reversed_contours(ring[1:])]
     full = image_of(ring[:1])
@@ -161,7 +161,7 @@ def test_a_hole_turns_the_other_way_or_is_there_by_parity():
 
 
 @pytest.mark.parametrize("filter", ["box", "tent", "mitchell", "lanczos3", "radial2"])
-def test_a_curve_in_parts_is_the_same(filter):
+def test_subdivided_curves(filter):
     for degree in (1, 2, 3, 5):
         contour = blob(degree, degree, (0.4, 0.3), (10.6, 8.8))
         parts = [part for segment in contour for part in segment.split(0.37)]
@@ -203,14 +203,14 @@ def test_images_are_linear_in_shapes_and_colors(filter):
 
 @pytest.mark.parametrize("filter", ["box", "tent", "bspline2", "mitchell"])
 def test_the_sum_of_an_image_is_the_area(filter):
-    """By filters that add up to 1 around every point."""
+    """Holds for filters that sum to 1 around every point."""
     contours = [circle((13.3, 12.1), 6.0), circle((22.6, 20.4), 2.5)]
     image = image_of(contours, 32, 28, filter=filter)
     area = np.pi * (6.0**2 + 2.5**2)
     assert image.sum(dtype=float) == pytest.approx(area, abs=1e-5)
     x, y = np.meshgrid(np.arange(32) + 0.5, np.arange(28) + 0.5)
     for along, expected in ((x, 13.3 * 36 + 22.6 * 6.25), (y, 12.1 * 36 + 20.4 * 6.25)):
-        # And around every point to its coordinates, but for the box.
+        # The first moment is the coordinate itself, except for the box filter.
         if filter != "box":
             found = (image[..., 0].astype(float) * along).sum()
             assert found == pytest.approx(np.pi * expected, abs=1e-4)
@@ -246,7 +246,7 @@ def test_a_shape_transformed_is_the_shape_of_transformed_points():
 
 
 def scene():
-    """Shapes of every kind of color, over several bands of rows."""
+    """Shapes with every kind of color, over several bands of rows."""
     place = [(30, 0, -20), (0, 60, 5)]
     shapes = [to_shape(mapped(drawing(k), place), color=(0.2 * k, 0.5)) for k in range(4)]
     shapes[1].gradient((0.1, 0.2), (0.002, 0.0), (0.0, -0.001))
@@ -270,8 +270,8 @@ def test_the_number_of_threads_changes_no_bit(filter, overlap):
 
 
 @pytest.mark.parametrize("filter", FILTERS)
-def test_a_part_of_an_image_is_the_same(filter):
-    """What lies beyond the right or the upper side of an image changes nothing in it."""
+def test_crops_are_the_same(filter):
+    """Shapes beyond the right or upper side do not change an image."""
     shapes = scene()[:2]
     whole = prefilter.rasterize(shapes, 200, 310, filter=filter, overlap="add")
     for width, height in ((1, 310), (90, 17), (137, 300), (200, 1)):
@@ -280,7 +280,7 @@ def test_a_part_of_an_image_is_the_same(filter):
 
 
 @pytest.mark.parametrize("filter", FILTERS)
-def test_where_no_shape_reaches_there_is_the_background(filter):
+def test_background_outside_of_shapes(filter):
     behind = (0.1, 0.7)
     shape = to_shape([circle((10.3, 12.2), 5.0)], color=(0.9, 0.2))
     image = prefilter.rasterize([shape], 40, 30, filter=filter, background=behind)
@@ -298,7 +298,7 @@ def test_where_no_shape_reaches_there_is_the_background(filter):
     assert (empty == np.float32((0.1, 0.2, 0.3, 0.4))).all()
 
 
-def test_a_background_shows_through_as_far_as_alpha_says():
+def test_background_shows_through_by_alpha():
     contours = drawing(8)
     coverage = image_of(contours, filter="tent")
     behind = np.array([0.1, 0.2, 0.3, 0.5])
@@ -311,7 +311,7 @@ def test_a_background_shows_through_as_far_as_alpha_says():
 
 @pytest.mark.parametrize("filter", FILTERS)
 def test_gradients_over_a_covered_image_are_their_means(filter):
-    """Means of a linear color around a pixel's center are the color there."""
+    """The mean of a linear color around a pixel's center is the color there."""
     around = to_shape([polygon([(-50, -40), (60, -45), (70, 80), (-55, 66)])])
     around.gradient((0.4, 1.0), (0.03, 0.0), (-0.02, 0.01))
     image = prefilter.rasterize([around], 11, 9, filter=filter)
@@ -320,8 +320,8 @@ def test_gradients_over_a_covered_image_are_their_means(filter):
     assert np.abs(image - expected).max() < ROUNDING
 
 
-def test_covering_needs_no_color_of_what_is_covered():
-    """An opaque shape on top leaves nothing of what it covers, not even along its outline."""
+def test_opaque_shapes_hide_others_completely():
+    """An opaque shape hides everything below it, including its outline."""
     below = to_shape([circle((5.0, 4.5), 3.0)], color=(9.0, 0.0))
     above = to_shape([circle((5.0, 4.5), 3.5)], color=(0.25, 1.0))
     for filter in ("box", "lanczos3"):
@@ -334,7 +334,7 @@ def test_covering_needs_no_color_of_what_is_covered():
 
 
 def ragged_map(source, side):
-    """Quads that share ragged borders."""
+    """Quads with irregular shared edges."""
     corners = np.stack(np.meshgrid(np.arange(side + 1), np.arange(side + 1)), -1) * 5.0 + 2.0
     corners += source.uniform(-0.8, 0.8, corners.shape)
 
@@ -362,8 +362,8 @@ def ragged_map(source, side):
 
 
 @pytest.mark.parametrize("filter", ["box", "mitchell"])
-def test_a_map_is_added(filter):
-    """What is side by side covers nothing; with another shape over it, it is covered."""
+def test_tiled_maps_with_add(filter):
+    """Adjacent shapes do not cover each other; a shape over both does."""
     source = np.random.default_rng(12)
     shapes = []
     for points in ragged_map(source, 5):
@@ -379,7 +379,7 @@ def test_a_map_is_added(filter):
 
 @pytest.mark.parametrize("filter", ["box", "tent", "lanczos3"])
 @pytest.mark.parametrize("alpha", [1.0, 0.4])
-def test_a_page_is_a_background(filter, alpha):
+def test_rectangle_below_all_is_a_background(filter, alpha):
     source = np.random.default_rng(5)
     page = prefilter.Shape(color=(0.3 * alpha, 0.1 * alpha, 0.2 * alpha, alpha))
     far = 0 if filter == "box" else 30
@@ -394,7 +394,7 @@ def test_a_page_is_a_background(filter, alpha):
     found = prefilter.rasterize([page, *others], background=behind, **options)
     expected = prefilter.rasterize(others, background=mixed, **options)
     assert np.abs(found - expected).max() < 1e-6
-    # A page that ends within the image, or is no rectangle, is a shape like others.
+    # A page that ends within the image, or is not a rectangle, is an ordinary shape.
     for points in (
         [(0, 0), (19.5, 0), (19.5, 15), (0, 15)],
         [(0, 0), (20, 0), (20, 15)],
@@ -405,7 +405,7 @@ def test_a_page_is_a_background(filter, alpha):
         found = prefilter.rasterize([small, *others], **options)
         alone = prefilter.rasterize(others, **options)
         expected = alone + prefilter.rasterize([small], **options)
-        # Where nothing else is, there is the page as far as it goes.
+        # The page shows wherever nothing covers it.
         nothing = np.zeros(found.shape[:2], bool)
         nothing[:, 17:] = True
         if filter == "box":

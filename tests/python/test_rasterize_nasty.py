@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Shapes that hold nothing, or too much: no input takes long, crashes or spoils other pixels."""
+"""Empty and enormous shapes: no input takes long, crashes or changes other pixels."""
 
 import copy
 import time
@@ -11,7 +11,7 @@ import pytest
 from outlines import blob, circle, mapped, polygon, to_shape
 
 FILTERS = prefilter.RASTER_FILTERS
-SOON = 2.0  # seconds of a processor; what takes long takes minutes
+SOON = 2.0  # CPU seconds; pathological cases would take minutes
 LIMIT = 1e9
 
 
@@ -25,7 +25,7 @@ def image_of(*shapes, width=6, height=5, filter="box", overlap="add", **options)
 
 
 def path(*steps, **options):
-    """A shape by the names of its methods, and their arguments."""
+    """Makes a shape from names of methods and their arguments."""
     shape = prefilter.Shape(**options)
     for name, *arguments in steps:
         getattr(shape, name)(*arguments)
@@ -70,7 +70,7 @@ NOTHING = {
 
 
 @pytest.mark.parametrize("shape", NOTHING.values(), ids=NOTHING)
-def test_what_encloses_nothing_leaves_nothing(shape):
+def test_shapes_without_area_are_empty(shape):
     square = of_points([(1, 1), (4, 1), (4, 4), (1, 4)])
     for filter in ("box", "mitchell", "radial2"):
         assert np.abs(image_of(shape, filter=filter)).max() == 0.0
@@ -98,7 +98,7 @@ def test_open_contours_are_closed_by_lines():
         assert (
             image_of(opened, filter=filter) == image_of(of_points(corners), filter=filter)
         ).all()
-    # As by another move, and with curves.
+    # The same with another move, and with curves.
     both = path(
         *[("move_to", 0.7, 0.6), ("curve_to", 5.2, 1.1, 4.6, 4.4)],
         *[("move_to", 0.3, 3.1), ("curve_to", 0.4, 4.9, 1.9, 4.6, 1.2, 3.0)],
@@ -110,7 +110,7 @@ def test_open_contours_are_closed_by_lines():
     assert (image_of(both) == image_of(closed)).all()
 
 
-def test_what_follows_a_close_begins_where_the_contour_began():
+def test_segments_after_close_start_at_the_contours_start():
     found = path(
         *[("move_to", 1, 1), ("line_to", 5, 1), ("line_to", 5, 2), ("close",)],
         *[("line_to", 1, 4), ("line_to", 2, 4)],
@@ -138,7 +138,7 @@ def test_images_of_one_row_column_or_pixel(filter):
 
 @pytest.mark.parametrize("filter", FILTERS)
 def test_coordinates_up_to_the_limit(filter):
-    """An edge through the image counts where it is, however long; what is far right does not."""
+    """Long edges across the image are exact; shapes far to the right have no effect."""
     ends = [(2.5, -LIMIT), (2.5, LIMIT)]
     half = of_points([*ends, (-LIMIT, LIMIT), (-LIMIT, -LIMIT)])
     near = of_points([(2.5, -50), (2.5, 50), (-50, 50), (-50, -50)])
@@ -146,7 +146,7 @@ def test_coordinates_up_to_the_limit(filter):
     assert np.abs(found - expected).max() < 5e-7
     away = of_points([(LIMIT, -LIMIT), (LIMIT, LIMIT), (LIMIT - 1, 0)])
     assert (image_of(away, filter=filter) == 0.0).all()
-    # Through the middle of the image, where a coordinate is as exact as 1e9's rounding lets it.
+    # Through the middle of the image, as exact as rounding at 1e9 allows.
     diagonal = of_points([(-LIMIT, -LIMIT), (LIMIT, LIMIT), (-LIMIT, LIMIT)])
     image = image_of(diagonal, width=5, filter=filter)
     expected = image_of(of_points([(-50, -50), (50, 50), (-50, 50)]), width=5, filter=filter)
@@ -166,7 +166,7 @@ def test_large_curves_around_the_image(filter):
 
 
 def on_grid_lines():
-    """Corners at whole numbers, some a trifle off."""
+    """Corners at integers, some slightly off."""
     for shift in (0.0, 1e-13, -1e-13, 1e-17):
         square = np.array([(1, 1), (4, 1), (4, 3), (1, 3)]) + shift
         yield square
@@ -178,7 +178,7 @@ def on_grid_lines():
 def test_outlines_along_grid_lines(filter):
     for corners in on_grid_lines():
         found = image_of(of_points(corners), filter=filter)
-        # The same at whole coordinates, as rectangles one row high.
+        # The same at integers, as rectangles one row high.
         whole = np.rint(corners)
         expected = image_of(of_points(whole), filter=filter)
         assert np.abs(found - expected).max() < 1e-6
@@ -192,7 +192,7 @@ def test_outlines_along_grid_lines(filter):
 
 
 def test_curves_along_grid_lines():
-    """Of degrees 2 and 3, which stay on a line or run to and fro on it."""
+    """Degrees 2 and 3, along a line or back and forth on it."""
     for bend in (2.0, 9.0, -4.0):
         shape = path(
             ("move_to", 1, 1),
@@ -207,7 +207,7 @@ def test_curves_along_grid_lines():
 
 
 def test_vertices_on_corners_of_the_grid():
-    """Where a line passes corners of pixels, each pixel gets its half."""
+    """A line through corners of pixels halves each pixel."""
     image = image_of(of_points([(0, 0), (5, 5), (0, 5)]), width=5)
     assert (image == np.where(np.eye(5), 0.5, np.tri(5))).all()
     diamond = image_of(of_points([(3, 0), (5, 2), (3, 4), (1, 2)]))
@@ -216,8 +216,8 @@ def test_vertices_on_corners_of_the_grid():
 
 
 @pytest.mark.parametrize("count", [2, 33, 200])
-def test_a_contour_many_times(count):
-    """As one shape: filled once, or by parity. As many shapes: added up."""
+def test_repeated_contours(count):
+    """One shape: filled once, or by parity. Many shapes: added."""
     contour = polygon([(0.7, 0.6), (5.2, 1.1), (4.6, 4.4)])
     once = image_of(to_shape([contour]))
     assert np.abs(image_of(to_shape([contour] * count)) - once).max() < 1e-6
@@ -244,19 +244,19 @@ def test_a_million_vertices_inside_a_pixel():
 
 
 def test_a_scribble():
-    """Lines that cross each other thousands of times: values stay between none and full."""
+    """Thousands of crossing lines: values stay between empty and full."""
     corners = np.random.default_rng(0).uniform(-1, 7, (300, 2))
     for rule in ("nonzero", "evenodd"):
         image = image_of(of_points(corners, fill_rule=rule))
         assert image.min() > -1e-5
         assert image.max() < 1.0 + 1e-5
-    # As large as all of a pixel, and as small as a hundredth of one.
+    # Shapes as large as a pixel, and a hundredth of it.
     area = image_of(of_points(corners + 1), width=8, height=8).sum()
     tiny = image_of(of_points(2.3 + 0.01 * corners))
     assert tiny.sum() == pytest.approx(1e-4 * area, abs=1e-6)
 
 
-def test_curves_many_times():
+def test_repeated_curves():
     contour = blob(3, 3, (0.4, 0.3), (5.7, 4.8))
     once = image_of(to_shape([contour]))
     assert np.abs(image_of(to_shape([contour] * 50)) - once).max() < 1e-6
@@ -264,7 +264,7 @@ def test_curves_many_times():
 
 @pytest.mark.parametrize("filter", ["box", "mitchell", "radial3"])
 def test_weights_at_the_limits(filter):
-    """The lightest conic is nearly its chord, the heaviest nearly its control points."""
+    """The lightest conic is nearly its chord, the heaviest nearly its control polygon."""
     corners = [(0.7, 0.6), (5.2, 1.1), (4.6, 4.4)]
     heavy = path(("move_to", *corners[0]), ("conic_to", *corners[1], 1e6, *corners[2]))
     expected = image_of(of_points(corners), filter=filter)
@@ -284,8 +284,8 @@ def test_the_highest_degree():
             assert image.max() < 1.0 + 1e-4, seed
 
 
-def test_values_next_to_each_other():
-    """Coordinates that differ by rounding alone."""
+def test_coordinates_that_differ_by_rounding():
+    """Coordinates that differ only by rounding."""
     x = 2.5
     for _ in range(3):
         next_x = np.nextafter(x, 9)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Images of shapes against quadrature of the true shape: lines, curves of any degree, conics."""
+"""Images against quadrature of the true shape: lines, curves of any degree, conics."""
 
 import functools
 
@@ -27,13 +27,13 @@ FIELD = (0.7, 0.4), (8.6, 7.7)
 
 
 def closed_conic(weight):
-    """A conic that its chord closes."""
+    """A conic closed by its chord."""
     corners = np.array([(1.3, 0.4), (8.7, 3.1), (2.2, 7.6)])
     return [Segment(corners, weight), Segment(corners[[2, 0]])]
 
 
 def star(center, radius, count, step):
-    """A polygon through every step-th of the corners of a regular one."""
+    """A polygon through every step-th corner of a regular one."""
     angles = 2 * np.pi * step * np.arange(count) / count + 0.3
     return polygon(np.array(center) + radius * np.stack([np.cos(angles), np.sin(angles)], 1))
 
@@ -75,7 +75,7 @@ SCENES = {
     ],
 }
 
-# Contours that cross themselves or each other.
+# Contours that intersect themselves or each other.
 OVERLAPS = {
     "pentagram": [star((4.4, 4.2), 3.5, 5, 2)],
     "two circles": [circle((3.2, 4.0), 2.6), circle((5.7, 4.3), 2.4)],
@@ -107,7 +107,7 @@ def rendered(contours, name, **options):
 
 
 @pytest.mark.parametrize("scene", SCENES)
-def test_images_are_those_of_the_true_shape(scene):
+def test_images_equal_quadrature(scene):
     for name in KERNELS:
         expected = image_of_rows(rows_of(scene), WIDTH, HEIGHT, name)
         off = np.abs(rendered(SCENES[scene], name) - expected).max()
@@ -180,7 +180,7 @@ def test_later_shapes_cover_earlier_ones(colors):
 
 
 def test_bytes_are_correctly_rounded():
-    """Off by one only where the value is this close to the middle of two."""
+    """They differ by one only where the value is this close to a half."""
     close = 1e-4
     width = height = 24
     for degree in (1, 2, 3):
@@ -196,7 +196,7 @@ def test_bytes_are_correctly_rounded():
 @pytest.mark.parametrize("method", ["scanline", "wavelet"])
 @pytest.mark.parametrize("channels", [1, 2, 3, 4])
 def test_bytes_are_the_floats_rounded(method, channels):
-    """With lobes that leave the range, in rows of every length, with a background or without."""
+    """Negative lobes, rows of every length, with and without a background."""
     colors = np.random.default_rng(channels).uniform(-0.2, 1.2, (3, channels))
     colors[:, 3:] = np.clip(colors[:, 3:], 0.0, 1.0)
     for width, height in ((1, 3), (15, 9), (37, 5)):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Whole drawings as images: what closed forms say, and other ways to draw the same."""
+"""Images of whole drawings, against closed forms and equivalent drawings."""
 
 import math
 
@@ -25,12 +25,12 @@ def test_half_black_over_white_is_127():
         made, _ = prefilter.rasterize_svg(svg(body), 8, 8, dtype=np.uint8)
         assert (made == (127, 127, 127, 255)).all()
         light = whole(body, light="linear")
-        # Light halved, and encoded for display; #80 is a little more than half.
+        # Half of linear light, encoded for display; #80 is a little more than half.
         encoded = np.rint(prefilter.to_srgb(light[50:51, 50, :3]) * 255)
         assert (encoded == (187 if "#" in rest else 188)).all()
 
 
-def test_what_is_plain_is_as_its_shapes():
+def test_drawings_without_layers_equal_their_shapes():
     body = (
         '<linearGradient id="g"><stop stop-color="red"/><stop offset="1"/></linearGradient>'
         '<circle cx="40" cy="40" r="31" fill="url(#g)"/><path d="M9 9L90 33 40 95z" fill="#123"/>'
@@ -48,12 +48,12 @@ def test_a_group_is_translucent_as_a_whole():
     inner = box(10.5, 10, 50, 50, 'fill="red"') + box(30, 30, 70, 70.5, 'fill="green"')
     expected = by_hand((10.5, 10, 50, 50, RED), (30, 30, 70, 70.5, GREEN)) * np.float32(HALF)
     same(whole(f'<g opacity="0.5">{inner}</g>'), expected)
-    # The same where it is an element with a fill and a stroke.
+    # The same for an element with a fill and a stroke.
     rest = 'fill="red" stroke="green" stroke-width="10"'
     opaque = whole(box(20, 20, 60, 60, rest))
     same(whole(box(20, 20, 60, 60, f'{rest} opacity="0.5"')), opaque * np.float32(HALF))
     same(whole(f'<g opacity="0.5"><g opacity="0.5">{inner}</g></g>'), expected * np.float32(HALF))
-    # Before something else.
+    # A backdrop below.
     behind = box(0, 0, 100, 40, 'fill="blue"')
     below = by_hand((0, 0, 100, 40, (0, 0, 1)))
     same(
@@ -61,8 +61,8 @@ def test_a_group_is_translucent_as_a_whole():
     )
 
 
-def test_what_does_not_overlap_needs_no_layer():
-    """Where two halves meet within a pixel, nothing shows through."""
+def test_groups_without_overlaps_need_no_layer():
+    """Nothing shows through where two halves meet within a pixel."""
     inner = box(10, 10, 30.5, 50, 'fill="red"') + box(30.5, 10, 50, 50, 'fill="red"')
     same(whole(f'<g opacity="0.5">{inner}</g>'), by_hand((10, 10, 50, 50, (*RED, HALF))))
 
@@ -70,7 +70,7 @@ def test_what_does_not_overlap_needs_no_layer():
 @pytest.mark.parametrize(
     ("clip", "element", "expected"),
     [
-        # Cut off at its own edge, a shape is what it was: coverage is not squared.
+        # Clipping a shape at its own edge does not square its coverage.
         (box(10.5, 10.5, 50.5, 50.5), box(10.5, 10.5, 50.5, 50.5, "{}"), (10.5, 10.5, 50.5, 50.5)),
         (box(20.25, 0, 90, 90), box(10, 10.5, 50, 50, "{}"), (20.25, 10.5, 50, 50)),
         (box(20, 20, 60, 60), f"<g {{}}>{box(0, 0, 99, 30)}</g>", (20, 20, 60, 30)),
@@ -79,9 +79,9 @@ def test_what_does_not_overlap_needs_no_layer():
             box(0, 0, 99, 99, "{}"),
             (5.5, 5, 15.5, 15),
         ),
-        # Two that overlap let through what either does.
+        # Overlapping children: the clip is their union.
         (box(0, 0, 30, 30) + box(20, 0, 60, 30), box(10, 10, 50, 50, "{}"), (10, 10, 50, 30)),
-        # A child that is cut off itself, and one that is used.
+        # A child with a clip path of its own, and a child by `use`.
         (box(0, 0, 90, 90, 'clip-path="url(#d)"'), box(10, 10, 60, 60, "{}"), (10, 10, 40, 40)),
         ('<use href="#r" x="5"/>', box(0, 0, 99, 99, "{}"), (7, 3, 17, 13)),
         (
@@ -91,7 +91,7 @@ def test_what_does_not_overlap_needs_no_layer():
         ),
     ],
 )
-def test_clip_paths_cut_exactly(clip, element, expected):
+def test_clip_paths_are_exact(clip, element, expected):
     defs = (
         f"<defs>{box(2, 3, 12, 13, 'id=' + chr(34) + 'r' + chr(34))}</defs>"
         f'<clipPath id="d">{box(0, 0, 40, 40)}</clipPath>'
@@ -103,7 +103,7 @@ def test_clip_paths_cut_exactly(clip, element, expected):
 
 
 def test_a_clip_path_of_curves_has_its_area():
-    """Two discs of radius r at a distance d have a lens in common."""
+    """The lens common to two discs of radius r at a distance d."""
     r, d = 30.0, 25.0
     lens = 2 * r * r * math.acos(d / (2 * r)) - d / 2 * math.sqrt(4 * r * r - d * d)
     body = (
@@ -118,17 +118,17 @@ def test_clip_paths_in_units_of_a_box():
     inner = box(20, 20, 40, 40) + box(60, 60, 80, 80) + box(0, 0, 99, 99, 'display="none"')
     expected = by_hand((20, 20, 40, 40, (0, 0, 0)))
     same(whole(f'{clip}<g clip-path="url(#c)">{inner}</g>'), expected)
-    # Nothing is in a clip path without children, nor in shares of nothing.
+    # Empty: a clip path without children, or in fractions of an empty box.
     assert not whole(f'<clipPath id="c"/><g clip-path="url(#c)">{inner}</g>').any()
     assert not whole(f'{clip}<g clip-path="url(#c)"/>').any()
 
 
-def test_a_drawing_is_cut_off_at_its_page():
+def test_drawings_are_clipped_at_their_page():
     page = 'width="40" height="20"'
     body = box(-50, -50, 150, 150, 'stroke="black"')
     expected = np.zeros((40, 40, 4), np.float32)
     expected[10:30, :, 3] = 1
-    # Of other proportions, with a border around it.
+    # Other proportions leave a border.
     made, _ = prefilter.rasterize_svg(svg(body, f'{page} viewBox="0 0 40 20"'), 40, 40)
     same(made, expected)
     shapes = prefilter.read_svg(svg(body, f'{page} viewBox="0 0 40 20"')).shapes_for(40, 40)
@@ -137,18 +137,18 @@ def test_a_drawing_is_cut_off_at_its_page():
         svg(body, f'{page} viewBox="0 0 40 20" overflow="visible"'), 40, 40
     )
     same(made[..., 3], np.ones((40, 40)))
-    # A page may show more than the view box.
+    # The page may exceed the view box.
     made, _ = prefilter.rasterize_svg(svg(body, f'{page} viewBox="0 0 10 10"'), 40, 20)
     same(made[..., 3], np.ones((20, 40)))
 
 
-def test_the_language_of_the_whole_does_not_matter():
+def test_language_of_the_root_does_not_matter():
     body = box(10, 10, 50, 50, 'fill="green"')
     found = whole(body, attributes='viewBox="0 0 100 100" systemLanguage="ru"')
     same(found, by_hand((10, 10, 50, 50, GREEN)))
 
 
-def test_viewports_cut_off():
+def test_viewports_clip():
     inner = box(-50, -50, 150, 150)
     for attributes, expected in (
         ("", (10.5, 20, 40, 50)),
@@ -182,7 +182,7 @@ def test_the_page_has_a_background(style, color):
 
 
 def formula(mode, b, s):
-    """Of one channel, as the recommendation has it."""
+    """Formulas per channel, as in the recommendation."""
     match mode:
         case "multiply":
             return b * s
@@ -219,7 +219,7 @@ SEPARABLE += ("color-burn", "hard-light", "soft-light", "difference", "exclusion
 
 
 @pytest.mark.parametrize("mode", SEPARABLE)
-def test_blend_modes_are_as_their_formulas(mode):
+def test_separable_blend_modes(mode):
     below, above = (0, 255, 51), (255, 153, 25)
     for first, second in ((below, above), (above, below), ((20, 100, 200), (70, 140, 20))):
         for alpha_b, alpha_s in ((255, 255), (128, 51), (51, 204)):
@@ -242,7 +242,7 @@ def luminosity(color):
     return 0.3 * color[0] + 0.59 * color[1] + 0.11 * color[2]
 
 
-def test_blend_modes_of_whole_colors_keep_what_they_say():
+def test_nonseparable_blend_modes():
     colors = [(220, 40, 90), (30, 160, 200), (128, 128, 128), (250, 250, 20), (5, 60, 0)]
     for b in colors:
         for s in colors:
@@ -263,7 +263,7 @@ def test_blend_modes_of_whole_colors_keep_what_they_say():
     assert np.ptp(whole(gray)[50, 50, :3]) < 1e-6
 
 
-def test_what_is_isolated_is_mixed_with_nothing_below():
+def test_isolated_groups_do_not_blend_with_the_backdrop():
     blending = box(20, 20, 80, 80, 'fill="#808080" style="mix-blend-mode:multiply"')
     behind = box(0, 0, 100, 100, 'fill="red"')
     mixed = whole(f"{behind}<g>{blending}</g>")[50, 50]
@@ -274,7 +274,7 @@ def test_what_is_isolated_is_mixed_with_nothing_below():
         np.testing.assert_allclose(alone, (HALF, HALF, HALF, 1), atol=1e-5)
 
 
-def test_masks_let_through_what_is_bright():
+def test_luminance_masks():
     green = box(0, 0, 100, 100, 'fill="green" mask="url(#m)"')
 
     def masked(attributes, inner, element=green):
@@ -289,7 +289,7 @@ def test_masks_let_through_what_is_bright():
     same(by_alpha, by_hand((10, 10, 50.5, 50, (*GREEN, HALF))))
     by_alpha = masked('style="mask-type:alpha"', box(10, 10, 50.5, 50))
     same(by_alpha, by_hand((10, 10, 50.5, 50, GREEN)))
-    # It ends at its region: a tenth beside the element, or what it says.
+    # Limited by its region: a tenth around the element by default.
     region = 'maskUnits="userSpaceOnUse" x="20" y="20" width="10" height="10"'
     same(masked(region, white), by_hand((20, 20, 30, 30, GREEN)))
     shares = 'x="0" y="0" width="0.25" height="1" maskContentUnits="objectBoundingBox"'
@@ -305,14 +305,14 @@ def test_masks_of_masks_are_as_in_browsers():
     white = box(10, 10, 50, 50, 'fill="white"')
     green = box(0, 0, 100, 100, 'fill="green" mask="url(#m)"')
     other = '<mask id="n"><rect x="20" y="20" width="10" height="10" fill="white"/></mask>'
-    # A mask has none itself; what is in it may have some.
+    # The mask itself has no mask, but its children may.
     outer = f'{other}<mask id="m" mask="url(#n)">{white}</mask>{green}'
     same(whole(outer), by_hand((10, 10, 50, 50, GREEN)))
     inside = f'{other}<mask id="m"><g mask="url(#n)">{white}</g></mask>{green}'
     same(whole(inside), by_hand((20, 20, 30, 30, GREEN)))
 
 
-def test_a_mask_that_closes_a_circle_is_ignored_from_then_on():
+def test_circular_masks_are_ignored():
     masks = "".join(
         f'<mask id="{name}"><rect x="{left}" y="{left}" width="{side}" height="{side}" '
         f'fill="white" mask="url(#{other})"/></mask>'
@@ -324,11 +324,11 @@ def test_a_mask_that_closes_a_circle_is_ignored_from_then_on():
     )
     made, (warning,) = prefilter.rasterize_svg(svg(body), SIZE, SIZE)
     assert "refers to itself" in str(warning)
-    # The first shows what both let through; the second what its own does.
+    # The first is multiplied by both masks, the second by its own.
     same(made[::-1], by_hand((20, 20, 50, 50, GREEN), (50, 20, 90, 90, GREEN)))
 
 
-def test_a_pattern_is_what_its_tiles_are():
+def test_patterns_equal_their_tiles():
     pattern = (
         '<pattern id="p" x="3" y="2" width="20" height="10" patternUnits="userSpaceOnUse">'
         f"{box(0, 0, 7.5, 4, 'fill=' + chr(34) + 'red' + chr(34))}</pattern>"
@@ -340,7 +340,7 @@ def test_a_pattern_is_what_its_tiles_are():
     ]
     made = whole(pattern + box(0, 0, 100, 100, 'fill="url(#p)"'))
     same(made[5:95, 5:95], by_hand(*tiles)[5:95, 5:95])
-    # In an outline, half opaque, in shares of its box, and turned.
+    # In an outline, half opaque, in fractions of its box, and rotated.
     made = whole(pattern + box(20, 20, 60, 60, 'fill="url(#p)" fill-opacity="0.5"'))
     same(made[20:60, 20:60], by_hand(*tiles)[20:60, 20:60] * np.float32(0.5))
     assert not made[:20].any()
@@ -358,7 +358,7 @@ def test_a_pattern_is_what_its_tiles_are():
 
 
 @pytest.mark.parametrize("side", [0.01, 0.07])
-def test_patterns_finer_than_pixels_are_their_mean(side):
+def test_fine_patterns_are_their_mean(side):
     pattern = (
         f'<pattern id="p" width="{side}" height="{2 * side}" patternUnits="userSpaceOnUse">'
         f'<rect width="{side}" height="{side / 2}" fill="red"/></pattern>'
@@ -369,7 +369,7 @@ def test_patterns_finer_than_pixels_are_their_mean(side):
     )
 
 
-def test_markers_are_at_corners_and_turn_with_them():
+def test_markers_are_at_vertices_and_rotate():
     marker = (
         '<marker id="m" refX="2" refY="1" markerWidth="4" markerHeight="2" orient="{}">'
         '<rect width="4" height="2" fill="green"/></marker>'
@@ -388,7 +388,7 @@ def test_markers_are_at_corners_and_turn_with_them():
         'transform="translate(60 20) rotate(45)"/>'
     )
     same(at("auto", "marker-mid"), middle)
-    # What is outside of a marker does not show, and strokes may lend it their color.
+    # Markers are clipped; strokes may give them their color.
     lent = marker.replace('fill="green"', 'x="-9" width="99" fill="context-stroke"').replace(
         ' width="4" height="2" x', ' height="2" x'
     )

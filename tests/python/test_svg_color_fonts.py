@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Letters with colors: each looks as its layers do where a drawing has them as elements."""
+"""Colored glyphs look the same as their layers written as elements."""
 
 import base64
 import itertools
@@ -34,7 +34,7 @@ LEFT, LINE = 20, 80
 
 @pytest.fixture
 def drawn(tmp_path):
-    """Draws a letter A of a font with these layers, the top row first, without warnings."""
+    """Draws the letter A of a font with these layers, without warnings; row 0 is at the top."""
 
     def found(layers, more="", letters="A", version=None):
         path = colored(tmp_path / "font.ttf", layers, version)
@@ -68,7 +68,7 @@ def image(body, fonts=None, is_told=False, **options):
 
 
 def units(body):
-    """Elements in units of the font, with y upwards, where the letter is."""
+    """Elements in font units, y upwards, at the letter's position."""
     return f'<g transform="translate({LEFT} {LINE}) scale(0.1 -0.1)">{body}</g>'
 
 
@@ -123,7 +123,7 @@ def test_letters_without_layers_have_the_color_of_the_text(drawn):
     )
 
 
-def test_layers_are_cut_off_at_clip_paths(tmp_path):
+def test_layers_are_clipped(tmp_path):
     clip = '<clipPath id="c"><rect x="30" y="40" width="20" height="20"/></clipPath>'
     letter = text("A", 'clip-path="url(#c)"')
     found = image(clip + letter, [colored(tmp_path / "font.ttf", [(A, RED)])])
@@ -160,9 +160,9 @@ def svg_gradient(
 @pytest.mark.parametrize(
     ("paint", "gradient"),
     [
-        # The third point is to the side of the first.
+        # The third point is beside the first.
         (linear(100, 0, 400, 0, 100, 50), svg_gradient("linear", (100, 0, 400, 0))),
-        # Lines of a color lead to the third point: along (1, 1), so that colors change across.
+        # Color lines lead to the third point along (1, 1); colors change across them.
         (linear(0, 0, 400, 0, 100, 100), svg_gradient("linear", (0, 0, 200, -200))),
         (
             linear(100, 0, 200, 0, 100, 50, extend=1),
@@ -172,7 +172,7 @@ def svg_gradient(
             linear(100, 0, 200, 0, 100, 50, extend=2),
             svg_gradient("linear", (100, 0, 200, 0), more='spreadMethod="reflect"'),
         ),
-        # Stops that begin late and end early, or beyond.
+        # Stops that begin late and end early, or outside [0, 1].
         (
             linear(0, 0, 400, 0, 0, 50, ((0.25, RED), (0.75, GREEN))),
             svg_gradient("linear", (100, 0, 300, 0)),
@@ -189,12 +189,12 @@ def svg_gradient(
             radial((250, 250, 50, 300, 250, 200)),
             svg_gradient("radial", (250, 250, 50, 300, 250, 200)),
         ),
-        # From the outside in.
+        # From the outer circle inwards.
         (
             radial((300, 250, 200, 250, 250, 50), ((0, GREEN), (1, RED))),
             svg_gradient("radial", (250, 250, 50, 300, 250, 200)),
         ),
-        # To a point.
+        # End circle without a radius.
         (
             radial((300, 250, 200, 250, 250, 0), ((0, GREEN), (1, RED))),
             svg_gradient("radial", (250, 250, 0, 300, 250, 200)),
@@ -253,7 +253,7 @@ def test_odd_gradients_are_drawn(drawn, paint):
 def test_transforms(drawn, kind, values, transform):
     paint = linear(100, 0, 300, 0, 100, 50)
     gradient = svg_gradient("linear", (100, 0, 300, 0))
-    # Of what is painted, of the paint alone, and of either in the other.
+    # Transforms of the glyph, of the paint alone, and nested.
     whole = f'<g transform="{transform}">{box(400, "url(#g)")}</g>'
     near(drawn(moved(kind, glyph(V, paint), **values)), image(gradient + units(whole)))
     inner = svg_gradient("linear", (100, 0, 300, 0), more=f'gradientTransform="{transform}"')
@@ -263,19 +263,19 @@ def test_transforms(drawn, kind, values, transform):
     near(drawn(both), image(inner + units(shifted)))
 
 
-def test_glyphs_cut_off_what_is_in_them(drawn):
+def test_glyphs_clip_their_paint(drawn):
     inside = stacked(glyph(A, solid(RED)), moved(14, glyph(A, solid(GREEN)), dx=100, dy=100))
     found = drawn(glyph(V, inside))
     boxes = box(400, "red") + '<rect x="100" y="100" width="300" height="400" fill="green"/>'
     near(found, image(units(boxes)))
-    # Colors without a glyph fill all that they are cut off at.
+    # Without a glyph, colors fill the clip.
     near(
         drawn(glyph(V, stacked(solid(RED), solid(BLUE)))),
         image(units(box(400, "red") + box(400, "blue", 'fill-opacity="0.50196"'))),
     )
 
 
-def test_glyphs_are_layers_of_others(drawn):
+def test_layers_may_be_other_glyphs(drawn):
     layers = {
         A: stacked({"Format": 11, "Glyph": V}, moved(14, {"Format": 11, "Glyph": V}, dx=300, dy=0)),
         V: glyph(SMALL_I, solid(GREEN)),
@@ -285,7 +285,7 @@ def test_glyphs_are_layers_of_others(drawn):
 
 
 @pytest.mark.parametrize("mode", ["multiply", "screen", "difference", "hue", "luminosity"])
-def test_modes(drawn, mode):
+def test_blend_modes(drawn, mode):
     name = {"hue": "hsl_hue", "luminosity": "hsl_luminosity"}.get(mode, mode)
     below, above = glyph(A, solid(RED)), glyph(V, solid(BLUE))
     found = drawn(
@@ -335,17 +335,17 @@ def test_composites(drawn, mode, boxes):
         ({"Format": 11, "Glyph": V}, "not there"),
     ],
 )  # fmt: skip
-def test_what_is_not_drawn_is_named_once(tmp_path, paint, words):
+def test_unsupported_paints_cause_one_warning(tmp_path, paint, words):
     path = colored(tmp_path / "font.ttf", paint)
     found, (warning,) = image(text("A"), [path], is_told=True)
     assert "font 'Boxes': drawn without its colors" in warning
     assert words in warning
-    # The letter itself is there.
+    # The glyph itself remains.
     near(found, image(units(box(600, "black"))))
 
 
-def test_layers_that_double_end(tmp_path):
-    """Two of the layers below at each of thirty levels."""
+def test_exponential_layers_are_limited(tmp_path):
+    """Thirty levels, each with two references to the next."""
     names = [A, V, SMALL_I, "space"]
     layers = {
         name: stacked({"Format": 11, "Glyph": after}, {"Format": 11, "Glyph": after})
@@ -440,7 +440,7 @@ def with_cbdt(path):
     part.firstGlyphIndex = part.lastGlyphIndex = made.getGlyphID(A)
     strike.indexSubTables = [part]
     made["CBLC"].strikes = [strike]
-    # Fonts of pictures have no outlines.
+    # Bitmap fonts have no outlines.
     for tag in ("glyf", "loca"):
         del made[tag]
     made.save(path)
@@ -448,19 +448,19 @@ def with_cbdt(path):
 
 
 @pytest.mark.parametrize("make", [with_sbix, with_cbdt])
-def test_letters_that_are_pictures(tmp_path, make):
-    """Six pixels of twenty in an em are 0.3 of it; the lowest row is one pixel above the line."""
+def test_bitmap_glyphs(tmp_path, make):
+    """Six pixels at 20 per em are 0.3 em; the lowest row is one pixel above the baseline."""
     found = image(text("A"), [make(tmp_path / "font.ttf")])
     side = 100 / 20
     near(found, image(embedded(LEFT + 2 * side, LINE - 6 * side, 6 * side, 5 * side)))
 
 
-def test_pictures_may_be_those_of_other_letters(tmp_path):
+def test_duplicate_bitmaps(tmp_path):
     path = with_sbix(tmp_path / "font.ttf")
     near(image(text("V"), [path]), image(text("A"), [path]))
 
 
-def test_pictures_of_letters_are_read_and_counted_once(tmp_path, monkeypatch):
+def test_bitmaps_are_decoded_and_counted_once(tmp_path, monkeypatch):
     path = with_sbix(tmp_path / "font.ttf")
     monkeypatch.setattr("prefilter.shapes._svg.model.limits.MAX_TEXELS", 40)
     assert image(text("AAAA", 'style="font-size:20px"'), [path]).any()
@@ -469,7 +469,7 @@ def test_pictures_of_letters_are_read_and_counted_once(tmp_path, monkeypatch):
         image(text("A"), [path])
 
 
-def test_pictures_lead_as_far_as_their_font_says(tmp_path):
+def test_bitmaps_have_the_advance_of_their_font(tmp_path):
     path = with_cbdt(tmp_path / "font.ttf")
     found = image(text('A<tspan fill="red">A</tspan>', 'style="font-size:50px"'), [path])
     one = embedded(LEFT + 5, LINE - 15, 15, 12.5)
@@ -477,7 +477,7 @@ def test_pictures_lead_as_far_as_their_font_says(tmp_path):
     near(found, image(one + other))
 
 
-def test_damaged_pictures_are_left_out(tmp_path):
+def test_damaged_bitmaps_are_left_out(tmp_path):
     path = with_sbix(tmp_path / "font.ttf")
     font = TTFont(path)
     font["sbix"].strikes[20].glyphs[A].imageData = picture()[:40]
@@ -487,7 +487,7 @@ def test_damaged_pictures_are_left_out(tmp_path):
     assert "letter: left out" in warning
 
 
-def test_emoji_of_colored_fonts_come_first_and_their_digits_last(tmp_path):
+def test_color_fonts_come_first_for_emoji_only(tmp_path):
     plain = make_font(tmp_path / "a.ttf", "Plain", widths={"\U0001f600": 600, "1": 600})
     emoji = make_font(tmp_path / "b.ttf", "Emoji", widths={"\U0001f600": 200, "1": 200})
     made = TTFont(emoji)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What style sheets say of drawings: variables, colors, calculations, boxes of transforms."""
+"""Style sheets: variables, colors, calculations, transforms."""
 
 import math
 
@@ -11,7 +11,7 @@ from drawings import SIZE, drawn, polygon, read, same, svg
 
 
 def color_of(body, attributes='viewBox="0 0 100 100"'):
-    """The color in the middle of a drawing, not multiplied by alpha, in 255ths."""
+    """Straight color in the middle of a drawing, in 255ths."""
     made, warnings = prefilter.rasterize_svg(svg(body, attributes), SIZE, SIZE)
     assert warnings == ()
     *rgb, alpha = (float(value) for value in made[50, 50])
@@ -22,7 +22,7 @@ def square(fill):
     return f'<rect width="100" height="100" style="fill:{fill}"/>'
 
 
-# The colors that Chromium 156 shows, which rounds some of them another way.
+# Colors as shown by Chromium 156, which rounds some of them differently.
 @pytest.mark.parametrize(
     ("text", "color"),
     [
@@ -74,7 +74,7 @@ def test_alpha(text, alpha):
     "text",
     ["hsl(120, 50, 50)", "rgb(50%, 128, 0)", "color(nowhere 1 1 1)", "lab(1, 2, 3)", "oklab(1 2)"],
 )
-def test_what_is_no_color_is_named(text):
+def test_invalid_colors_cause_warnings(text):
     made, warnings = prefilter.rasterize_svg(svg(square(f"lime;fill:{text}")), SIZE, SIZE)
     assert list(made[50, 50]) == [0.0, 1.0, 0.0, 1.0]
     assert [str(warning).split(":")[0] for warning in warnings] == [f"fill '{text}'"]
@@ -96,20 +96,20 @@ def test_what_is_no_color_is_named(text):
             '<g style="--a: red"><g style="--a: initial">' + square("var(--a, lime)") + "</g></g>",
             "lime",
         ),
-        # The case of names counts.
+        # Names are case-sensitive.
         (
             '<g style="--A: lime; --a: red"><rect width="100" height="100" fill="var(--A)"/></g>',
             "lime",
         ),
-        # A circle of variables has no value, and falls back.
+        # A circular variable has no value, so that the fallback applies.
         ('<g style="--a: var(--b); --b: var(--a)">' + square("var(--a, lime)") + "</g>", "lime"),
-        # What is important goes before what is nearer.
+        # Importance precedes specificity.
         (
             "<style>rect { --a: lime !important }</style>"
             '<rect style="--a: red; fill: var(--a)" width="100" height="100"/>',
             "lime",
         ),
-        # Where `use` brings it.
+        # Variables take their values at the `use`.
         (
             '<defs><rect id="r" width="100" height="100" fill="var(--a, red)"/></defs>'
             '<use href="#r" style="--a: lime"/>',
@@ -124,7 +124,7 @@ def test_variables(body, color):
     assert color_of(body)[:3] == ([0, 255, 0] if color == "lime" else [0, 0, 0])
 
 
-def test_a_variable_that_is_no_color_leaves_the_parents():
+def test_invalid_variables_inherit_the_color():
     body = (
         '<g fill="lime"><rect width="100" height="100" fill="red" style="--x:5px;fill:var(--x)"/>'
     )
@@ -133,7 +133,7 @@ def test_a_variable_that_is_no_color_leaves_the_parents():
     assert [warning.name for warning in warnings] == ["fill 'var(--x)'"]
 
 
-def test_variables_do_not_grow_without_end():
+def test_variables_are_limited():
     names = "".join(f"--v{i}: var(--v{i + 1}) var(--v{i + 1});" for i in range(40))
     read(f'<rect width="9" height="9" style="{names} --v40: 1; fill: var(--v0)"/>')
 
@@ -184,7 +184,7 @@ def moved(x, y):
         ("transform:translate(50%, 10%);transform-box:fill-box", moved(20, 2)),
         ("transform:translate(calc(10px + 5%), 1em)", moved(15, 16)),
         ("scale:.5", moved(0, 0) / 2),
-        # First `translate`, then `rotate`, `scale` and `transform`.
+        # `translate`, then `rotate`, `scale` and `transform`.
         ("transform:translate(10px);scale:.5;translate:5px", moved(20, 0) / 2),
         (
             "transform:rotate(.25turn);stroke:none;transform-box:stroke-box",
@@ -203,7 +203,7 @@ def test_d_is_a_property():
     assert read('<path d="M0 0H5V5z" style="d:none"/>').shapes == []
 
 
-def test_what_style_sheets_say_and_is_not_done_is_named():
+def test_unsupported_rules_cause_warnings():
     css = (
         "rect { foo: 1; inset: 2px; animation: x 1s; fill: nothing; cursor: help; -x-y: 1; --z: 1 }"
     )
@@ -217,7 +217,7 @@ def test_what_style_sheets_say_and_is_not_done_is_named():
 
 
 @pytest.mark.parametrize("offset", [0.0, 1e6, 1e8, 9e8, -9e8])
-def test_coordinates_of_maps(offset):
+def test_large_coordinates(offset):
     attributes = f'viewBox="{offset} {offset} 100 100"'
     body = (
         f'<path fill="green" d="M{offset + 10} {offset + 10}h50v20h-50z"/>'
@@ -231,7 +231,7 @@ def test_coordinates_of_maps(offset):
 
 
 @pytest.mark.parametrize("far", ["1e4", "1e8", "1e10", "1e30", "-1e30", "1e90"])
-def test_one_far_point(far):
+def test_one_distant_point(far):
     wide = 90 if not far.startswith("-") else 10
     found = drawn(f'<path fill="green" d="M10 10H{far}V30H10Z"/>')
     assert found[..., 3].sum() == pytest.approx(20 * wide, rel=1e-4)
@@ -247,7 +247,7 @@ def test_a_page_within_a_large_clip():
     same(drawn(body), polygon((0, 0), (9, 0), (9, 5), (0, 5)))
 
 
-def test_crisp_edges_are_centers_of_pixels():
+def test_crisp_edges_fill_whole_pixels():
     y, x = np.mgrid[:SIZE, :SIZE] + 0.5
     found = drawn('<circle cx="40" cy="41" r="30.2" shape-rendering="crispEdges"/>')[..., 3]
     np.testing.assert_array_equal(found, np.hypot(x - 40, y - 41) < 30.2)
@@ -268,12 +268,12 @@ def test_a_crisp_line_is_one_pixel_wide():
     np.testing.assert_array_equal(found[50, 8:12, 3], [0.0, 1.0, 0.0, 0.0])
 
 
-def test_strokes_that_do_not_scale():
+def test_non_scaling_strokes():
     line = '<line x1="10" x2="10" y1="0" y2="100" stroke="green" stroke-width="4" {}/>'
     unscaled = line.format('vector-effect="non-scaling-stroke"')
     body = f'<g transform="scale(4 1)">{unscaled}</g>'
     same(drawn(body), polygon((38, 0), (42, 0), (42, 100), (38, 100)))
-    # Its gradient is where it would be.
+    # The gradient does not move with the stroke.
     gradient = (
         '<linearGradient id="g" gradientUnits="userSpaceOnUse" x1="9" x2="11">'
         '<stop stop-color="lime"/><stop offset="1" stop-color="red"/></linearGradient>'

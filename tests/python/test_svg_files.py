@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Files of SVG: what is told of, what is refused."""
+"""SVG files: sources, warnings, refusals."""
 
 import gzip
 import math
@@ -45,7 +45,7 @@ CLIP = "<clipPath id='c' transform='scale(2)'><rect x='5' width='15' height='50'
         ),
     ],
 )
-def test_what_is_not_supported(body, name):
+def test_unsupported_features(body, name):
     (warning,) = read("\n" + body).warnings
     assert (warning.kind, warning.name, warning.line, warning.count) == ("unsupported", name, 2, 1)
     assert name in str(warning)
@@ -79,12 +79,12 @@ def test_what_is_not_supported(body, name):
         ("<style>rect{fill:red</style><style>rect}{fill:red}</style>", "style sheet"),
     ],
 )
-def test_what_is_broken(body, name):
+def test_broken_features(body, name):
     (warning,) = read(body).warnings
     assert (warning.kind, warning.name) == ("broken", name)
 
 
-def test_what_needs_no_word():
+def test_features_without_warnings():
     body = (
         '<title>T</title><desc/><metadata><a xmlns="x"/></metadata><defs><text/></defs><g/>'
         '<x:y xmlns:x="z"/><symbol><text/></symbol><g opacity="0.5">'
@@ -112,17 +112,17 @@ def test_what_needs_no_word():
         "<svg width='5' height='5' overflow='visible'><rect width='9' height='9'/></svg>",
     ],
 )
-def test_nothing_is_said_of_clip_paths_that_cut_nothing_off(body):
+def test_clip_paths_without_effect_cause_no_warning(body):
     assert read(body).warnings == ()
 
 
-def test_the_same_warnings_are_counted():
+def test_equal_warnings_are_counted():
     (warning,) = read("<foreignObject/>\n" * 3).warnings
     assert (warning.count, warning.line) == (3, 1)
     assert "3 times" in str(warning)
 
 
-def test_where_a_drawing_may_come_from(tmp_path):
+def test_sources(tmp_path):
     markup = svg('<rect width="9" height="9"/>')
     (tmp_path / "a.svg").write_text(markup)
     (tmp_path / "a.svgz").write_bytes(gzip.compress(markup.encode()))
@@ -143,7 +143,7 @@ def test_where_a_drawing_may_come_from(tmp_path):
         assert len(drawing.shapes) == 1
 
 
-def test_the_same_shapes_every_time():
+def test_shapes_are_deterministic():
     drawing = read('<circle cx="50" cy="50" r="40"/>')
     first, second = drawing.shapes, drawing.shapes
     assert first is not second
@@ -156,7 +156,7 @@ def nested(count):
 
 
 def bomb():
-    """Ten times ten times ... rectangles."""
+    """Rectangles repeated ten times at each of several levels."""
     tens = [
         f'<g id="g{k}">' + f'<use href="#g{k - 1}"/>' * 10 + "</g>"
         if k
@@ -203,7 +203,7 @@ def test_files_that_are_refused(source, words):
     assert words in str(caught.value)
 
 
-def test_a_file_that_is_refused_is_named(tmp_path):
+def test_refusals_name_the_file(tmp_path):
     path = tmp_path / "broken.svg"
     path.write_text("<svg>\n\n<")
     with pytest.raises(ValueError, match=r"broken\.svg', line 3, column 1"):
@@ -214,7 +214,7 @@ def test_a_file_that_is_refused_is_named(tmp_path):
         prefilter.read_svg(tmp_path)
 
 
-def test_what_is_large_when_unpacked_is_stopped():
+def test_decompression_is_limited():
     large = gzip.compress(svg(" " * (1 << 27)).encode())
     tracemalloc.start()
     with pytest.raises(ValueError, match="more than 64 MiB when unpacked"):
@@ -224,7 +224,7 @@ def test_what_is_large_when_unpacked_is_stopped():
     assert most < 1 << 23
 
 
-def test_repeated_uses_are_counted_before_any_is_drawn(monkeypatch):
+def test_repetition_is_checked_before_drawing(monkeypatch):
     from prefilter.shapes._svg.draw.drawing import TreeBuilder
 
     def drawn(*_):
@@ -238,14 +238,14 @@ def test_repeated_uses_are_counted_before_any_is_drawn(monkeypatch):
 
 
 def used(count, each="<rect width='9' height='9'/>"):
-    """A group that is used so many times."""
+    """A group that is used `count` times."""
     return f"<defs><g id='a'>{each}</g></defs>" + "<use href='#a'/>" * count
 
 
-def test_repeated_uses_up_to_a_limit(monkeypatch):
+def test_repetition_limit(monkeypatch):
     from prefilter.shapes._svg.model import limits
 
-    # Each is an element of the file, and repeats two.
+    # Each `use` is an element of the file, and repeats two.
     monkeypatch.setattr(limits, "MAX_USED", 20)
     assert len(read(used(10)).shapes) == 10
     with pytest.raises(ValueError, match="repeat more than 20 elements"):
@@ -312,7 +312,7 @@ def test_odd_drawings_are_read(body):
         assert np.isfinite(shape.bounds).all()
 
 
-def test_entities_of_drawing_programs_are_read():
+def test_entities_are_expanded():
     doctype = (
         '<!DOCTYPE svg PUBLIC "-//W3C//DTD SVG 1.1//EN" "http://www.w3.org/svg11.dtd" '
         '[<!ENTITY ns "http://www.w3.org/2000/svg"><!ENTITY other SYSTEM "file:///etc/hostname">]>'
@@ -372,7 +372,7 @@ def test_progress_and_canceling():
         drawing.shapes_for(SIZE, SIZE, progress=lambda _: False)
 
 
-def test_what_stands_for_other_markup_is_drawn():
+def test_entities_equal_their_markup():
     body = "<switch><foreignObject/><x/><rect width='9' height='9'/><rect/></switch>"
     drawing = read(body)
     assert len(drawing.shapes) == 1

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Functions of CSS, and steps of filters that look at neighbors, light and noise: closed forms, and
-the recommendation's own way, pixel by pixel.
+"""Filter functions, and primitives for neighborhoods, light and noise, against closed forms and a
+pixel-by-pixel version of the recommendation.
 """
 
 import base64
@@ -47,7 +47,7 @@ def test_functions_of_colors(text, color):
     np.testing.assert_allclose(functions(text)[50, 50], (*color, 1), atol=1e-5)
 
 
-def test_filters_that_are_missing_are_left_out_of_a_list():
+def test_missing_filters_are_skipped():
     element = FLAT.format("invert(1) url(#none) brightness(0.5)")
     made, (warning,) = prefilter.rasterize_svg(svg(element), SIZE, SIZE)
     assert warning.kind == "broken"
@@ -58,7 +58,7 @@ def test_opacity_is_a_function_too():
     same(functions("opacity(40%)"), functions("none") * np.float32(0.4))
 
 
-def test_functions_are_what_steps_of_unbounded_filters_are():
+def test_functions_equal_primitives_without_a_region():
     for text, step in (
         ("blur(5px)", '<feGaussianBlur stdDeviation="5"/>'),
         ("drop-shadow(teal 7px 4px 3px)", SHADOW),
@@ -82,7 +82,7 @@ SHADOW = '<feDropShadow dx="7" dy="4" stdDeviation="3" flood-color="teal"/>'
 @pytest.mark.parametrize(
     "text", ["blur(1px 2px)", "invert(-1)", "blue", "url(#none)", "drop-shadow(1px)", "x(1)", ""]
 )
-def test_what_is_no_filter_is_ignored(text):
+def test_invalid_filters_are_ignored(text):
     element = box(0, 0, 9, 9, f'filter="{text}"')
     made, warnings = prefilter.rasterize_svg(svg(element), SIZE, SIZE)
     assert [str(each)[:15] for each in warnings] == ["filter: ignored"]
@@ -102,7 +102,7 @@ ALL = f'filterUnits="userSpaceOnUse" x="0" y="0" width="100" height="100" {AS_EN
 
 
 def around(image, x, y, mode):
-    """A pixel of an image, or of what is beside it."""
+    """A pixel of an image, or its replacement beyond the edges."""
     if mode == "duplicate":
         return image[min(max(y, 0), SIZE - 1), min(max(x, 0), SIZE - 1)]
     if mode == "wrap":
@@ -111,7 +111,7 @@ def around(image, x, y, mode):
 
 
 @pytest.mark.parametrize("operator", ["dilate", "erode"])
-def test_extremes_of_neighborhoods(operator):
+def test_morphology(operator):
     made = drawn(f'<feMorphology operator="{operator}" radius="4 7"/>', GROUP, ALL)
     image = plain(SHAPES)
     pick = np.max if operator == "dilate" else np.min
@@ -128,7 +128,7 @@ def test_extremes_of_neighborhoods(operator):
 
 @pytest.mark.parametrize("mode", ["duplicate", "wrap", "none"])
 @pytest.mark.parametrize("keeps", ["true", "false"])
-def test_weighted_sums(mode, keeps):
+def test_convolution(mode, keeps):
     weights = np.array([[1, -2, 0.5, 3], [0, 4, -1, 0.25]])
     step = (
         f'<feConvolveMatrix order="4 2" kernelMatrix="{" ".join(map(str, weights.ravel()))}" '
@@ -156,7 +156,7 @@ def test_weighted_sums(mode, keeps):
             np.testing.assert_allclose(made[y, x], expected, atol=1e-5)
 
 
-def test_wrong_weights_make_nothing():
+def test_invalid_convolutions_are_transparent():
     for attributes in ('order="3" kernelMatrix="1 2"', 'order="1.5" kernelMatrix="1"', 'order="0"'):
         assert not drawn(f"<feConvolveMatrix {attributes}/>", BOX).any()
     body = (
@@ -178,7 +178,7 @@ def test_tiles():
     assert not drawn('<feFlood width="0"/><feTile/>', BOX, ALL).any()
 
 
-def test_results_end_where_their_inputs_do():
+def test_subregions_default_to_those_of_inputs():
     steps = '<feFlood x="10" y="10" width="20" height="20" result="a"/><feFlood x="20" y="40" {}'
     move = '<feOffset dx="10"/>'
     made = drawn(steps.split('<feFlood x="20"')[0] + move, BOX, ALL)
@@ -188,7 +188,7 @@ def test_results_end_where_their_inputs_do():
     same(drawn(both, BOX, ALL), plain(box(20, 10, 40, 30, "") + box(30, 40, 50, 50, "")))
 
 
-def test_powers():
+def test_gamma():
     step = (
         '<feComponentTransfer><feFuncB type="gamma" amplitude="0.5" exponent="2.5" offset="0.1"/>'
     )
@@ -207,7 +207,7 @@ def test_colors_may_be_inherited():
 
 
 def noise_at(x, y, frequency, octaves, seed, fractal):
-    """As Filter Effects has it, for red to alpha at one place."""
+    """Noise of red to alpha at a position, as in Filter Effects."""
 
     def following(value):
         value = 16807 * (value % 127773) - 2836 * (value // 127773)
@@ -298,7 +298,7 @@ def test_light_on_a_plane():
 
 
 def test_light_on_a_slope():
-    """Alpha rises by a fifth over ten pixels, so that the surface is 0.1 high a pixel."""
+    """Alpha rises by a fifth over ten pixels, so that the surface rises by 0.1 per pixel."""
     slope = (
         '<linearGradient id="g" gradientUnits="userSpaceOnUse" x1="0" x2="100">'
         '<stop stop-opacity="0"/><stop offset="1"/></linearGradient>'
@@ -306,7 +306,7 @@ def test_light_on_a_slope():
     element = slope + box(0, 0, 100, 100, 'fill="url(#g)" filter="url(#f)"')
     light = '<feDistantLight azimuth="180" elevation="60"/>'
     to_light = np.array([-0.5, 0, math.sqrt(0.75)])
-    # The differences of the recommendation are those of pixels two apart.
+    # The recommendation takes differences of pixels two apart.
     normal = np.array([-10 * 0.02, 0, 1]) / math.hypot(10 * 0.02, 1)
     made = drawn(f'<feDiffuseLighting surfaceScale="10">{light}</feDiffuseLighting>', element, ALL)
     for x in (0, 1, 50, 98, 99):
@@ -324,7 +324,7 @@ def test_light_on_a_slope():
 
 @pytest.mark.parametrize("kind", ["Diffuse", "Specular"])
 def test_light_is_the_same_at_every_size(kind):
-    """Slopes are those of the drawing, not of its pixels."""
+    """Slopes belong to the drawing, not to its pixels."""
     slope = (
         '<linearGradient id="g" gradientUnits="userSpaceOnUse" x1="0" x2="100">'
         '<stop stop-opacity="0"/><stop offset="1"/></linearGradient>'
@@ -340,12 +340,12 @@ def test_light_is_the_same_at_every_size(kind):
         one, other = (
             prefilter.rasterize_svg(svg(body), size, size)[0] for size in (SIZE, 3 * SIZE)
         )
-        # Lights are where they are from corners of pixels on: half a pixel at most.
+        # Positions of lights count from corners of pixels, which is half a pixel off at most.
         np.testing.assert_allclose(one[30:70, 30:70], other[91:211:3, 91:211:3], atol=0.02)
 
 
 def test_numbers_of_lights_are_as_in_browsers():
-    """Shininess is from 1 to 128, and a cone of 0 is none."""
+    """Shininess is limited to [1, 128], and a cone of 0 counts as missing."""
 
     def lit(shininess, more):
         light = f'<feSpotLight x="50" y="50" z="30" pointsAtX="60" pointsAtY="50" {more}/>'
@@ -360,14 +360,14 @@ def test_numbers_of_lights_are_as_in_browsers():
     assert lit("2", "").any()
 
 
-def test_blurs_want_a_unit():
+def test_blur_function_needs_a_unit():
     made, (warning,) = prefilter.rasterize_svg(svg(FLAT.format("blur(5)")), SIZE, SIZE)
     assert warning.kind == "broken"
     same(made[::-1], functions("none"))
     same(functions("blur(0)"), functions("none"))
 
 
-def test_lights_and_images_that_are_missing_make_nothing():
+def test_missing_lights_and_images_are_transparent():
     for step in ("<feDiffuseLighting/>", "<feTurbulence numOctaves='0'/>"):
         assert not drawn(step, BOX).any()
     body = f'<filter id="f"><feImage href="x.png"/></filter>{BOX}'
@@ -376,7 +376,7 @@ def test_lights_and_images_that_are_missing_make_nothing():
     assert not made.any()
 
 
-def test_images_are_elements_or_pictures():
+def test_feimage_of_elements_and_files():
     tree = '<defs><g id="e"><circle cx="20" cy="30" r="9" fill="teal"/></g></defs>'
     rest = 'filterUnits="userSpaceOnUse" x="5" y="10" width="90" height="80"'
     made = drawn('<feImage href="#e"/>', tree + BOX, rest)
@@ -392,7 +392,7 @@ def test_images_are_elements_or_pictures():
         np.testing.assert_allclose(made, plain(f"<image {place}/>"), atol=2e-6)
 
 
-def test_images_of_themselves_are_ignored():
+def test_circular_feimage_is_ignored():
     body = '<filter id="f"><feImage href="#r"/></filter><g id="r">' + BOX + "</g>"
     made, (warning,) = prefilter.rasterize_svg(svg(body), SIZE, SIZE)
     assert warning.name == "filter"
@@ -400,7 +400,7 @@ def test_images_of_themselves_are_ignored():
 
 
 @pytest.mark.parametrize("turn", ["rotate(30 50 50)", "rotate(-45 50 50)", "skewX(30)"])
-def test_filters_of_what_is_turned_are_turned(turn):
+def test_filters_rotate_with_their_element(turn):
     group = f'<g transform="{turn}">{{}}</g>'
     rest = f'filterUnits="userSpaceOnUse" x="25" y="25" width="40" height="30" {AS_ENCODED}'
     same(drawn("<feFlood/>", group.format(BOX), rest), plain(group.format(box(25, 25, 65, 55, ""))))
@@ -408,7 +408,7 @@ def test_filters_of_what_is_turned_are_turned(turn):
     expected = plain(group.format(box(40, 25, 70, 55, "")))
     assert np.abs(moved - expected).mean() < 0.004
     assert np.abs(moved - expected).max() < 0.35
-    # A blur that is as wide in all directions is the same, turned or not.
+    # An isotropic blur does not depend on rotation.
     if turn.startswith("rotate"):
         element = f'<g transform="{turn}"><circle cx="45" cy="55" r="20" filter="url(#f)"/></g>'
         step = '<feGaussianBlur stdDeviation="4"/>'
@@ -419,7 +419,7 @@ def test_filters_of_what_is_turned_are_turned(turn):
         np.testing.assert_allclose(drawn(step, element), drawn(step, other), atol=0.015)
 
 
-def test_what_rounding_leaves_of_colors_stays_small():
+def test_colors_of_nearly_transparent_pixels():
     from prefilter.shapes._svg.filters.evaluation import apply_filter
     from prefilter.shapes._svg.model.tree import Filter, Group, Step
 
@@ -451,7 +451,7 @@ def test_what_rounding_leaves_of_colors_stays_small():
     ],
     ids=lambda steps: steps[:30],
 )
-def test_odd_steps(steps):
+def test_odd_primitives(steps):
     for rest in ("", WIDE, 'width="0"', 'primitiveUnits="objectBoundingBox"'):
         for turn in ("", "rotate(33)", "matrix(1 1 1 1.000001 0 0)", "scale(1e-9)"):
             body = f'<filter id="f" {rest}>{steps}</filter><g transform="{turn}">{BOX}</g>'

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Filters of drawings: closed forms, laws, and other ways to the same."""
+"""Filters against closed forms, and against equivalent drawings."""
 
 import math
 
@@ -14,7 +14,7 @@ AS_ENCODED = 'color-interpolation-filters="sRGB"'
 
 
 def drawn(steps, element, rest=f"{WIDE} {AS_ENCODED}", **options):
-    """An element, or elements, with a filter of these steps; the top row first."""
+    """Draws elements with a filter; row 0 is at the top."""
     body = f'<filter id="f" {rest}>{steps}</filter>{element}'
     made, warnings = prefilter.rasterize_svg(svg(body), SIZE, SIZE, **options)
     assert warnings == ()
@@ -43,10 +43,10 @@ def test_an_offset_moves():
 
 @pytest.mark.parametrize("deviation", [0.5, 1.5, 1.9])
 def test_small_blurs_are_gaussian(deviation):
-    """Of an edge, a Gaussian makes its integral."""
+    """A Gaussian turns an edge into its integral."""
     made = drawn(f'<feGaussianBlur stdDeviation="{deviation} 0"/>', box(-99, -99, 50, 199))
     for x in range(40, 60):
-        # Weights at whole pixels, of which those up to here reach the edge.
+        # The weights at whole pixels that reach the edge add up.
         distances = np.arange(-20, 21)
         weights = np.exp(-(distances**2) / (2 * deviation**2))
         expected = weights[distances <= 49 - x].sum() / weights.sum()
@@ -59,7 +59,7 @@ def test_small_blurs_are_gaussian(deviation):
 
 
 @pytest.mark.parametrize("deviation", [2.0, 3.1, 5.0, 8.3])
-def test_large_blurs_are_three_means(deviation):
+def test_large_blurs_are_box_blurs(deviation):
     made = drawn(f'<feGaussianBlur stdDeviation="0 {deviation}"/>', box(0, 40, 100, 55))
     count = math.floor(deviation * 3 * math.sqrt(2 * math.pi) / 4 + 0.5)
     line = np.zeros(200)
@@ -71,13 +71,13 @@ def test_large_blurs_are_three_means(deviation):
         begin = (size - 1) // 2 + shift
         line = full[begin : begin + 200]
     np.testing.assert_allclose(made[:, 50, 3], line[50:150], atol=1e-6)
-    # It is nearly a Gaussian, in the same place and of the same sum.
+    # It approximates a Gaussian, with the same center and sum.
     places = np.arange(100) + 0.5
     assert made[:, 50, 3].sum() == pytest.approx(15, rel=1e-3)
     assert (places * made[:, 50, 3]).sum() / 15 == pytest.approx(47.5, abs=0.05)
 
 
-def test_flat_colors_stay_through_decoding():
+def test_flat_colors_survive_decoding():
     element = box(0, 0, 100, 100, 'fill="#4080c0" filter="url(#f)"')
     for light in ("srgb", "linear"):
         for space in ("sRGB", "linearRGB"):
@@ -88,7 +88,7 @@ def test_flat_colors_stay_through_decoding():
             )
 
 
-def test_steps_work_on_decoded_colors():
+def test_primitives_work_on_decoded_colors():
     half = '<feComponentTransfer><feFuncG type="linear" slope="0.5"/></feComponentTransfer>'
     element = box(0, 0, 100, 100, 'fill="white" filter="url(#f)"')
     as_light = float(prefilter.to_srgb([[0.5]])[0, 0])
@@ -110,7 +110,7 @@ def test_steps_work_on_decoded_colors():
     ],
 )
 def test_composites(operator, shares):
-    """Of red with an alpha of 0.6 over blue with one of 0.2."""
+    """Red with alpha 0.6 over blue with alpha 0.2."""
     flood = '<feFlood flood-color="{}" flood-opacity="{}" result="{}"/>'
     steps = flood.format("red", 0.6, "a") + flood.format("blue", 0.2, "b")
     steps += f'<feComposite in="a" in2="b" operator="{operator}"/>'
@@ -119,7 +119,7 @@ def test_composites(operator, shares):
     np.testing.assert_allclose(drawn(steps, BOX)[50, 50], expected, atol=1e-6)
 
 
-def test_a_shadow_is_what_its_steps_make():
+def test_drop_shadow_equals_its_primitives():
     shadow = '<feDropShadow dx="7" dy="4" stdDeviation="3" flood-color="teal" flood-opacity="0.7"/>'
     steps = (
         '<feGaussianBlur in="SourceAlpha" stdDeviation="3"/><feOffset dx="7" dy="4" result="o"/>'
@@ -145,7 +145,7 @@ def test_color_matrices():
         with_matrix('type="saturate" values="0"'), (gray, gray, gray, 1), atol=1e-6
     )
     np.testing.assert_allclose(with_matrix('type="luminanceToAlpha"'), (0, 0, 0, gray), atol=1e-6)
-    # Turned by 90 degrees three times more, it is as it was, but for what is cut off at [0, 1].
+    # Four rotations by 90 degrees restore colors, except for clamping to [0, 1].
     turned = with_matrix('type="hueRotate" values="90"')[:3]
     assert turned @ (0.213, 0.715, 0.072) == pytest.approx(gray, abs=2e-3)
     swapped = with_matrix('values="0 1 0 0 0  0 0 1 0 0  1 0 0 0 0  0 0 0 .5 .25"')
@@ -164,9 +164,9 @@ def test_component_transfers():
     np.testing.assert_allclose(drawn(steps, element)[50, 50], expected, atol=1e-6)
 
 
-def test_a_filter_ends_at_its_region_and_a_step_at_its_own():
+def test_filter_regions_and_subregions():
     flood = '<feFlood flood-color="black" {}/>'
-    # A tenth of the box beside it.
+    # The default region is a tenth larger than the box on each side.
     same(drawn(flood.format(""), BOX, ""), plain(box(27, 17, 63, 53, "")))
     step = flood.format('x="20" y="30" width="10" height="99"')
     same(drawn(step, BOX, WIDE), plain(box(20, 30, 30, 129, "")))
@@ -182,7 +182,7 @@ def test_clip_paths_masks_and_opacity_come_after_filters():
         move, f'{clip}<g clip-path="url(#c)" filter="url(#f)">{box(10, 10, 60, 60, "")}</g>'
     )
     same(made, plain(box(30, 10, 45.5, 60, "")))
-    # A clip path in the group comes before it.
+    # A clip path inside the group precedes the filter.
     made = drawn(move, f'{clip}<g filter="url(#f)">{box(10, 10, 60, 60, clip_path("c"))}</g>')
     same(made, plain(box(30, 10, 65.5, 60, "")))
     mask = f'<mask id="c" {WIDE.replace("filter", "mask")}>{box(0, 0, 45, 99, FILL)}</mask>'
@@ -199,7 +199,7 @@ def clip_path(name):
     return f'clip-path="url(#{name})"'
 
 
-def test_what_is_not_supported_is_said_once():
+def test_unsupported_filters_cause_one_warning():
     body = f'<filter id="f"><feOffset in="FillPaint" dx="5"/></filter>{BOX}{BOX}'
     made, (warning,) = prefilter.rasterize_svg(svg(body), SIZE, SIZE)
     words = "FillPaint: replaced by the result before it (first in line 1, 2 times)"

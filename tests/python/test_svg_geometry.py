@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Outlines read from SVG, and where they are: against shapes made by hand, and formulas."""
+"""Geometry of SVG outlines, against shapes drawn manually, and formulas."""
 
 import math
 
@@ -74,7 +74,7 @@ def test_quadratic_curves(data):
     same(drawn(f'<path fill="green" d="{data}"/>'), outline(by_hand))
 
 
-def test_a_smooth_curve_after_another_kind_begins_at_its_start():
+def test_smooth_curves_after_other_segments():
     def by_hand(shape):
         shape.move_to(10, 50)
         shape.curve_to(30, 10, 50, 50)
@@ -87,7 +87,7 @@ def test_a_smooth_curve_after_another_kind_begins_at_its_start():
 
 
 def points_of(segments):
-    """Points along the conics and lines of an outline, with y downwards."""
+    """Points along the conics and lines of an outline, y downwards."""
     found, at = [], None
     for kind, numbers in segments:
         if kind == "W":
@@ -103,7 +103,7 @@ def points_of(segments):
 @pytest.mark.parametrize("rotation", [0.0, 30.0, -200.0])
 @pytest.mark.parametrize("is_large", [False, True])
 @pytest.mark.parametrize("is_positive", [False, True])
-def test_arcs_lie_on_their_ellipse_and_go_round_it_as_said(rotation, is_large, is_positive):
+def test_arcs_lie_on_their_ellipse(rotation, is_large, is_positive):
     from prefilter.shapes._svg.model.outline import read_path
 
     start, end, rx, ry = np.array([20.0, 30.0]), np.array([47.0, 61.0]), 30.0, 45.0
@@ -112,7 +112,7 @@ def test_arcs_lie_on_their_ellipse_and_go_round_it_as_said(rotation, is_large, i
     assert is_whole
     points = points_of(path.segments())
     np.testing.assert_allclose(points[[0, -1]], [start, end])
-    # Where the ellipse is a unit circle, its center is at a distance of 1 from all points.
+    # In units of the ellipse, all points are at a distance of 1 from its center.
     angle = math.radians(rotation)
     turned = points @ [[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]]
     unit = turned / [rx, ry]
@@ -125,7 +125,7 @@ def test_arcs_lie_on_their_ellipse_and_go_round_it_as_said(rotation, is_large, i
     assert (turns[-1] > turns[0]) == is_positive
 
 
-def test_arcs_that_are_too_small_grow_and_those_of_no_radius_are_lines():
+def test_arcs_with_small_radii_grow_or_are_lines():
     half = drawn('<path fill="green" d="M 20 50 A 1 1 0 0 1 80 50 Z"/>')
     # Half a disc of radius 30, above its diameter.
     assert half[..., 1].sum() * 255 / 128 == pytest.approx(math.pi * 450, abs=1e-3)
@@ -134,7 +134,7 @@ def test_arcs_that_are_too_small_grow_and_those_of_no_radius_are_lines():
     same(line, polygon(*SQUARE))
 
 
-def test_flags_of_arcs_need_no_blanks_and_numbers_give_none_away():
+def test_flags_of_arcs_need_no_separators():
     spaced = drawn('<path fill="green" d="M 20 50 A 30 30 0 1 1 80 50 Z"/>')
     same(drawn('<path fill="green" d="M20 50A30 30 0 1180 50Z"/>'), spaced)
     drawing = read('<path d="M 20 50 A 30 3001 180 50 Z"/>')
@@ -191,7 +191,7 @@ def test_rectangles(attributes, rx, ry):
     if rx == 0:
         same(found, polygon(*SQUARE))
         return
-    # What is missing at the corners: a box less an ellipse.
+    # The corners lack the difference of a box and an ellipse.
     assert found[..., 3].sum() == pytest.approx(2500 - (4 - math.pi) * rx * ry, abs=1e-3)
     assert np.abs(found - polygon(*SQUARE))[20 + math.ceil(ry) : 69 - math.ceil(ry)].max() < 1e-6
 
@@ -260,7 +260,7 @@ def test_transforms(text, matrix):
     assert box_of(styled) == pytest.approx(expected, abs=1e-9)
 
 
-def test_transforms_of_groups_go_around_those_within():
+def test_nested_transforms():
     body = '<g transform="translate(10 0)"><rect transform="scale(2)" width="5" height="5"/></g>'
     assert box_of(read(body)) == pytest.approx((10, 0, 20, 10))
     for flat in ("matrix(0 0 0 0 0 0)", "scale(0 1)", "scale(1e-30)"):
@@ -281,7 +281,7 @@ def test_transforms_of_groups_go_around_those_within():
         ("what", (0, 25, 100, 75)),
     ],
 )
-def test_a_view_box_is_placed_as_its_aspect_ratio_says(aspect, box):
+def test_preserve_aspect_ratio(aspect, box):
     rectangle = '<rect x="5" y="6" width="40" height="20"/>'
     drawing = read(rectangle, f'viewBox="5 6 40 20" preserveAspectRatio="{aspect}"')
     assert (drawing.width, drawing.height) == (40, 20)
@@ -290,7 +290,7 @@ def test_a_view_box_is_placed_as_its_aspect_ratio_says(aspect, box):
         f'<svg x="10" y="20" width="50" height="50" viewBox="5 6 40 20" '
         f'preserveAspectRatio="{aspect}">{rectangle}</svg>'
     )
-    # What leaves the viewport is cut off.
+    # The viewport clips the rest.
     expected = np.array(box).clip(0, 100) / 2 + (10, 20, 10, 20)
     assert box_of(nested) == pytest.approx(expected)
 
@@ -334,12 +334,12 @@ def test_uses_and_symbols():
     assert [shape.color[3] for shape in drawing.shapes] == [1.0, 0.5, 0.5]
 
 
-def test_what_is_used_has_the_style_of_its_use():
+def test_used_elements_inherit_the_style_of_their_use():
     body = '<defs><rect id="a" width="10" height="10"/></defs><use href="#a" fill="lime"/>'
     assert read(body, light="srgb").shapes[0].color == pytest.approx((0, 1, 0, 1))
 
 
-def test_a_path_given_at_once_is_that_of_its_steps():
+def test_add_path_equals_single_segments():
     def by_steps(shape):
         shape.move_to(10, 20)
         shape.line_to(60, 20)

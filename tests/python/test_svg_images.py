@@ -17,7 +17,7 @@ def data_url(texels, kind="png"):
     return f"data:image/{kind};base64,{base64.b64encode(png.encoded(texels[::-1])).decode()}"
 
 
-def test_images_of_as_many_pixels_are_as_they_are():
+def test_images_at_their_own_size_are_unchanged():
     random = np.random.default_rng(1)
     texels = random.integers(0, 256, (SIZE, SIZE, 4), np.uint8)
     expected = texels / np.float32(255)
@@ -37,7 +37,7 @@ def test_images_of_as_many_pixels_are_as_they_are():
         ("webp", {"exif": b"x"}),
     ],
 )
-def test_other_kinds_of_pictures(kind, options):
+def test_image_formats(kind, options):
     pillow = pytest.importorskip("PIL.Image")
     rows = np.zeros((30, 50, 3), np.uint8)
     rows[:, 20:] = (0, 128, 0)
@@ -54,14 +54,14 @@ def test_other_kinds_of_pictures(kind, options):
 
 
 def shown(file, kind="png"):
-    """Returns what is drawn of a picture file over the whole drawing."""
+    """Draws an image file over the whole drawing."""
     address = f"data:image/{kind};base64,{base64.b64encode(file).decode()}"
     rest = 'preserveAspectRatio="none" width="100" height="100"'
     return whole(f'<image {rest} href="{address}"/>')
 
 
 @pytest.mark.parametrize("orientation", range(1, 9))
-def test_pictures_are_turned_as_exif_says(orientation):
+def test_exif_orientation(orientation):
     pillow = pytest.importorskip("PIL.Image")
     ops = pytest.importorskip("PIL.ImageOps")
     image = pillow.fromarray(np.random.default_rng(1).integers(0, 256, (4, 2, 3), np.uint8))
@@ -74,18 +74,18 @@ def test_pictures_are_turned_as_exif_says(orientation):
     np.testing.assert_array_equal(shown(file.getvalue()), shown(expected))
 
 
-def test_colors_of_pictures_are_converted():
+def test_image_colors_are_converted():
     texels = np.full((4, 4, 3), (150, 120, 90), np.uint8)
     made = shown(png.encoded(texels, chunks=[(b"cICP", bytes([12, 13, 0, 1]))]))
     light = prefilter.to_linear(texels[:1, :1] / np.float32(255))[0, 0]
-    # As SMPTE publishes it.
+    # Published by SMPTE.
     matrix = [[1.22494, -0.22494, 0.0], [-0.04206, 1.04206, 0.0], [-0.01964, -0.07864, 1.09828]]
     expected = prefilter.to_srgb((np.array(matrix) @ light).astype(np.float32)[None, None])[0, 0]
     middle = tuple(side // 2 for side in made.shape[:2])
     np.testing.assert_allclose(made[middle][:3], expected, atol=0.6 / 255)
 
 
-def test_pictures_in_cmyk_are_left_out():
+def test_cmyk_images_are_left_out():
     pillow = pytest.importorskip("PIL.Image")
     file = io.BytesIO()
     pillow.new("CMYK", (4, 4), (10, 20, 30, 40)).save(file, "jpeg")
@@ -96,7 +96,7 @@ def test_pictures_in_cmyk_are_left_out():
     assert "left out, as its colors are CMYK" in warning.effect
 
 
-def test_where_images_are():
+def test_image_addresses():
     flat = np.full((2, 4, 4), 255, np.uint8)
     href = data_url(flat)
     for rest, expected in (
@@ -118,7 +118,7 @@ def test_where_images_are():
 
 
 @pytest.mark.parametrize("channels", [1, 3, 4])
-def test_pictures_are_the_same_by_either_library(monkeypatch, channels):
+def test_both_libraries_decode_the_same(monkeypatch, channels):
     pytest.importorskip("PIL")
     pytest.importorskip("OpenImageIO")
     from prefilter.shapes._svg.read import image_files
@@ -131,7 +131,7 @@ def test_pictures_are_the_same_by_either_library(monkeypatch, channels):
         with monkeypatch.context() as patched:
             patched.setattr(image_files, "import_module", missing)
             second = image_files.decode_image(data)
-        # Pillow cuts colors of 16 bits off, which are rounded elsewhere.
+        # Pillow truncates 16 bits; OpenImageIO's values are rounded.
         assert np.abs(first.astype(int) - second).max() <= (kind is np.uint16)
         expected = np.rint(values / (1 if kind is np.uint8 else 257)).astype(np.uint8)[::-1]
         np.testing.assert_array_equal(second[..., 0], expected[..., 0])
@@ -144,7 +144,7 @@ def missing(name):
 
 
 @pytest.mark.parametrize("aspect", ["xMinYMin", "xMaxYMax slice", "none"])
-def test_drawings_without_a_size_fit_themselves_into_their_place(aspect):
+def test_nested_drawings_without_a_size(aspect):
     inner = svg(box(0, 0, 20, 20, 'fill="green"'), 'viewBox="0 0 20 20"')
     data = base64.b64encode(inner.encode()).decode()
     body = (
@@ -178,7 +178,7 @@ def test_images_are_read_once_and_counted(monkeypatch):
         whole(body)
 
 
-def test_drawings_in_drawings():
+def test_nested_drawings():
     inner = svg(box(-9, -9, 50, 99, 'fill="red"'), 'width="20" height="10" viewBox="0 0 100 50"')
     href = "data:image/svg+xml;base64," + base64.b64encode(inner.encode()).decode()
     made = whole(f'<image x="10" y="10" width="40" height="40" href="{href}"/>')
@@ -187,7 +187,7 @@ def test_drawings_in_drawings():
     same(whole(f'<image x="10" y="10" width="40" height="40" href="{plain}"/>'), made)
 
 
-def test_images_come_from_the_folder_of_the_drawing_only(tmp_path):
+def test_images_outside_the_folder_are_not_read(tmp_path):
     folder = tmp_path / "folder"
     (folder / "deeper").mkdir(parents=True)
     picture = png.encoded(np.full((2, 2, 4), 255, np.uint8))
@@ -210,7 +210,7 @@ def test_images_come_from_the_folder_of_the_drawing_only(tmp_path):
         made, warnings = prefilter.rasterize_svg(path, 4, 4)
         assert (made[..., 3] == 1).all() == is_shown, href
         assert [warning.name for warning in warnings] == ([] if is_shown else ["<image>"])
-    # Nor does a drawing in a drawing reach out of it.
+    # A nested drawing cannot refer to files either.
     (folder / "inner.svg").write_text(path.read_text().replace("//localhost/a", "a%20b"))
     path.write_text(svg('<image width="100" height="100" href="inner.svg"/>'))
     made, warnings = prefilter.rasterize_svg(path, 4, 4)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""How much of a machine a small drawing may take: what it holds is counted, and refused."""
+"""Resource limits: small drawings that would take much memory or time are refused."""
 
 import gc
 import gzip
@@ -45,7 +45,7 @@ def test_long_attributes_are_refused(monkeypatch, body):
     refused(body.format("1 " * 600), r"the attribute '\w+' has 1200 characters; at most 1000 are")
 
 
-def test_long_paths_and_what_other_programs_keep_are_read(monkeypatch):
+def test_long_paths_and_foreign_attributes_are_read(monkeypatch):
     from prefilter.shapes._svg.read import document
 
     monkeypatch.setattr(document, "MAX_VALUE", 1000)
@@ -63,7 +63,7 @@ def test_text_is_counted(monkeypatch):
         refused(f"<{tag}>{' ' * 600}</{tag}>" * 2, "more than 1000 characters of text and style")
 
 
-def test_style_sheets_are_counted_but_for_what_they_quote(monkeypatch):
+def test_style_sheets_are_counted_without_quoted_texts(monkeypatch):
     from prefilter.shapes._svg.read import style_rules
 
     monkeypatch.setattr(style_rules, "MAX_CHARACTERS", 1000)
@@ -81,30 +81,30 @@ def test_style_sheets_are_counted_but_for_what_they_quote(monkeypatch):
         ":is(" * 40 + "a" + ")" * 40,
     ],
 )
-def test_selectors_of_many_parts_are_ignored(selector):
+def test_selectors_of_many_compounds_are_ignored(selector):
     drawing = read(f"<style>{selector}{{fill:red}}</style><rect width='9' height='9'/>")
     assert len(drawing.shapes) == 1
     assert [warning.effect for warning in drawing.warnings] == ["ignored"]
 
 
-def test_selectors_in_a_list_have_parts_of_their_own():
+def test_selectors_in_a_list_count_separately():
     style = "<style>" + ",".join(["svg g rect"] * 40) + "{fill:#f00}</style>"
     drawing = read(style + "<g><rect width='9' height='9'/></g>")
     assert drawing.warnings == ()
     np.testing.assert_array_equal(drawing.shapes[0].color, (1, 0, 0, 1))
 
 
-def test_what_selectors_look_at_is_counted(monkeypatch):
+def test_visited_ancestors_are_counted(monkeypatch):
     from prefilter.shapes._svg.read import styles
 
     monkeypatch.setattr(styles, "MAX_ANCESTORS", 200_000)
-    # Each part is tried at each ancestor: 100 over 10 is the number of ways.
+    # Each compound is tried at each ancestor, in 100 over 10 ways.
     style = f"<style>{'a ' + '* ' * 10}{{fill:red}}</style>"
     body = "<g>" * 100 + "<rect width='9' height='9'/>" + "</g>" * 100
     refused(style + body, "selectors look at more than 200000 elements")
 
 
-def test_what_is_read_is_not_kept():
+def test_long_values_are_not_cached():
     from prefilter.shapes._svg.model import values
     from prefilter.shapes._svg.read import styles
 
@@ -125,18 +125,18 @@ def filtered(steps):
 
 
 def named(count):
-    """A filter that merges so many results."""
+    """A filter that merges this many results."""
     offsets = "".join(f'<feOffset in="SourceGraphic" result="r{k}"/>' for k in range(count))
     nodes = "".join(f'<feMergeNode in="r{k}"/>' for k in range(count))
     return filtered(offsets + f"<feMerge>{nodes}</feMerge>")
 
 
-def test_results_that_filters_keep_are_counted():
+def test_stored_filter_results_are_counted():
     prefilter.rasterize_svg(svg(named(60)), 16, 16)
     refused(named(70), "a filter keeps the results of more than 64 steps")
 
 
-def test_results_that_nothing_reads_are_let_go():
+def test_unread_filter_results_are_freed():
     steps = "".join(f'<feOffset in="SourceGraphic" result="r{k}"/>' for k in range(100))
     made, _ = prefilter.rasterize_svg(svg(filtered(steps)), 100, 100)
     plain, _ = prefilter.rasterize_svg(svg(filtered('<feOffset in="SourceGraphic"/>')), 100, 100)
@@ -156,10 +156,10 @@ def test_merging_takes_as_much_memory_for_any_number_of_inputs():
     assert most(40) < 1.2 * most(4)
 
 
-def test_clips_far_away_are_drawn():
+def test_distant_clips():
     body = (
         '<clipPath id="c"><path d="M0 0H1e120V5H0z"/></clipPath>'
         '<path fill="green" d="M0 0L5 5L3 9z" clip-path="url(#c)"/>'
     )
-    # What is above y = 5 of the triangle: its edge from (0, 0) to (3, 9) passes it at 5 / 3.
+    # The triangle above y = 5: its edge from (0, 0) to (3, 9) passes it at 5 / 3.
     np.testing.assert_allclose(drawn(body), polygon((0, 0), (5, 5), (5 / 3, 5)), atol=1e-4)

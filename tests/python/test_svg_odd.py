@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Odd drawings, what is too large, threads and arguments."""
+"""Odd drawings, limits, threads and arguments."""
 
 import numpy as np
 import prefilter
@@ -47,7 +47,7 @@ def test_odd_drawings_are_drawn(body):
 def test_layers_have_limits(monkeypatch):
     inner = box(0, 0, 50, 50) + box(20, 20, 70, 70)
     deep = '<g opacity="0.9">' * 60 + inner + "</g>" * 60
-    # Each has one group in it, and becomes a layer.
+    # Each group contains another one, and becomes a layer.
     with pytest.raises(ValueError, match="source: layers are nested more than 48 deep"):
         prefilter.rasterize_svg(svg(deep), 8, 8)
     from prefilter.shapes._svg.draw import compositing
@@ -62,7 +62,7 @@ def test_layers_have_limits(monkeypatch):
         prefilter.rasterize_svg(svg(wide), 16, 16)
 
 
-def test_boxes_of_groups_in_groups_are_counted(monkeypatch):
+def test_measured_elements_are_counted(monkeypatch):
     from prefilter.shapes._svg.model import limits
 
     clip = f'<clipPath id="c" clipPathUnits="objectBoundingBox">{box(0, 0, 1, 1)}</clipPath>'
@@ -81,7 +81,7 @@ def test_boxes_of_groups_in_groups_are_counted(monkeypatch):
         '<path marker-mid="url(#m{})"/>',
     ],
 )
-def test_what_masks_and_others_repeat_is_counted_before_it_is_drawn(monkeypatch, group):
+def test_repetition_by_references_is_checked_before_drawing(monkeypatch, group):
     from prefilter.shapes._svg.draw.drawing import TreeBuilder
 
     def visited(*_):
@@ -94,14 +94,14 @@ def test_what_masks_and_others_repeat_is_counted_before_it_is_drawn(monkeypatch,
         prefilter.rasterize_svg(svg(bombs + group.format(19)), 9, 9)
 
 
-def test_patterns_in_patterns_end():
+def test_nested_patterns_are_limited():
     patterns = "".join(
         f'<pattern id="p{k}" width="1" height="1" patternUnits="userSpaceOnUse">'
         f'<rect width="0.5" height="1" fill="{f"url(#p{k - 1})" if k else "red"}"/></pattern>'
         for k in range(8)
     )
     made = whole(patterns + box(20, 20, 60, 60, 'fill="url(#p1)"'))
-    # Half of the columns, of which red is half.
+    # Red fills half of the columns halfway.
     np.testing.assert_allclose(made[25:55, 25:55, 3].mean(), 0.5, atol=0.01)
     assert np.isfinite(whole(patterns + box(20, 20, 60, 60, 'fill="url(#p7)"'))).all()
 
@@ -138,7 +138,7 @@ LAYERED = (
 )
 
 
-def test_the_same_bits_by_any_number_of_threads():
+def test_threads_do_not_change_bits():
     one, many = (whole(LAYERED, 200, threads=threads) for threads in (1, 4))
     np.testing.assert_array_equal(one, many)
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Styles, colors and gradients read from SVG: against what its specification says."""
+"""Styles, colors and gradients, against the specification."""
 
 import numpy as np
 import prefilter
@@ -49,7 +49,7 @@ def test_the_cascade(sheet, attributes, color):
     assert color_of(body) == pytest.approx(color)
 
 
-def test_a_style_sheet_counts_wherever_it_stands():
+def test_style_sheets_apply_to_earlier_elements():
     body = '<rect width="9" height="9"/><style><![CDATA[ svg>rect{fill:lime} ]]></style>'
     assert color_of(body) == pytest.approx(LIME)
 
@@ -102,7 +102,7 @@ def test_fill_rules():
     "attributes",
     ['display="none"', 'style="display:none"', 'visibility="hidden"', 'fill="none"', 'opacity="0"'],
 )
-def test_what_is_not_shown(attributes):
+def test_hidden_elements(attributes):
     assert read(f'<g {attributes}><rect width="9" height="9"/></g>').shapes == []
 
 
@@ -126,7 +126,7 @@ FADING = (("0.2", "yellow", 1), ("0.6", "blue", 0.25), ("0.9", "lime", 0.75))
 
 
 def straight_colors(stops, offsets):
-    """What SVG says of the colors at offsets: each value changes in a straight line."""
+    """Colors at offsets: each straight value is interpolated linearly."""
     numbers = {"yellow": (1, 1, 0), "blue": (0, 0, 1), "lime": (0, 1, 0)}
     numbers |= {TWO[0][1]: (1, 0, 0.2), TWO[1][1]: (0, 0.8, 1)}
     places = [float(offset.rstrip("%")) / (100 if "%" in offset else 1) for offset, _, _ in stops]
@@ -136,9 +136,9 @@ def straight_colors(stops, offsets):
 
 @pytest.mark.parametrize("stops", [TWO, FADING])
 @pytest.mark.parametrize("light", ["srgb", "linear"])
-def test_gradients_look_as_svg_has_them(stops, light):
+def test_gradient_interpolation(stops, light):
     found = drawn(gradient(stops), light, 64)
-    # The mean over each pixel, from many points of it.
+    # The mean over each pixel, from many samples.
     offsets = (np.arange(64 * 50) + 0.5) / (64 * 50)
     values = straight_colors(stops, offsets)
     if light == "linear":
@@ -172,7 +172,7 @@ def test_linear_gradients(attributes, offset):
     found = drawn(gradient(TWO, attributes))
     y, x = np.mgrid[0:100, 0:100] + 0.5
     expected = straight_colors(TWO, offset(x, y))
-    # Pixels where the colors begin anew have some of both.
+    # Pixels where the gradient restarts mix both ends.
     jumps = np.abs(np.gradient(expected, axis=1)).max(-1) > 0.1
     assert jumps.any() == ("repeat" in attributes)
     assert np.abs(found - expected)[~jumps].max() < 0.02
@@ -196,8 +196,8 @@ def test_radial_gradients(attributes, offset):
     found = drawn(gradient(TWO, attributes, "radialGradient"))
     y, x = np.mgrid[0:100, 0:100] + 0.5
     if offset is None:
-        # The circle at t goes round a center on the way from the focus f, with a radius of 50 t:
-        # |d - t f| = 50 t, which is t^2 (50^2 - f^2) + 2 t (d . f) - |d|^2 = 0.
+        # The circle at t has its center on the line from the focus f, and the radius 50 t: |d - t
+        # f| = 50 t, which is t^2 (50^2 - f^2) + 2 t (d . f) - |d|^2 = 0.
         dx, dy, f = x - 30, y - 50, 20.0
         a, b = 50.0**2 - f**2, dx * f
         at = (np.sqrt(b * b + a * (dx * dx + dy * dy)) - b) / a
@@ -214,14 +214,14 @@ def test_radial_gradients(attributes, offset):
 )
 @pytest.mark.parametrize("spread", ["pad", "repeat"])
 def test_gradients_between_any_two_circles(cx, r, fx, fr, spread):
-    """The circle at t is around a point on the way from the focus to the center. Of those through
-    a pixel the one with the largest t counts, and pixels without one are transparent.
+    """The circle at t has its center on the line from the focus to the center. A pixel has the
+    color of the largest t whose circle contains it; without any it is transparent.
     """
     attributes = f'gradientUnits="userSpaceOnUse" cx="{cx}" cy="50" r="{r}" fx="{fx}" fy="50" '
     attributes += f'fr="{fr}" spreadMethod="{spread}"'
     body = gradient(TWO, attributes, "radialGradient")
     found = image(read(body).shapes_for(SIZE, SIZE))[::-1]
-    # What is below shows through.
+    # The backdrop shows through.
     below = '<circle cx="50" cy="50" r="40" fill="blue"/>'
     over = image(read(below + body).shapes_for(SIZE, SIZE))[::-1]
     alone = image(read(below).shapes_for(SIZE, SIZE))[::-1]
@@ -232,7 +232,7 @@ def test_gradients_between_any_two_circles(cx, r, fx, fr, spread):
     radii, centers = fr + steps * (r - fr), fx + steps * (cx - fx)
     checked = 0
     for x, y in np.random.default_rng(5).integers(2, 98, (30, 2)):
-        # Within a pixel colors may jump; all of its corners say the same where they do not.
+        # Colors may jump within a pixel, unless all of its corners agree.
         corners = [(x + dx, y + dy) for dx in (0.0, 0.5, 1.0) for dy in (0.0, 0.5, 1.0)]
         at = []
         for px, py in corners:
@@ -264,7 +264,7 @@ def test_gradients_by_reference():
     same(drawn(body), drawn(direct))
 
 
-def test_a_gradient_goes_along_with_its_shape():
+def test_gradients_move_with_their_shape():
     body = gradient(
         TWO, shape='<rect width="50" height="100" transform="translate(100) rotate(90)"'
     )
@@ -286,11 +286,11 @@ def test_a_gradient_goes_along_with_its_shape():
         ("", None),
     ],
 )
-def test_gradients_that_come_to_one_color_or_to_none(definition, color):
+def test_degenerate_gradients(definition, color):
     body = f'{definition}<rect width="9" height="9" fill="url(#g)"/>'
     if color is None:
         assert read(body).shapes == []
-        # The color is for where there is no gradient.
+        # The fallback color only applies if there is no gradient.
         other = body.replace("url(#g)", "url('#g') blue")
         if "Gradient" in definition:
             assert read(other).shapes == []
@@ -309,8 +309,8 @@ def test_a_box_without_area_has_no_gradient():
 
 @pytest.mark.parametrize("kind", ["gradient", "pattern"])
 @pytest.mark.parametrize("place", ["use", "marker"])
-def test_paints_of_others_lie_as_they_do_there(kind, place):
-    """What is brought is painted as its parts of one outline would be."""
+def test_context_paints(kind, place):
+    """Each part of marked or used contents is painted as a part of one outline."""
     paint = (
         '<linearGradient id="p" gradientTransform="rotate(20)"><stop stop-color="red"/>'
         '<stop offset="1" stop-color="blue"/></linearGradient>'
@@ -327,7 +327,7 @@ def test_paints_of_others_lie_as_they_do_there(kind, place):
         )
         body = f'<defs><g id="g">{inside}</g></defs><use href="#g" x="5" y="7" fill="url(#p)"/>'
     else:
-        # Corners of a box around both; the path itself has no area, and fills nothing.
+        # Corners of a box around both; the path itself has no area, and no fill.
         body = (
             '<marker id="m" markerUnits="userSpaceOnUse" markerWidth="9" markerHeight="9" '
             'overflow="visible" orient="90"><path d="M0 0H10V-8H0z" fill="context-fill"/></marker>'
@@ -336,7 +336,7 @@ def test_paints_of_others_lie_as_they_do_there(kind, place):
         boxes = ((10, 20, 8, 10), (84, 70, 8, 10))
     parts = "".join(f"M{x} {y}h{w}v{h}h{-w}z" for x, y, w, h in boxes)
     clip = f'<clipPath id="c"><path d="{parts}"/></clipPath>'
-    # The same paint, in units of the page instead of shares of the box around both.
+    # The same paint, in user units instead of fractions of the box.
     shares = "matrix(74 0 0 50 10 20)"
     if kind == "gradient":
         paint += paint.replace(
@@ -354,7 +354,7 @@ def test_paints_of_others_lie_as_they_do_there(kind, place):
     np.testing.assert_allclose(made, other, atol=1e-5)
 
 
-def test_properties_that_are_not_inherited_may_be():
+def test_inherit_keyword():
     rect = '<rect x="10" y="10" width="40" height="40" {}/>'
     tree = '<clipPath id="c"><path d="M0 0H30V30H0z"/></clipPath><g clip-path="url(#c)">'
     both = tree + rect.format('clip-path="inherit" transform="translate(5 5)"') + "</g>"
@@ -362,7 +362,7 @@ def test_properties_that_are_not_inherited_may_be():
     same(drawn(rect.format('clip-path="inherit" overflow="inherit"')), drawn(rect.format("")))
 
 
-def test_patterns_of_boxes_without_an_area_have_their_color():
+def test_fallback_color_of_patterns():
     pattern = '<pattern id="p" width="1" height="1"><rect width="9" height="9"/></pattern>'
     line = '<path d="M10 50H90" stroke-width="8" stroke="{}"/>'
     same(drawn(pattern + line.format("url(#p) green")), drawn(line.format("green")))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Drawings of resvg's tests beside the images that it makes of them."""
+"""Drawings of resvg's test suite, compared with its images."""
 
 from pathlib import Path
 
@@ -10,9 +10,9 @@ import pytest
 from drawings import image
 
 RESVG = Path(__file__).resolve().parents[3] / "shared" / "data" / "svg" / "resvg"
-# resvg knows neither `fr` nor alpha in percent there, and a focus may be outside of its circle.
+# resvg does not know `fr` or percentages for alpha there, and allows a focus outside of its circle.
 THEIR_OWN = {"fr=0.2", "fr=0.5", "fr=0.7", "rgba-0-127-0-50percent"}
-# What it draws otherwise than SVG 2 and browsers, where a gradient is none.
+# Drawn differently from SVG 2 and browsers if a gradient is invalid.
 THEIR_OWN |= {"invalid-gradientTransform", "invalid-FuncIRI-with-a-fallback-color"}
 THEIR_OWN |= {"invalid-FuncIRI-with-a-currentColor-fallback"}
 

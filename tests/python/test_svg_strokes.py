@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Strokes read from SVG: against those of shapes made by hand, and their areas."""
+"""Strokes, against strokes of shapes drawn manually, and their areas."""
 
 import math
 
@@ -49,18 +49,18 @@ def test_strokes(attributes, options):
     np.testing.assert_allclose(found, stroked(corner, 8, **options), atol=2e-3)
 
 
-def test_a_stroke_goes_along_with_its_transform():
+def test_strokes_are_transformed():
     body = (
         '<g transform="scale(4 1)"><path d="M 5 0 V 50 H 20" stroke="green" fill="none" '
         'stroke-width="2"/></g>'
     )
     found = drawn(body)
-    # An upright line is widened to 8 pixels; a level one stays 2 pixels wide.
+    # A vertical line is widened to 8 pixels; a horizontal one stays 2 pixels wide.
     assert found[10, :, 3].sum() == pytest.approx(8, abs=1e-3)
     assert found[:, 50, 3].sum() == pytest.approx(2, abs=1e-3)
 
 
-def test_strokes_are_made_for_their_size():
+def test_strokes_are_computed_for_the_size():
     circle = '<circle cx="50" cy="50" r="40" fill="none" stroke="black" stroke-width="10"/>'
     drawing = read(circle)
     for size in (20, 100, 500):
@@ -69,7 +69,7 @@ def test_strokes_are_made_for_their_size():
         assert found[..., 3].sum() == pytest.approx(area, rel=2e-4)
 
 
-def test_fill_comes_before_stroke_unless_said():
+def test_paint_order():
     body = '<rect x="20" y="20" width="60" height="60" fill="red" stroke="lime" stroke-width="10"/>'
     np.testing.assert_allclose(drawn(body)[50, 22], LIME, atol=1e-5)
     first = body.replace("<rect", '<rect paint-order="stroke"')

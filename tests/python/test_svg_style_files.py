@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Style sheets beside a drawing: each is as if its rules stood in the drawing."""
+"""Style sheets in files have the same effect as rules in the drawing."""
 
 import base64
 
@@ -16,7 +16,7 @@ GREEN, RED = ".a{fill:green}", ".a{fill:red}"
 
 @pytest.fixture
 def color(tmp_path):
-    """Writes files, draws `d/drawing.svg` of them, and returns its color and warnings."""
+    """Writes files, draws `d/drawing.svg`, and returns its color and warnings."""
 
     def found(files, before="", body=BOX):
         for name, text in {"d/drawing.svg": before + svg(body), **files}.items():
@@ -57,7 +57,7 @@ LINK = '<link xmlns="http://www.w3.org/1999/xhtml" rel="stylesheet" href="a.css"
         ("", imported("url(../d/a.css)")),
     ],
 )
-def test_sheets_in_files_count(color, before, body):
+def test_linked_sheets_apply(color, before, body):
     assert color({"d/a.css": GREEN}, before, body) == ("green", [])
 
 
@@ -72,27 +72,27 @@ def test_sheets_in_files_count(color, before, body):
         ("", LINK.format("").replace('"stylesheet"', '"icon"') + BOX),
         ("", imported("url(a.css)", "print")),
         ("", imported("url(a.css)", "not screen")),
-        # What comes after the drawing has begun is no instruction for it.
+        # Instructions within the drawing are ignored.
         ("", instruction() + BOX),
     ],
 )
-def test_sheets_for_others_do_not_count(color, before, body):
+def test_sheets_for_other_media_do_not_apply(color, before, body):
     assert color({"d/a.css": GREEN}, before, body) == ("black", [])
 
 
-def test_what_comes_later_counts(color):
+def test_later_sheets_take_precedence(color):
     both = f"<style>{RED}</style>{LINK.format('')}{BOX}"
     assert color({"d/a.css": GREEN}, "", both)[0] == "green"
     assert color({"d/a.css": GREEN}, "", f"{LINK.format('')}<style>{RED}</style>{BOX}")[0] == "red"
     assert color({"d/a.css": GREEN}, instruction(), f"<style>{RED}</style>{BOX}")[0] == "red"
-    # What imports comes after what it imports.
+    # Rules of the importing sheet follow those of the imported one.
     assert color({"d/a.css": f"@import 'b.css';{GREEN}", "d/b.css": RED}, instruction()) == (
         "green",
         [],
     )
 
 
-def test_sheets_import_others_from_where_they_are(color):
+def test_imports_are_relative_to_their_sheet(color):
     files = {
         "d/a.css": "@charset 'utf-8'; @import 'in/b.css';",
         "d/in/b.css": "@import url(../in/c.css);",
@@ -102,10 +102,10 @@ def test_sheets_import_others_from_where_they_are(color):
     assert color(files, instruction()) == ("green", [])
 
 
-def test_data_are_sheets_too(color):
+def test_sheets_in_data_addresses(color):
     data = base64.b64encode(GREEN.encode()).decode()
     assert color({}, "", imported(f"url(data:text/css;base64,{data})")) == ("green", [])
-    # They are in no folder.
+    # Data addresses have no folder.
     inner = base64.b64encode(b"@import 'a.css';").decode()
     found, (warning,) = color({"d/a.css": GREEN}, "", imported(f"url(data:;base64,{inner})"))
     assert found == "black"
@@ -135,7 +135,7 @@ def test_data_are_sheets_too(color):
         ("#a", "no style sheet"),
     ],
 )
-def test_files_elsewhere_are_not_read(color, tmp_path, address, words):
+def test_files_outside_the_folder_are_not_read(color, tmp_path, address, words):
     (tmp_path / "d" / "in").mkdir(parents=True)
     link = tmp_path / "d" / "link.css"
     link.symlink_to(tmp_path / "a.css")
@@ -147,7 +147,7 @@ def test_files_elsewhere_are_not_read(color, tmp_path, address, words):
     assert words in warning
 
 
-def test_sheets_that_import_each_other_end(color):
+def test_circular_imports_end(color):
     files = {"d/a.css": "@import 'b.css';" + GREEN, "d/b.css": "@import 'a.css';" + RED}
     found, (warning,) = color(files, instruction())
     assert found == "green"
@@ -156,7 +156,7 @@ def test_sheets_that_import_each_other_end(color):
     found, (warning,) = color({**chain, "d/a.css": "@import '0.css';" + GREEN}, instruction())
     assert found == "green"
     assert "import each other" in warning
-    # A sheet of many imports, each of which is one, and so on.
+    # Ten levels of sheets, each with forty imports of the next.
     many = {f"d/{index}.css": f"@import '{index + 1}.css';" * 40 for index in range(10)}
     found, warnings = color({**many, "d/a.css": "@import '0.css';" + GREEN}, instruction())
     assert found == "green"
@@ -185,7 +185,7 @@ def test_imports_after_rules_are_ignored(color):
     assert "follows other rules" in warning
 
 
-def test_shapes_alone_read_no_files(tmp_path):
+def test_read_svg_reads_no_files(tmp_path):
     path = tmp_path / "drawing.svg"
     path.write_text(instruction() + svg(BOX))
     (tmp_path / "a.css").write_text(GREEN)
@@ -209,7 +209,7 @@ def test_shapes_alone_read_no_files(tmp_path):
         ("(prefers-color-scheme:dark)", "black"),
         ("screen and (prefers-color-scheme: dark)", "black"),
         ("not screen and (prefers-color-scheme: dark)", "green"),
-        # What is false whatever the rest is.
+        # The query is false, whatever the unknown feature is.
         ("print and (min-width: 1px)", "black"),
         ("screen, (min-width: 1px)", "green"),
     ],
@@ -226,7 +226,7 @@ def test_media(query, expected):
 @pytest.mark.parametrize(
     "query", ["(min-width: 1px)", "not (hover)", "screen (color)", "and", "not", "(", "1px", "a b"]
 )
-def test_other_media_are_named(query):
+def test_unknown_media_cause_warnings(query):
     drawing = read(f"<style>@media {query} {{ {GREEN} }}</style>{BOX}")
     assert drawing.shapes[0].color == (0.0, 0.0, 0.0, 1.0)
     assert "@media" in drawing.warnings[0].name or drawing.warnings[0].kind == "broken"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Text in drawings: letters are boxes of a font made here, so that all places are known."""
+"""Text, with a font whose letters are boxes, so that all positions are known."""
 
 import base64
 import io
@@ -28,7 +28,7 @@ def font(tmp_path_factory):
 
 @pytest.fixture
 def boxes(font):
-    """Returns the boxes of a drawing's shapes: left, top, right, bottom, with y downwards."""
+    """Returns the boxes of a drawing's shapes: left, top, right, bottom, y downwards."""
 
     def found(body, fonts=None):
         drawing = read(body, fonts=[font] if fonts is None else fonts)
@@ -57,7 +57,7 @@ def advance(letters, size=10, kerning=True):
 
 
 @pytest.mark.parametrize("is_cff", [False, True])
-def test_letters_are_where_the_advances_of_their_font_lead(tmp_path, boxes, is_cff):
+def test_letters_follow_advances(tmp_path, boxes, is_cff):
     path = make_font(tmp_path / "font.otf", is_cff=is_cff)
     (one,) = boxes(text("AiV A"), [path])
     near(one, (20, 45, 20 + advance("AiV A"), 50))
@@ -82,7 +82,7 @@ def test_anchors(boxes, anchor, share):
     near((left, right), (20 - 14 * share, 34 - 14 * share))
 
 
-def test_each_position_in_a_list_begins_anew_and_has_an_anchor_of_its_own(boxes):
+def test_positions_start_chunks_with_their_own_anchor(boxes):
     (one,) = boxes('<text font-family="Boxes" font-size="10" y="50 60" x="20 70">AA</text>')
     near(one, (20, 45, 76, 60))
     (one,) = boxes(
@@ -91,33 +91,33 @@ def test_each_position_in_a_list_begins_anew_and_has_an_anchor_of_its_own(boxes)
     near(one, (17, 45, 73, 50))
 
 
-def test_distances_add_up(boxes):
+def test_offsets_add_up(boxes):
     (one,) = boxes(text("AA", 'dx="5 10" dy="1 2"'))
     near(one, (25, 46, 47, 53))
 
 
-def test_positions_of_inner_elements_win_and_lists_count_what_is_inside(boxes):
+def test_positions_of_nested_elements(boxes):
     first, second = boxes(text('A<tspan fill="red" x="60">A</tspan>', 'dx="0 3"'))
     near(first, (20, 45, 26, 50))
     near(second, (63, 45, 69, 50))
 
 
-def test_letters_are_turned_by_the_last_angle_of_a_list(boxes):
+def test_the_last_rotation_applies_to_the_rest(boxes):
     (one,) = boxes(text("iii", 'rotate="0 90"'))
-    # Turned to the right: what was above the baseline is to the right of it.
+    # Rotated to the right: the top of the letter is now on its right.
     near(one, (20, 45, 29, 52))
 
 
-def test_spacing_is_between_letters_and_at_spaces(boxes):
+def test_letter_and_word_spacing(boxes):
     near(boxes(text("AiA", 'letter-spacing="4"'))[0][2], 20 + 14 + 8)
     near(boxes(text("A A", 'word-spacing="1em"'))[0][2], 20 + 14.5 + 10)
-    # Letters in the middle of the page, so that there is no space behind the last one.
+    # Centered without spacing after the last letter.
     ((left, _, right, _),) = boxes(text("AA", 'letter-spacing="4" text-anchor="middle"'))
     near(left + right, 40)
 
 
 @pytest.mark.parametrize(("adjust", "width"), [("spacing", 6), ("spacingAndGlyphs", 6 * 30 / 14)])
-def test_text_is_as_long_as_it_says(boxes, adjust, width):
+def test_text_length(boxes, adjust, width):
     drawn = boxes(text('A<tspan fill="red">iA</tspan>', f'textLength="30" lengthAdjust="{adjust}"'))
     near((drawn[0][0], drawn[0][2], drawn[1][2]), (20, 20 + width, 50))
 
@@ -144,7 +144,7 @@ def test_baseline_shift(boxes, shift, up):
 def test_shifts_of_nested_elements_add_up(boxes):
     inner = '<tspan baseline-shift="2"><tspan baseline-shift="3">A</tspan></tspan>'
     near(boxes(text(inner))[0][3], 45)
-    # As in browsers the outermost counts, too.
+    # Shifts of ancestors add up, as in browsers.
     near(boxes(text(inner, 'baseline-shift="1"'))[0][3], 44)
 
 
@@ -152,14 +152,14 @@ def test_shifts_of_nested_elements_add_up(boxes):
     ("line", "top", "bottom"),
     [("underline", 50.5, 51.5), ("overline", 41, 42), ("line-through", 46.8333, 47.8333)],
 )
-def test_lines(boxes, line, top, bottom):
+def test_decorations(boxes, line, top, bottom):
     drawn = boxes(text("A A", f'text-decoration="{line}"'))
     letters, drawn_line = drawn if line == "line-through" else drawn[::-1]
     near(letters, (20, 45, 34.5, 50))
     near(drawn_line, (20, top, 34.5, bottom))
 
 
-def test_a_line_has_the_paint_of_the_element_that_wants_it(font):
+def test_decorations_have_the_paint_of_their_element(font):
     body = text('<tspan fill="lime">A</tspan>', 'text-decoration="underline" fill="red"')
     line, letters = read(body, fonts=[font]).shapes
     assert line.color == (1.0, 0.0, 0.0, 1.0)
@@ -172,24 +172,24 @@ def test_text_runs_along_a_path(boxes):
         path + '<text font-family="Boxes" font-size="10">'
         '<textPath href="#p" startOffset="50%">Ai</textPath></text>'
     )
-    # Downwards, from the middle of the path; letters are to its right.
+    # Downwards from the middle of the path, with letters on its right.
     near(one, (10, 55, 15, 63))
 
 
-def test_text_around_a_circle_has_the_angles_of_its_arcs(boxes):
+def test_text_around_a_circle(boxes):
     body = '<path id="p" fill="none" d="M 20 50 A 30 30 0 0 1 80 50"/>'
     (one,) = boxes(
         body + '<text font-family="Boxes" font-size="10" text-anchor="middle">'
         '<textPath href="#p" startOffset="50%">A</textPath></text>'
     )
-    # At the top of the circle, level, on the outside.
+    # At the top of the circle, horizontal, outside.
     near(one, (47, 15, 53, 20))
 
 
-def test_what_does_not_fit_on_a_path_is_not_drawn(boxes):
+def test_letters_beyond_the_path_are_not_drawn(boxes):
     body = '<path id="p" fill="none" d="M 0 50 H 8"/><text font-family="Boxes" font-size="10">'
     (one,) = boxes(body + '<textPath href="#p">iiAAAAAAAA</textPath></text>')
-    # The middle of the first A is at 7, that of the second one at 13.
+    # The centers of both letters are at 7 and 13.
     near(one, (0, 45, 10, 50))
 
 
@@ -210,8 +210,8 @@ def test_spaces(boxes, content, more, letters):
     near((left, right), (20 + lead, 20 + advance(letters)))
 
 
-def test_letters_of_hebrew_go_to_the_left(font):
-    # aleph (300), bet (500): the first one is on the right. Their boxes differ by color.
+def test_hebrew_is_right_to_left(font):
+    # aleph (300), bet (500): aleph is on the right. Colors tell them apart.
     body = text('<tspan fill="red">\u05d0</tspan><tspan fill="lime">\u05d1</tspan>')
     first, second = (shape.bounds for shape in read(body, fonts=[font]).shapes)
     near((second[0][0], second[1][0], first[0][0], first[1][0]), (20, 25, 25, 28))
@@ -222,7 +222,7 @@ def test_text_from_right_to_left_begins_on_the_right(boxes):
     near((left, right), (12, 20))
 
 
-def test_weights_widths_and_slants_are_matched_as_css_does(tmp_path):
+def test_font_matching(tmp_path):
     high = {}
     fonts = []
     for number, (weight, italic, stretch) in enumerate(
@@ -252,14 +252,14 @@ def test_weights_widths_and_slants_are_matched_as_css_does(tmp_path):
     assert round((shape.bounds[1][1] - shape.bounds[0][1]) * 100) == high[700, False, 5]
 
 
-def test_a_missing_font_is_replaced_and_named(font):
+def test_missing_fonts_are_replaced_with_a_warning(font):
     drawing = read('<text font-family="Nowhere, \'Not There\'" y="50">A</text>', fonts=[font])
     assert len(drawing.shapes) == 1
     assert [warning.name for warning in drawing.warnings] == ["font 'Nowhere'", "font 'Not There'"]
     assert drawing.warnings[0].effect == "drawn in Boxes"
 
 
-def test_a_font_with_the_letter_is_found_and_what_no_font_has_is_named(tmp_path, font):
+def test_fallback_fonts_and_missing_characters(tmp_path, font):
     other = make_font(tmp_path / "other.ttf", family="Other", widths={"Q": 700})
     drawing = read(text("AQ\u4e00"), fonts=[font, other])
     assert [(one.name, one.effect) for one in drawing.warnings] == [
@@ -269,12 +269,12 @@ def test_a_font_with_the_letter_is_found_and_what_no_font_has_is_named(tmp_path,
     near((left, right), (20, 33))
 
 
-def test_gradients_of_text_are_shares_of_the_cells_of_its_letters(font):
+def test_gradients_of_text_use_glyph_cells(font):
     gradient = '<linearGradient id="g" x2="0" y2="1"><stop stop-color="#000"/>'
     gradient += '<stop offset="1" stop-color="#fff"/></linearGradient>'
     drawing = read(gradient + text("A", 'fill="url(#g)"', size=20), fonts=[font])
     image = prefilter.rasterize(drawing.shapes_for(SIZE, SIZE), SIZE, SIZE)[::-1]
-    # The cell is 20 high, from 34 to 54; the letter is in it from 40 to 50.
+    # The cell is 20 high, from 34 to 54; the letter in it goes from 40 to 50.
     rows = np.arange(41, 49)
     near(image[rows, 25, 0], (rows + 0.5 - 34.0) / 20.0)
 
@@ -291,7 +291,7 @@ def test_text_clips_and_is_clipped(font):
     near(image[..., 3].sum(), 3 * 5)
 
 
-def test_variable_fonts_have_the_weight_that_is_asked_for(tmp_path):
+def test_weights_of_variable_fonts(tmp_path):
     path = make_variable(tmp_path / "variable.ttf")
     for weight, width in ((100, 200), (400, 400), (900, 900), (650, 650), (1000, 900)):
         (shape,) = read(text("A", f'font-weight="{weight}"'), fonts=[path]).shapes_for(SIZE, SIZE)
@@ -333,12 +333,12 @@ def test_nasty_text_is_drawn_or_left_out(font, body):
 
 
 @pytest.mark.parametrize("fonts", ["no list", 5, [5], ["/not/there.ttf"]])
-def test_fonts_that_are_none_are_refused(fonts):
+def test_invalid_fonts_are_refused(fonts):
     with pytest.raises(ValueError, match="fonts: "):
         read("<g/>", fonts=fonts)
 
 
-def test_files_that_are_no_fonts_are_refused_and_those_in_folders_are_not_read(tmp_path, font):
+def test_files_that_are_no_fonts_are_refused_except_in_folders(tmp_path, font):
     bad = tmp_path / "bad.ttf"
     bad.write_bytes(b"\0\1\0\0" + b"\xff" * 100)
     with pytest.raises(ValueError, match=r"fonts: '.*bad\.ttf' is no font that can be read"):
@@ -355,7 +355,7 @@ def test_without_fonts_text_is_left_out_with_a_warning():
 @pytest.mark.parametrize(
     ("letters", "base", "shown"),
     [
-        # By the rules of UAX #9: capitals stand for Hebrew, with aleph as A and bet as B.
+        # Rules of UAX #9: capitals are Hebrew letters, A aleph and B bet.
         ("ab AB cd", 0, "ab BA cd"),
         ("ab AB cd", 1, "cd BA ab"),
         ("AB 12 AB", 0, "BA 12 BA"),
@@ -367,14 +367,14 @@ def test_without_fonts_text_is_left_out_with_a_warning():
         ("A\u0301\u0302", 0, "\u0302\u0301A"),
     ],
 )
-def test_letters_are_ordered_by_the_rules_of_unicode(letters, base, shown):
+def test_bidirectional_algorithm(letters, base, shown):
     from prefilter.shapes._fonts.bidi import embedding_levels, visual_order
 
     hebrew = letters.translate(str.maketrans("AB", "\u05d0\u05d1"))
     assert "".join(letters[k] for k in visual_order(embedding_levels(hebrew, base))) == shown
 
 
-def test_directions_are_those_of_another_program():
+def test_directions_equal_another_implementation():
     bidi = pytest.importorskip("bidi")
     from prefilter.shapes._fonts.bidi import embedding_levels, visual_order
 
@@ -415,11 +415,11 @@ def as_woff(path):
 
 
 @pytest.mark.parametrize("is_woff", [False, True])
-def test_fonts_in_the_file_come_before_others(tmp_path, boxes, is_woff):
+def test_embedded_fonts_take_precedence(tmp_path, boxes, is_woff):
     wide = make_font(tmp_path / "wide.ttf", widths={"A": 900, "V": 500})
     data = as_woff(wide) if is_woff else wide.read_bytes()
     style = font_face(data, family="Boxes")
-    # Letters that the font in the file lacks come from the other one.
+    # Letters missing in the embedded font come from the other one.
     (one,) = boxes(style + text("AV"))
     near(one, (20, 45, 20 + 9 + 5 - 1, 50))
     narrow = make_font(tmp_path / "narrow.ttf", widths={"A": 100})
@@ -429,7 +429,7 @@ def test_fonts_in_the_file_come_before_others(tmp_path, boxes, is_woff):
         near(one[2] - one[0], width)
 
 
-def test_fonts_in_the_file_have_parts_of_a_family(tmp_path, boxes):
+def test_embedded_fonts_may_share_a_family(tmp_path, boxes):
     parts = [
         make_font(tmp_path / f"{letter}.ttf", widths={letter: width})
         for letter, width in (("A", 900), ("V", 300))
@@ -450,7 +450,7 @@ def test_fonts_in_the_file_have_parts_of_a_family(tmp_path, boxes):
         (b"\x00\x01\x00\x00" + bytes(60), ""),
     ],
 )
-def test_fonts_in_the_file_that_are_none(font, data, words):
+def test_invalid_embedded_fonts(font, data, words):
     drawing = read(font_face(data) + text("A", 'style="font-family: Own, Boxes"'), fonts=[font])
     warning = drawing.warnings[0]
     assert warning.name == "@font-face 'Own'"
@@ -458,12 +458,12 @@ def test_fonts_in_the_file_that_are_none(font, data, words):
     assert len(drawing.shapes) == 1
 
 
-def test_compressed_fonts_are_unpacked_within_limits(tmp_path, font):
+def test_decompression_of_woff_is_limited(tmp_path, font):
     data = bytearray(as_woff(make_font(tmp_path / "font.ttf")))
-    # The first table is said to be as large as can be, or a little smaller than it is.
+    # The first table claims the largest size, or a little less than its own.
     for size, words in ((0xFFFFFFFF, "larger than"), (41, "other sizes")):
         data[44 + 12 : 44 + 16] = size.to_bytes(4, "big")
-        # Without text it is not read.
+        # Drawings without text do not read fonts.
         assert read(font_face(bytes(data)), fonts=[font]).warnings == ()
         own = text("A", 'style="font-family: Own, Boxes"')
         warning, *_ = read(font_face(bytes(data)) + own, fonts=[font]).warnings
@@ -471,7 +471,7 @@ def test_compressed_fonts_are_unpacked_within_limits(tmp_path, font):
 
 
 @pytest.mark.skipif(brotli is None, reason="needs brotli")
-def test_fonts_of_woff_2_are_those_that_they_were_made_of(tmp_path, font):
+def test_woff_2_fonts(tmp_path, font):
     file = io.BytesIO()
     made = TTFont(font)
     made.flavor = "woff2"
@@ -485,9 +485,9 @@ def test_fonts_of_woff_2_are_those_that_they_were_made_of(tmp_path, font):
 
 
 @pytest.mark.skipif(brotli is None, reason="needs brotli")
-def test_woff_2_is_unpacked_within_limits(tmp_path, font):
+def test_decompression_of_woff_2_is_limited(tmp_path, font):
     bomb = brotli.compress(bytes(1 << 27))
-    # A table that has a name of its own, and is not transformed.
+    # A table with an explicit tag, not transformed.
     table = b"\x3fabcd" + b"\x80\x80\x80\x40"
     head = b"wOF2\0\1\0\0" + bytes(4) + b"\0\1" + bytes(6) + len(bomb).to_bytes(4, "big")
     data = head + bytes(48 - len(head)) + table + bomb
@@ -500,7 +500,7 @@ def test_woff_2_is_unpacked_within_limits(tmp_path, font):
     assert peak < 1 << 26
 
 
-def test_fonts_beside_the_drawing_are_read(tmp_path, font):
+def test_fonts_in_the_folder_are_read(tmp_path, font):
     (tmp_path / "in").mkdir()
     make_font(tmp_path / "in" / "own.ttf", widths={"A": 900})
     sheet = "@font-face { font-family: Own; src: url(%s) }"
@@ -521,7 +521,7 @@ def test_fonts_beside_the_drawing_are_read(tmp_path, font):
     assert first.effect == "ignored, as it is neither in the file nor in its folder"
 
 
-def test_fonts_elsewhere_are_named(font):
+def test_fonts_outside_the_folder_cause_warnings(font):
     style = "<style>@font-face { font-family: Own; src: url(https://x.org/a.woff) }</style>"
     own = text("A", 'style="font-family: Own, Boxes"')
     first, second = read(style + own, fonts=[font]).warnings
@@ -530,25 +530,25 @@ def test_fonts_elsewhere_are_named(font):
     assert second.name == "font 'Own'"
 
 
-def test_lines_downwards(tmp_path, boxes):
-    """The middle of a font, from 2 below to 8 above, is on the line; letters are turned."""
+def test_vertical_text(tmp_path, boxes):
+    """The middle of the font's height, from -2 to 8, is on the line; letters are rotated."""
     for mode in ("tb", "vertical-rl"):
         (one,) = boxes(f'<g writing-mode="{mode}">{text("AiV")}</g>')
         near(one, (20 - 3, 50, 20 + 2, 50 + 12))
     (one,) = boxes(text("AiV", 'writing-mode="tb" text-anchor="middle"'))
     near((one[1], one[3]), (50 - 6, 50 + 6))
-    # It counts for text elements alone.
+    # Only `text` elements have a writing mode.
     (one,) = boxes(text('<tspan writing-mode="tb">A</tspan>'))
     near(one, (20, 45, 26, 50))
     wide = make_font(tmp_path / "wide.ttf", widths={"\u65e5": 1000, "A": 600})
     moved = text("\u65e5<tspan dy='3'>\u65e5</tspan>", 'writing-mode="tb"')
     first, second = boxes(moved.replace("<tspan", '<tspan fill="red"'), [wide])
-    # Upright: as wide as a line is, and the middle of the font in the middle of the letter.
+    # Upright: the advance is the line height, and the letter is centered.
     near(first, (20 - 5, 50 + 5 + 3 - 5, 20 + 5, 50 + 5 + 3))
     near(np.subtract(second, first), (0, 13, 0, 13))
 
 
-def test_text_of_other_elements_and_of_other_languages(boxes):
+def test_tref_and_system_language(boxes):
     tree = '<defs><text id="t">A<tspan>V</tspan></text></defs>'
     (one,) = boxes(tree + text('<tref href="#t"/>'))
     near(one[2], 20 + advance("AV"))
