@@ -7,6 +7,9 @@
 
 from typing import TypeAlias
 
+import numpy as np
+import numpy.typing as npt
+
 Matrix: TypeAlias = tuple[float, float, float, float, float, float]
 IDENTITY: Matrix = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
 
@@ -35,3 +38,9 @@ def inverse(matrix: Matrix) -> Matrix:
     scale = 1.0 / determinant(matrix)
     a, b, c, d = d * scale, -b * scale, -c * scale, a * scale
     return (a, b, c, d, -(a * e + c * f), -(b * e + d * f))
+
+
+def as_rows(matrix: Matrix) -> npt.NDArray[np.float64]:
+    """Returns the matrix as an array (2, 3), as shapes take it."""
+    a, b, c, d, e, f = matrix
+    return np.array([[a, c, e], [b, d, f]])

@@ -36,12 +36,7 @@ def has_bitmaps(tables: Any) -> bool:
 
 
 class BitmapTable:
-    """The largest bitmaps of a font's glyphs.
-
-    Args:
-        tables: Tables of the font.
-        units_per_em: Font units per em.
-    """
+    """The largest bitmaps of a font's glyphs."""
 
     def __init__(self, tables: Any, units_per_em: float) -> None:
         self._tables = tables

@@ -86,11 +86,7 @@ class ColorGroup:
 
 
 class ColorTable:
-    """The layers of a font's glyphs.
-
-    Args:
-        tables: Tables of the font.
-    """
+    """The layers of a font's glyphs."""
 
     def __init__(self, tables: Any) -> None:
         self._tables = tables

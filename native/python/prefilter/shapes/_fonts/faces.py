@@ -29,8 +29,6 @@ class Face:
     """A face in a font file.
 
     Attributes:
-        path: The file.
-        index: Index in a collection.
         family: Name in messages.
         families: All names of its family, in lower case.
         weight: Lowest and highest weight.

@@ -29,8 +29,7 @@ class Glyph:
     """The outline of a glyph, in font units, y upwards.
 
     Attributes:
-        letters: M, L, Q, C and Z, a byte per segment.
-        numbers: Coordinates of all points.
+        letters: M, L, Q, C and Z, a byte per segment; `numbers` are the coordinates of all points.
     """
 
     letters: bytes
@@ -50,7 +49,6 @@ class Font:
     """A face at a location of its axes.
 
     Attributes:
-        face: The face.
         location: Axis values by tag.
         skew: Synthetic slant, for families without a slanted face.
     """

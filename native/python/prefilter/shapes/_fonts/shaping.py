@@ -53,7 +53,6 @@ class Features:
     """Font features to apply.
 
     Attributes:
-        has_kerning: Whether pairs are kerned.
         has_ligatures: Whether optional ligatures are formed.
         has_small_capitals: Whether lower-case letters become small capitals.
     """

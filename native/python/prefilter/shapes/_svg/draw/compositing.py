@@ -19,7 +19,7 @@ from ....images.pixel_filters import PIXEL_FILTERS
 from ...affine import Matrix, compose, inverse
 from ...rasterization import rasterize
 from ...shape import Shape
-from ..filters.layers import filtered_layer
+from ..filters.layers import Window, filtered_layer
 from ..filters.warping import draw_image_pixels, fill_with_tile
 from ..model.blending import blend
 from ..model.limits import TooLargeError
@@ -39,8 +39,6 @@ from .layers import LayerPlanner, PlacedItem, filtered_region, is_plain, item_bo
 from .outlines import ShapeBuilder
 
 FloatArray = npt.NDArray[np.float32]
-Window = tuple[int, int, int, int]
-"""Pixels: left, low, right, high; right and high are exclusive."""
 
 # Outlines up to which a pattern is drawn tile by tile, rather than as an image.
 _MAX_TILED = 20_000
@@ -89,7 +87,6 @@ class Compositor:
         """Draws a drawing into an image.
 
         Args:
-            drawing: The drawing.
             matrix: From the tree's units to pixels, y upwards.
             size: Width and height of the image.
             group_clips: Clips that apply to everything.

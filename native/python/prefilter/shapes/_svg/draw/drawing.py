@@ -9,11 +9,10 @@ from dataclasses import dataclass, replace
 from ...affine import IDENTITY, Matrix, compose, determinant, inverse
 from ...shape import Shape
 from ..filters.filter_property import read_filters
-from ..model.clips import make_box_clip
 from ..model.gradients import Colors, Gradient
 from ..model.limits import Budget
 from ..model.outline import Outline
-from ..model.tree import Box, Clip, Group, Painted, Pattern, Stroke, transform_box
+from ..model.tree import Box, Clip, Group, Painted, Pattern, Stroke, make_box_clip, transform_box
 from ..model.values import Paint
 from ..model.view_boxes import fit_view_box
 from ..model.warnings import Warnings
@@ -58,7 +57,6 @@ class _PaintableOutline:
     """An outline to paint.
 
     Attributes:
-        box: Its bounding box.
         bounds: The bounding box for relative units; None if there is none.
     """
 
@@ -312,7 +310,7 @@ class TreeBuilder:
                 f"<{element.tag}>", "left out, as it is too far away", element.line
             )
             return
-        # As in browsers, optimizeSpeed turns off antialiasing, too.
+        # In browsers, optimizeSpeed turns off antialiasing, too.
         is_crisp = element.tag != "text" and context.style.shape_rendering in (
             "crispedges",
             "optimizespeed",

@@ -14,7 +14,6 @@ class FlatTree:
     """The outlines of a tree.
 
     Args:
-        group: The tree.
         warnings: Receives effects that need layers.
 
     Attributes:

@@ -5,10 +5,8 @@
 from collections.abc import Sequence
 from dataclasses import asdict
 
-import numpy as np
-
 from .... import _native
-from ...affine import Matrix, compose, determinant
+from ...affine import Matrix, as_rows, compose, determinant
 from ...shape import Shape
 from ..filters.evaluation import is_upright
 from ..model.gradients import Gradient
@@ -33,9 +31,7 @@ class ShapeBuilder:
         """Makes a shape with its paint, or white for a pattern; returns None if it is invisible.
 
         Args:
-            painted: The outline.
             matrix: From the tree's units to pixels, y upwards.
-            opacity: Multiplies the paint.
             group_clips: Clips in addition to the outline's own.
         """
         box, clips = painted.box, (*group_clips, *painted.clips)
@@ -50,7 +46,7 @@ class ShapeBuilder:
             pen = asdict(painted.stroke)
             del pen["dash_count"]
             shape = shape.stroked(**pen, tolerance=_STROKE_TOLERANCE / scale)
-        shape = _clamp(shape.transformed(_rows(whole)))
+        shape = _clamp(shape.transformed(as_rows(whole)))
         if painted.is_crisp:
             shape = _snap_to_pixels(shape)
         if isinstance(painted.paint, Gradient):
@@ -72,7 +68,7 @@ class ShapeBuilder:
             return None
         shape = Shape()
         shape.add_polygon([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
-        return self.clip(shape.transformed(_rows(whole)), picture.box, clips, matrix)
+        return self.clip(shape.transformed(as_rows(whole)), picture.box, clips, matrix)
 
     def filter_clip(self, group: Group, clips: Sequence[Clip], matrix: Matrix) -> list[Shape]:
         """Returns the shape that clips a filter's result, or no shape if it is not clipped.
@@ -89,7 +85,7 @@ class ShapeBuilder:
             left, top, right, bottom = filter_.region
             shape = Shape()
             shape.add_polygon([(left, top), (right, top), (right, bottom), (left, bottom)])
-            shapes.append(shape.transformed(_rows(to_pixels)))
+            shapes.append(shape.transformed(as_rows(to_pixels)))
         while len(shapes) > 1:
             shapes[-2:] = [_combine(shapes[-2], shapes[-1], "intersection")]
         return shapes
@@ -111,7 +107,7 @@ class ShapeBuilder:
                 whole = compose(matrix, part.matrix)
                 if determinant(whole) == 0.0:
                     continue
-                shape = _clamp(part.outline.shape(part.fill_rule).transformed(_rows(whole)))
+                shape = _clamp(part.outline.shape(part.fill_rule).transformed(as_rows(whole)))
                 for inner in part.clips:
                     shape = _combine(shape, self._region(inner, matrix), "intersection")
                 region = shape if region is None else _combine(region, shape, "union")
@@ -147,8 +143,3 @@ def _snap_to_pixels(shape: Shape) -> Shape:
     snapped = shape._with(shape._outline.pixels(shape.fill_rule), shape._paint)
     snapped._fill_rule, snapped._winds_once = "nonzero", True
     return snapped
-
-
-def _rows(matrix: Matrix) -> np.ndarray:
-    a, b, c, d, e, f = matrix
-    return np.array([[a, c, e], [b, d, f]])

@@ -70,8 +70,6 @@ def apply_filter(
 
     Args:
         draw: Returns the pixels of a group's contents.
-        group: The group.
-        filter_: The filter.
         matrix: From the filter's units to pixels, with rotations by right angles only.
         window: Pixels to return: left, low, right, high.
     """

@@ -9,6 +9,7 @@ import numpy as np
 import tinycss2
 
 from ...affine import Matrix
+from ..model.calculations import DEGREES
 from ..model.colors import Color
 from ..model.tree import Filter, Step
 from ..model.values import parse_color, parse_length, parse_url
@@ -16,7 +17,6 @@ from ..read.lengths import Units
 from .primitives import Matrix5, hue_rotation_matrix, saturation_matrix
 
 MAX_FUNCTIONS = 32
-_DEGREES = {"deg": 1.0, "grad": 0.9, "rad": 180.0 / np.pi, "turn": 360.0}
 _NAMES = frozenset(
     ("brightness", "contrast", "grayscale", "invert", "opacity", "saturate", "sepia", "hue-rotate")
 )
@@ -53,10 +53,8 @@ def filter_by_function(
     """Converts a filter function to a filter.
 
     Args:
-        function: Token of the function.
         matrix: From the element's units to the tree's.
-        units: References of relative lengths.
-        color: The property `color`.
+        color: The value of currentcolor.
         is_linear: Whether the group's colors are decoded.
 
     Raises:
@@ -87,7 +85,7 @@ def _step(kind: str, numbers: Sequence[float]) -> Step:
 
 
 def _length(token: Any, units: Units) -> float:
-    """Converts to pixels. As in SVG attributes, numbers need no unit."""
+    """Converts to pixels. Numbers need no unit, as in SVG attributes."""
     if token.type not in ("number", "dimension"):
         raise InvalidFunctionError
     try:
@@ -160,6 +158,6 @@ def _angle(token: Any) -> float:
     """Converts to degrees."""
     if token.type == "number" and token.value == 0:
         return 0.0
-    if token.type != "dimension" or token.lower_unit not in _DEGREES or abs(token.value) > 1e9:
+    if token.type != "dimension" or token.lower_unit not in DEGREES or abs(token.value) > 1e9:
         raise InvalidFunctionError
-    return float(token.value) * _DEGREES[token.lower_unit]
+    return float(token.value) * DEGREES[token.lower_unit]

@@ -31,12 +31,8 @@ def filtered_layer(
     """Draws a group and applies its filter.
 
     Args:
-        draw: Draws a group's contents.
-        group: The group.
         box: Bounds of the result, in the tree's units.
         matrix: From the tree's units to pixels.
-        window: Pixels to return.
-        threads: Number of threads.
     """
     filter_ = _filter_of(group)
     to_pixels = compose(matrix, filter_.matrix)

@@ -22,9 +22,6 @@ def light_surface(alpha: Values, kind: str, light: str, numbers: tuple[float, ..
     """Returns the light reflected towards the viewer.
 
     Args:
-        alpha: (height, width).
-        kind: "feDiffuseLighting" or "feSpecularLighting".
-        light: "feDistantLight", "fePointLight" or "feSpotLight".
         numbers: Surface scale, strength, shininess, color; then the direction of a distant light,
             or the position of another one in pixels, and a spot's target, exponent, and cosine of
             the cone.

@@ -52,7 +52,7 @@ def _box_blurs(pixels: FloatArray, deviation: float, axis: int) -> FloatArray:
     half = count // 2
     means = [(half, half)] * 3
     if count % 2 == 0:
-        # With an even size, the first two boxes are off center by half a pixel in opposite
+        # The first two boxes of even size are off center by half a pixel in opposite
         # directions.
         means = [(half, half - 1), (half - 1, half), (half, half)]
     for before, after in means:

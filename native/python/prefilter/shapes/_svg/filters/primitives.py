@@ -107,22 +107,19 @@ def _shadow(element: SvgElement, filter_units: FilterUnits, sources: Sources) ->
     return [_input(element)], [*_deviations(element, 2.0, filter_units), *move, *color], ""
 
 
-def _merge(element: SvgElement, _: FilterUnits, sources: Sources) -> Parameters:
-    del sources
+def _merge(element: SvgElement, _: FilterUnits, __: Sources) -> Parameters:
     nodes = [node for node in element if node.tag == "feMergeNode"]
     return [_input(node) for node in nodes if isinstance(node, SvgElement)], [], ""
 
 
-def _composite(element: SvgElement, _: FilterUnits, sources: Sources) -> Parameters:
-    del sources
+def _composite(element: SvgElement, _: FilterUnits, __: Sources) -> Parameters:
     name = element.get("operator", "over").strip()
     factors = [_number(element, f"k{k}", 0.0) for k in range(1, 5)]
     inputs = [_input(element), _input(element, "in2")]
     return inputs, factors, name if name in _OPERATORS else "over"
 
 
-def _blend(element: SvgElement, _: FilterUnits, sources: Sources) -> Parameters:
-    del sources
+def _blend(element: SvgElement, _: FilterUnits, __: Sources) -> Parameters:
     name = element.get("mode", "normal").strip()
     return [_input(element), _input(element, "in2")], [], name if name in BLEND_MODES else "normal"
 
@@ -144,8 +141,7 @@ def hue_rotation_matrix(degrees: float) -> Matrix5:
     return matrix
 
 
-def _color_matrix(element: SvgElement, _: FilterUnits, sources: Sources) -> Parameters:
-    del sources
+def _color_matrix(element: SvgElement, _: FilterUnits, __: Sources) -> Parameters:
     kind = element.get("type", "matrix").strip()
     matrix = np.eye(4, 5)
     if kind == "luminanceToAlpha":
@@ -204,14 +200,12 @@ def _nothing(element: SvgElement) -> Parameters:
     return [_input(element)], [], "nothing"
 
 
-def _tile(element: SvgElement, _: FilterUnits, sources: Sources) -> Parameters:
-    del sources
+def _tile(element: SvgElement, _: FilterUnits, __: Sources) -> Parameters:
     return [_input(element)], [], ""
 
 
-def _convolution(element: SvgElement, _: FilterUnits, sources: Sources) -> Parameters:
+def _convolution(element: SvgElement, _: FilterUnits, __: Sources) -> Parameters:
     """Parameters: columns, rows, target column and row, preserveAlpha, bias, weights."""
-    del sources
     sizes = _numbers(element.get("order"), [] if "order" in element.attrib else [3.0])
     weights = _numbers(element.get("kernelMatrix"), [])
     if len(sizes) not in (1, 2) or any(size != int(size) or size < 1.0 for size in sizes):
@@ -233,9 +227,8 @@ def _convolution(element: SvgElement, _: FilterUnits, sources: Sources) -> Param
     return [_input(element)], numbers, mode if mode in _EDGE_MODES else "duplicate"
 
 
-def _turbulence(element: SvgElement, _: FilterUnits, sources: Sources) -> Parameters:
+def _turbulence(element: SvgElement, _: FilterUnits, __: Sources) -> Parameters:
     """Parameters: frequencies, octaves, seed, and whether tiles are seamless."""
-    del sources
     numbers = _numbers(element.get("baseFrequency"), [0.0])
     if len(numbers) > 2 or min(numbers) < 0.0:
         numbers = [0.0]
@@ -278,7 +271,7 @@ def _light(light: SvgElement, filter_units: FilterUnits) -> list[float]:
     if light.tag == "feSpotLight":
         parameters += _position(light, ("pointsAtX", "pointsAtY", "pointsAtZ"), filter_units)
         exponent = _number(light, "specularExponent", 1.0)
-        # As in browsers, an angle of 0 counts as missing.
+        # Browsers treat an angle of 0 as missing.
         cone = _number(light, "limitingConeAngle", 0.0) or 180.0
         parameters += [min(max(exponent, 1.0), 128.0)]
         parameters += [_native.cos(min(abs(cone), 180.0) * (math.pi / 180.0))]
@@ -293,8 +286,7 @@ def _position(
     return [a * x + e, d * y + f, math.sqrt((a * a + d * d) / 2.0) * z]
 
 
-def _image(element: SvgElement, _: FilterUnits, sources: Sources) -> Parameters:
-    del element, sources
+def _image(_: SvgElement, __: FilterUnits, ___: Sources) -> Parameters:
     return [], [], ""
 
 

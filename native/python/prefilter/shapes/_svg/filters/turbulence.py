@@ -33,11 +33,7 @@ def noise(
     """Returns red, green, blue and straight alpha at positions.
 
     Args:
-        x: Coordinates.
-        y: Coordinates.
-        frequencies: Along x and y.
         octaves: Number of noise functions; each has twice the frequency of the one before.
-        seed: Seed of random numbers.
         is_fractal: Whether noise is added around 0.5; otherwise absolute values are.
         tile: Left, top, width and height of a seamless tile; None for none.
     """

@@ -12,7 +12,7 @@ from .... import _native
 from ....images.color import to_linear
 from ....images.resizing import resize
 from ....sampling.resampling import resample
-from ...affine import Matrix, compose, inverse
+from ...affine import Matrix, as_rows, compose, inverse
 from ..model.tree import Picture
 
 FloatArray = npt.NDArray[np.float32]
@@ -28,11 +28,7 @@ def draw_image_pixels(
 ) -> FloatArray:
     """Resamples an image of the tree; its edges extend outwards.
 
-    Args:
-        matrix: From the tree's units to pixels.
-        width: In pixels.
-        height: In pixels.
-        threads: Number of threads.
+    `matrix` leads from the tree's units to pixels; `width` and `height` are in pixels.
     """
     rows, columns = picture.texels.shape[:2]
     whole = compose(matrix, picture.matrix)
@@ -48,18 +44,10 @@ def draw_image_pixels(
 def fill_with_tile(
     tile: FloatArray, to_tile: Matrix, width: int, height: int, threads: int
 ) -> FloatArray:
-    """Resamples a repeating tile.
-
-    Args:
-        tile: (height, width, 4).
-        to_tile: From pixels to the tile's pixels.
-        width: In pixels.
-        height: In pixels.
-        threads: Number of threads.
-    """
+    """Resamples a repeating tile; `to_tile` leads from pixels to the tile's pixels."""
     return resample(
         tile,
-        _rows(to_tile),
+        as_rows(to_tile),
         width,
         height,
         filter=_TILE_FILTER,
@@ -75,16 +63,11 @@ def warp_image(
 ) -> FloatArray:
     """Resamples an image under an affine map; its edges extend outwards.
 
-    Args:
-        pixels: (height, width, 4), colors premultiplied by alpha.
-        to_pixels: From pixels of the result to those of the image.
-        width: Width of the result, in pixels.
-        height: Height of the result, in pixels.
-        threads: Number of threads.
+    `to_pixels` leads from pixels of the result to pixels of the image; colors are premultiplied.
     """
     warped = resample(
         pixels,
-        _rows(to_pixels),
+        as_rows(to_pixels),
         width,
         height,
         filter=_PICTURE_FILTER,
@@ -132,8 +115,3 @@ def _equalize_scales(texels: FloatArray, whole: Matrix, threads: int) -> FloatAr
     return resize(
         texels, width, height, filter=_PICTURE_FILTER, premultiplied=True, threads=threads
     )
-
-
-def _rows(matrix: Matrix) -> np.ndarray:
-    a, b, c, d, e, f = matrix
-    return np.array([[a, c, e], [b, d, f]])

@@ -25,7 +25,6 @@ def evaluate_quantity(
     """Evaluates a number, dimension, percentage or calculation; returns None if the token is none.
 
     Args:
-        token: A token of tinycss2.
         units: Conversions: from a unit's name to another unit and a factor.
         names: Identifiers with numeric values.
     """

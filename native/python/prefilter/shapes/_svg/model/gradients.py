@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .... import _native
-from ...affine import Matrix, compose
+from ...affine import Matrix, as_rows, compose
 from ...shape import Shape
 from .colors import Color
 
@@ -75,8 +75,7 @@ class Gradient:
 
     def apply(self, shape: Shape, matrix: Matrix, opacity: float) -> None:
         """Sets the gradient of a shape that `matrix` transformed, times an opacity."""
-        a, b, c, d, e, f = compose(matrix, self.matrix)
-        transform = np.array([[a, c, e], [b, d, f]])
+        transform = as_rows(compose(matrix, self.matrix))
         stops = [(at, tuple(opacity * value for value in color)) for at, color in self.stops]
         if self.is_radial:
             cx, cy, r, fx, fy, fr = self.numbers

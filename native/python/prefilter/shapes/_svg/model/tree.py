@@ -2,7 +2,7 @@
 
 """The tree that is drawn: outlines and images, in groups."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
@@ -40,7 +40,7 @@ class ClipPart:
 
     Attributes:
         matrix: From the outline's units to the tree's.
-        clips: Clips of this outline alone.
+        clips: Clips of this part alone.
     """
 
     outline: Outline
@@ -71,9 +71,7 @@ class Pattern:
 
     Attributes:
         group: The contents, in the pattern's units.
-        tile: The box that repeats.
         matrix: From the pattern's units to the outline's.
-        opacity: Opacity of the paint.
     """
 
     group: "Group"
@@ -84,17 +82,13 @@ class Pattern:
 
 @dataclass(frozen=True, slots=True)
 class Painted:
-    """An outline that is filled or stroked.
+    """An outline that is filled or stroked; `clips` and `box` are in the tree's units.
 
     Attributes:
         outline: The outline, in its own units.
-        fill_rule: The rule for filling.
         matrix: From the outline's units to the tree's.
         paint: A color premultiplied by alpha; or a gradient or pattern, in the outline's units.
         stroke: The stroke; None to fill.
-        clips: Clips in the tree's units.
-        box: Bounding box in the tree's units.
-        line: Line in the file.
         is_crisp: Whether pixels are covered completely or not at all.
     """
 
@@ -111,7 +105,7 @@ class Painted:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Picture:
-    """A raster image.
+    """A raster image; `clips` and `box` are in the tree's units.
 
     Attributes:
         texels: (height, width, 4) bytes: encoded red, green and blue with straight alpha; top row
@@ -119,9 +113,6 @@ class Picture:
         matrix: From the unit square, y downwards, to the tree's units.
         is_pixelated: Whether enlarged texels keep sharp edges.
         is_linear: Whether colors are decoded before filtering.
-        clips: Clips in the tree's units.
-        box: Bounding box in the tree's units.
-        line: Line in the file.
     """
 
     texels: npt.NDArray[np.uint8]
@@ -156,10 +147,8 @@ class Step:
         inputs: Names of results; empty for the previous one.
         result: Name of the result.
         numbers: Parameters; lengths are in the filter's units.
-        name: Operator or mode.
         is_linear: Whether it works on decoded colors.
         region: The primitive's subregion, in the filter's units; None for that of its inputs.
-        group: Contents of `feImage`.
     """
 
     kind: str
@@ -194,13 +183,10 @@ class Group:
 
     Attributes:
         items: Bottom item first.
-        opacity: Group opacity.
-        blend: The `mix-blend-mode`.
         masks: Applied after the filter.
         filter: Applied to the group's pixels.
         clips: Clips of the filter's result; only with a filter, whose input is not clipped.
         is_isolated: Whether items blend only with each other.
-        line: Line in the file.
     """
 
     items: list["Item"] = field(default_factory=list)
@@ -260,3 +246,33 @@ def contains_box(outer: Box, inner: Box) -> bool:
         and inner[2] <= outer[2] + wide
         and inner[3] <= outer[3] + high
     )
+
+
+def make_clip(parts: Sequence[ClipPart], clips: tuple[Clip, ...]) -> Clip:
+    """Makes the union of outlines, intersected with clips."""
+    bounds: Box | None = None
+    for part in parts:
+        own = part.outline.bounds()
+        box = transform_box(own, part.matrix) if own is not None else None
+        bounds = unite_boxes(bounds, clip_box(box, part.clips))
+    is_box = False
+    if len(parts) == 1 and not parts[0].clips:
+        a, b, c, d = parts[0].matrix[:4]
+        is_upright = b == c == 0.0 or a == d == 0.0
+        is_box = is_upright and parts[0].outline.is_box()
+    return Clip(tuple(parts), clips, clip_box(bounds, clips), is_box and not clips)
+
+
+def make_box_clip(box: Box, matrix: Matrix) -> Clip:
+    """Makes a clip of a box; `matrix` leads from its units to the tree's."""
+    left, top, right, bottom = box
+    outline = Outline()
+    outline.rectangle(left, top, right - left, bottom - top, 0.0, 0.0)
+    return make_clip([ClipPart(outline, "nonzero", matrix)], ())
+
+
+def clip_box(box: Box | None, clips: Sequence[Clip]) -> Box | None:
+    """Returns the bounding box of a clipped box; None if it is empty."""
+    for clip in clips:
+        box = intersect_boxes(box, clip.bounds) if box and clip.bounds else None
+    return box

@@ -251,7 +251,6 @@ def parse_transform(text: str, *whole: float) -> Matrix | None:
     """Parses a list of transforms and multiplies them; returns None if one is invalid.
 
     Args:
-        text: The list.
         whole: Width and height that are 100 %, and the font size; without them, lengths must be
             numbers or pixels.
     """

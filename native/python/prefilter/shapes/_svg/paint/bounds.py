@@ -17,11 +17,7 @@ _ZERO = Length(0.0)
 
 
 def object_bounds(element: SvgElement, context: Context, sources: Sources) -> Box | None:
-    """Returns the bounding box of an element's fill, in its own units; None if it is empty.
-
-    Args:
-        context: The context within it.
-    """
+    """Returns the bounding box of an element's fill, in its own units; None if it is empty."""
     pending = [(element, replace(context, matrix=IDENTITY))]
     bounds: Box | None = None
     while pending:

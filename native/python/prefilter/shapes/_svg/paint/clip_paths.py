@@ -6,8 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from ...affine import compose
-from ..model.clips import make_clip
-from ..model.tree import Clip, ClipPart
+from ..model.tree import Clip, ClipPart, make_clip
 from ..model.values import parse_paint
 from ..read.basic_shapes import BASIC_SHAPES
 from ..read.context import Context, Sources

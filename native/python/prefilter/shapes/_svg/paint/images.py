@@ -9,10 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from ...affine import Matrix, compose
-from ..model.clips import make_box_clip
 from ..model.gradients import Colors
 from ..model.limits import TooLargeError
-from ..model.tree import Clip, Group, Picture, transform_box
+from ..model.tree import Clip, Group, Picture, make_box_clip, transform_box
 from ..model.values import Length
 from ..model.view_boxes import ViewBox, fit_view_box
 from ..read.context import Context, Sources
@@ -46,11 +45,7 @@ Bounds = tuple[float, float, float, float]
 
 
 class Images:
-    """The images of a drawing, each read once.
-
-    Args:
-        read: Reads a nested drawing.
-    """
+    """The images of a drawing, each read once."""
 
     def __init__(self, read: Read) -> None:
         self._read = read
@@ -93,7 +88,6 @@ def place_image(
     Args:
         box: Left, top, width and height; None for those of the element's attributes.
         context: The context within the element.
-        images: Images of the drawing.
     """
     try:
         contents = images.contents(element, sources)
@@ -140,7 +134,7 @@ def _draw(
     x, y, width, height = box
     aspect = declared.get("preserveAspectRatio", "")
     if not isinstance(contents, np.ndarray) and not contents.page.has_size:
-        # As in browsers, a drawing without a size takes that of the box, and fits itself into it.
+        # In browsers, a drawing without a size fills the box.
         own = own if aspect.strip() == "none" else (width, height)
     own_width, own_height = own
     page = ViewBox(0.0, 0.0, own_width, own_height)

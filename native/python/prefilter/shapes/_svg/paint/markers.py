@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 
 from .... import _native
 from ...affine import IDENTITY, Matrix, compose
-from ..model.clips import make_box_clip
+from ..model.calculations import DEGREES
 from ..model.outline import Outline
-from ..model.tree import Group
+from ..model.tree import Group, make_box_clip
 from ..model.values import Length, parse_number, rotation
 from ..model.view_boxes import fit_view_box, parse_view_box
 from ..read.context import Context, Sources, context_paints
@@ -146,8 +146,7 @@ def _draw(
 
 
 def _degrees(text: str) -> float:
-    units = {"deg": 1.0, "grad": 0.9, "rad": 180.0 / math.pi, "turn": 360.0}
-    for name, scale in units.items():
+    for name, scale in DEGREES.items():
         if text.endswith(name):
             return (parse_number(text.removesuffix(name)) or 0.0) * scale
     return parse_number(text) or 0.0

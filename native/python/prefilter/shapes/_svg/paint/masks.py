@@ -5,9 +5,8 @@
 from dataclasses import replace
 
 from ...affine import Matrix, compose
-from ..model.clips import make_box_clip
 from ..model.gradients import Colors
-from ..model.tree import Box, Group, Mask
+from ..model.tree import Box, Group, Mask, make_box_clip
 from ..model.values import Length
 from ..read.context import Context, Sources
 from ..read.document import SvgElement
@@ -21,7 +20,7 @@ _DEFAULTS = {"x": -10.0, "y": -10.0, "width": 120.0, "height": 120.0}
 def read_masks(element: SvgElement, context: Context, sources: Sources) -> tuple[Mask, ...] | None:
     """Reads the masks of an element; returns None if they hide everything.
 
-    `context` is that within the element. As in browsers, a mask itself has no mask, but elements in
+    `context` is that within the element. A mask itself has no mask, as in browsers, but elements in
     it may have some. A circular reference is ignored.
     """
     text = sources.sheets.declared(element).get("mask", "none")

@@ -5,8 +5,7 @@
 from collections.abc import Mapping
 
 from ...affine import IDENTITY, Matrix, compose, determinant
-from ..model.clips import make_box_clip
-from ..model.tree import Box, Clip, Group, Pattern
+from ..model.tree import Box, Clip, Group, Pattern, make_box_clip
 from ..model.values import Length, parse_transform
 from ..model.view_boxes import MAX_UNITS, fit_view_box, parse_view_box
 from ..read.context import Context, Sources
@@ -26,7 +25,6 @@ def read_pattern(
     """Reads a pattern as a paint; returns None if it paints nothing.
 
     Args:
-        element: The pattern element.
         opacity: Opacity of the paint, in [0, 1].
         context: The context within the painted element.
         bounds: Bounding box of its outline.

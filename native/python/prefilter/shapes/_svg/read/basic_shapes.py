@@ -16,14 +16,7 @@ BASIC_SHAPES = ("path", "rect", "circle", "ellipse", "line", "polyline", "polygo
 def read_shape(
     element: SvgElement, values: Mapping[str, str], units: Units, warnings: Warnings
 ) -> Outline | None:
-    """Reads the outline of an element; returns None if it has none.
-
-    Args:
-        element: One of BASIC_SHAPES.
-        values: Its attributes and properties.
-        units: References of its lengths.
-        warnings: Receives errors in attributes.
-    """
+    """Reads the outline of one of BASIC_SHAPES; returns None if it has none."""
     outline = Outline()
 
     def pixels(name: str) -> float:

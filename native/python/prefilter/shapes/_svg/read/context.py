@@ -28,7 +28,6 @@ class Sources:
     """Resources shared by all elements of a document.
 
     Attributes:
-        fonts: Fonts for text.
         folder: The drawing's folder, for images; None if there is none.
         waiting: A stack of elements to draw; the next one is last.
         outlines: Known outlines of basic shapes.
@@ -112,7 +111,6 @@ class ContextPaint:
     """The value of `context-fill` or `context-stroke`.
 
     Attributes:
-        paint: The paint.
         element: Its element, in whose units gradients and patterns lie.
         context: The context within that element.
     """

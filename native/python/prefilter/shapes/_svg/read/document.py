@@ -72,7 +72,6 @@ class Document:
     Attributes:
         name: The file's name in messages.
         folder: The file's folder; None for markup.
-        root: The outermost `svg`.
         ids: Elements by id; the first wins.
         count: Number of elements.
         sheets: `style` and `link` elements.

@@ -17,13 +17,7 @@ _ALONG_Y = frozenset(("y", "y1", "y2", "cy", "fy", "ry", "height", "refY", "mark
 
 @dataclass(frozen=True, slots=True)
 class Units:
-    """References of percentages and font units.
-
-    Attributes:
-        width: Width of the viewport.
-        height: Height of the viewport.
-        font_size: Font size of the element.
-    """
+    """References of percentages and font units: viewport size, and font size."""
 
     width: float
     height: float
@@ -43,10 +37,9 @@ class Units:
 def transform_about_origin(
     matrix: Matrix, text: str, units: Units, corner: tuple[float, float] = (0.0, 0.0)
 ) -> Matrix | None:
-    """Applies `transform-origin` to a transform; returns None if the property is invalid.
+    """Applies `transform-origin`, the text, to a transform; returns None if the text is invalid.
 
     Args:
-        text: The property.
         units: Size of the reference box.
         corner: Upper left corner of the reference box.
     """

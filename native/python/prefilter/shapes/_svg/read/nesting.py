@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from ...affine import compose
-from ..model.clips import make_box_clip
+from ..model.tree import make_box_clip
 from ..model.values import Length
 from ..model.view_boxes import fit_view_box, parse_view_box
 from .basic_shapes import BASIC_SHAPES

@@ -19,12 +19,9 @@ _WHOLE = Length(100.0, "%")
 
 @dataclass(frozen=True, slots=True)
 class Page:
-    """Size and view box of a drawing.
+    """Size of a drawing in pixels, and its view box in user units.
 
     Attributes:
-        width: In pixels.
-        height: In pixels.
-        view: In user units.
         aspect: `preserveAspectRatio`.
         has_size: Whether the file gives a width or a height.
     """

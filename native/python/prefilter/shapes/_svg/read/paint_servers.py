@@ -59,11 +59,9 @@ class PaintServers:
         """Evaluates a gradient for an outline.
 
         Args:
-            element: The gradient element.
             opacity: Opacity of the paint, in [0, 1].
             units: Units of the outline's element.
             bounds: Bounding box of the outline: left, top, right, bottom.
-            colors: The encoding of colors.
 
         Returns:
             The gradient; a color if it is uniform; None if it cannot be used.

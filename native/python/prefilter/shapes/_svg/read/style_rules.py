@@ -64,7 +64,6 @@ class StyleRules:
 
     Attributes:
         matcher: Finds the declarations that apply to an element.
-        font_rules: The `@font-face` rules.
         is_empty: Whether no rule applies to elements.
     """
 

@@ -37,6 +37,7 @@ from .text_style import (
     TextStyle,
     expand_font_shorthand,
     inherit_text_style,
+    keyword_parser,
 )
 from .variables import resolve_variables, substitute, uses_variables
 
@@ -109,10 +110,6 @@ _NOT_INHERITED = (
 )
 
 
-def _keyword_parser(*names: str) -> Callable[[str], str | None]:
-    return lambda text: text.lower() if text.lower() in names else None
-
-
 def _parse_fraction(text: str) -> float | None:
     value = parse_number(text)
     return None if value is None else min(max(value, 0.0), 1.0)
@@ -139,31 +136,31 @@ _PARSERS: dict[str, Callable[[str], Any]] = {
     "color": parse_color,
     "fill": parse_paint,
     "fill-opacity": _parse_fraction,
-    "fill-rule": _keyword_parser("nonzero", "evenodd"),
+    "fill-rule": keyword_parser("nonzero", "evenodd"),
     "paint-order": lambda text: text.lower(),
     "stroke": parse_paint,
     "stroke-opacity": _parse_fraction,
     "stroke-width": _parse_positive_length,
-    "stroke-linecap": _keyword_parser("butt", "round", "square"),
-    "stroke-linejoin": _keyword_parser("miter", "round", "bevel", "miter-clip", "arcs"),
+    "stroke-linecap": keyword_parser("butt", "round", "square"),
+    "stroke-linejoin": keyword_parser("miter", "round", "bevel", "miter-clip", "arcs"),
     "stroke-miterlimit": _parse_miter_limit,
     "stroke-dasharray": _parse_dashes,
     "stroke-dashoffset": parse_length,
-    "visibility": _keyword_parser("visible", "hidden", "collapse"),
-    "clip-rule": _keyword_parser("nonzero", "evenodd"),
-    "color-interpolation": _keyword_parser("auto", "srgb", "linearrgb"),
-    "color-interpolation-filters": _keyword_parser("auto", "srgb", "linearrgb"),
+    "visibility": keyword_parser("visible", "hidden", "collapse"),
+    "clip-rule": keyword_parser("nonzero", "evenodd"),
+    "color-interpolation": keyword_parser("auto", "srgb", "linearrgb"),
+    "color-interpolation-filters": keyword_parser("auto", "srgb", "linearrgb"),
     "image-rendering": lambda text: text.lower(),
-    "shape-rendering": _keyword_parser(
+    "shape-rendering": keyword_parser(
         "auto", "optimizespeed", "crispedges", "geometricprecision", "inherit"
     ),
     "marker-start": lambda text: text,
     "marker-mid": lambda text: text,
     "marker-end": lambda text: text,
     "opacity": _parse_fraction,
-    "mix-blend-mode": _keyword_parser(*BLEND_MODES),
-    "isolation": _keyword_parser("auto", "isolate"),
-    "mask-type": _keyword_parser("luminance", "alpha"),
+    "mix-blend-mode": keyword_parser(*BLEND_MODES),
+    "isolation": keyword_parser("auto", "isolate"),
+    "mask-type": keyword_parser("luminance", "alpha"),
     "stop-color": parse_color,
     "stop-opacity": _parse_fraction,
 }
@@ -270,11 +267,7 @@ class _CountingWrapper(cssselect2.ElementWrapper):  # type: ignore[misc]
 
 
 class StyleSheets:
-    """The style sheets of a document, and the declarations of its elements.
-
-    Attributes:
-        font_rules: The `@font-face` rules.
-    """
+    """The style sheets and `@font-face` rules of a document, and declarations of elements."""
 
     def __init__(
         self, document: Document, warnings: Warnings, report: Callable[[float], None]
@@ -443,7 +436,10 @@ class StyleSheets:
                     declared[name] = "visible"
                 if name in parent:
                     declared[name] = parent[name]
-        self._report(element, declared)
+        for name in declared.keys() & _PARSERS.keys():
+            value = declared[name]
+            if value not in ("inherit", "initial") and _parse_property(name, value) is None:
+                self._report_value(name, value, element)
         return declared
 
     def _is_valid(self, name: str, value: str, element: SvgElement) -> bool:
@@ -452,19 +448,6 @@ class StyleSheets:
         if name not in _PARSERS or value == "inherit":
             return True
         return _parse_property(name, value) is not None
-
-    def _report(self, element: SvgElement, declared: Mapping[str, str]) -> None:
-        for name in declared.keys() & _PARSERS.keys():
-            if (
-                declared[name] in ("inherit", "initial")
-                or _parse_property(name, declared[name]) is not None
-            ):
-                continue
-            unit = _unknown_unit(name, declared[name])
-            if unit:
-                self._warnings.unsupported(f"unit '{unit}'", "ignored", element.line)
-            else:
-                self._warnings.broken(f"{name} '{declared[name][:40]}'", "ignored", element.line)
 
 
 def substitute_variables(

@@ -77,13 +77,7 @@ DEFAULT_TEXT_STYLE = TextStyle()
 
 @dataclass(frozen=True, slots=True)
 class FontRule:
-    """An `@font-face` rule.
-
-    Attributes:
-        line: Line in the drawing.
-        descriptors: Descriptors by name.
-        base: Folders to resolve addresses.
-    """
+    """An `@font-face` rule, with its descriptors, its line, and folders to resolve addresses."""
 
     line: int
     descriptors: Mapping[str, str]
@@ -93,13 +87,7 @@ class FontRule:
 def inherit_text_style(
     declared: Mapping[str, str], parent: TextStyle, font_size: float
 ) -> TextStyle:
-    """Returns the text properties of an element whose parent has the given ones.
-
-    Args:
-        declared: The element's declarations.
-        parent: The parent's text properties.
-        font_size: Font size of the element.
-    """
+    """Returns the text properties of an element whose parent has the given ones."""
     changed: dict[str, Any] = {}
     for name in declared.keys() & PROPERTIES.keys():
         text = declared[name].strip()
@@ -224,7 +212,7 @@ def _parse_variations(text: str) -> tuple[tuple[str, float], ...] | None:
     return tuple(settings)
 
 
-def _keyword_parser(*names: str) -> Callable[[str], str | None]:
+def keyword_parser(*names: str) -> Callable[[str], str | None]:
     return lambda text: text.lower() if text.lower() in names else None
 
 
@@ -238,7 +226,7 @@ def _parse_writing_mode(text: str) -> bool | None:
 
 
 _IGNORED_BASELINES = ("no-change", "reset-size", "use-script")
-_ANCHORS = _keyword_parser("start", "middle", "end")
+_ANCHORS = keyword_parser("start", "middle", "end")
 # Field and parser of each property.
 PROPERTIES: Mapping[str, tuple[str, Callable[[str], Any]]] = {
     "font-family": ("families", _parse_families),
@@ -253,7 +241,7 @@ PROPERTIES: Mapping[str, tuple[str, Callable[[str], Any]]] = {
     "letter-spacing": ("letter_spacing", lambda text: None),
     "word-spacing": ("word_spacing", lambda text: None),
     "text-anchor": ("anchor", _ANCHORS),
-    "direction": ("direction", _keyword_parser("ltr", "rtl")),
+    "direction": ("direction", keyword_parser("ltr", "rtl")),
     "dominant-baseline": (
         "baseline",
         lambda text: None if text.lower() in _IGNORED_BASELINES else text.lower(),

@@ -25,7 +25,6 @@ def read_transform(
     """Returns the matrix from an element's units to its parent's; None if they are the same.
 
     Args:
-        declared: Its attributes and properties.
         context: The context with its style, in its parent's units.
     """
     transform_text, origin = declared.get("transform", ""), declared.get("transform-origin", "")

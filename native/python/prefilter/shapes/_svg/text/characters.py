@@ -44,7 +44,6 @@ class Fitted:
 
     Attributes:
         length: In the element's units.
-        is_stretched: Whether glyphs are stretched.
     """
 
     length: float
@@ -56,14 +55,11 @@ class Span:
     """The text of one element, without nested elements.
 
     Attributes:
-        element: The element.
-        style: Its style.
         around: Spans of its ancestors within the text, outermost first.
         lines: Its own text decorations.
         baseline: The baseline to align with its position.
         shift: `baseline-shift` as text.
         path: The path of the text; None for a straight line.
-        fitted: The length to fit.
         forced: "L" or "R" if a direction overrides that of the letters.
         language: Language code; empty if unknown.
     """
@@ -92,15 +88,7 @@ class Span:
 
 @dataclass(slots=True)
 class Character:
-    """A character with its positioning attributes.
-
-    Attributes:
-        x: Absolute position, if given.
-        y: Absolute position, if given.
-        dx: Relative offset.
-        dy: Relative offset.
-        rotate: Rotation in degrees.
-    """
+    """A character with its positioning attributes: pixels, and degrees for `rotate`."""
 
     letter: str
     span: Span
@@ -128,7 +116,6 @@ class TextReader:
     """Reads the characters of text elements.
 
     Args:
-        sources: Shared resources.
         context: The context within the text element.
     """
 

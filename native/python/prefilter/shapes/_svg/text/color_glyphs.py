@@ -9,11 +9,10 @@ from ..._fonts.bitmaps import Bitmap
 from ..._fonts.color_layers import ColorFill, ColorGroup, ColorStop
 from ..._fonts.font import Font
 from ...affine import Matrix, compose, determinant, inverse
-from ..model.clips import make_clip
 from ..model.colors import Color
 from ..model.gradients import Colors, Gradient, Stop, sample_stops
 from ..model.outline import Outline
-from ..model.tree import Clip, ClipPart, Group, Mask, Painted, Picture, transform_box
+from ..model.tree import Clip, ClipPart, Group, Mask, Painted, Picture, make_clip, transform_box
 from ..model.values import BLACK
 from ..read.context import Context, Sources
 from ..read.document import SvgElement
@@ -29,7 +28,6 @@ class ColoredLetter:
     """A glyph.
 
     Attributes:
-        font: Its font.
         color_glyph: Its layers, or its bitmap.
         matrix: From font units, y upwards, to the text element's units.
     """
@@ -41,13 +39,7 @@ class ColoredLetter:
 
 @dataclass(frozen=True, slots=True)
 class ColoredPiece:
-    """Colored glyphs of one element.
-
-    Attributes:
-        element: The element.
-        style: Its style.
-        letters: The glyphs in order.
-    """
+    """Colored glyphs of one element, in order."""
 
     element: SvgElement
     style: Style
@@ -74,14 +66,7 @@ def draw_colored(piece: ColoredPiece, context: Context, sources: Sources) -> Non
 
 
 class _GlyphDrawer:
-    """Draws glyphs with one current color.
-
-    Args:
-        colors: The encoding of colors.
-        color: The current color.
-        sources: Shared resources.
-        line: Line of the text in the file.
-    """
+    """Draws glyphs with one current color."""
 
     def __init__(self, colors: Colors, color: Color, sources: Sources, line: int) -> None:
         self._colors = colors

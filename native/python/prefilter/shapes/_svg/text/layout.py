@@ -32,8 +32,6 @@ class Cluster:
     """Glyphs that represent characters together.
 
     Attributes:
-        characters: The characters.
-        font: Font of the glyphs.
         glyphs: From left to right.
         advance: Distance to the next cluster in pixels, spacing included.
         spacing: Letter spacing after it.
@@ -74,11 +72,7 @@ class _Run:
 
 
 class TextLayout:
-    """Lays out text.
-
-    Args:
-        lettering: Selects fonts.
-    """
+    """Lays out text."""
 
     def __init__(self, fonts: FontSelector) -> None:
         self._fonts = fonts

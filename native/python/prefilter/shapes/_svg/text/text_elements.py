@@ -33,9 +33,7 @@ class TextPiece:
 
     Attributes:
         element: The element that paints it.
-        style: Its style.
         outline: In the text element's units; not empty.
-        box: Bounding box.
     """
 
     element: SvgElement
@@ -59,11 +57,7 @@ class DrawnText:
 
 
 def lay_out_text(element: SvgElement, context: Context, sources: Sources) -> DrawnText:
-    """Lays out a text element.
-
-    Args:
-        context: The context within the element.
-    """
+    """Lays out a text element; `context` is that within the element."""
     characters = TextReader(sources, context).read(element)
     if not characters:
         return DrawnText([], None)
@@ -157,7 +151,7 @@ def _decoration(
     if font is None:
         return outline
     metrics, size = font.metrics, span.style.font_size
-    # As in browsers, font metrics for lines are ignored, and sizes follow the font size.
+    # Browsers ignore font metrics of lines; thickness and distance follow the font size.
     thickness = _LINE_THICKNESS
     middle = {
         "underline": -thickness,
