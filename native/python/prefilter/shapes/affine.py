@@ -28,6 +28,11 @@ def compose(outer: Matrix, inner: Matrix) -> Matrix:
     )
 
 
+def translation(x: float, y: float) -> Matrix:
+    """Returns the matrix that moves by (x, y)."""
+    return (1.0, 0.0, 0.0, 1.0, x, y)
+
+
 def determinant(matrix: Matrix) -> float:
     return matrix[0] * matrix[3] - matrix[1] * matrix[2]
 

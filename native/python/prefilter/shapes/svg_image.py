@@ -138,7 +138,7 @@ class SvgPicture:
             to_pixels, around = drawing.placement(float(width), float(height))
         else:
             scale, x, y = place
-            to_pixels, around = drawing.placed(scale, x, y)
+            to_pixels, around = drawing.placement_at(scale, x, y)
         compositor = Compositor(filter_name, threads, progress_reporter(progress))
         with as_value_errors(self._name):
             return compositor.draw(drawing, to_pixels, (width, height), around)

@@ -63,7 +63,7 @@ class Fonts:
 
     Args:
         places: Files and folders; None for the system's, which are searched when needed.
-        own: Embedded fonts, which take precedence within their families.
+        embedded: Embedded fonts, which take precedence within their families.
 
     Raises:
         ValueError: A file is no readable font, or a file or folder does not exist.
@@ -111,7 +111,7 @@ class Fonts:
         missing: list[str] = []
         for name in query.families:
             fonts = self._embedded_fonts(name, query)
-            faces = self._of_family(name) if not fonts else ()
+            faces = self._faces_of_family(name) if not fonts else ()
             font = self._open(faces, query) if faces else None
             if font is None and not fonts:
                 # A font with the same advances is good enough, but the family is missing.
@@ -125,7 +125,7 @@ class Fonts:
             elif not fonts_found and name.lower() not in GENERIC:
                 missing.append(name)
         if not fonts_found:
-            opened = (self._open(faces, query) for faces in self._stand_ins(missing[:1]))
+            opened = (self._open(faces, query) for faces in self._substitutes(missing[:1]))
             fonts_found = list(islice((font for font in opened if font is not None), 1))
         return fonts_found, missing
 
@@ -160,14 +160,14 @@ class Fonts:
             seen.add(face.family)
             if len(seen) > _MAX_FAMILIES_TRIED:
                 break
-            font = self._open(self._of_family(face.family), query)
+            font = self._open(self._faces_of_family(face.family), query)
             if font is not None and font.shows(code):
                 if font.is_colored == (code in _PICTOGRAPHS):
                     return font
                 other = other or font
         return other
 
-    def _of_family(self, name: str) -> Sequence[Face]:
+    def _faces_of_family(self, name: str) -> Sequence[Face]:
         if not self._families:
             for face in self.faces:
                 for family in face.families:
@@ -202,18 +202,18 @@ class Fonts:
         faces = self._from_fontconfig(name)
         if faces:
             return faces if not groups[0].isdisjoint(faces[0].families) else ()
-        others = (self._of_family(each) for each in sorted(groups[0]))
+        others = (self._faces_of_family(each) for each in sorted(groups[0]))
         return next((each for each in others if each), ())
 
-    def _stand_ins(self, missing: Sequence[str]) -> Iterator[Sequence[Face]]:
+    def _substitutes(self, missing: Sequence[str]) -> Iterator[Sequence[Face]]:
         """Yields substitutes for missing families, similar ones first."""
         for name in missing:
             yield self._from_fontconfig(name)
             for group in _SIMILAR_FAMILIES:
                 if name.lower() in group:
-                    yield from map(self._of_family, group)
+                    yield from map(self._faces_of_family, group)
         for name in ("serif", "sans-serif", *dict.fromkeys(face.family for face in self.faces)):
-            yield self._of_family(name)
+            yield self._faces_of_family(name)
 
     def _open(self, faces: Sequence[Face], query: FontQuery) -> Font | None:
         """Opens the best face of a family that is readable; None if none is."""

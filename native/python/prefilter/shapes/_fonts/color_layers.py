@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import Any, TypeAlias
 
 from ... import _native
-from ..affine import IDENTITY, Matrix, compose
+from ..affine import IDENTITY, Matrix, compose, translation
 
 Color: TypeAlias = tuple[float, float, float, float]
 
@@ -285,7 +285,7 @@ def _transform(paint: Any) -> Matrix:
         t = paint.Transform
         return (t.xx, t.yx, t.xy, t.yy, t.dx, t.dy)
     if kind == 14:
-        return (1.0, 0.0, 0.0, 1.0, paint.dx, paint.dy)
+        return translation(paint.dx, paint.dy)
     if kind in (16, 18):
         matrix = (paint.scaleX, 0.0, 0.0, paint.scaleY, 0.0, 0.0)
     elif kind in (20, 22):
@@ -300,7 +300,7 @@ def _transform(paint: Any) -> Matrix:
     if kind not in (18, 22, 26, 30):
         return matrix
     x, y = float(paint.centerX), float(paint.centerY)
-    return compose(compose((1.0, 0.0, 0.0, 1.0, x, y), matrix), (1.0, 0.0, 0.0, 1.0, -x, -y))
+    return compose(compose(translation(x, y), matrix), translation(-x, -y))
 
 
 def _linear_geometry(paint: Any) -> tuple[float, ...] | None:

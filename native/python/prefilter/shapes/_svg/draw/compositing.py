@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from .... import _native
 from ....images.pixel_filters import PIXEL_FILTERS
-from ...affine import Matrix, compose, inverse
+from ...affine import Matrix, compose, inverse, translation
 from ...rasterization import rasterize
 from ...shape import Shape
 from ..filters.layers import Window, filtered_layer
@@ -62,7 +62,7 @@ class Compositor:
     Args:
         filter_name: Pixel filter of shapes; see `prefilter.rasterize`.
         threads: Number of threads; 0 for all processors.
-        tell: report: Called with the fraction done; raises an exception to stop.
+        report: Called with the fraction done; raises an exception to stop.
     """
 
     def __init__(self, filter_name: str, threads: int, report: Callable[[float], None]) -> None:
@@ -254,7 +254,7 @@ class Compositor:
 
     def _draw_image(self, picture: Picture, matrix: Matrix, window: Window) -> FloatArray:
         left, low, right, high = window
-        moved = compose((1.0, 0.0, 0.0, 1.0, -left, -low), matrix)
+        moved = compose(translation(-left, -low), matrix)
         return draw_image_pixels(picture, moved, right - left, high - low, self._threads)
 
     def _draw_pattern(self, pattern: Pattern, matrix: Matrix, window: Window) -> FloatArray:
@@ -275,7 +275,7 @@ class Compositor:
             chain.from_iterable(
                 self._layers.placed(
                     pattern.group,
-                    compose(whole, (1.0, 0.0, 0.0, 1.0, column * width, row * height)),
+                    compose(whole, translation(column * width, row * height)),
                 )
                 for row in rows
                 for column in columns
@@ -292,10 +292,10 @@ class Compositor:
         )
         columns, rows = (min(max(math.ceil(side), _SMALLEST_TILE), _LARGEST_TILE) for side in sides)
         scale = (columns / (right - left), 0.0, 0.0, rows / (bottom - top), 0.0, 0.0)
-        to_tile = compose(scale, (1.0, 0.0, 0.0, 1.0, -left, -top))
+        to_tile = compose(scale, translation(-left, -top))
         tile = self._draw_nested(self._layers.placed(pattern.group, to_tile), (0, 0, columns, rows))
         moved = compose(to_tile, inverse(whole))
-        moved = compose(moved, (1.0, 0.0, 0.0, 1.0, window[0], window[1]))
+        moved = compose(moved, translation(window[0], window[1]))
         size = window[2] - window[0], window[3] - window[1]
         if max(sides) < _MIN_RESOLVED_TILE:
             mean = tile.sum(axis=0, dtype=np.float64).sum(axis=0) / (columns * rows)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
-from ...affine import IDENTITY, Matrix, compose, determinant, inverse
+from ...affine import IDENTITY, Matrix, compose, determinant, inverse, translation
 from ...shape import Shape
 from ..filters.filter_property import read_filters
 from ..model.gradients import Colors, Gradient
@@ -42,7 +42,7 @@ from ..read.references import check_repetition
 from ..read.styles import UNSUPPORTED, Style, StyleSheets
 from ..read.tags import NOT_DRAWN
 
-Tell = Callable[[float], None]
+Progress = Callable[[float], None]
 
 # Squares of larger coordinates might overflow.
 _LARGEST = 1e100
@@ -79,7 +79,7 @@ class Drawing:
         document: Document,
         colors: Colors,
         warnings: Warnings,
-        report: Tell,
+        report: Progress,
         fonts: FontSources,
     ) -> None:
         builder = TreeBuilder(document, warnings, report, 0, Budget(document.count), fonts)
@@ -103,10 +103,10 @@ class Drawing:
             return to_pixels, ()
         return to_pixels, self._clips()
 
-    def placed(self, scale: float, x: float, y: float) -> tuple[Matrix, tuple[Clip, ...]]:
+    def placement_at(self, scale: float, x: float, y: float) -> tuple[Matrix, tuple[Clip, ...]]:
         """Returns the same for a page scaled by a factor, with its lower left corner at (x, y)."""
         to_pixels = self.page.placement(scale * self.page.width, scale * self.page.height)
-        return compose((1.0, 0.0, 0.0, 1.0, x, y), to_pixels), self._clips()
+        return compose(translation(x, y), to_pixels), self._clips()
 
     def _clips(self) -> tuple[Clip, ...]:
         """Returns the clip at the page, unless overflow is visible."""
@@ -131,7 +131,7 @@ class TreeBuilder:
         self,
         document: Document,
         warnings: Warnings,
-        report: Tell,
+        report: Progress,
         depth: int,
         budget: Budget,
         fonts: FontSources,

@@ -87,7 +87,7 @@ class LayerPlanner:
         )
 
 
-_ANY_MATRIX: Matrix = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
+_ANY_MATRIX: Matrix = IDENTITY
 
 
 def is_plain(item: Item) -> bool:

@@ -4,7 +4,7 @@
 
 from dataclasses import replace
 
-from ...affine import IDENTITY, compose
+from ...affine import IDENTITY, compose, translation
 from ..model.tree import Box, Filter, Group, Step, transform_box
 from ..model.values import Length
 from ..paint.bounds import object_bounds
@@ -159,7 +159,7 @@ def _image_contents(
         inside = replace(
             inside,
             style=sources.sheets.style(parent) if parent is not None else Style(),
-            matrix=compose(context.matrix, (1.0, 0.0, 0.0, 1.0, left, top)),
+            matrix=compose(context.matrix, translation(left, top)),
             uses=(*context.uses, target),
             use=element,
         )

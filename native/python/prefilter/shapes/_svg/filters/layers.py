@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .... import _native
-from ...affine import Matrix, compose, inverse
+from ...affine import Matrix, compose, inverse, translation
 from ..model.tree import Box, Filter, Group, intersect_boxes, transform_box
 from .evaluation import apply_filter, filter_reach, is_upright
 from .warping import warp_image
@@ -37,26 +37,31 @@ def filtered_layer(
     filter_ = _filter_of(group)
     to_pixels = compose(matrix, filter_.matrix)
     # Pixels beyond half a side are ignored, to limit memory.
-    most = max(window[2] - window[0], window[3] - window[1]) / 2.0
-    reach = math.ceil(min(filter_reach(filter_, matrix), most))
+    limit = max(window[2] - window[0], window[3] - window[1]) / 2.0
+    reach = math.ceil(min(filter_reach(filter_, matrix), limit))
     left, low, right, high = window
-    around = (float(left - reach), float(low - reach), float(right + reach), float(high + reach))
+    reachable = (float(left - reach), float(low - reach), float(right + reach), float(high + reach))
     if is_upright(to_pixels):
         return _draw_upright(
-            draw, group, transform_box(box, matrix), around, (matrix, to_pixels), window
+            draw, group, transform_box(box, matrix), reachable, (matrix, to_pixels), window
         )
-    return _draw_warped(draw, group, box, around, (matrix, to_pixels), window, threads)
+    return _draw_warped(draw, group, box, reachable, (matrix, to_pixels), window, threads)
 
 
 def _draw_upright(
-    draw: Draw, group: Group, box: Box, around: Box, ways: tuple[Matrix, Matrix], window: Window
+    draw: Draw,
+    group: Group,
+    box: Box,
+    reachable: Box,
+    matrices: tuple[Matrix, Matrix],
+    window: Window,
 ) -> FloatArray:
     layer = np.zeros((window[3] - window[1], window[2] - window[0], 4), np.float32)
-    region = _pixels(intersect_boxes(box, around))
+    region = _pixels(intersect_boxes(box, reachable))
     shared = intersect_boxes((*map(float, window),), (*map(float, region),)) if region else None  # type: ignore[arg-type]
     if region is None or shared is None:
         return layer
-    pixels = _filter_region(draw, group, ways, region)
+    pixels = _filter_region(draw, group, matrices, region)
     left, low, right, high = map(int, shared)
     rows, columns = (
         slice(low - window[1], high - window[1]),
@@ -72,48 +77,50 @@ def _draw_warped(
     draw: Draw,
     group: Group,
     box: Box,
-    around: Box,
-    ways: tuple[Matrix, Matrix],
+    reachable: Box,
+    matrices: tuple[Matrix, Matrix],
     window: Window,
     threads: int,
 ) -> FloatArray:
     """Draws and filters the group upright, and warps the result."""
-    to_pixels = ways[1]
+    to_pixels = matrices[1]
     filter_ = _filter_of(group)
     width, height = window[2] - window[0], window[3] - window[1]
     across, along = _native.hypot(*to_pixels[:2]), _native.hypot(*to_pixels[2:4])
-    most = 2.0 * max(around[2] - around[0], around[3] - around[1])
+    limit = 2.0 * max(reachable[2] - reachable[0], reachable[3] - reachable[1])
 
-    def placed() -> tuple[Matrix, Window | None]:
+    def place_upright() -> tuple[Matrix, Window | None]:
         upright: Matrix = (across, 0.0, 0.0, -along, 0.0, 0.0)
         whole = transform_box(box, compose(upright, inverse(filter_.matrix)))
-        seen = transform_box(around, compose(upright, inverse(to_pixels)))
-        return upright, _pixels(intersect_boxes(whole, seen))
+        visible = transform_box(reachable, compose(upright, inverse(to_pixels)))
+        return upright, _pixels(intersect_boxes(whole, visible))
 
-    upright, region = placed()
+    upright, region = place_upright()
     largest = max(region[2] - region[0], region[3] - region[1]) if region else 0
-    if largest > most:
+    if largest > limit:
         # Limits the resolution under strong shear.
-        across, along = (side * most / largest for side in (across, along))
-        upright, region = placed()
+        across, along = (side * limit / largest for side in (across, along))
+        upright, region = place_upright()
     if region is None:
         return np.zeros((height, width, 4), np.float32)
     to_upright = compose(upright, inverse(filter_.matrix))
     pixels = _filter_region(
         draw, _extend_region(group, across, along), (to_upright, upright), region
     )
-    back = compose(
-        (1.0, 0.0, 0.0, 1.0, -region[0], -region[1]), compose(upright, inverse(to_pixels))
-    )
-    back = compose(back, (1.0, 0.0, 0.0, 1.0, window[0], window[1]))
+    back = compose(translation(-region[0], -region[1]), compose(upright, inverse(to_pixels)))
+    back = compose(back, translation(window[0], window[1]))
     return warp_image(pixels, back, width, height, threads)
 
 
 def _filter_region(
-    draw: Draw, group: Group, ways: tuple[Matrix, Matrix], region: Window
+    draw: Draw, group: Group, matrices: tuple[Matrix, Matrix], region: Window
 ) -> FloatArray:
     return apply_filter(
-        lambda shown: draw(shown, ways[0], region), group, _filter_of(group), ways[1], region
+        lambda shown: draw(shown, matrices[0], region),
+        group,
+        _filter_of(group),
+        matrices[1],
+        region,
     )
 
 

@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 import tinycss2
 
 from .... import _native
-from ...affine import IDENTITY, Matrix, compose
+from ...affine import IDENTITY, Matrix, compose, translation
 from .calculations import DEGREES, Quantity, evaluate_quantity, is_calculation
 from .colors import Color, color_from_token
 
@@ -317,13 +317,13 @@ def _make_transform(name: str, numbers: list[float] | None) -> Matrix | None:
         case "matrix", [a, b, c, d, e, f]:
             return (a, b, c, d, e, f)
         case "translate", [x]:
-            return (1.0, 0.0, 0.0, 1.0, x, 0.0)
+            return translation(x, 0.0)
         case "translate", [x, y]:
-            return (1.0, 0.0, 0.0, 1.0, x, y)
+            return translation(x, y)
         case "translatex", [x]:
-            return (1.0, 0.0, 0.0, 1.0, x, 0.0)
+            return translation(x, 0.0)
         case "translatey", [y]:
-            return (1.0, 0.0, 0.0, 1.0, 0.0, y)
+            return translation(0.0, y)
         case "scale", [s]:
             return (s, 0.0, 0.0, s, 0.0, 0.0)
         case "scale", [x, y]:
@@ -335,7 +335,7 @@ def _make_transform(name: str, numbers: list[float] | None) -> Matrix | None:
         case "rotate", [angle]:
             return rotation(angle)
         case "rotate", [angle, x, y]:
-            there, back = (1.0, 0.0, 0.0, 1.0, x, y), (1.0, 0.0, 0.0, 1.0, -x, -y)
+            there, back = translation(x, y), translation(-x, -y)
             return compose(compose(there, rotation(angle)), back)
         case "skewx", [angle]:
             return (1.0, 0.0, _native.tan(math.radians(angle)), 1.0, 0.0, 0.0)

@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from ...affine import Matrix, compose
+from ...affine import Matrix, compose, translation
 from ..model.gradients import Colors
 from ..model.limits import TooLargeError
 from ..model.tree import Clip, Group, Picture, make_box_clip, transform_box
@@ -138,7 +138,7 @@ def _draw(
         own = own if aspect.strip() == "none" else (width, height)
     own_width, own_height = own
     page = ViewBox(0.0, 0.0, own_width, own_height)
-    view_matrix = compose((1.0, 0.0, 0.0, 1.0, x, y), fit_view_box(page, aspect, width, height))
+    view_matrix = compose(translation(x, y), fit_view_box(page, aspect, width, height))
     matrix = compose(context.matrix, view_matrix)
     clips = context.clips
     if declared.get("overflow", "hidden") not in VISIBLE_OVERFLOW and aspect.strip().endswith(

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from .... import _native
-from ...affine import IDENTITY, Matrix, compose
+from ...affine import IDENTITY, Matrix, compose, translation
 from ..model.calculations import DEGREES
 from ..model.outline import Outline
 from ..model.tree import Group, make_box_clip
@@ -107,7 +107,7 @@ def _draw(
     angle = vertex.angle if orient.startswith("auto") else _degrees(orient)
     if orient == "auto-start-reverse" and is_start:
         angle += 180.0
-    matrix = compose((1.0, 0.0, 0.0, 1.0, vertex.x, vertex.y), rotation(angle))
+    matrix = compose(translation(vertex.x, vertex.y), rotation(angle))
     if declared.get("markerUnits", "strokeWidth") != "userSpaceOnUse":
         scale = context.units.pixels(context.style.stroke_width, "stroke-width")
         matrix = compose(matrix, (scale, 0.0, 0.0, scale, 0.0, 0.0))
@@ -126,7 +126,7 @@ def _draw(
     )
     a, b, c, d = fitted[:4]
     reference = (a * ref_x + c * ref_y + fitted[4], b * ref_x + d * ref_y + fitted[5])
-    matrix = compose(matrix, (1.0, 0.0, 0.0, 1.0, -reference[0], -reference[1]))
+    matrix = compose(matrix, translation(-reference[0], -reference[1]))
     to_tree = compose(context.matrix, matrix)
     clips = context.clips
     if declared.get("overflow", "hidden") not in VISIBLE_OVERFLOW:

@@ -4,7 +4,7 @@
 
 from dataclasses import replace
 
-from ...affine import Matrix, compose
+from ...affine import IDENTITY, Matrix, compose
 from ..model.gradients import Colors
 from ..model.tree import Box, Group, Mask, make_box_clip
 from ..model.values import Length
@@ -88,9 +88,9 @@ def read_region(
         context: Context of the element that refers to it.
     """
     is_fraction = element.get(name, "objectBoundingBox") != "userSpaceOnUse"
-    matrix = fractions_to_box(box) if is_fraction else (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
+    matrix = fractions_to_box(box) if is_fraction else IDENTITY
     if matrix is None:
-        return None, (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
+        return None, IDENTITY
     units = Units(1.0, 1.0, context.style.font_size) if is_fraction else context.units
     x, y, width, height = (
         sources.pixels(element, key, Length(value, "%"), units) for key, value in defaults.items()

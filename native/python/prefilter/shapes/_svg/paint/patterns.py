@@ -4,7 +4,7 @@
 
 from collections.abc import Mapping
 
-from ...affine import IDENTITY, Matrix, compose, determinant
+from ...affine import IDENTITY, Matrix, compose, determinant, translation
 from ..model.tree import Box, Clip, Group, Pattern, make_box_clip
 from ..model.values import Length, parse_transform
 from ..model.view_boxes import MAX_UNITS, fit_view_box, parse_view_box
@@ -96,7 +96,7 @@ def _place_contents(
     """Returns the matrix from the contents' units to the outline's, and the contents' viewport if
     they have one of their own.
     """
-    matrix: Matrix = (1.0, 0.0, 0.0, 1.0, tile[0], tile[1])
+    matrix: Matrix = translation(tile[0], tile[1])
     view = parse_view_box(attributes.get("viewBox"))
     if view is not None:
         aspect = attributes.get("preserveAspectRatio", "")

@@ -37,8 +37,8 @@ def read_address(
 
     Args:
         address: The address as written; not empty.
-        place: base: Folders to resolve it; None if no files are read.
-        most_bytes: max_bytes: Size limit of a file.
+        base: Folders to resolve it; None if no files are read.
+        max_bytes: Size limit of a file.
 
     Raises:
         ElsewhereError: NotLocalError: The address leads to another computer, or out of the folder.

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from ...affine import IDENTITY, Matrix, compose
+from ...affine import IDENTITY, Matrix, compose, translation
 from ..model.values import Length, UnknownUnitError, parse_length, parse_origin
 from ..model.warnings import Warnings
 from .document import SvgElement
@@ -47,8 +47,8 @@ def transform_about_origin(
     if origin is None or matrix == IDENTITY:
         return None if origin is None else matrix
     x, y = corner[0] + units.pixels(origin[0], "x"), corner[1] + units.pixels(origin[1], "y")
-    matrix = compose((1.0, 0.0, 0.0, 1.0, x, y), matrix)
-    return compose(matrix, (1.0, 0.0, 0.0, 1.0, -x, -y))
+    matrix = compose(translation(x, y), matrix)
+    return compose(matrix, translation(-x, -y))
 
 
 def read_length(

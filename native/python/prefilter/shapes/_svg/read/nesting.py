@@ -5,7 +5,7 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
-from ...affine import compose
+from ...affine import compose, translation
 from ..model.tree import make_box_clip
 from ..model.values import Length
 from ..model.view_boxes import fit_view_box, parse_view_box
@@ -70,7 +70,7 @@ def resolve_use(
     y = sources.pixels(element, "y", _ZERO, context.units)
     context = replace(
         context,
-        matrix=compose(context.matrix, (1.0, 0.0, 0.0, 1.0, x, y)),
+        matrix=compose(context.matrix, translation(x, y)),
         uses=(*context.uses, target),
         use=element,
         paints=context_paints(element, context),
@@ -94,7 +94,7 @@ def enter_viewport(element: SvgElement, context: Context, sources: Sources) -> C
     width, height = sizes
     if width <= 0.0 or height <= 0.0:
         return None
-    matrix = (1.0, 0.0, 0.0, 1.0, x, y)
+    matrix = translation(x, y)
     size = (width, height)
     clips = context.clips
     if declared.get("overflow", "hidden") not in VISIBLE_OVERFLOW:

@@ -25,7 +25,7 @@ def resolve_variables(own: Mapping[str, str], inherited: Mapping[str, str]) -> d
 
     Args:
         own: Custom properties that the element declares.
-        around: inherited: Resolved custom properties of its parent.
+        inherited: Resolved custom properties of its parent.
     """
     resolved = {name: text for name, text in inherited.items() if name not in own}
     for name, text in own.items():

@@ -19,7 +19,7 @@ from ..._fonts.shaping import (
     detect_scripts,
     shape,
 )
-from ...affine import Matrix, compose
+from ...affine import Matrix, compose, translation
 from ..model.values import rotation
 from .characters import Character, Fitted, Span
 from .lettering import FontSelector
@@ -84,18 +84,18 @@ class TextLayout:
         everything = [cluster for _, clusters in chunks for cluster in clusters]
         _fit(everything)
         self._at = (0.0, 0.0)
-        for part, clusters in chunks:
-            self._place(part, clusters)
+        for chunk, clusters in chunks:
+            self._place(chunk, clusters)
         return everything
 
-    def _clusters(self, part: Sequence[Character]) -> list[Cluster]:
+    def _clusters(self, chunk: Sequence[Character]) -> list[Cluster]:
         """Shapes the characters of a chunk; returns clusters from left to right."""
-        text = "".join(character.letter for character in part)
-        base = 1 if next(part[0].span.ancestry()).text.direction == "rtl" else 0
-        levels = embedding_levels(text, base, [character.span.forced for character in part])
-        runs = list(self._runs(part, text, levels))
+        text = "".join(character.letter for character in chunk)
+        base = 1 if next(chunk[0].span.ancestry()).text.direction == "rtl" else 0
+        levels = embedding_levels(text, base, [character.span.forced for character in chunk])
+        runs = list(self._runs(chunk, text, levels))
         order = visual_order([run.level for run in runs])
-        clusters = [cluster for index in order for cluster in self._shaped(part, runs[index])]
+        clusters = [cluster for index in order for cluster in self._shape(chunk, runs[index])]
         # No letter spacing after the last cluster.
         for cluster in clusters[:-1]:
             cluster.advance += cluster.spacing
@@ -103,12 +103,12 @@ class TextLayout:
             clusters[-1].spacing = 0.0
         return clusters
 
-    def _runs(self, part: Sequence[Character], text: str, levels: Sequence[int]) -> Iterator[_Run]:
-        fonts = self._fonts.fonts_of(part)
+    def _runs(self, chunk: Sequence[Character], text: str, levels: Sequence[int]) -> Iterator[_Run]:
+        fonts = self._fonts.fonts_of(chunk)
         keys = [
             (font, level, script, _key(character.span))
             for font, level, script, character in zip(
-                fonts, levels, detect_scripts(text), part, strict=True
+                fonts, levels, detect_scripts(text), chunk, strict=True
             )
         ]
         begin = 0
@@ -118,8 +118,8 @@ class TextLayout:
                 yield _Run(begin, end, font, level, script)
             begin = end
 
-    def _shaped(self, part: Sequence[Character], run: _Run) -> Iterator[Cluster]:
-        characters = part[run.begin : run.end]
+    def _shape(self, chunk: Sequence[Character], run: _Run) -> Iterator[Cluster]:
+        characters = chunk[run.begin : run.end]
         span = characters[0].span
         style = span.text
         if run.script in COMPLEX and not HAS_HARFBUZZ:
@@ -150,9 +150,9 @@ class TextLayout:
             cluster.shift = self._fonts.shift_of(inside[0].span)
             yield cluster
 
-    def _place(self, part: Sequence[Character], clusters: list[Cluster]) -> None:
+    def _place(self, chunk: Sequence[Character], clusters: list[Cluster]) -> None:
         """Positions the clusters of a chunk."""
-        first = part[0]
+        first = chunk[0]
         along = first.span.path
         x = self._at[0] if first.x is None else first.x
         y = self._at[1] if first.y is None else first.y
@@ -204,12 +204,12 @@ def _matrix(cluster: Cluster, head: Character, x: float, y: float) -> Matrix | N
     below = y + cluster.shift
     place = head.span.path
     if place is None:
-        matrix: Matrix | None = (1.0, 0.0, 0.0, 1.0, x, below)
+        matrix: Matrix | None = translation(x, below)
     else:
         half = 0.5 * (cluster.advance - cluster.spacing)
         matrix = place.track.at(x + half)
         if matrix is not None:
-            matrix = compose(matrix, (1.0, 0.0, 0.0, 1.0, -half, below))
+            matrix = compose(matrix, translation(-half, below))
     if matrix is not None and head.rotate != 0.0:
         matrix = compose(matrix, rotation(head.rotate))
     return matrix
@@ -223,7 +223,7 @@ def _downward(cluster: Cluster, head: Character, x: float, y: float) -> Matrix:
     """
     metrics = cluster.font.metrics
     middle = 0.5 * (metrics.ascent + metrics.descent) * cluster.span.style.font_size
-    matrix = compose((0.0, 1.0, -1.0, 0.0, x, y), (1.0, 0.0, 0.0, 1.0, 0.0, cluster.shift + middle))
+    matrix = compose((0.0, 1.0, -1.0, 0.0, x, y), translation(0.0, cluster.shift + middle))
     if _is_upright(head.letter):
         half = (cluster.advance - cluster.spacing) / 2.0
         matrix = compose(matrix, (0.0, -1.0, 1.0, 0.0, half + middle, half - middle))
