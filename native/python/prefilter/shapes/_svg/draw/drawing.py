@@ -24,7 +24,7 @@ from ..paint.masks import read_masks
 from ..paint.paints import paint_order, resolve_paint, resolve_stroke
 from ..read.basic_shapes import BASIC_SHAPES
 from ..read.context import Context, Sources
-from ..read.document import Document, SvgElement, read_document
+from ..read.document import NOT_DRAWN, Document, SvgElement, read_document
 from ..read.fonts import FontSources
 from ..read.nesting import (
     FOREIGN,
@@ -40,7 +40,6 @@ from ..read.page import Page, read_background, read_page
 from ..read.paint_servers import PaintServers
 from ..read.references import check_repetition
 from ..read.styles import UNSUPPORTED, Style, StyleSheets
-from ..read.tags import NOT_DRAWN
 
 Progress = Callable[[float], None]
 

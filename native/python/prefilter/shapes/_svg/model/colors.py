@@ -205,11 +205,7 @@ def _parse_color_mix(tokens: list[Any], depth: int) -> SpaceColor | None:
     space = {"xyz": "xyz-d65"}.get(how[1], how[1])
     hue = how[2] if len(how) > 2 else "shorter"
     is_known = space in _RANGES or space in RGB_SPACES or space in ("xyz-d65", "xyz-d50")
-    if (
-        not is_known
-        or space == "rgb"
-        or hue not in ("shorter", "longer", "increasing", "decreasing")
-    ):
+    if not is_known or space == "rgb" or hue not in _HUE_METHODS:
         return None
     colors: list[SpaceColor] = []
     shares: list[float | None] = []

@@ -49,12 +49,6 @@ class Outline:
     def line_to(self, x: float, y: float) -> None:
         self._add(b"L", (x, y))
 
-    def quadratic_to(self, *numbers: float) -> None:
-        self._add(b"Q", numbers)
-
-    def cubic_to(self, *numbers: float) -> None:
-        self._add(b"C", numbers)
-
     def conic_to(self, x1: float, y1: float, weight: float, x2: float, y2: float) -> None:
         self._add(b"W", (x1, y1, weight, x2, y2))
 

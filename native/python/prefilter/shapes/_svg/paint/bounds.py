@@ -9,9 +9,8 @@ from ..model.tree import Box, transform_box, unite_boxes
 from ..model.values import Length
 from ..read.basic_shapes import BASIC_SHAPES
 from ..read.context import Context, Sources
-from ..read.document import SvgElement
+from ..read.document import GROUPS, NOT_DRAWN, SvgElement
 from ..read.nesting import enter_element, enter_viewport, rendered_children, resolve_use
-from ..read.tags import GROUPS, NOT_DRAWN
 
 _ZERO = Length(0.0)
 

@@ -10,9 +10,8 @@ from ..model.tree import Clip, ClipPart, make_clip
 from ..model.values import parse_paint
 from ..read.basic_shapes import BASIC_SHAPES
 from ..read.context import Context, Sources
-from ..read.document import SvgElement
+from ..read.document import NOT_DRAWN, SvgElement
 from ..read.nesting import enter_element, resolve_use
-from ..read.tags import NOT_DRAWN
 from .bounds import object_bounds
 
 

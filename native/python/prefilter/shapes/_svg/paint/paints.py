@@ -13,8 +13,7 @@ from ..model.outline import Outline
 from ..model.tree import Box, Pattern, Stroke
 from ..model.values import Paint
 from ..read.context import Context, ContextPaint, Sources
-from ..read.document import SvgElement
-from ..read.tags import GRADIENTS, OTHER_PAINTS
+from ..read.document import GRADIENTS, OTHER_PAINTS, SvgElement
 from .bounds import object_bounds
 from .masks import fractions_to_box
 from .patterns import read_pattern

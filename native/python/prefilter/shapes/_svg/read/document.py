@@ -18,6 +18,18 @@ XLINK_HREF = "{http://www.w3.org/1999/xlink}href"
 _SHEETS = ("style", "{http://www.w3.org/1999/xhtml}link")
 _ATTRIBUTE = re.compile(r"([\w-]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
 
+GRADIENTS = ("linearGradient", "radialGradient")
+GROUPS = ("g", "a", "svg", "symbol", "switch")
+OTHER_PAINTS = ("hatch", "meshgradient", "solidcolor")
+NOT_DRAWN = frozenset(
+    (
+        *("defs", "marker", "clipPath", "mask", "filter", "pattern", *GRADIENTS),
+        *("title", "desc", "metadata", "style", "script", "view", "cursor"),
+        *("animate", "animateColor", "animateMotion", "animateTransform", "set"),
+        *("font", "font-face", "color-profile", *OTHER_PAINTS),
+    )
+)
+
 MAX_DEPTH = 256
 MAX_ELEMENTS = 250_000
 MAX_ATTRIBUTES = 2_000_000

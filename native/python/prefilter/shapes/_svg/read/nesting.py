@@ -11,8 +11,7 @@ from ..model.values import Length
 from ..model.view_boxes import fit_view_box, parse_view_box
 from .basic_shapes import BASIC_SHAPES
 from .context import Context, Sources, context_paints
-from .document import SvgElement
-from .tags import GROUPS
+from .document import GROUPS, SvgElement
 from .transforms import read_transform
 
 _ZERO, _WHOLE = Length(0.0), Length(100.0, "%")

@@ -9,10 +9,9 @@ from ..model.colors import Color
 from ..model.gradients import Colors, Gradient, Stop, sample_stops
 from ..model.values import Length, parse_number, parse_transform
 from ..model.warnings import Warnings
-from .document import Document, SvgElement
+from .document import GRADIENTS, Document, SvgElement
 from .lengths import Units, read_length, transform_about_origin
 from .styles import StyleSheets
-from .tags import GRADIENTS
 
 _COMMON = ("gradientUnits", "gradientTransform", "spreadMethod", "transform-origin")
 _GEOMETRY = {

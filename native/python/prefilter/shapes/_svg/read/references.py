@@ -7,9 +7,8 @@ from collections.abc import Iterator
 from ..model import limits
 from ..model.limits import TOO_MANY_USED, TooLargeError
 from ..model.values import parse_paint
-from .document import Document, SvgElement
+from .document import NOT_DRAWN, Document, SvgElement
 from .styles import StyleSheets
-from .tags import NOT_DRAWN
 
 _REFERRING = {"mask", "fill", "stroke", "marker-start", "marker-mid", "marker-end"}
 
