@@ -70,11 +70,7 @@ class Compositor:
         self._threads = threads
         self._report = report
         self._share = 0.0
-        self._reach = next(
-            pixel_filter.radius
-            for pixel_filter in PIXEL_FILTERS
-            if pixel_filter.name == filter_name
-        )
+        self._reach = next(each.radius for each in PIXEL_FILTERS if each.name == filter_name)
         self._layers = LayerPlanner()
         self._shapes = ShapeBuilder()
         self._depth = 0

@@ -52,7 +52,7 @@ _PAGE_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
-class _PaintableOutline:
+class _Paintable:
     """An outline to paint.
 
     Attributes:
@@ -253,7 +253,7 @@ class TreeBuilder:
         outline = self.sources.outline(element, context.units)
         box = outline.bounds() if outline is not None else None
         if outline is not None and box is not None and context.style.visibility == "visible":
-            self._paint_outline(element, context, _PaintableOutline(outline, box, box))
+            self._paint_outline(element, context, _Paintable(outline, box, box))
 
     def _paint_text(self, element: SvgElement, context: Context) -> None:
         # Font modules load slowly, and drawings without text do not need them.
@@ -266,12 +266,10 @@ class TreeBuilder:
                 draw_colored(piece, context, self.sources)
                 continue
             piece_context = replace(context, style=piece.style)
-            outline = _PaintableOutline(piece.outline, piece.box, drawn.bounds)
+            outline = _Paintable(piece.outline, piece.box, drawn.bounds)
             self._paint_outline(piece.element, piece_context, outline)
 
-    def _paint_outline(
-        self, element: SvgElement, context: Context, drawn: _PaintableOutline
-    ) -> None:
+    def _paint_outline(self, element: SvgElement, context: Context, drawn: _Paintable) -> None:
         style, outline = context.style, drawn.outline
         stroke = resolve_stroke(element, context, outline, self.sources)
         for part in paint_order(style.paint_order):
@@ -286,16 +284,16 @@ class TreeBuilder:
         self,
         element: SvgElement,
         context: Context,
-        drawn: _PaintableOutline,
+        drawn: _Paintable,
         paint: Paint,
         opacity: float,
         stroke: Stroke | None,
     ) -> None:
-        resolved_paint = resolve_paint(element, context, drawn.bounds, paint, opacity, self.sources)
-        if resolved_paint is None:
+        resolved = resolve_paint(element, context, drawn.bounds, paint, opacity, self.sources)
+        if resolved is None:
             return
         if stroke is not None and self._is_unscaled(element):
-            context, drawn, resolved_paint = self._to_page(context, drawn, resolved_paint)
+            context, drawn, resolved = self._to_page(context, drawn, resolved)
         outline = drawn.outline
         margin = 0.0
         if stroke is not None:
@@ -318,9 +316,7 @@ class TreeBuilder:
         rule = context.style.fill_rule
         matrix, clips = context.matrix, context.clips
         context.target.items.append(
-            Painted(
-                outline, rule, matrix, resolved_paint, stroke, clips, box, element.line, is_crisp
-            )
+            Painted(outline, rule, matrix, resolved, stroke, clips, box, element.line, is_crisp)
         )
 
     def _is_unscaled(self, element: SvgElement) -> bool:
@@ -331,9 +327,9 @@ class TreeBuilder:
     def _to_page(
         self,
         context: Context,
-        drawn: _PaintableOutline,
+        drawn: _Paintable,
         paint: tuple[float, ...] | Gradient | Pattern,
-    ) -> tuple[Context, _PaintableOutline, tuple[float, ...] | Gradient | Pattern]:
+    ) -> tuple[Context, _Paintable, tuple[float, ...] | Gradient | Pattern]:
         """Converts an outline and its paint to pixels of the page."""
         page = self.page
         to_page = fit_view_box(page.view, page.aspect, page.width, page.height)
@@ -343,7 +339,7 @@ class TreeBuilder:
             paint = replace(paint, matrix=compose(own, paint.matrix))
         box = outline.bounds() or drawn.box
         context = replace(context, matrix=inverse(to_page))
-        return context, _PaintableOutline(outline, box, drawn.bounds), paint
+        return context, _Paintable(outline, box, drawn.bounds), paint
 
     def _read_nested(self, data: bytes, name: str) -> "TreeBuilder":
         """Reads a nested drawing, which may not refer to files."""

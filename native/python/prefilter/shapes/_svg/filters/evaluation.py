@@ -246,11 +246,9 @@ class _FilterRun:
         return merged
 
     def _flood(self, color: tuple[float, ...], is_linear: bool) -> FloatArray:
-        color_pixel = np.array(
-            [[[*(value * color[3] for value in color[:3]), color[3]]]], np.float32
-        )
-        color_pixel = _with_colors(_Result(color_pixel, False, self._region), is_linear)
-        return np.broadcast_to(color_pixel, self._source.shape).copy()
+        pixel = np.array([[[*(value * color[3] for value in color[:3]), color[3]]]], np.float32)
+        pixel = _with_colors(_Result(pixel, False, self._region), is_linear)
+        return np.broadcast_to(pixel, self._source.shape).copy()
 
     def _drop_shadow(self, step: Step, source: FloatArray) -> FloatArray:
         numbers = step.numbers

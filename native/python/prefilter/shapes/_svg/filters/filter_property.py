@@ -123,9 +123,9 @@ def _subregion(
     left, top, right, bottom = filter_units.region
     sides = {"x": left, "y": top, "width": right - left, "height": bottom - top}
     units = context.units
-    if filter_units.units != IDENTITY:
+    if filter_units.matrix != IDENTITY:
         units = Units(1.0, 1.0, units.font_size)
-    a, _, _, d, e, f = filter_units.units
+    a, _, _, d, e, f = filter_units.matrix
     for name in sides:
         if name in declared:
             value = sources.pixels(element, name, Length(0.0), units)

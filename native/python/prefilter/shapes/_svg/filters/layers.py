@@ -104,9 +104,7 @@ def _draw_warped(
     if region is None:
         return np.zeros((height, width, 4), np.float32)
     to_upright = compose(upright, inverse(filter_.matrix))
-    pixels = _filter_region(
-        draw, _extend_region(group, across, along), (to_upright, upright), region
-    )
+    pixels = _filter_region(draw, _extend(group, across, along), (to_upright, upright), region)
     back = compose(translation(-region[0], -region[1]), compose(upright, inverse(to_pixels)))
     back = compose(back, translation(window[0], window[1]))
     return warp_image(pixels, back, width, height, threads)
@@ -124,7 +122,7 @@ def _filter_region(
     )
 
 
-def _extend_region(group: Group, across: float, along: float) -> Group:
+def _extend(group: Group, across: float, along: float) -> Group:
     """Extends a filter's region by a margin for warping, which is clipped later."""
     filter_ = _filter_of(group)
     if filter_.region is None:

@@ -25,17 +25,15 @@ def apply_morphology(pixels: FloatArray, x: int, y: int, *, is_largest: bool) ->
             continue
         padding = [(0, 0)] * pixels.ndim
         padding[axis] = (radius, radius)
-        extremes = np.pad(pixels, padding)
+        extreme = np.pad(pixels, padding)
         # Windows double in size; the last step overlaps two of them.
         size, full_size = 1, 2 * radius + 1
         while size < full_size:
             step = min(size, full_size - size)
-            count = extremes.shape[axis] - step
-            extremes = pick(
-                _part(extremes, 0, count, axis), _part(extremes, step, step + count, axis)
-            )
+            count = extreme.shape[axis] - step
+            extreme = pick(_part(extreme, 0, count, axis), _part(extreme, step, step + count, axis))
             size += step
-        pixels = extremes
+        pixels = extreme
     return pixels
 
 

@@ -170,21 +170,21 @@ def transfer_components(pixels: FloatArray, numbers: tuple[float, ...]) -> Float
         count = int(numbers[position])
         values = np.array(numbers[position + 1 : position + 1 + abs(count)], np.float32)
         position += 1 + abs(count)
-        channel_values = straight[..., channel]
+        channel_pixels = straight[..., channel]
         if count == 0:
             amplitude, exponent, offset = numbers[position : position + 3]
             position += 3
-            raised = _native.powers(channel_values.astype(np.float64), exponent)
+            raised = _native.powers(channel_pixels.astype(np.float64), exponent)
             straight[..., channel] = (amplitude * raised + offset).clip(0.0, 1.0)
         elif count < 0:
             index = np.minimum(
-                np.floor(channel_values * np.float32(-count)).astype(int), -count - 1
+                np.floor(channel_pixels * np.float32(-count)).astype(int), -count - 1
             )
             straight[..., channel] = values[index]
         elif count == 1:
             straight[..., channel] = values[0]
         else:
-            scaled = channel_values * np.float32(count - 1)
+            scaled = channel_pixels * np.float32(count - 1)
             index = np.minimum(np.floor(scaled).astype(int), count - 2)
             share = scaled - index
             straight[..., channel] = values[index] + share * (values[index + 1] - values[index])

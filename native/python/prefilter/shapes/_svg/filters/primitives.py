@@ -38,11 +38,11 @@ class FilterUnits:
     """Units and region of a filter.
 
     Attributes:
-        units: From the primitives' units, which may be fractions of a box, to the element's.
+        matrix: From the primitives' units, which may be fractions of a box, to the element's.
         region: The filter region, in the element's units.
     """
 
-    units: Matrix
+    matrix: Matrix
     region: Box
 
 
@@ -65,29 +65,28 @@ def _input(element: SvgElement, name: str = "in") -> str:
     return element.get(name, "").strip()
 
 
-def _blur(element: SvgElement, filter_units: FilterUnits, _: Sources) -> Parameters:
-    return [_input(element)], _deviations(element, 0.0, filter_units), ""
+def _blur(element: SvgElement, units: FilterUnits, _: Sources) -> Parameters:
+    return [_input(element)], _deviations(element, 0.0, units), ""
 
 
-def _deviations(element: SvgElement, default: float, filter_units: FilterUnits) -> list[float]:
+def _deviations(element: SvgElement, default: float, units: FilterUnits) -> list[float]:
     numbers = _numbers(element.get("stdDeviation"), [default])
     if len(numbers) > 2 or min(numbers) < 0.0:
         numbers = [0.0]
-    return _scales(numbers[0], numbers[-1], filter_units)
+    return _scales(numbers[0], numbers[-1], units)
 
 
-def _scales(x: float, y: float, filter_units: FilterUnits) -> list[float]:
+def _scales(x: float, y: float, units: FilterUnits) -> list[float]:
     """Scales lengths along x and y to the element's units."""
-    return [x * filter_units.units[0], y * filter_units.units[3]]
+    return [x * units.matrix[0], y * units.matrix[3]]
 
 
-def _offset(element: SvgElement, filter_units: FilterUnits, _: Sources) -> Parameters:
+def _offset(element: SvgElement, units: FilterUnits, _: Sources) -> Parameters:
     x, y = _number(element, "dx", 0.0), _number(element, "dy", 0.0)
-    return [_input(element)], _scales(x, y, filter_units), ""
+    return [_input(element)], _scales(x, y, units), ""
 
 
-def _flood(element: SvgElement, filter_units: FilterUnits, sources: Sources) -> Parameters:
-    del filter_units
+def _flood(element: SvgElement, _: FilterUnits, sources: Sources) -> Parameters:
     color = _color(element, "flood-color", (0.0, 0.0, 0.0, 1.0), sources)
     opacity = parse_number(sources.sheets.declared(element).get("flood-opacity", "1"))
     alpha = color[3] * (1.0 if opacity is None else min(max(opacity, 0.0), 1.0))
@@ -101,10 +100,10 @@ def _color(element: SvgElement, name: str, default: Color, sources: Sources) -> 
     return sources.sheets.style(element).color if isinstance(color, str) else color
 
 
-def _shadow(element: SvgElement, filter_units: FilterUnits, sources: Sources) -> Parameters:
-    _, color, _ = _flood(element, filter_units, sources)
-    move = _scales(_number(element, "dx", 2.0), _number(element, "dy", 2.0), filter_units)
-    return [_input(element)], [*_deviations(element, 2.0, filter_units), *move, *color], ""
+def _shadow(element: SvgElement, units: FilterUnits, sources: Sources) -> Parameters:
+    _, color, _ = _flood(element, units, sources)
+    move = _scales(_number(element, "dx", 2.0), _number(element, "dy", 2.0), units)
+    return [_input(element)], [*_deviations(element, 2.0, units), *move, *color], ""
 
 
 def _merge(element: SvgElement, _: FilterUnits, __: Sources) -> Parameters:
@@ -186,12 +185,12 @@ def _transfer(element: SvgElement, _: FilterUnits, sources: Sources) -> Paramete
     return [_input(element)], numbers, ""
 
 
-def _morphology(element: SvgElement, filter_units: FilterUnits, _: Sources) -> Parameters:
+def _morphology(element: SvgElement, units: FilterUnits, _: Sources) -> Parameters:
     numbers = _numbers(element.get("radius"), [0.0])
     if len(numbers) > 2 or min(numbers) < 0.0:
         numbers = [0.0]
     is_dilating = element.get("operator", "erode").strip() == "dilate"
-    lengths = _scales(numbers[0], numbers[-1], filter_units)
+    lengths = _scales(numbers[0], numbers[-1], units)
     return [_input(element)], lengths, "dilate" if is_dilating else "erode"
 
 
@@ -242,7 +241,7 @@ def _turbulence(element: SvgElement, _: FilterUnits, __: Sources) -> Parameters:
     return [], parameters, "fractalNoise" if is_fractal else "turbulence"
 
 
-def _lighting(element: SvgElement, filter_units: FilterUnits, sources: Sources) -> Parameters:
+def _lighting(element: SvgElement, units: FilterUnits, sources: Sources) -> Parameters:
     """Parameters: surface scale, strength, shininess, color, and those of the light source."""
     color = _color(element, "lighting-color", (1.0, 1.0, 1.0, 1.0), sources)
     lights = [child for child in element if child.tag in _LIGHTS]
@@ -252,10 +251,10 @@ def _lighting(element: SvgElement, filter_units: FilterUnits, sources: Sources) 
     strength = _number(element, "diffuseConstant" if is_diffuse else "specularConstant", 1.0)
     shininess = min(max(_number(element, "specularExponent", 1.0), 1.0), 128.0)
     numbers = [_number(element, "surfaceScale", 1.0), max(strength, 0.0), shininess, *color[:3]]
-    return [_input(element)], [*numbers, *_light(lights[0], filter_units)], lights[0].tag
+    return [_input(element)], [*numbers, *_light(lights[0], units)], lights[0].tag
 
 
-def _light(light: SvgElement, filter_units: FilterUnits) -> list[float]:
+def _light(light: SvgElement, units: FilterUnits) -> list[float]:
     """Returns the direction of a distant light; for others the position, then that of a spot's
     target.
     """
@@ -267,9 +266,9 @@ def _light(light: SvgElement, filter_units: FilterUnits) -> list[float]:
         flat = _native.cos(elevation)
         x, y = flat * _native.cos(azimuth), flat * _native.sin(azimuth)
         return [x, y, _native.sin(elevation)]
-    parameters = _position(light, ("x", "y", "z"), filter_units)
+    parameters = _position(light, ("x", "y", "z"), units)
     if light.tag == "feSpotLight":
-        parameters += _position(light, ("pointsAtX", "pointsAtY", "pointsAtZ"), filter_units)
+        parameters += _position(light, ("pointsAtX", "pointsAtY", "pointsAtZ"), units)
         exponent = _number(light, "specularExponent", 1.0)
         # Browsers treat an angle of 0 as missing.
         cone = _number(light, "limitingConeAngle", 0.0) or 180.0
@@ -278,11 +277,9 @@ def _light(light: SvgElement, filter_units: FilterUnits) -> list[float]:
     return parameters
 
 
-def _position(
-    light: SvgElement, names: tuple[str, str, str], filter_units: FilterUnits
-) -> list[float]:
+def _position(light: SvgElement, names: tuple[str, str, str], units: FilterUnits) -> list[float]:
     x, y, z = (_number(light, name, 0.0) for name in names)
-    a, _, _, d, e, f = filter_units.units
+    a, _, _, d, e, f = units.matrix
     return [a * x + e, d * y + f, math.sqrt((a * a + d * d) / 2.0) * z]
 
 

@@ -17,7 +17,7 @@ from ..model.tree import Picture
 
 FloatArray = npt.NDArray[np.float32]
 
-_PICTURE_FILTER: Final = "lanczos2"
+_IMAGE_FILTER: Final = "lanczos2"
 _TILE_FILTER: Final = "mitchell"
 # Ratio of the two scales from which on an image is first shrunk in one direction alone.
 _MIN_ANISOTROPY = 1.25
@@ -70,7 +70,7 @@ def warp_image(
         as_rows(to_pixels),
         width,
         height,
-        filter=_PICTURE_FILTER,
+        filter=_IMAGE_FILTER,
         exact=True,
         premultiplied=True,
         threads=threads,
@@ -112,6 +112,4 @@ def _equalize_scales(texels: FloatArray, whole: Matrix, threads: int) -> FloatAr
     most = min(max(across, along), 1.0)
     width = columns if across > along else max(1, math.ceil(columns * across / most))
     height = rows if along > across else max(1, math.ceil(rows * along / most))
-    return resize(
-        texels, width, height, filter=_PICTURE_FILTER, premultiplied=True, threads=threads
-    )
+    return resize(texels, width, height, filter=_IMAGE_FILTER, premultiplied=True, threads=threads)

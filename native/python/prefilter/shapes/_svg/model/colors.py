@@ -120,12 +120,10 @@ def _parse_function(name: str, tokens: list[Any], depth: int) -> SpaceColor | No
             break
     if len(tokens) != 3 or (alpha_tokens is not None and len(alpha_tokens) != 1):
         return None
-    values = [
-        _parse_component(token, whole, names) for token, whole in zip(tokens, ranges, strict=True)
-    ]
+    values = [_component(token, whole, names) for token, whole in zip(tokens, ranges, strict=True)]
     alpha: Any = 1.0 if origin is None else origin.alpha
     if alpha_tokens is not None:
-        alpha = _parse_component(alpha_tokens[0], 1.0, names)
+        alpha = _component(alpha_tokens[0], 1.0, names)
     if any(value == "" for value in (*values, alpha)):
         return None
     return _limit_components(name, space, values, alpha)
@@ -143,16 +141,15 @@ def _parse_legacy(name: str, tokens: list[Any]) -> SpaceColor | None:
     if name == "hsl" and any(token.type == "number" for token in tokens[1:3]):
         return None
     values = [
-        _parse_component(token, whole, {})
-        for token, whole in zip(tokens, _RANGES[name], strict=False)
+        _component(token, whole, {}) for token, whole in zip(tokens, _RANGES[name], strict=False)
     ]
-    alpha = _parse_component(tokens[3], 1.0, {}) if len(tokens) == 4 else 1.0
+    alpha = _component(tokens[3], 1.0, {}) if len(tokens) == 4 else 1.0
     if any(value in ("", None) for value in (*values, alpha)):
         return None
     return _limit_components(name, name, values, alpha)
 
 
-def _parse_component(token: Any, whole: float | None, names: Mapping[str, float]) -> Any:
+def _component(token: Any, whole: float | None, names: Mapping[str, float]) -> Any:
     """Parses a component: a number, None for `none`, or "" if invalid. Without `whole` it is an
     angle.
     """
@@ -229,12 +226,10 @@ def _parse_color_mix(tokens: list[Any], depth: int) -> SpaceColor | None:
     second = 100.0 - first if second is None else second
     if first + second == 0.0:
         return None
-    return _interpolate(
-        colors, space, hue, second / (first + second), min((first + second) / 100.0, 1.0)
-    )
+    return _mix(colors, space, hue, second / (first + second), min((first + second) / 100.0, 1.0))
 
 
-def _interpolate(
+def _mix(
     colors: Sequence[SpaceColor], space: str, hue: str, share: float, opacity: float
 ) -> SpaceColor:
     """Interpolates between two colors; `share` is the weight of the second one."""

@@ -257,7 +257,7 @@ def parse_transform(text: str, *whole: float) -> Matrix | None:
     if text.strip().lower() in ("", "none"):
         return IDENTITY
     matrix = IDENTITY
-    for name, arguments in _parse_functions(text, whole or (0.0, 0.0, 0.0)):
+    for name, arguments in _functions(text, whole or (0.0, 0.0, 0.0)):
         transform = _make_transform(name, arguments)
         if transform is None:
             return None
@@ -270,18 +270,16 @@ def has_relative_lengths(text: str) -> bool:
     return "%" in text or "em" in text or "ex" in text
 
 
-def _parse_functions(
-    text: str, whole: tuple[float, ...]
-) -> Iterator[tuple[str, list[float] | None]]:
+def _functions(text: str, whole: tuple[float, ...]) -> Iterator[tuple[str, list[float] | None]]:
     name = ""
     for token in _tokenize(text):
         if token.type == "ident" and not name:
             name = token.lower_value  # Whitespace precedes its parenthesis.
         elif token.type == "() block" and name:
-            yield name, _parse_arguments(name, token.content, whole)
+            yield name, _arguments(name, token.content, whole)
             name = ""
         elif token.type == "function" and not name:
-            yield token.lower_name, _parse_arguments(token.lower_name, token.arguments, whole)
+            yield token.lower_name, _arguments(token.lower_name, token.arguments, whole)
         elif token != "," or name:
             yield "", None
     if name:
@@ -291,9 +289,7 @@ def _parse_functions(
 _IN_TRANSFORMS = _PIXELS | {unit: ("deg", factor) for unit, factor in DEGREES.items()}
 
 
-def _parse_arguments(
-    name: str, tokens: Sequence[Any], whole: tuple[float, ...]
-) -> list[float] | None:
+def _arguments(name: str, tokens: Sequence[Any], whole: tuple[float, ...]) -> list[float] | None:
     """Reads numbers, pixels, and angles in degrees."""
     numbers: list[float] = []
     for token in tokens:

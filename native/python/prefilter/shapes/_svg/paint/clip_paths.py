@@ -65,32 +65,30 @@ def _parts(child: SvgElement, context: Context, sources: Sources) -> Iterator[Cl
     declared = sources.sheets.declared(child)
     if declared.get("display", "") == "none":
         return
-    child_context = apply_clip_path(
+    inner = apply_clip_path(
         child, enter_element(child, replace(context, clips=()), sources), sources
     )
-    if child_context is None:
+    if inner is None:
         return
     if child.tag == "use":
-        for target, inside in resolve_use(child, child_context, sources):
+        for target, inside in resolve_use(child, inner, sources):
             if target.tag in BASIC_SHAPES or target.tag == "text":
                 for part in _parts(target, inside, sources):
-                    yield replace(part, clips=(*child_context.clips, *part.clips))
+                    yield replace(part, clips=(*inner.clips, *part.clips))
         return
     if child.tag == "text":
         # Font modules load slowly, and drawings without text do not need them.
         from ..text.text_elements import TextPiece, lay_out_text
 
-        for piece in lay_out_text(child, child_context, sources).pieces:
+        for piece in lay_out_text(child, inner, sources).pieces:
             if not isinstance(piece, TextPiece):
                 continue
             sources.budget.take_segments(len(piece.outline), 0.0)
-            yield ClipPart(piece.outline, "nonzero", child_context.matrix, child_context.clips)
+            yield ClipPart(piece.outline, "nonzero", inner.matrix, inner.clips)
     if child.tag not in BASIC_SHAPES or child.tag == "line":
         return
-    outline = sources.outline(child, child_context.units)
-    if outline is None or child_context.style.visibility != "visible":
+    outline = sources.outline(child, inner.units)
+    if outline is None or inner.style.visibility != "visible":
         return
     sources.budget.take_segments(len(outline), 0.0)
-    yield ClipPart(
-        outline, child_context.style.clip_rule, child_context.matrix, child_context.clips
-    )
+    yield ClipPart(outline, inner.style.clip_rule, inner.matrix, inner.clips)

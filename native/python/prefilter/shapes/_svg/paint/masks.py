@@ -43,7 +43,7 @@ def read_masks(element: SvgElement, context: Context, sources: Sources) -> tuple
     group = Group(is_isolated=True, line=mask.line)
     clips = (*context.clips, make_box_clip(region, compose(context.matrix, matrix)))
     # Luminance is that of the mask's own color interpolation.
-    mask_context = replace(
+    inside = replace(
         context,
         style=style,
         target=group,
@@ -56,11 +56,9 @@ def read_masks(element: SvgElement, context: Context, sources: Sources) -> tuple
         to_box = fractions_to_box(box)
         if to_box is None:
             return None
-        mask_context = replace(
-            mask_context, matrix=compose(context.matrix, to_box), viewport=(1.0, 1.0)
-        )
-    sources.schedule((child, mask_context) for child in rendered_children(mask))
-    return (Mask(group, style.mask_type == "luminance", mask_context.colors.is_linear),)
+        inside = replace(inside, matrix=compose(context.matrix, to_box), viewport=(1.0, 1.0))
+    sources.schedule((child, inside) for child in rendered_children(mask))
+    return (Mask(group, style.mask_type == "luminance", inside.colors.is_linear),)
 
 
 def fractions_to_box(box: Box | None) -> Matrix | None:

@@ -35,15 +35,13 @@ def resolve_paint(
         if held.paint.server:
             return _resolve_context_paint(held, context, opacity, sources)
         paint = held.paint
-    server_paint: Gradient | Color | None = None
+    gradient: Gradient | Color | None = None
     is_local = paint.server.startswith("#")
     server = sources.document.ids.get(paint.server[1:]) if is_local else None
     if server is not None and server.tag in GRADIENTS:
         if not sources.servers.has_colors(server):
             return None  # as in browsers, no fallback color
-        server_paint = sources.servers.resolve(
-            server, opacity, context.units, bounds, context.colors
-        )
+        gradient = sources.servers.resolve(server, opacity, context.units, bounds, context.colors)
     elif server is not None and server.tag == "pattern":
         pattern = read_pattern(server, opacity, context, bounds, sources)
         # An invalid pattern paints nothing, but a box without an area has the fallback color.
@@ -55,17 +53,17 @@ def resolve_paint(
         report(f"<{server.tag}> as paint", "left out", element.line)
     elif paint.server:
         sources.warnings.broken(f"url({paint.server[:60]})", "not there", element.line)
-    if isinstance(server_paint, Gradient):
-        return server_paint
-    if server_paint is None:
+    if isinstance(gradient, Gradient):
+        return gradient
+    if gradient is None:
         # `context-fill` without a referring element is none.
         color = context.style.color if paint.color == "current" else paint.color
         if color is None or isinstance(color, str):
             return None
-        server_paint = (*color[:3], context.colors.opacity(color[3] * opacity))
-    if server_paint[3] == 0.0:
+        gradient = (*color[:3], context.colors.opacity(color[3] * opacity))
+    if gradient[3] == 0.0:
         return None
-    return context.colors.premultiplied(np.array([server_paint]))[0]
+    return context.colors.premultiplied(np.array([gradient]))[0]
 
 
 def _resolve_context_paint(

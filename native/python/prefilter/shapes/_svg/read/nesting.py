@@ -58,9 +58,7 @@ def resolve_use(
     """Yields the target of a `use`, with its context."""
     target = sources.document.ids.get(element.href)
     if target is None:
-        sources.warnings.broken(
-            "<use>", "left out, as what it refers to is not there", element.line
-        )
+        sources.warnings.broken("<use>", "left out, as its target is missing", element.line)
         return
     if target in context.uses or target in ancestors(element):
         sources.warnings.broken("<use>", "left out, as it is inside of itself", element.line)

@@ -76,8 +76,8 @@ class StyleRules:
         self._characters_left = MAX_CHARACTERS
         folder = document.folder
         base = None if folder is None else BaseFolder(folder, folder)
-        for attributes, line in document.linked_sheets:
-            self._link("xml-stylesheet", attributes, _Sheet(line, base))
+        for attrib, line in document.linked_sheets:
+            self._link("xml-stylesheet", attrib, _Sheet(line, base))
         for element in document.sheets:
             self._add_element(element, base)
 
@@ -95,14 +95,12 @@ class StyleRules:
                 raise TooLargeError(f"style sheets of more than {MAX_CHARACTERS >> 20} MiB")
             self._add(tinycss2.parse_stylesheet(text, True, True), sheet)
 
-    def _link(self, name: str, attributes: Mapping[str, str], sheet: _Sheet) -> None:
+    def _link(self, name: str, attrib: Mapping[str, str], sheet: _Sheet) -> None:
         """Adds a linked style sheet."""
-        is_other = attributes.get("alternate", "no") == "yes" or "alternate" in attributes.get(
-            "rel", ""
-        )
-        is_css = _is_css(attributes) and not is_other
-        if is_css and self._matches(name, attributes.get("media", ""), sheet.line):
-            self._add_file(name, attributes.get("href", "").strip(), sheet)
+        is_other = attrib.get("alternate", "no") == "yes" or "alternate" in attrib.get("rel", "")
+        is_css = _is_css(attrib) and not is_other
+        if is_css and self._matches(name, attrib.get("media", ""), sheet.line):
+            self._add_file(name, attrib.get("href", "").strip(), sheet)
 
     def _matches(self, name: str, query: str | Sequence[Any], line: int) -> bool:
         holds = matches_screen(query)
@@ -196,8 +194,8 @@ class StyleRules:
             self._add_file("@import", address.strip(), sheet)
 
 
-def _is_css(attributes: Mapping[str, str]) -> bool:
-    return attributes.get("type", "text/css").strip().lower() in ("text/css", "")
+def _is_css(attrib: Mapping[str, str]) -> bool:
+    return attrib.get("type", "text/css").strip().lower() in ("text/css", "")
 
 
 def read_declarations(content: Any) -> Iterator[tuple[str, str, bool]]:

@@ -354,18 +354,16 @@ class StyleSheets:
         }
         own = _parse_declarations(declared.pop("style")) if "style" in declared else ()
         if not rules and not own:
-            return self._resolve_inherit(element, self._substitute_variables(element, declared))
+            return self._resolve_inherit(element, self._substitute(element, declared))
         for important in (False, True):
             for declarations in (*rules, own):
                 for name, value, is_important in declarations:
                     if is_important != important:
                         continue
-                    self._declare(name, value, declared, element)
-        return self._resolve_inherit(element, self._substitute_variables(element, declared))
+                    self._apply(name, value, declared, element)
+        return self._resolve_inherit(element, self._substitute(element, declared))
 
-    def _declare(
-        self, name: str, value: str, declared: dict[str, str], element: SvgElement
-    ) -> None:
+    def _apply(self, name: str, value: str, declared: dict[str, str], element: SvgElement) -> None:
         """Applies a declaration."""
         if name.startswith("--"):
             declared[name] = value
@@ -394,9 +392,7 @@ class StyleSheets:
         else:
             self._report_value(name, value, element)
 
-    def _substitute_variables(
-        self, element: SvgElement, declared: dict[str, str]
-    ) -> dict[str, str]:
+    def _substitute(self, element: SvgElement, declared: dict[str, str]) -> dict[str, str]:
         """Substitutes variables."""
         inherited = {} if element.parent is None else self._custom.get(element.parent, {})
         has_own = any(name.startswith("--") and name not in _TRANSFORM_KEYS for name in declared)

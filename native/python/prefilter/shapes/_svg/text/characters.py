@@ -104,11 +104,11 @@ class _RawText:
     """Characters read so far.
 
     Attributes:
-        raw: Characters with their span, and whether whitespace is preserved.
-        ranges: Spans with begin and end in `raw`, outer ones first.
+        letters: Characters with their span, and whether whitespace is preserved.
+        ranges: Spans with begin and end in `letters`, outer ones first.
     """
 
-    raw: list[tuple[str, Span, bool]] = field(default_factory=list)
+    letters: list[tuple[str, Span, bool]] = field(default_factory=list)
     ranges: list[tuple[Span, int, int]] = field(default_factory=list)
 
 
@@ -125,17 +125,17 @@ class TextReader:
 
     def read(self, element: SvgElement) -> list[Character]:
         """Returns the characters of a text element in document order."""
-        raw_text = _RawText()
-        self._walk(element, self._context.style, (), raw_text, self._keeps_spaces(element))
-        remaining_indices = _collapse_spaces(raw_text.raw)
-        characters = [Character(*raw_text.raw[index][:2]) for index in remaining_indices]
+        raw = _RawText()
+        self._walk(element, self._context.style, (), raw, self._keeps_spaces(element))
+        remaining_indices = _collapse_spaces(raw.letters)
+        characters = [Character(*raw.letters[index][:2]) for index in remaining_indices]
         # Number of remaining characters before each raw one.
         count, counts = 0, [0]
         remaining = set(remaining_indices)
-        for index in range(len(raw_text.raw)):
+        for index in range(len(raw.letters)):
             count += index in remaining
             counts.append(count)
-        for span, begin, end in raw_text.ranges:
+        for span, begin, end in raw.ranges:
             self._position(span, characters[counts[begin] : counts[end]])
         return characters
 
@@ -144,19 +144,19 @@ class TextReader:
         element: SvgElement,
         style: Style,
         around: tuple[Span, ...],
-        raw_text: _RawText,
+        raw: _RawText,
         keeps: bool,
     ) -> None:
         span = self._span(element, style, around)
         if span is None:
             return
-        begin = len(raw_text.raw)
-        at = len(raw_text.ranges)
+        begin = len(raw.letters)
+        at = len(raw.ranges)
         if element.tag == "tref":
-            self._add_referred(element, span, keeps, raw_text)
-            raw_text.ranges.insert(at, (span, begin, len(raw_text.raw)))
+            self._add_referred(element, span, keeps, raw)
+            raw.ranges.insert(at, (span, begin, len(raw.letters)))
             return
-        self._add(element.text, span, keeps, raw_text)
+        self._add(element.text, span, keeps, raw)
         for child in element:
             assert isinstance(child, SvgElement)
             declared = self._sources.sheets.declared(child)
@@ -164,28 +164,26 @@ class TextReader:
             if child.tag in INNER and is_shown:
                 below = self._sources.sheets.inherit_style(child, style)
                 inner_keeps = self._keeps_spaces(child, below, keeps)
-                self._walk(child, below, (*around, span), raw_text, inner_keeps)
-            self._add(child.tail, span, keeps, raw_text)
-        raw_text.ranges.insert(at, (span, begin, len(raw_text.raw)))
+                self._walk(child, below, (*around, span), raw, inner_keeps)
+            self._add(child.tail, span, keeps, raw)
+        raw.ranges.insert(at, (span, begin, len(raw.letters)))
 
-    def _add_referred(
-        self, element: SvgElement, span: Span, keeps: bool, raw_text: _RawText
-    ) -> None:
+    def _add_referred(self, element: SvgElement, span: Span, keeps: bool, raw: _RawText) -> None:
         """Adds all text of a `tref`'s target."""
         target = self._sources.document.ids.get(element.href)
         if target is None:
             self._sources.warnings.broken("<tref>", "left out", element.line)
             return
         for text in target.itertext():
-            self._add(text, span, keeps, raw_text)
+            self._add(text, span, keeps, raw)
 
-    def _add(self, text: str | None, span: Span, keeps: bool, raw_text: _RawText) -> None:
+    def _add(self, text: str | None, span: Span, keeps: bool, raw: _RawText) -> None:
         if not text:
             return
         self._sources.budget.take_characters(len(text))
         if span.style.text.spaces == "preserve" or keeps:
             text = text.replace("\r\n", "\n")
-        raw_text.raw.extend((letter, span, keeps) for letter in text)
+        raw.letters.extend((letter, span, keeps) for letter in text)
 
     def _keeps_spaces(
         self, element: SvgElement, style: Style | None = None, inherited: bool = False
@@ -254,9 +252,7 @@ class TextReader:
                 outline = read_shape(shape, values, units, sources.warnings)
                 matrix = parse_transform(values.get("transform", "")) or IDENTITY
         if outline is None or len(outline) < 2:
-            sources.warnings.broken(
-                "<textPath>", "left out, as its path is not there", element.line
-            )
+            sources.warnings.broken("<textPath>", "left out, as its path is missing", element.line)
             return None
         for name, default in (("method", "align"), ("side", "left")):
             if declared.get(name, default) != default:
