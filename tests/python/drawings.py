@@ -52,16 +52,16 @@ def same(one, other):
 
 def whole(body, size=SIZE, attributes='viewBox="0 0 100 100"', **options):
     """Rasterizes a whole drawing without warnings; row 0 is at the top."""
-    made, warnings = prefilter.rasterize_svg(svg(body, attributes), size, size, **options)
+    result, warnings = prefilter.rasterize_svg(svg(body, attributes), size, size, **options)
     assert warnings == ()
-    return made[::-1]
+    return result[::-1]
 
 
 def box(left, top, right, bottom, rest=""):
     return f'<rect x="{left}" y="{top}" width="{right - left}" height="{bottom - top}" {rest}/>'
 
 
-def by_hand(*boxes, size=SIZE):
+def composited_boxes(*boxes, size=SIZE):
     """Composites boxes (left, top, right, bottom, color with straight alpha)."""
     shapes = []
     for left, top, right, bottom, color in boxes:

@@ -63,15 +63,15 @@ def test_svg_blends_with_a_background_and_is_clipped_at_its_page(tmp_path):
 def test_svg_to_bytes(logo, tmp_path):
     out = tmp_path / "out.png"
     assert run("rasterize", logo, "-o", out, "--side", "80", "--margin", "0") == 0
-    found = pixels(out, "uint8")
-    assert found.shape == (40, 80, 4)
-    assert found[20, 40].tolist() == [255, 128, 0, 255]
-    assert found[0, 0].tolist() == [255, 128, 0, 0]
+    actual = pixels(out, "uint8")
+    assert actual.shape == (40, 80, 4)
+    assert actual[20, 40].tolist() == [255, 128, 0, 255]
+    assert actual[0, 0].tolist() == [255, 128, 0, 0]
     more = ("--background", "#ffffff", "--density", "2", "--margin", "1")
     assert run("rasterize", logo, "-o", out, *more) == 0
-    found = pixels(out, "uint8")
-    assert found.shape == (10, 18, 3)
-    assert found[0, 0].tolist() == [255, 255, 255]
+    actual = pixels(out, "uint8")
+    assert actual.shape == (10, 18, 3)
+    assert actual[0, 0].tolist() == [255, 255, 255]
 
 
 def test_fonts_of_a_folder(tmp_path):
@@ -95,10 +95,10 @@ def test_mask_of_a_uv_map(tmp_path):
     path.write_text(path.read_text().replace("vt 1 0\nvt 1 1", "vt 0.5 0\nvt 0.5 1"))
     out = tmp_path / "mask.png"
     assert run("rasterize", path, "-o", out, "--uv", "--side", "8") == 0
-    found = pixels(out, "uint8")
-    assert found.shape == (8, 8, 1)
-    assert (found[:, :4] == 255).all()
-    assert (found[:, 4:] == 0).all()
+    actual = pixels(out, "uint8")
+    assert actual.shape == (8, 8, 1)
+    assert (actual[:, :4] == 255).all()
+    assert (actual[:, 4:] == 0).all()
 
 
 def test_invalid_arguments_are_refused(logo, tmp_path, capsys):

@@ -18,7 +18,7 @@ def ring(random: np.random.Generator, jitter: float) -> np.ndarray:
 
 def windings(contours, points):
     """Winding numbers of points."""
-    found = np.zeros(len(points), int)
+    result = np.zeros(len(points), int)
     x, y = points.T
     for contour in contours:
         for (x0, y0), (x1, y1) in zip(contour, np.roll(contour, -1, 0), strict=True):
@@ -27,8 +27,8 @@ def windings(contours, points):
             rises = (y0 <= y) & (y < y1)
             falls = (y1 <= y) & (y < y0)
             right = x < x0 + (y - y0) * ((x1 - x0) / (y1 - y0))
-            found += (rises & right).astype(int) - (falls & right)
-    return found
+            result += (rises & right).astype(int) - (falls & right)
+    return result
 
 
 def sample_points(x, y, count):

@@ -33,10 +33,10 @@ def seams(spread):
     places = {place for place, _ in STOPS} | {0.0, 1.0}
     if spread == "pad":
         return sorted(places)
-    found = {place + k for place in places for k in (-1, 0, 1)}
+    result = {place + k for place in places for k in (-1, 0, 1)}
     if spread == "reflect":
-        found = places | {2 - place for place in places} | {-place for place in places}
-    return sorted(place for place in found if -0.7 <= place <= 1.7)
+        result = places | {2 - place for place in places} | {-place for place in places}
+    return sorted(place for place in result if -0.7 <= place <= 1.7)
 
 
 def set_stops(shape, kind, *arguments, **options):
@@ -111,7 +111,7 @@ def test_radial_gradients_against_dense_points(spread, transform):
     shape.radial_gradient(
         center, radius, stops, focus=center, focus_radius=first, spread=spread, transform=matrix
     )
-    found = prefilter.rasterize([shape], 40, 36)
+    actual = prefilter.rasterize([shape], 40, 36)
     finer = 24
     x = (np.arange(40 * finer) + 0.5) / finer
     y = (np.arange(36 * finer) + 0.5) / finer
@@ -121,7 +121,7 @@ def test_radial_gradients_against_dense_points(spread, transform):
     for channel in range(2):
         values = np.interp(offset, [s[0] for s in stops], [s[1][channel] for s in stops])
         expected = values.reshape(36, finer, 40, finer).mean((1, 3))
-        off = np.abs(found[..., channel] - expected)
+        off = np.abs(actual[..., channel] - expected)
         assert np.median(off) < 2e-5
         # Pixels with a bend or jump of the color.
         assert off.max() < (0.005 if spread == "pad" else 0.08)

@@ -212,8 +212,8 @@ def test_the_sum_of_an_image_is_the_area(filter):
     for along, expected in ((x, 13.3 * 36 + 22.6 * 6.25), (y, 12.1 * 36 + 20.4 * 6.25)):
         # The first moment is the coordinate itself, except for the box filter.
         if filter != "box":
-            found = (image[..., 0].astype(float) * along).sum()
-            assert found == pytest.approx(np.pi * expected, abs=1e-4)
+            actual = (image[..., 0].astype(float) * along).sum()
+            assert actual == pytest.approx(np.pi * expected, abs=1e-4)
 
 
 def test_boxes_of_a_finer_image_are_the_image():
@@ -235,10 +235,10 @@ def test_a_shape_transformed_is_the_shape_of_transformed_points():
     row = np.array([0.04, -0.02, 0.3]) @ inverse
     direct.gradient((row[2],), (row[0],), (row[1],))
     for filter in ("box", "mitchell"):
-        found, expected = (
+        actual, expected = (
             prefilter.rasterize([it], 11, 9, filter=filter) for it in (moved, direct)
         )
-        assert np.abs(found - expected).max() < ROUNDING
+        assert np.abs(actual - expected).max() < ROUNDING
     (low_x, low_y), (high_x, high_y) = moved.bounds
     points = np.concatenate([s.points for contour in mapped(contours, matrix) for s in contour])
     assert np.allclose([low_x, low_y], points.min(0), atol=1e-12)
@@ -391,9 +391,9 @@ def test_rectangle_below_all_is_a_background(filter, alpha):
     behind = (0.2, 0.6, 0.4, 0.8)
     mixed = np.array(page.color) + (1.0 - alpha) * np.array(behind)
     options = {"width": 20, "height": 15, "filter": filter}
-    found = prefilter.rasterize([page, *others], background=behind, **options)
+    actual = prefilter.rasterize([page, *others], background=behind, **options)
     expected = prefilter.rasterize(others, background=mixed, **options)
-    assert np.abs(found - expected).max() < 1e-6
+    assert np.abs(actual - expected).max() < 1e-6
     # A page that ends within the image, or is not a rectangle, is an ordinary shape.
     for points in (
         [(0, 0), (19.5, 0), (19.5, 15), (0, 15)],
@@ -402,11 +402,11 @@ def test_rectangle_below_all_is_a_background(filter, alpha):
     ):
         small = prefilter.Shape(color=page.color)
         small.add_polygon(points)
-        found = prefilter.rasterize([small, *others], **options)
+        actual = prefilter.rasterize([small, *others], **options)
         alone = prefilter.rasterize(others, **options)
         expected = alone + prefilter.rasterize([small], **options)
         # The page shows wherever nothing covers it.
-        nothing = np.zeros(found.shape[:2], bool)
+        nothing = np.zeros(actual.shape[:2], bool)
         nothing[:, 17:] = True
         if filter == "box":
-            assert np.abs(found - expected)[nothing].max() < 1e-6
+            assert np.abs(actual - expected)[nothing].max() < 1e-6

@@ -111,14 +111,14 @@ def test_open_contours_are_closed_by_lines():
 
 
 def test_segments_after_close_start_at_the_contours_start():
-    found = path(
+    actual = path(
         *[("move_to", 1, 1), ("line_to", 5, 1), ("line_to", 5, 2), ("close",)],
         *[("line_to", 1, 4), ("line_to", 2, 4)],
     )
     expected = prefilter.Shape()
     expected.add_polygon([(1.0, 1.0), (5, 1), (5, 2)])
     expected.add_polygon([(1.0, 1.0), (1, 4), (2, 4)])
-    assert (image_of(found) == image_of(expected)).all()
+    assert (image_of(actual) == image_of(expected)).all()
 
 
 @pytest.mark.parametrize("filter", FILTERS)
@@ -142,8 +142,8 @@ def test_coordinates_up_to_the_limit(filter):
     ends = [(2.5, -LIMIT), (2.5, LIMIT)]
     half = of_points([*ends, (-LIMIT, LIMIT), (-LIMIT, -LIMIT)])
     near = of_points([(2.5, -50), (2.5, 50), (-50, 50), (-50, -50)])
-    found, expected = image_of(half, filter=filter), image_of(near, filter=filter)
-    assert np.abs(found - expected).max() < 5e-7
+    actual, expected = image_of(half, filter=filter), image_of(near, filter=filter)
+    assert np.abs(actual - expected).max() < 5e-7
     away = of_points([(LIMIT, -LIMIT), (LIMIT, LIMIT), (LIMIT - 1, 0)])
     assert (image_of(away, filter=filter) == 0.0).all()
     # Through the middle of the image, as exact as rounding at 1e9 allows.
@@ -177,11 +177,11 @@ def on_grid_lines():
 @pytest.mark.parametrize("filter", FILTERS)
 def test_outlines_along_grid_lines(filter):
     for corners in on_grid_lines():
-        found = image_of(of_points(corners), filter=filter)
+        actual = image_of(of_points(corners), filter=filter)
         # The same at integers, as rectangles one row high.
         whole = np.rint(corners)
         expected = image_of(of_points(whole), filter=filter)
-        assert np.abs(found - expected).max() < 1e-6
+        assert np.abs(actual - expected).max() < 1e-6
         if filter == "box":
             y, x = np.indices((5, 6)) + 0.5
             inside = (x > whole[:, 0].min()) & (x < whole[:, 0].max())

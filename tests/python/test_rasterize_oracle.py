@@ -120,8 +120,8 @@ def test_radial_filters(scene):
     for radius in (2, 3):
         places = np.stack([pixels % WIDTH, pixels // WIDTH], 1)
         expected = radial_values(rows_of(scene), places, float(radius))
-        found = rendered(SCENES[scene], f"radial{radius}").ravel()[pixels]
-        assert np.abs(found - expected).max() < BAR, radius
+        actual = rendered(SCENES[scene], f"radial{radius}").ravel()[pixels]
+        assert np.abs(actual - expected).max() < BAR, radius
 
 
 @pytest.mark.parametrize("fill_rule", ["nonzero", "evenodd"])
@@ -206,16 +206,16 @@ def test_bytes_are_the_floats_rounded(method, channels):
         ]
         for name in ("box",) if method == "wavelet" else ("box", "lanczos3", "radial3"):
             for background in (None, colors[0]):
-                found = [
+                actual = [
                     prefilter.rasterize(
                         shapes, width, height, filter=name, method=method, background=background,
                         dtype=dtype,
                     )
                     for dtype in (np.float32, np.uint8)
                 ]  # fmt: skip
-                expected = np.rint(np.float32(255.0) * np.clip(found[0], 0.0, 1.0))
-                assert found[1].dtype == np.uint8
-                np.testing.assert_array_equal(found[1], expected)
+                expected = np.rint(np.float32(255.0) * np.clip(actual[0], 0.0, 1.0))
+                assert actual[1].dtype == np.uint8
+                np.testing.assert_array_equal(actual[1], expected)
 
 
 def test_bytes_of_colors_out_of_range():

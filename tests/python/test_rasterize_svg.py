@@ -7,7 +7,7 @@ import math
 import numpy as np
 import prefilter
 import pytest
-from drawings import GREEN, RED, SIZE, box, by_hand, image, same, svg, whole
+from drawings import GREEN, RED, SIZE, box, composited_boxes, image, same, svg, whole
 
 HALF = 128 / 255
 
@@ -22,8 +22,8 @@ def test_half_black_over_white_is_127():
     ]
     for rest in ways:
         body = box(0, 0, 100, 100, 'fill="white"') + box(-50, -50, 150, 150, rest)
-        made, _ = prefilter.rasterize_svg(svg(body), 8, 8, dtype=np.uint8)
-        assert (made == (127, 127, 127, 255)).all()
+        actual, _ = prefilter.rasterize_svg(svg(body), 8, 8, dtype=np.uint8)
+        assert (actual == (127, 127, 127, 255)).all()
         light = whole(body, light="linear")
         # Half of linear light, encoded for display; #80 is a little more than half.
         encoded = np.rint(prefilter.to_srgb(light[50:51, 50, :3]) * 255)
@@ -40,13 +40,15 @@ def test_drawings_without_layers_equal_their_shapes():
         for name in ("box", "lanczos3"):
             shapes = prefilter.read_svg(svg(body), light=light).shapes_for(60, 40)
             expected = prefilter.rasterize(shapes, 60, 40, filter=name)
-            made, _ = prefilter.rasterize_svg(svg(body), 60, 40, light=light, filter=name)
-            same(made, expected)
+            actual, _ = prefilter.rasterize_svg(svg(body), 60, 40, light=light, filter=name)
+            same(actual, expected)
 
 
 def test_a_group_is_translucent_as_a_whole():
     inner = box(10.5, 10, 50, 50, 'fill="red"') + box(30, 30, 70, 70.5, 'fill="green"')
-    expected = by_hand((10.5, 10, 50, 50, RED), (30, 30, 70, 70.5, GREEN)) * np.float32(HALF)
+    expected = composited_boxes((10.5, 10, 50, 50, RED), (30, 30, 70, 70.5, GREEN)) * np.float32(
+        HALF
+    )
     same(whole(f'<g opacity="0.5">{inner}</g>'), expected)
     # The same for an element with a fill and a stroke.
     rest = 'fill="red" stroke="green" stroke-width="10"'
@@ -55,7 +57,7 @@ def test_a_group_is_translucent_as_a_whole():
     same(whole(f'<g opacity="0.5"><g opacity="0.5">{inner}</g></g>'), expected * np.float32(HALF))
     # A backdrop below.
     behind = box(0, 0, 100, 40, 'fill="blue"')
-    below = by_hand((0, 0, 100, 40, (0, 0, 1)))
+    below = composited_boxes((0, 0, 100, 40, (0, 0, 1)))
     same(
         whole(behind + f'<g opacity="0.5">{inner}</g>'), expected + below * (1 - expected[..., 3:])
     )
@@ -64,7 +66,7 @@ def test_a_group_is_translucent_as_a_whole():
 def test_groups_without_overlaps_need_no_layer():
     """Nothing shows through where two halves meet within a pixel."""
     inner = box(10, 10, 30.5, 50, 'fill="red"') + box(30.5, 10, 50, 50, 'fill="red"')
-    same(whole(f'<g opacity="0.5">{inner}</g>'), by_hand((10, 10, 50, 50, (*RED, HALF))))
+    same(whole(f'<g opacity="0.5">{inner}</g>'), composited_boxes((10, 10, 50, 50, (*RED, HALF))))
 
 
 @pytest.mark.parametrize(
@@ -97,9 +99,9 @@ def test_clip_paths_are_exact(clip, element, expected):
         f'<clipPath id="d">{box(0, 0, 40, 40)}</clipPath>'
     )
     body = f'{defs}<clipPath id="c">{clip}</clipPath>' + element.format('clip-path="url(#c)"')
-    same(whole(body), by_hand((*expected, (0, 0, 0))))
+    same(whole(body), composited_boxes((*expected, (0, 0, 0))))
     shapes = prefilter.read_svg(svg(body)).shapes_for(SIZE, SIZE)
-    same(image(shapes)[::-1], by_hand((*expected, (0, 0, 0))))
+    same(image(shapes)[::-1], composited_boxes((*expected, (0, 0, 0))))
 
 
 def test_a_clip_path_of_curves_has_its_area():
@@ -116,7 +118,7 @@ def test_a_clip_path_of_curves_has_its_area():
 def test_clip_paths_in_units_of_a_box():
     clip = f'<clipPath id="c" clipPathUnits="objectBoundingBox">{box(0, 0, 0.5, 0.5)}</clipPath>'
     inner = box(20, 20, 40, 40) + box(60, 60, 80, 80) + box(0, 0, 99, 99, 'display="none"')
-    expected = by_hand((20, 20, 40, 40, (0, 0, 0)))
+    expected = composited_boxes((20, 20, 40, 40, (0, 0, 0)))
     same(whole(f'{clip}<g clip-path="url(#c)">{inner}</g>'), expected)
     # Empty: a clip path without children, or in fractions of an empty box.
     assert not whole(f'<clipPath id="c"/><g clip-path="url(#c)">{inner}</g>').any()
@@ -129,23 +131,23 @@ def test_drawings_are_clipped_at_their_page():
     expected = np.zeros((40, 40, 4), np.float32)
     expected[10:30, :, 3] = 1
     # Other proportions leave a border.
-    made, _ = prefilter.rasterize_svg(svg(body, f'{page} viewBox="0 0 40 20"'), 40, 40)
-    same(made, expected)
+    actual, _ = prefilter.rasterize_svg(svg(body, f'{page} viewBox="0 0 40 20"'), 40, 40)
+    same(actual, expected)
     shapes = prefilter.read_svg(svg(body, f'{page} viewBox="0 0 40 20"')).shapes_for(40, 40)
     same(image(shapes, 40, 40), expected)
-    made, _ = prefilter.rasterize_svg(
+    actual, _ = prefilter.rasterize_svg(
         svg(body, f'{page} viewBox="0 0 40 20" overflow="visible"'), 40, 40
     )
-    same(made[..., 3], np.ones((40, 40)))
+    same(actual[..., 3], np.ones((40, 40)))
     # The page may exceed the view box.
-    made, _ = prefilter.rasterize_svg(svg(body, f'{page} viewBox="0 0 10 10"'), 40, 20)
-    same(made[..., 3], np.ones((20, 40)))
+    actual, _ = prefilter.rasterize_svg(svg(body, f'{page} viewBox="0 0 10 10"'), 40, 20)
+    same(actual[..., 3], np.ones((20, 40)))
 
 
 def test_language_of_the_root_does_not_matter():
     body = box(10, 10, 50, 50, 'fill="green"')
-    found = whole(body, attributes='viewBox="0 0 100 100" systemLanguage="ru"')
-    same(found, by_hand((10, 10, 50, 50, GREEN)))
+    actual = whole(body, attributes='viewBox="0 0 100 100" systemLanguage="ru"')
+    same(actual, composited_boxes((10, 10, 50, 50, GREEN)))
 
 
 def test_viewports_clip():
@@ -157,11 +159,11 @@ def test_viewports_clip():
         ('viewBox="0 0 5 5"', (10.5, 20, 40, 50)),
     ):
         body = f'<svg x="10.5" y="20" width="29.5" height="30" {attributes}>{inner}</svg>'
-        same(whole(body), by_hand((*expected, (0, 0, 0))))
+        same(whole(body), composited_boxes((*expected, (0, 0, 0))))
     symbol = f'<symbol id="s" viewBox="0 0 10 10">{inner}</symbol>'
     same(
         whole(f'{symbol}<use href="#s" x="5" y="5" width="20" height="20"/>'),
-        by_hand((5, 5, 25, 25, (0, 0, 0))),
+        composited_boxes((5, 5, 25, 25, (0, 0, 0))),
     )
 
 
@@ -175,8 +177,8 @@ def test_viewports_clip():
     ],
 )
 def test_the_page_has_a_background(style, color):
-    made = whole("", attributes=f'viewBox="0 0 100 100" style="{style}"')
-    same(made, np.broadcast_to(np.float32(color), made.shape))
+    actual = whole("", attributes=f'viewBox="0 0 100 100" style="{style}"')
+    same(actual, np.broadcast_to(np.float32(color), actual.shape))
     half, _ = prefilter.rasterize_svg(svg("", f'viewBox="0 0 9 9" style="{style}"'), 20, 10)
     same(half[5, [0, 10, 19]], np.float32([(0, 0, 0, 0), color, (0, 0, 0, 0)]))
 
@@ -229,13 +231,13 @@ def test_separable_blend_modes(mode):
             ]
             body = box(0, 0, 99, 99, f'fill="{colors[0]}"')
             body += box(0, 0, 99, 99, f'fill="{colors[1]}" style="mix-blend-mode:{mode}"')
-            made = whole(body)[50, 50]
+            actual = whole(body)[50, 50]
             b_alpha, s_alpha = alpha_b / 255, alpha_s / 255
             for channel, (b, s) in enumerate(zip(first, second, strict=True)):
                 mixed = (1 - b_alpha) * s / 255 + b_alpha * formula(mode, b / 255, s / 255)
                 expected = (1 - s_alpha) * b_alpha * b / 255 + s_alpha * mixed
-                assert made[channel] == pytest.approx(expected, abs=2e-6), (mode, b, s)
-            assert made[3] == pytest.approx(b_alpha + s_alpha - b_alpha * s_alpha, abs=1e-6)
+                assert actual[channel] == pytest.approx(expected, abs=2e-6), (mode, b, s)
+            assert actual[3] == pytest.approx(b_alpha + s_alpha - b_alpha * s_alpha, abs=1e-6)
 
 
 def luminosity(color):
@@ -246,15 +248,15 @@ def test_nonseparable_blend_modes():
     colors = [(220, 40, 90), (30, 160, 200), (128, 128, 128), (250, 250, 20), (5, 60, 0)]
     for b in colors:
         for s in colors:
-            made = {}
+            actual = {}
             for mode in ("hue", "saturation", "color", "luminosity"):
                 body = box(0, 0, 99, 99, f'fill="rgb{b}"')
                 body += box(0, 0, 99, 99, f'fill="rgb{s}" style="mix-blend-mode:{mode}"')
-                made[mode] = whole(body)[50, 50, :3].astype(float) * 255
+                actual[mode] = whole(body)[50, 50, :3].astype(float) * 255
             for mode in ("hue", "saturation", "color"):
-                assert luminosity(made[mode]) == pytest.approx(luminosity(b), abs=0.01)
-            assert luminosity(made["luminosity"]) == pytest.approx(luminosity(s), abs=0.01)
-            for found in made.values():
+                assert luminosity(actual[mode]) == pytest.approx(luminosity(b), abs=0.01)
+            assert luminosity(actual["luminosity"]) == pytest.approx(luminosity(s), abs=0.01)
+            for found in actual.values():
                 assert found.min() >= -0.001
                 assert found.max() <= 255.001
     gray = box(0, 0, 99, 99, 'fill="rgb(220,40,90)"') + box(
@@ -281,20 +283,20 @@ def test_luminance_masks():
         return whole(f'<mask id="m" {attributes}>{inner}</mask>{element}')
 
     white = box(10, 10, 50.5, 50, 'fill="white"')
-    same(masked("", white), by_hand((10, 10, 50.5, 50, GREEN)))
+    same(masked("", white), composited_boxes((10, 10, 50.5, 50, GREEN)))
     for color, share in (("red", 0.2125), ("lime", 0.7154), ("blue", 0.0721), ("black", 0.0)):
-        made = masked("", box(10, 10, 50.5, 50, f'fill="{color}"'))
-        same(made, by_hand((10, 10, 50.5, 50, GREEN)) * np.float32(share))
+        actual = masked("", box(10, 10, 50.5, 50, f'fill="{color}"'))
+        same(actual, composited_boxes((10, 10, 50.5, 50, GREEN)) * np.float32(share))
     by_alpha = masked('mask-type="alpha"', box(10, 10, 50.5, 50, 'opacity="0.5"'))
-    same(by_alpha, by_hand((10, 10, 50.5, 50, (*GREEN, HALF))))
+    same(by_alpha, composited_boxes((10, 10, 50.5, 50, (*GREEN, HALF))))
     by_alpha = masked('style="mask-type:alpha"', box(10, 10, 50.5, 50))
-    same(by_alpha, by_hand((10, 10, 50.5, 50, GREEN)))
+    same(by_alpha, composited_boxes((10, 10, 50.5, 50, GREEN)))
     # Limited by its region: a tenth around the element by default.
     region = 'maskUnits="userSpaceOnUse" x="20" y="20" width="10" height="10"'
-    same(masked(region, white), by_hand((20, 20, 30, 30, GREEN)))
+    same(masked(region, white), composited_boxes((20, 20, 30, 30, GREEN)))
     shares = 'x="0" y="0" width="0.25" height="1" maskContentUnits="objectBoundingBox"'
-    made = masked(shares, box(0, 0, 1, 0.5, 'fill="white"'))
-    same(made, by_hand((0, 0, 25, 50, GREEN)))
+    actual = masked(shares, box(0, 0, 1, 0.5, 'fill="white"'))
+    same(actual, composited_boxes((0, 0, 25, 50, GREEN)))
     gray = masked("", box(10, 10, 50, 50, 'fill="#808080"'))[30, 30, 3]
     assert gray == pytest.approx(HALF, abs=1e-5)
     linear = masked('color-interpolation="linearRGB"', box(10, 10, 50, 50, 'fill="#808080"'))
@@ -307,9 +309,9 @@ def test_masks_of_masks_are_as_in_browsers():
     other = '<mask id="n"><rect x="20" y="20" width="10" height="10" fill="white"/></mask>'
     # The mask itself has no mask, but its children may.
     outer = f'{other}<mask id="m" mask="url(#n)">{white}</mask>{green}'
-    same(whole(outer), by_hand((10, 10, 50, 50, GREEN)))
+    same(whole(outer), composited_boxes((10, 10, 50, 50, GREEN)))
     inside = f'{other}<mask id="m"><g mask="url(#n)">{white}</g></mask>{green}'
-    same(whole(inside), by_hand((20, 20, 30, 30, GREEN)))
+    same(whole(inside), composited_boxes((20, 20, 30, 30, GREEN)))
 
 
 def test_circular_masks_are_ignored():
@@ -322,10 +324,10 @@ def test_circular_masks_are_ignored():
         box(left, 0, left + 50, 100, f'fill="green" mask="url(#{name})"')
         for left, name in ((0, "m"), (50, "n"))
     )
-    made, (warning,) = prefilter.rasterize_svg(svg(body), SIZE, SIZE)
+    actual, (warning,) = prefilter.rasterize_svg(svg(body), SIZE, SIZE)
     assert "refers to itself" in str(warning)
     # The first is multiplied by both masks, the second by its own.
-    same(made[::-1], by_hand((20, 20, 50, 50, GREEN), (50, 20, 90, 90, GREEN)))
+    same(actual[::-1], composited_boxes((20, 20, 50, 50, GREEN), (50, 20, 90, 90, GREEN)))
 
 
 def test_patterns_equal_their_tiles():
@@ -338,18 +340,18 @@ def test_patterns_equal_their_tiles():
         for left in range(3, 100, 20)
         for top in range(2, 100, 10)
     ]
-    made = whole(pattern + box(0, 0, 100, 100, 'fill="url(#p)"'))
-    same(made[5:95, 5:95], by_hand(*tiles)[5:95, 5:95])
+    actual = whole(pattern + box(0, 0, 100, 100, 'fill="url(#p)"'))
+    same(actual[5:95, 5:95], composited_boxes(*tiles)[5:95, 5:95])
     # In an outline, half opaque, in fractions of its box, and rotated.
-    made = whole(pattern + box(20, 20, 60, 60, 'fill="url(#p)" fill-opacity="0.5"'))
-    same(made[20:60, 20:60], by_hand(*tiles)[20:60, 20:60] * np.float32(0.5))
-    assert not made[:20].any()
+    actual = whole(pattern + box(20, 20, 60, 60, 'fill="url(#p)" fill-opacity="0.5"'))
+    same(actual[20:60, 20:60], composited_boxes(*tiles)[20:60, 20:60] * np.float32(0.5))
+    assert not actual[:20].any()
     shares = (
         '<pattern id="p" width="0.5" height="1" patternContentUnits="objectBoundingBox">'
         f"{box(0, 0, 0.25, 1, 'fill=' + chr(34) + 'red' + chr(34))}</pattern>"
     )
-    made = whole(shares + box(20, 20, 60, 60, 'fill="url(#p)"'))
-    same(made, by_hand((20, 20, 30, 60, RED), (40, 20, 50, 60, RED)))
+    actual = whole(shares + box(20, 20, 60, 60, 'fill="url(#p)"'))
+    same(actual, composited_boxes((20, 20, 30, 60, RED), (40, 20, 50, 60, RED)))
     turned = pattern.replace("patternUnits", 'patternTransform="rotate(90)" patternUnits')
     same(
         whole(turned + box(0, 0, 100, 100, 'fill="url(#p)"')),
@@ -363,9 +365,9 @@ def test_fine_patterns_are_their_mean(side):
         f'<pattern id="p" width="{side}" height="{2 * side}" patternUnits="userSpaceOnUse">'
         f'<rect width="{side}" height="{side / 2}" fill="red"/></pattern>'
     )
-    made = whole(pattern + box(20, 20, 60, 60, 'fill="url(#p)"'))
+    actual = whole(pattern + box(20, 20, 60, 60, 'fill="url(#p)"'))
     np.testing.assert_allclose(
-        made[25:55, 25:55], np.broadcast_to((0.25, 0, 0, 0.25), (30, 30, 4)), atol=1e-3
+        actual[25:55, 25:55], np.broadcast_to((0.25, 0, 0, 0.25), (30, 30, 4)), atol=1e-3
     )
 
 
@@ -379,10 +381,10 @@ def test_markers_are_at_vertices_and_rotate():
     def at(orient, name):
         return whole(marker.format(orient) + line.format(name))
 
-    same(at("0", "marker-start"), by_hand((10, 15, 30, 25, GREEN)))
-    same(at("0", "marker-end"), by_hand((50, 75, 70, 85, GREEN)))
-    same(at("auto", "marker-end"), by_hand((55, 70, 65, 90, GREEN)))
-    same(at("90deg", "marker-mid"), by_hand((55, 10, 65, 30, GREEN)))
+    same(at("0", "marker-start"), composited_boxes((10, 15, 30, 25, GREEN)))
+    same(at("0", "marker-end"), composited_boxes((50, 75, 70, 85, GREEN)))
+    same(at("auto", "marker-end"), composited_boxes((55, 70, 65, 90, GREEN)))
+    same(at("90deg", "marker-mid"), composited_boxes((55, 10, 65, 30, GREEN)))
     middle = whole(
         '<rect x="-10" y="-5" width="20" height="10" fill="green" '
         'transform="translate(60 20) rotate(45)"/>'
@@ -392,5 +394,5 @@ def test_markers_are_at_vertices_and_rotate():
     lent = marker.replace('fill="green"', 'x="-9" width="99" fill="context-stroke"').replace(
         ' width="4" height="2" x', ' height="2" x'
     )
-    made = whole(lent.format("0") + line.format('stroke="green" marker-start'))
-    same(made[:, :18], by_hand((10, 15, 30, 25, GREEN))[:, :18])
+    actual = whole(lent.format("0") + line.format('stroke="green" marker-start'))
+    same(actual[:, :18], composited_boxes((10, 15, 30, 25, GREEN))[:, :18])

@@ -44,14 +44,14 @@ def drawn(tmp_path):
 
 
 def colored(path, layers, version=None):
-    made = TTFont(make_font(path, kerning=False))
-    made["COLR"] = buildCOLR(
+    result = TTFont(make_font(path, kerning=False))
+    result["COLR"] = buildCOLR(
         layers if isinstance(layers, dict) and A in layers else {A: layers},
         version=version,
-        glyphMap=made.getReverseGlyphMap(),
+        glyphMap=result.getReverseGlyphMap(),
     )
-    made["CPAL"] = buildCPAL([PALETTE])
-    made.save(path)
+    result["CPAL"] = buildCPAL([PALETTE])
+    result.save(path)
     return path
 
 
@@ -62,9 +62,9 @@ def text(letters="A", more=""):
 
 
 def image(body, fonts=None, is_told=False, **options):
-    made, warnings = prefilter.rasterize_svg(svg(body), SIZE, SIZE, fonts=fonts, **options)
+    result, warnings = prefilter.rasterize_svg(svg(body), SIZE, SIZE, fonts=fonts, **options)
     assert is_told or warnings == ()
-    return (made[::-1], [str(each) for each in warnings]) if is_told else made[::-1]
+    return (result[::-1], [str(each) for each in warnings]) if is_told else result[::-1]
 
 
 def units(body):
@@ -99,9 +99,9 @@ def moved(kind, paint, **values):
 @pytest.mark.parametrize("light", ["srgb", "linear"])
 def test_layers_of_one_color(tmp_path, light):
     path = colored(tmp_path / "font.ttf", [(A, RED), (V, BLUE), (SMALL_I, TEXT)], 0)
-    found = image(text("A", 'fill="#0f0"'), [path], light=light)
+    actual = image(text("A", 'fill="#0f0"'), [path], light=light)
     boxes = box(600, "red") + box(400, "#00f", 'fill-opacity="0.50196"') + box(200, "#0f0")
-    near(found, image(units(boxes), light=light))
+    near(actual, image(units(boxes), light=light))
 
 
 def test_layers_are_as_opaque_as_the_fill(drawn):
@@ -114,9 +114,9 @@ def test_layers_are_as_opaque_as_the_fill(drawn):
 
 
 def test_letters_without_layers_have_the_color_of_the_text(drawn):
-    found = drawn([(SMALL_I, RED)], 'fill="blue" letter-spacing="-10"', "iA")
+    actual = drawn([(SMALL_I, RED)], 'fill="blue" letter-spacing="-10"', "iA")
     near(
-        found,
+        actual,
         image(
             units(box(200, "blue")) + f'<g transform="translate(10)">{units(box(200, "red"))}</g>'
         ),
@@ -126,8 +126,8 @@ def test_letters_without_layers_have_the_color_of_the_text(drawn):
 def test_layers_are_clipped(tmp_path):
     clip = '<clipPath id="c"><rect x="30" y="40" width="20" height="20"/></clipPath>'
     letter = text("A", 'clip-path="url(#c)"')
-    found = image(clip + letter, [colored(tmp_path / "font.ttf", [(A, RED)])])
-    near(found, image('<rect x="30" y="40" width="20" height="20" fill="red"/>'))
+    actual = image(clip + letter, [colored(tmp_path / "font.ttf", [(A, RED)])])
+    near(actual, image('<rect x="30" y="40" width="20" height="20" fill="red"/>'))
 
 
 def linear(x0, y0, x1, y1, x2, y2, stops=((0, RED), (1, GREEN)), extend=0):
@@ -140,8 +140,8 @@ def linear(x0, y0, x1, y1, x2, y2, stops=((0, RED), (1, GREEN)), extend=0):
 
 
 def radial(numbers, stops=((0, RED), (1, GREEN)), extend=0):
-    found = linear(0, 0, 0, 0, 0, 0, stops, extend)
-    line = found["ColorLine"]
+    result = linear(0, 0, 0, 0, 0, 0, stops, extend)
+    line = result["ColorLine"]
     names = ("x0", "y0", "r0", "x1", "y1", "r1")
     return {"Format": 6, "ColorLine": line, **dict(zip(names, numbers, strict=True))}
 
@@ -202,8 +202,8 @@ def svg_gradient(
     ],
 )
 def test_gradients(drawn, paint, gradient):
-    found = drawn(glyph(A, paint))
-    near(found, image(gradient + units(box(600, "url(#g)"))))
+    actual = drawn(glyph(A, paint))
+    near(actual, image(gradient + units(box(600, "url(#g)"))))
 
 
 @pytest.mark.parametrize(
@@ -265,9 +265,9 @@ def test_transforms(drawn, kind, values, transform):
 
 def test_glyphs_clip_their_paint(drawn):
     inside = stacked(glyph(A, solid(RED)), moved(14, glyph(A, solid(GREEN)), dx=100, dy=100))
-    found = drawn(glyph(V, inside))
+    actual = drawn(glyph(V, inside))
     boxes = box(400, "red") + '<rect x="100" y="100" width="300" height="400" fill="green"/>'
-    near(found, image(units(boxes)))
+    near(actual, image(units(boxes)))
     # Without a glyph, colors fill the clip.
     near(
         drawn(glyph(V, stacked(solid(RED), solid(BLUE)))),
@@ -288,11 +288,11 @@ def test_layers_may_be_other_glyphs(drawn):
 def test_blend_modes(drawn, mode):
     name = {"hue": "hsl_hue", "luminosity": "hsl_luminosity"}.get(mode, mode)
     below, above = glyph(A, solid(RED)), glyph(V, solid(BLUE))
-    found = drawn(
+    actual = drawn(
         {"Format": 32, "SourcePaint": above, "CompositeMode": name, "BackdropPaint": below}
     )
     blended = box(400, "blue", f'fill-opacity="0.50196" style="mix-blend-mode:{mode}"')
-    near(found, image(units(box(600, "red") + blended)))
+    near(actual, image(units(box(600, "red") + blended)))
 
 
 @pytest.mark.parametrize(
@@ -337,11 +337,11 @@ def test_composites(drawn, mode, boxes):
 )  # fmt: skip
 def test_unsupported_paints_cause_one_warning(tmp_path, paint, words):
     path = colored(tmp_path / "font.ttf", paint)
-    found, (warning,) = image(text("A"), [path], is_told=True)
+    actual, (warning,) = image(text("A"), [path], is_told=True)
     assert "font 'Boxes': drawn without its colors" in warning
     assert words in warning
     # The glyph itself remains.
-    near(found, image(units(box(600, "black"))))
+    near(actual, image(units(box(600, "black"))))
 
 
 def test_exponential_layers_are_limited(tmp_path):
@@ -366,8 +366,8 @@ def test_damaged_tables_are_named(tmp_path):
             font[tag] = DefaultTable(tag)
             font[tag].data = data
             font.save(tmp_path / "colored.ttf")
-            found, _ = image(text("A"), [tmp_path / "colored.ttf"], is_told=True)
-            near(found, image(units(box(600, "black"))))
+            actual, _ = image(text("A"), [tmp_path / "colored.ttf"], is_told=True)
+            near(actual, image(units(box(600, "black"))))
             del font[tag]
 
 
@@ -393,14 +393,14 @@ def embedded(x, y, width, height):
 
 
 def with_sbix(path):
-    made = TTFont(make_font(path, kerning=False))
-    made["sbix"] = newTable("sbix")
+    result = TTFont(make_font(path, kerning=False))
+    result["sbix"] = newTable("sbix")
     for ppem in (10, 20):
-        strike = made["sbix"].strikes[ppem] = SbixStrike(ppem=ppem)
+        strike = result["sbix"].strikes[ppem] = SbixStrike(ppem=ppem)
         data = picture() if ppem == 20 else as_png(np.zeros((2, 2, 4), np.uint8))
         strike.glyphs[A] = Glyph(A, None, 2, 1, "png ", data)
         strike.glyphs[V] = Glyph(V, A, 0, 0, "dupe")
-    made.save(path)
+    result.save(path)
     return path
 
 
@@ -411,10 +411,10 @@ LINE_METRICS = (
 
 
 def with_cbdt(path):
-    made = TTFont(make_font(path, kerning=False))
-    made["CBDT"], made["CBLC"] = newTable("CBDT"), newTable("CBLC")
-    made["CBDT"].version = made["CBLC"].version = 3.0
-    one = cbdt_bitmap_format_17(b"", made)
+    result = TTFont(make_font(path, kerning=False))
+    result["CBDT"], result["CBLC"] = newTable("CBDT"), newTable("CBLC")
+    result["CBDT"].version = result["CBLC"].version = 3.0
+    one = cbdt_bitmap_format_17(b"", result)
     one.imageData, one.metrics = picture(), SmallGlyphMetrics()
     for name, value in (
         ("height", 5),
@@ -424,8 +424,8 @@ def with_cbdt(path):
         ("Advance", 12),
     ):
         setattr(one.metrics, name, value)
-    made["CBDT"].strikeData = [{A: one}]
-    strike, part = Strike(), eblc_index_sub_table_1(b"", made)
+    result["CBDT"].strikeData = [{A: one}]
+    strike, part = Strike(), eblc_index_sub_table_1(b"", result)
     strike.bitmapSizeTable = size = BitmapSizeTable()
     for name in ("hori", "vert"):
         metrics = SbitLineMetrics()
@@ -433,26 +433,26 @@ def with_cbdt(path):
             setattr(metrics, key, 0)
         setattr(size, name, metrics)
     size.colorRef = size.flags = 0
-    size.startGlyphIndex = size.endGlyphIndex = made.getGlyphID(A)
+    size.startGlyphIndex = size.endGlyphIndex = result.getGlyphID(A)
     size.ppemX = size.ppemY = 20
     size.bitDepth = 32
     part.indexFormat, part.imageFormat, part.names = 1, 17, [A]
-    part.firstGlyphIndex = part.lastGlyphIndex = made.getGlyphID(A)
+    part.firstGlyphIndex = part.lastGlyphIndex = result.getGlyphID(A)
     strike.indexSubTables = [part]
-    made["CBLC"].strikes = [strike]
+    result["CBLC"].strikes = [strike]
     # Bitmap fonts have no outlines.
     for tag in ("glyf", "loca"):
-        del made[tag]
-    made.save(path)
+        del result[tag]
+    result.save(path)
     return path
 
 
 @pytest.mark.parametrize("make", [with_sbix, with_cbdt])
 def test_bitmap_glyphs(tmp_path, make):
     """Six pixels at 20 per em are 0.3 em; the lowest row is one pixel above the baseline."""
-    found = image(text("A"), [make(tmp_path / "font.ttf")])
+    actual = image(text("A"), [make(tmp_path / "font.ttf")])
     side = 100 / 20
-    near(found, image(embedded(LEFT + 2 * side, LINE - 6 * side, 6 * side, 5 * side)))
+    near(actual, image(embedded(LEFT + 2 * side, LINE - 6 * side, 6 * side, 5 * side)))
 
 
 def test_duplicate_bitmaps(tmp_path):
@@ -471,10 +471,10 @@ def test_bitmaps_are_decoded_and_counted_once(tmp_path, monkeypatch):
 
 def test_bitmaps_have_the_advance_of_their_font(tmp_path):
     path = with_cbdt(tmp_path / "font.ttf")
-    found = image(text('A<tspan fill="red">A</tspan>', 'style="font-size:50px"'), [path])
+    actual = image(text('A<tspan fill="red">A</tspan>', 'style="font-size:50px"'), [path])
     one = embedded(LEFT + 5, LINE - 15, 15, 12.5)
     other = embedded(LEFT + 5 + 0.6 * 50, LINE - 15, 15, 12.5)
-    near(found, image(one + other))
+    near(actual, image(one + other))
 
 
 def test_damaged_bitmaps_are_left_out(tmp_path):
@@ -482,18 +482,18 @@ def test_damaged_bitmaps_are_left_out(tmp_path):
     font = TTFont(path)
     font["sbix"].strikes[20].glyphs[A].imageData = picture()[:40]
     font.save(path)
-    found, (warning,) = image(text("A"), [path], is_told=True)
-    assert not found.any()
+    actual, (warning,) = image(text("A"), [path], is_told=True)
+    assert not actual.any()
     assert "letter: left out" in warning
 
 
 def test_color_fonts_come_first_for_emoji_only(tmp_path):
     plain = make_font(tmp_path / "a.ttf", "Plain", widths={"\U0001f600": 600, "1": 600})
     emoji = make_font(tmp_path / "b.ttf", "Emoji", widths={"\U0001f600": 200, "1": 200})
-    made = TTFont(emoji)
-    made["COLR"] = buildCOLR({"uni1F600": [("uni1F600", RED)]}, version=0)
-    made["CPAL"] = buildCPAL([PALETTE])
-    made.save(emoji)
+    actual = TTFont(emoji)
+    actual["COLR"] = buildCOLR({"uni1F600": [("uni1F600", RED)]}, version=0)
+    actual["CPAL"] = buildCPAL([PALETTE])
+    actual.save(emoji)
     for order in ([plain, emoji], [emoji, plain]):
         fonts = [make_font(tmp_path / "c.ttf"), *order]
         near(image(text("\U0001f600"), fonts), image(units(box(200, "red"))))

@@ -12,9 +12,9 @@ from drawings import SIZE, drawn, polygon, read, same, svg
 
 def color_of(body, attributes='viewBox="0 0 100 100"'):
     """Straight color in the middle of a drawing, in 255ths."""
-    made, warnings = prefilter.rasterize_svg(svg(body, attributes), SIZE, SIZE)
+    result, warnings = prefilter.rasterize_svg(svg(body, attributes), SIZE, SIZE)
     assert warnings == ()
-    *rgb, alpha = (float(value) for value in made[50, 50])
+    *rgb, alpha = (float(value) for value in result[50, 50])
     return [round(255.0 * value / alpha) for value in rgb] + [round(alpha, 2)]
 
 
@@ -75,8 +75,8 @@ def test_alpha(text, alpha):
     ["hsl(120, 50, 50)", "rgb(50%, 128, 0)", "color(nowhere 1 1 1)", "lab(1, 2, 3)", "oklab(1 2)"],
 )
 def test_invalid_colors_cause_warnings(text):
-    made, warnings = prefilter.rasterize_svg(svg(square(f"lime;fill:{text}")), SIZE, SIZE)
-    assert list(made[50, 50]) == [0.0, 1.0, 0.0, 1.0]
+    actual, warnings = prefilter.rasterize_svg(svg(square(f"lime;fill:{text}")), SIZE, SIZE)
+    assert list(actual[50, 50]) == [0.0, 1.0, 0.0, 1.0]
     assert [str(warning).split(":")[0] for warning in warnings] == [f"fill '{text}'"]
 
 
@@ -128,8 +128,8 @@ def test_invalid_variables_inherit_the_color():
     body = (
         '<g fill="lime"><rect width="100" height="100" fill="red" style="--x:5px;fill:var(--x)"/>'
     )
-    made, warnings = prefilter.rasterize_svg(svg(f"{body}</g>"), SIZE, SIZE)
-    assert list(made[50, 50]) == [0.0, 1.0, 0.0, 1.0]
+    actual, warnings = prefilter.rasterize_svg(svg(f"{body}</g>"), SIZE, SIZE)
+    assert list(actual[50, 50]) == [0.0, 1.0, 0.0, 1.0]
     assert [warning.name for warning in warnings] == ["fill 'var(--x)'"]
 
 
@@ -225,18 +225,18 @@ def test_large_coordinates(offset):
         f'<g transform="translate({offset} {offset})">'
         '<rect fill="green" x="10" y="60" width="50" height="20"/></g>'
     )  # fmt: skip
-    found, warnings = prefilter.rasterize_svg(svg(body, attributes), SIZE, SIZE)
+    actual, warnings = prefilter.rasterize_svg(svg(body, attributes), SIZE, SIZE)
     assert warnings == ()
-    assert found[..., 3].sum() == pytest.approx(1000 + 200 + 1000, abs=1e-3)
+    assert actual[..., 3].sum() == pytest.approx(1000 + 200 + 1000, abs=1e-3)
 
 
 @pytest.mark.parametrize("far", ["1e4", "1e8", "1e10", "1e30", "-1e30", "1e90"])
 def test_one_distant_point(far):
     wide = 90 if not far.startswith("-") else 10
-    found = drawn(f'<path fill="green" d="M10 10H{far}V30H10Z"/>')
-    assert found[..., 3].sum() == pytest.approx(20 * wide, rel=1e-4)
-    found = drawn(f'<path fill="none" stroke="green" stroke-width="4" d="M10 20H{far}"/>')
-    assert found[..., 3].sum() == pytest.approx(4 * wide, rel=1e-4)
+    actual = drawn(f'<path fill="green" d="M10 10H{far}V30H10Z"/>')
+    assert actual[..., 3].sum() == pytest.approx(20 * wide, rel=1e-4)
+    actual = drawn(f'<path fill="none" stroke="green" stroke-width="4" d="M10 20H{far}"/>')
+    assert actual[..., 3].sum() == pytest.approx(4 * wide, rel=1e-4)
 
 
 def test_a_page_within_a_large_clip():
@@ -249,8 +249,8 @@ def test_a_page_within_a_large_clip():
 
 def test_crisp_edges_fill_whole_pixels():
     y, x = np.mgrid[:SIZE, :SIZE] + 0.5
-    found = drawn('<circle cx="40" cy="41" r="30.2" shape-rendering="crispEdges"/>')[..., 3]
-    np.testing.assert_array_equal(found, np.hypot(x - 40, y - 41) < 30.2)
+    actual = drawn('<circle cx="40" cy="41" r="30.2" shape-rendering="crispEdges"/>')[..., 3]
+    np.testing.assert_array_equal(actual, np.hypot(x - 40, y - 41) < 30.2)
     ring = (
         '<circle cx="40" cy="41" r="30" stroke="red" stroke-width="3.1" fill="none" '
         'style="shape-rendering:crispEdges"/>'
@@ -264,8 +264,8 @@ def test_crisp_edges_fill_whole_pixels():
 
 
 def test_a_crisp_line_is_one_pixel_wide():
-    found = drawn('<line x1="10" x2="10" y2="100" stroke="#000" shape-rendering="crispEdges"/>')
-    np.testing.assert_array_equal(found[50, 8:12, 3], [0.0, 1.0, 0.0, 0.0])
+    actual = drawn('<line x1="10" x2="10" y2="100" stroke="#000" shape-rendering="crispEdges"/>')
+    np.testing.assert_array_equal(actual[50, 8:12, 3], [0.0, 1.0, 0.0, 0.0])
 
 
 def test_non_scaling_strokes():
@@ -279,5 +279,5 @@ def test_non_scaling_strokes():
         '<stop stop-color="lime"/><stop offset="1" stop-color="red"/></linearGradient>'
     )
     body = gradient + body.replace('stroke="green"', 'stroke="url(#g)"')
-    found = drawn(body)[50, 38:42, 0]
-    np.testing.assert_allclose(found, (np.arange(38, 42) + 0.5 - 36) / 8, atol=1e-6)
+    actual = drawn(body)[50, 38:42, 0]
+    np.testing.assert_allclose(actual, (np.arange(38, 42) + 0.5 - 36) / 8, atol=1e-6)

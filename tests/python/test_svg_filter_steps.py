@@ -20,9 +20,9 @@ SEPIA = [[0.393, 0.769, 0.189], [0.349, 0.686, 0.168], [0.272, 0.534, 0.131]]
 
 
 def functions(text, element=FLAT):
-    made, warnings = prefilter.rasterize_svg(svg(element.format(text)), SIZE, SIZE)
+    result, warnings = prefilter.rasterize_svg(svg(element.format(text)), SIZE, SIZE)
     assert warnings == ()
-    return made[::-1]
+    return result[::-1]
 
 
 @pytest.mark.parametrize(
@@ -49,9 +49,9 @@ def test_functions_of_colors(text, color):
 
 def test_missing_filters_are_skipped():
     element = FLAT.format("invert(1) url(#none) brightness(0.5)")
-    made, (warning,) = prefilter.rasterize_svg(svg(element), SIZE, SIZE)
+    actual, (warning,) = prefilter.rasterize_svg(svg(element), SIZE, SIZE)
     assert warning.kind == "broken"
-    same(made[::-1], functions("invert(1) brightness(0.5)"))
+    same(actual[::-1], functions("invert(1) brightness(0.5)"))
 
 
 def test_opacity_is_a_function_too():
@@ -66,14 +66,14 @@ def test_functions_equal_primitives_without_a_region():
         ("drop-shadow(0.25em 4px) drop-shadow(9px 0 red)", ""),
     ):
         element = box(20, 20, 60, 50, 'fill="orange" filter="{}"')
-        made = functions(text, element)
+        actual = functions(text, element)
         if step:
-            same(made, drawn(step, element.format("url(#f)")))
+            same(actual, drawn(step, element.format("url(#f)")))
         else:
             under = plain(box(24, 24, 64, 54, "")), plain(box(20, 20, 60, 50, 'fill="orange"'))
             whole = under[1] + under[0] * (1 - under[1][..., 3:])
             moved = np.roll(whole[..., 3:], 9, axis=1) * np.array([1, 0, 0, 1], np.float32)
-            same(made, whole + moved * (1 - whole[..., 3:]))
+            same(actual, whole + moved * (1 - whole[..., 3:]))
 
 
 SHADOW = '<feDropShadow dx="7" dy="4" stdDeviation="3" flood-color="teal"/>'
@@ -84,9 +84,9 @@ SHADOW = '<feDropShadow dx="7" dy="4" stdDeviation="3" flood-color="teal"/>'
 )
 def test_invalid_filters_are_ignored(text):
     element = box(0, 0, 9, 9, f'filter="{text}"')
-    made, warnings = prefilter.rasterize_svg(svg(element), SIZE, SIZE)
+    actual, warnings = prefilter.rasterize_svg(svg(element), SIZE, SIZE)
     assert [str(each)[:15] for each in warnings] == ["filter: ignored"]
-    same(made[::-1], plain(box(0, 0, 9, 9, "")))
+    same(actual[::-1], plain(box(0, 0, 9, 9, "")))
 
 
 SHAPES = "".join(
@@ -112,7 +112,7 @@ def around(image, x, y, mode):
 
 @pytest.mark.parametrize("operator", ["dilate", "erode"])
 def test_morphology(operator):
-    made = drawn(f'<feMorphology operator="{operator}" radius="4 7"/>', GROUP, ALL)
+    actual = drawn(f'<feMorphology operator="{operator}" radius="4 7"/>', GROUP, ALL)
     image = plain(SHAPES)
     pick = np.max if operator == "dilate" else np.min
     for y in range(0, SIZE, 7):
@@ -120,7 +120,7 @@ def test_morphology(operator):
             near = [
                 around(image, x + dx, y + dy, "none") for dx in range(-4, 5) for dy in range(-7, 8)
             ]
-            np.testing.assert_allclose(made[y, x], pick(near, axis=0), atol=1e-6)
+            np.testing.assert_allclose(actual[y, x], pick(near, axis=0), atol=1e-6)
     same(drawn('<feMorphology radius="0"/>', GROUP, ALL), image)
     grown = drawn('<feMorphology operator="dilate" radius="5 3"/>', BOX)
     same(grown, plain(box(25, 17, 65, 53, "")))
@@ -135,7 +135,7 @@ def test_convolution(mode, keeps):
         f'targetX="3" targetY="0" divisor="5" bias="0.125" edgeMode="{mode}" '
         f'preserveAlpha="{keeps}"/>'
     )
-    made = drawn(step, GROUP, ALL)
+    actual = drawn(step, GROUP, ALL)
     image = plain(SHAPES).astype(float)
     straight = image.copy()
     np.divide(image[..., :3], image[..., 3:], out=straight[..., :3], where=image[..., 3:] > 0)
@@ -153,7 +153,7 @@ def test_convolution(mode, keeps):
             else:
                 expected = np.clip(total / 5 + 0.125, 0, 1)
                 expected[:3] = np.minimum(expected[:3], expected[3])
-            np.testing.assert_allclose(made[y, x], expected, atol=1e-5)
+            np.testing.assert_allclose(actual[y, x], expected, atol=1e-5)
 
 
 def test_invalid_convolutions_are_transparent():
@@ -170,19 +170,19 @@ def test_tiles():
     steps = '<feFlood x="10" y="20" width="7" height="5" flood-color="teal"/>'
     steps += '<feFlood x="10" y="20" width="3" height="2"/>'
     steps += '<feOffset x="10" y="20" width="7" height="5"/>'
-    made = drawn(f"{steps}<feTile/>", BOX, ALL)
+    actual = drawn(f"{steps}<feTile/>", BOX, ALL)
     for y in range(SIZE):
         for x in range(SIZE):
             inside = (x - 10) % 7 < 3 and (y - 20) % 5 < 2
-            assert made[y, x, 3] == inside
+            assert actual[y, x, 3] == inside
     assert not drawn('<feFlood width="0"/><feTile/>', BOX, ALL).any()
 
 
 def test_subregions_default_to_those_of_inputs():
     steps = '<feFlood x="10" y="10" width="20" height="20" result="a"/><feFlood x="20" y="40" {}'
     move = '<feOffset dx="10"/>'
-    made = drawn(steps.split('<feFlood x="20"')[0] + move, BOX, ALL)
-    same(made, plain(box(20, 10, 30, 30, "")))
+    actual = drawn(steps.split('<feFlood x="20"')[0] + move, BOX, ALL)
+    same(actual, plain(box(20, 10, 30, 30, "")))
     both = steps.format('width="30" height="10" result="b"/>')
     both += '<feMerge result="c"><feMergeNode in="a"/><feMergeNode in="b"/></feMerge>' + move
     same(drawn(both, BOX, ALL), plain(box(20, 10, 40, 30, "") + box(30, 40, 50, 50, "")))
@@ -192,9 +192,9 @@ def test_gamma():
     step = (
         '<feComponentTransfer><feFuncB type="gamma" amplitude="0.5" exponent="2.5" offset="0.1"/>'
     )
-    made = drawn(step + "</feComponentTransfer>", FLAT.format("url(#f)"))
+    actual = drawn(step + "</feComponentTransfer>", FLAT.format("url(#f)"))
     expected = (*COLOR[:2], 0.5 * COLOR[2] ** 2.5 + 0.1, 1)
-    np.testing.assert_allclose(made[50, 50], expected, atol=1e-6)
+    np.testing.assert_allclose(actual[50, 50], expected, atol=1e-6)
 
 
 def test_colors_may_be_inherited():
@@ -228,7 +228,7 @@ def noise_at(x, y, frequency, octaves, seed, fractal):
         seed = following(seed)
         j = seed % 256
         lattice[i], lattice[j] = lattice[j], lattice[i]
-    found = []
+    result = []
     for own in slopes:
         total, u, v, scale = 0.0, x * frequency, y * frequency, 1.0
         for _ in range(octaves):
@@ -243,18 +243,20 @@ def noise_at(x, y, frequency, octaves, seed, fractal):
             value = rows[0] + share[1] * (rows[1] - rows[0])
             total += (value if fractal else abs(value)) / scale
             u, v, scale = 2 * u, 2 * v, 2 * scale
-        found.append(min(max((total + 1) / 2 if fractal else total, 0), 1))
-    return np.array([*(value * found[3] for value in found[:3]), found[3]])
+        result.append(min(max((total + 1) / 2 if fractal else total, 0), 1))
+    return np.array([*(value * result[3] for value in result[:3]), result[3]])
 
 
 @pytest.mark.parametrize("seed", [0, 7, -3])
 @pytest.mark.parametrize("kind", ["fractalNoise", "turbulence"])
 def test_noise(kind, seed):
     step = f'<feTurbulence type="{kind}" baseFrequency="0.07" numOctaves="3" seed="{seed}.9"/>'
-    made = drawn(step, f'<g transform="scale(2) translate(-3 0)">{BOX}</g>', f"{WIDE} {AS_ENCODED}")
+    actual = drawn(
+        step, f'<g transform="scale(2) translate(-3 0)">{BOX}</g>', f"{WIDE} {AS_ENCODED}"
+    )
     for x, y in ((0, 0), (17, 3), (50, 50), (99, 98)):
         expected = noise_at(x / 2 + 3, y / 2, 0.07, 3, seed, kind == "fractalNoise")
-        np.testing.assert_allclose(made[y, x], expected, atol=1e-5)
+        np.testing.assert_allclose(actual[y, x], expected, atol=1e-5)
 
 
 def test_noise_in_tiles_has_no_seams():
@@ -274,27 +276,27 @@ def test_light_on_a_plane():
     tail = "</feDiffuseLighting>"
     for elevation in (0, 30, 90):
         light = f'<feDistantLight azimuth="70" elevation="{elevation}"/>'
-        made = drawn(
+        actual = drawn(
             f'<feDiffuseLighting diffuseConstant="0.8" lighting-color="orange">{light}{tail}',
             flat,
             ALL,
         )
         color = np.array([255, 165, 0]) / 255 * 0.8 * math.sin(math.radians(elevation))
-        np.testing.assert_allclose(made[50, 50], (*color, 1), atol=1e-5)
-    made = drawn(f'<feDiffuseLighting diffuseConstant="-1">{light}{tail}', flat, ALL)
-    np.testing.assert_array_equal(made[50, 50], (0, 0, 0, 1))
+        np.testing.assert_allclose(actual[50, 50], (*color, 1), atol=1e-5)
+    actual = drawn(f'<feDiffuseLighting diffuseConstant="-1">{light}{tail}', flat, ALL)
+    np.testing.assert_array_equal(actual[50, 50], (0, 0, 0, 1))
     light = '<fePointLight x="30" y="40" z="21"/>'
-    made = drawn(f'<feDiffuseLighting surfaceScale="1">{light}{tail}', flat, ALL)
+    actual = drawn(f'<feDiffuseLighting surfaceScale="1">{light}{tail}', flat, ALL)
     for x, y in ((10, 10), (30, 40), (90, 70)):
         expected = 20 / math.hypot(30 - x, 40 - y, 20)
-        assert made[y, x, 0] == pytest.approx(expected, abs=1e-5)
+        assert actual[y, x, 0] == pytest.approx(expected, abs=1e-5)
     spot = '<feSpotLight x="50" y="50" z="31" pointsAtX="50" pointsAtY="50" '
     spot += 'limitingConeAngle="45" specularExponent="3"/>'
-    made = drawn(f"<feDiffuseLighting>{spot}{tail}", flat, ALL)
+    actual = drawn(f"<feDiffuseLighting>{spot}{tail}", flat, ALL)
     for x in (50, 60, 70):
         cosine = 30 / math.hypot(x - 50, 30)
-        assert made[50, x, 0] == pytest.approx(cosine**4, abs=1e-5)
-    np.testing.assert_array_equal(made[50, 95], (0, 0, 0, 1))
+        assert actual[50, x, 0] == pytest.approx(cosine**4, abs=1e-5)
+    np.testing.assert_array_equal(actual[50, 95], (0, 0, 0, 1))
 
 
 def test_light_on_a_slope():
@@ -308,18 +310,20 @@ def test_light_on_a_slope():
     to_light = np.array([-0.5, 0, math.sqrt(0.75)])
     # The recommendation takes differences of pixels two apart.
     normal = np.array([-10 * 0.02, 0, 1]) / math.hypot(10 * 0.02, 1)
-    made = drawn(f'<feDiffuseLighting surfaceScale="10">{light}</feDiffuseLighting>', element, ALL)
+    actual = drawn(
+        f'<feDiffuseLighting surfaceScale="10">{light}</feDiffuseLighting>', element, ALL
+    )
     for x in (0, 1, 50, 98, 99):
-        assert made[50, x, 0] == pytest.approx(normal @ to_light, abs=0.002)
+        assert actual[50, x, 0] == pytest.approx(normal @ to_light, abs=0.002)
     half = to_light + np.array([0, 0, 1])
     shine = 0.9 * (normal @ half / math.sqrt(half @ half)) ** 20
-    made = drawn(
+    actual = drawn(
         f'<feSpecularLighting surfaceScale="10" specularConstant="0.9" specularExponent="20" '
         f'lighting-color="red">{light}</feSpecularLighting>',
         element,
         ALL,
     )
-    np.testing.assert_allclose(made[50, 50], (shine, 0, 0, shine), atol=0.005)
+    np.testing.assert_allclose(actual[50, 50], (shine, 0, 0, shine), atol=0.005)
 
 
 @pytest.mark.parametrize("kind", ["Diffuse", "Specular"])
@@ -361,9 +365,9 @@ def test_numbers_of_lights_are_as_in_browsers():
 
 
 def test_blur_function_needs_a_unit():
-    made, (warning,) = prefilter.rasterize_svg(svg(FLAT.format("blur(5)")), SIZE, SIZE)
+    actual, (warning,) = prefilter.rasterize_svg(svg(FLAT.format("blur(5)")), SIZE, SIZE)
     assert warning.kind == "broken"
-    same(made[::-1], functions("none"))
+    same(actual[::-1], functions("none"))
     same(functions("blur(0)"), functions("none"))
 
 
@@ -371,16 +375,16 @@ def test_missing_lights_and_images_are_transparent():
     for step in ("<feDiffuseLighting/>", "<feTurbulence numOctaves='0'/>"):
         assert not drawn(step, BOX).any()
     body = f'<filter id="f"><feImage href="x.png"/></filter>{BOX}'
-    made, warnings = prefilter.rasterize_svg(svg(body), SIZE, SIZE)
+    actual, warnings = prefilter.rasterize_svg(svg(body), SIZE, SIZE)
     assert len(warnings) == 1
-    assert not made.any()
+    assert not actual.any()
 
 
 def test_feimage_of_elements_and_files():
     tree = '<defs><g id="e"><circle cx="20" cy="30" r="9" fill="teal"/></g></defs>'
     rest = 'filterUnits="userSpaceOnUse" x="5" y="10" width="90" height="80"'
-    made = drawn('<feImage href="#e"/>', tree + BOX, rest)
-    same(made, plain('<circle cx="25" cy="40" r="9" fill="teal"/>'))
+    actual = drawn('<feImage href="#e"/>', tree + BOX, rest)
+    same(actual, plain('<circle cx="25" cy="40" r="9" fill="teal"/>'))
     pillow = pytest.importorskip("PIL.Image")
     file = io.BytesIO()
     pixels = np.random.default_rng(4).integers(0, 256, (5, 8, 4), np.uint8)
@@ -388,15 +392,15 @@ def test_feimage_of_elements_and_files():
     address = "data:image/png;base64," + base64.b64encode(file.getvalue()).decode()
     for more in ("", 'image-rendering="pixelated"'):
         place = f'href="{address}" x="20" y="30" width="40" height="20" {more}'
-        made = drawn(f"<feImage {place}/>", BOX, ALL)
-        np.testing.assert_allclose(made, plain(f"<image {place}/>"), atol=2e-6)
+        actual = drawn(f"<feImage {place}/>", BOX, ALL)
+        np.testing.assert_allclose(actual, plain(f"<image {place}/>"), atol=2e-6)
 
 
 def test_circular_feimage_is_ignored():
     body = '<filter id="f"><feImage href="#r"/></filter><g id="r">' + BOX + "</g>"
-    made, (warning,) = prefilter.rasterize_svg(svg(body), SIZE, SIZE)
+    actual, (warning,) = prefilter.rasterize_svg(svg(body), SIZE, SIZE)
     assert warning.name == "filter"
-    same(made[::-1], plain(box(30, 20, 60, 50, "")))
+    same(actual[::-1], plain(box(30, 20, 60, 50, "")))
 
 
 @pytest.mark.parametrize("turn", ["rotate(30 50 50)", "rotate(-45 50 50)", "skewX(30)"])
@@ -455,5 +459,5 @@ def test_odd_primitives(steps):
     for rest in ("", WIDE, 'width="0"', 'primitiveUnits="objectBoundingBox"'):
         for turn in ("", "rotate(33)", "matrix(1 1 1 1.000001 0 0)", "scale(1e-9)"):
             body = f'<filter id="f" {rest}>{steps}</filter><g transform="{turn}">{BOX}</g>'
-            made, _ = prefilter.rasterize_svg(svg(body), 16, 16)
-            assert np.isfinite(made).all()
+            actual, _ = prefilter.rasterize_svg(svg(body), 16, 16)
+            assert np.isfinite(actual).all()

@@ -16,9 +16,9 @@ AS_ENCODED = 'color-interpolation-filters="sRGB"'
 def drawn(steps, element, rest=f"{WIDE} {AS_ENCODED}", **options):
     """Draws elements with a filter; row 0 is at the top."""
     body = f'<filter id="f" {rest}>{steps}</filter>{element}'
-    made, warnings = prefilter.rasterize_svg(svg(body), SIZE, SIZE, **options)
+    result, warnings = prefilter.rasterize_svg(svg(body), SIZE, SIZE, **options)
     assert warnings == ()
-    return made[::-1]
+    return result[::-1]
 
 
 def box(left, top, right, bottom, rest='filter="url(#f)"'):
@@ -35,8 +35,8 @@ BOX = box(30, 20, 60, 50)
 def test_an_offset_moves():
     for matrix in ("", "scale(2)", "rotate(90 50 50)", "translate(-5 9)"):
         around = f'<g transform="{matrix}">{{}}</g>'
-        made = drawn('<feOffset dx="10" dy="-5.5"/>', around.format(BOX))
-        same(made, plain(around.format(box(40, 14.5, 70, 44.5, ""))))
+        actual = drawn('<feOffset dx="10" dy="-5.5"/>', around.format(BOX))
+        same(actual, plain(around.format(box(40, 14.5, 70, 44.5, ""))))
     shares = drawn('<feOffset dx="0.5"/>', BOX, f'{WIDE} primitiveUnits="objectBoundingBox"')
     same(shares, plain(box(45, 20, 75, 50, "")))
 
@@ -44,23 +44,23 @@ def test_an_offset_moves():
 @pytest.mark.parametrize("deviation", [0.5, 1.5, 1.9])
 def test_small_blurs_are_gaussian(deviation):
     """A Gaussian turns an edge into its integral."""
-    made = drawn(f'<feGaussianBlur stdDeviation="{deviation} 0"/>', box(-99, -99, 50, 199))
+    actual = drawn(f'<feGaussianBlur stdDeviation="{deviation} 0"/>', box(-99, -99, 50, 199))
     for x in range(40, 60):
         # The weights at whole pixels that reach the edge add up.
         distances = np.arange(-20, 21)
         weights = np.exp(-(distances**2) / (2 * deviation**2))
         expected = weights[distances <= 49 - x].sum() / weights.sum()
-        assert made[50, x, 3] == pytest.approx(expected, abs=1e-4)
+        assert actual[50, x, 3] == pytest.approx(expected, abs=1e-4)
     if deviation < 1:
         return
-    middle = made[50, 30:70, 3].astype(float)
+    middle = actual[50, 30:70, 3].astype(float)
     exact = [0.5 * math.erfc((x + 0.5 - 50) / deviation / math.sqrt(2)) for x in range(30, 70)]
     np.testing.assert_allclose(middle, exact, atol=0.02)
 
 
 @pytest.mark.parametrize("deviation", [2.0, 3.1, 5.0, 8.3])
 def test_large_blurs_are_box_blurs(deviation):
-    made = drawn(f'<feGaussianBlur stdDeviation="0 {deviation}"/>', box(0, 40, 100, 55))
+    actual = drawn(f'<feGaussianBlur stdDeviation="0 {deviation}"/>', box(0, 40, 100, 55))
     count = math.floor(deviation * 3 * math.sqrt(2 * math.pi) / 4 + 0.5)
     line = np.zeros(200)
     line[90:105] = 1
@@ -70,11 +70,11 @@ def test_large_blurs_are_box_blurs(deviation):
         full = np.convolve(line, np.ones(size) / size)
         begin = (size - 1) // 2 + shift
         line = full[begin : begin + 200]
-    np.testing.assert_allclose(made[:, 50, 3], line[50:150], atol=1e-6)
+    np.testing.assert_allclose(actual[:, 50, 3], line[50:150], atol=1e-6)
     # It approximates a Gaussian, with the same center and sum.
     places = np.arange(100) + 0.5
-    assert made[:, 50, 3].sum() == pytest.approx(15, rel=1e-3)
-    assert (places * made[:, 50, 3]).sum() / 15 == pytest.approx(47.5, abs=0.05)
+    assert actual[:, 50, 3].sum() == pytest.approx(15, rel=1e-3)
+    assert (places * actual[:, 50, 3]).sum() / 15 == pytest.approx(47.5, abs=0.05)
 
 
 def test_flat_colors_survive_decoding():
@@ -178,18 +178,18 @@ def test_filter_regions_and_subregions():
 def test_clip_paths_masks_and_opacity_come_after_filters():
     clip = f'<clipPath id="c">{box(0, 0, 45.5, 99, "")}</clipPath>'
     move = '<feOffset dx="20"/>'
-    made = drawn(
+    actual = drawn(
         move, f'{clip}<g clip-path="url(#c)" filter="url(#f)">{box(10, 10, 60, 60, "")}</g>'
     )
-    same(made, plain(box(30, 10, 45.5, 60, "")))
+    same(actual, plain(box(30, 10, 45.5, 60, "")))
     # A clip path inside the group precedes the filter.
-    made = drawn(move, f'{clip}<g filter="url(#f)">{box(10, 10, 60, 60, clip_path("c"))}</g>')
-    same(made, plain(box(30, 10, 65.5, 60, "")))
+    actual = drawn(move, f'{clip}<g filter="url(#f)">{box(10, 10, 60, 60, clip_path("c"))}</g>')
+    same(actual, plain(box(30, 10, 65.5, 60, "")))
     mask = f'<mask id="c" {WIDE.replace("filter", "mask")}>{box(0, 0, 45, 99, FILL)}</mask>'
-    made = drawn(move, f'{mask}<g mask="url(#c)" filter="url(#f)">{box(10, 10, 60, 60, "")}</g>')
-    same(made, plain(box(30, 10, 45, 60, "")))
-    made = drawn(move, f'<g opacity="0.2" filter="url(#f)">{box(10, 10, 60, 60, "")}</g>')
-    same(made, plain(box(30, 10, 80, 60, "")) * np.float32(0.2))
+    actual = drawn(move, f'{mask}<g mask="url(#c)" filter="url(#f)">{box(10, 10, 60, 60, "")}</g>')
+    same(actual, plain(box(30, 10, 45, 60, "")))
+    actual = drawn(move, f'<g opacity="0.2" filter="url(#f)">{box(10, 10, 60, 60, "")}</g>')
+    same(actual, plain(box(30, 10, 80, 60, "")) * np.float32(0.2))
 
 
 FILL = 'fill="white"'
@@ -201,14 +201,14 @@ def clip_path(name):
 
 def test_unsupported_filters_cause_one_warning():
     body = f'<filter id="f"><feOffset in="FillPaint" dx="5"/></filter>{BOX}{BOX}'
-    made, (warning,) = prefilter.rasterize_svg(svg(body), SIZE, SIZE)
+    actual, (warning,) = prefilter.rasterize_svg(svg(body), SIZE, SIZE)
     words = "FillPaint: replaced by the result before it (first in line 1, 2 times)"
     assert str(warning) == words
-    same(made[::-1], drawn('<feOffset dx="5"/>', BOX, ""))
+    same(actual[::-1], drawn('<feOffset dx="5"/>', BOX, ""))
     body = f'<filter id="f"><feWarp/></filter>{BOX}'
-    made, (warning,) = prefilter.rasterize_svg(svg(body), SIZE, SIZE)
+    actual, (warning,) = prefilter.rasterize_svg(svg(body), SIZE, SIZE)
     assert str(warning) == "filter with <feWarp>: ignored (in line 1)"
-    same(made[::-1], plain(box(30, 20, 60, 50, "")))
+    same(actual[::-1], plain(box(30, 20, 60, 50, "")))
     assert prefilter.read_svg(svg(f"<filter id='f'><feOffset/></filter>{BOX}")).warnings
 
 
@@ -230,7 +230,7 @@ def test_unsupported_filters_cause_one_warning():
 def test_odd_filters(steps):
     for rest in ("", WIDE, 'width="1e9" height="1e9"', 'width="0"'):
         body = f'<filter id="f" {rest}>{steps}</filter>{BOX}'
-        made, _ = prefilter.rasterize_svg(svg(body), 16, 16)
-        assert np.isfinite(made).all()
+        actual, _ = prefilter.rasterize_svg(svg(body), 16, 16)
+        assert np.isfinite(actual).all()
     if not steps:
-        assert not made.any()
+        assert not actual.any()

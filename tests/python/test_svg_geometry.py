@@ -27,14 +27,14 @@ SQUARE = ((10, 20), (60, 20), (60, 70), (10, 70))
     ],
 )
 def test_lines(data):
-    found = drawn(f'<path fill="green" d="{data}"/>')
+    actual = drawn(f'<path fill="green" d="{data}"/>')
     if data.startswith("  M"):
         expected = polygon((10, 20), (60, 20), (60, 70), (0, 70), (10, 70))
     elif "m60" in data:
         expected = np.zeros((SIZE, SIZE, 4))
     else:
         expected = polygon(*SQUARE)
-    same(found, expected)
+    same(actual, expected)
 
 
 @pytest.mark.parametrize(
@@ -46,13 +46,13 @@ def test_lines(data):
     ],
 )
 def test_cubic_curves(data):
-    def by_hand(shape):
+    def composited_boxes(shape):
         shape.move_to(10, 50)
         shape.curve_to(10, 10, 50, 10, 50, 50)
         shape.curve_to(50, 90, 90, 90, 90, 50)
         shape.close()
 
-    same(drawn(f'<path fill="green" d="{data}"/>'), outline(by_hand))
+    same(drawn(f'<path fill="green" d="{data}"/>'), outline(composited_boxes))
 
 
 @pytest.mark.parametrize(
@@ -64,18 +64,18 @@ def test_cubic_curves(data):
     ],
 )
 def test_quadratic_curves(data):
-    def by_hand(shape):
+    def composited_boxes(shape):
         shape.move_to(10, 50)
         shape.curve_to(30, 10, 50, 50)
         shape.curve_to(70, 90, 90, 50)
         shape.line_to(90, 90)
         shape.close()
 
-    same(drawn(f'<path fill="green" d="{data}"/>'), outline(by_hand))
+    same(drawn(f'<path fill="green" d="{data}"/>'), outline(composited_boxes))
 
 
 def test_smooth_curves_after_other_segments():
-    def by_hand(shape):
+    def composited_boxes(shape):
         shape.move_to(10, 50)
         shape.curve_to(30, 10, 50, 50)
         shape.curve_to(50, 50, 90, 90, 90, 50)
@@ -83,21 +83,21 @@ def test_smooth_curves_after_other_segments():
         shape.close()
 
     data = "M 10 50 Q 30 10 50 50 S 90 90 90 50 T 20 90 Z"
-    same(drawn(f'<path fill="green" d="{data}"/>'), outline(by_hand))
+    same(drawn(f'<path fill="green" d="{data}"/>'), outline(composited_boxes))
 
 
 def points_of(segments):
     """Points along the conics and lines of an outline, y downwards."""
-    found, at = [], None
+    result, at = [], None
     for kind, numbers in segments:
         if kind == "W":
             x1, y1, weight, x2, y2 = numbers
             t = np.linspace(0.0, 1.0, 33)[:, None]
             shares = (1 - t) ** 2, 2 * weight * t * (1 - t), t**2
             points = np.array([at, (x1, y1), (x2, y2)])
-            found.append(sum(s * p for s, p in zip(shares, points, strict=True)) / sum(shares))
+            result.append(sum(s * p for s, p in zip(shares, points, strict=True)) / sum(shares))
         at = numbers[-2:] if numbers else at
-    return np.concatenate(found)
+    return np.concatenate(result)
 
 
 @pytest.mark.parametrize("rotation", [0.0, 30.0, -200.0])
@@ -165,9 +165,9 @@ def ellipse(shape, cx, cy, rx, ry):
 
 
 def test_circles_and_ellipses_are_exact():
-    found = drawn('<circle cx="50" cy="40" r="30" fill="green"/>')
-    same(found, outline(lambda shape: ellipse(shape, 50, 40, 30, 30)))
-    assert found[..., 3].sum() == pytest.approx(math.pi * 900, abs=1e-3)
+    actual = drawn('<circle cx="50" cy="40" r="30" fill="green"/>')
+    same(actual, outline(lambda shape: ellipse(shape, 50, 40, 30, 30)))
+    assert actual[..., 3].sum() == pytest.approx(math.pi * 900, abs=1e-3)
     same(
         drawn('<ellipse cx="50" cy="40" rx="30" ry="10" fill="green"/>'),
         outline(lambda shape: ellipse(shape, 50, 40, 30, 10)),
@@ -187,13 +187,13 @@ def test_circles_and_ellipses_are_exact():
     ],
 )
 def test_rectangles(attributes, rx, ry):
-    found = drawn(f'<rect x="10" y="20" width="50" height="50" {attributes} fill="green"/>')
+    actual = drawn(f'<rect x="10" y="20" width="50" height="50" {attributes} fill="green"/>')
     if rx == 0:
-        same(found, polygon(*SQUARE))
+        same(actual, polygon(*SQUARE))
         return
     # The corners lack the difference of a box and an ellipse.
-    assert found[..., 3].sum() == pytest.approx(2500 - (4 - math.pi) * rx * ry, abs=1e-3)
-    assert np.abs(found - polygon(*SQUARE))[20 + math.ceil(ry) : 69 - math.ceil(ry)].max() < 1e-6
+    assert actual[..., 3].sum() == pytest.approx(2500 - (4 - math.pi) * rx * ry, abs=1e-3)
+    assert np.abs(actual - polygon(*SQUARE))[20 + math.ceil(ry) : 69 - math.ceil(ry)].max() < 1e-6
 
 
 def test_lines_and_polygons():

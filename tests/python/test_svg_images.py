@@ -8,7 +8,7 @@ import io
 import numpy as np
 import prefilter
 import pytest
-from drawings import GREEN, RED, SIZE, box, by_hand, same, svg, whole
+from drawings import GREEN, RED, SIZE, box, composited_boxes, same, svg, whole
 from prefilter.shapes._svg.read.image_files import image_size
 from prefilter.workflows.files import png
 
@@ -48,9 +48,9 @@ def test_image_formats(kind, options):
         pytest.skip(f"Pillow writes no {kind}")
     assert image_size(file.getvalue()) == (50, 30)
     address = f"data:image/{kind};base64,{base64.b64encode(file.getvalue()).decode()}"
-    made = whole(f'<image width="50" height="30" href="{address}"/>')
+    actual = whole(f'<image width="50" height="30" href="{address}"/>')
     for x, color in ((10, (0, 0, 0, 1)), (40, (0, 128 / 255, 0, 1)), (60, (0, 0, 0, 0))):
-        np.testing.assert_allclose(made[10, x], color, atol=0.02)
+        np.testing.assert_allclose(actual[10, x], color, atol=0.02)
 
 
 def shown(file, kind="png"):
@@ -76,13 +76,13 @@ def test_exif_orientation(orientation):
 
 def test_image_colors_are_converted():
     texels = np.full((4, 4, 3), (150, 120, 90), np.uint8)
-    made = shown(png.encoded(texels, chunks=[(b"cICP", bytes([12, 13, 0, 1]))]))
+    actual = shown(png.encoded(texels, chunks=[(b"cICP", bytes([12, 13, 0, 1]))]))
     light = prefilter.to_linear(texels[:1, :1] / np.float32(255))[0, 0]
     # Published by SMPTE.
     matrix = [[1.22494, -0.22494, 0.0], [-0.04206, 1.04206, 0.0], [-0.01964, -0.07864, 1.09828]]
     expected = prefilter.to_srgb((np.array(matrix) @ light).astype(np.float32)[None, None])[0, 0]
-    middle = tuple(side // 2 for side in made.shape[:2])
-    np.testing.assert_allclose(made[middle][:3], expected, atol=0.6 / 255)
+    middle = tuple(side // 2 for side in actual.shape[:2])
+    np.testing.assert_allclose(actual[middle][:3], expected, atol=0.6 / 255)
 
 
 def test_cmyk_images_are_left_out():
@@ -91,8 +91,8 @@ def test_cmyk_images_are_left_out():
     pillow.new("CMYK", (4, 4), (10, 20, 30, 40)).save(file, "jpeg")
     address = f"data:image/jpeg;base64,{base64.b64encode(file.getvalue()).decode()}"
     drawing = svg(f'<image width="50" height="30" href="{address}"/>')
-    made, (warning,) = prefilter.rasterize_svg(drawing, SIZE, SIZE)
-    assert not made.any()
+    actual, (warning,) = prefilter.rasterize_svg(drawing, SIZE, SIZE)
+    assert not actual.any()
     assert "left out, as its colors are CMYK" in warning.effect
 
 
@@ -108,13 +108,13 @@ def test_image_addresses():
         ('width="40"', (0, 0, 40, 20)),
         ("", (0, 0, 4, 2)),
     ):
-        made = whole(f'<image {rest} href="{href}"/>')
-        np.testing.assert_allclose(made, by_hand((*expected, (1, 1, 1))), atol=1e-5)
+        actual = whole(f'<image {rest} href="{href}"/>')
+        np.testing.assert_allclose(actual, composited_boxes((*expected, (1, 1, 1))), atol=1e-5)
     blocks = np.zeros((1, 2, 4), np.uint8)
     blocks[...] = [[(255, 0, 0, 255), (0, 128, 0, 255)]]
     rest = 'width="40" height="20" image-rendering="pixelated"'
-    made = whole(f'<image {rest} href="{data_url(blocks)}"/>')
-    same(made, by_hand((0, 0, 20, 20, RED), (20, 0, 40, 20, GREEN)))
+    actual = whole(f'<image {rest} href="{data_url(blocks)}"/>')
+    same(actual, composited_boxes((0, 0, 20, 20, RED), (20, 0, 40, 20, GREEN)))
 
 
 @pytest.mark.parametrize("channels", [1, 3, 4])
@@ -152,7 +152,7 @@ def test_nested_drawings_without_a_size(aspect):
         f'href="data:image/svg+xml;base64,{data}"/>'
     )
     expected = (10, 30, 90, 70) if aspect == "none" else (30, 30, 70, 70)
-    same(whole(body), by_hand((*expected, GREEN)))
+    same(whole(body), composited_boxes((*expected, GREEN)))
 
 
 def test_images_are_read_once_and_counted(monkeypatch):
@@ -171,7 +171,7 @@ def test_images_are_read_once_and_counted(monkeypatch):
 
     images_read = images.decode_image
     monkeypatch.setattr(images, "decode_image", counted)
-    same(whole(body), by_hand((0, 0, 9, 9, (1, 1, 1))))
+    same(whole(body), composited_boxes((0, 0, 9, 9, (1, 1, 1))))
     assert count == 1
     monkeypatch.setattr(limits, "MAX_TEXELS", 15)
     with pytest.raises(ValueError, match="source: images of more than 15 pixels"):
@@ -181,10 +181,10 @@ def test_images_are_read_once_and_counted(monkeypatch):
 def test_nested_drawings():
     inner = svg(box(-9, -9, 50, 99, 'fill="red"'), 'width="20" height="10" viewBox="0 0 100 50"')
     href = "data:image/svg+xml;base64," + base64.b64encode(inner.encode()).decode()
-    made = whole(f'<image x="10" y="10" width="40" height="40" href="{href}"/>')
-    same(made, by_hand((10, 20, 30, 40, RED)))
+    actual = whole(f'<image x="10" y="10" width="40" height="40" href="{href}"/>')
+    same(actual, composited_boxes((10, 20, 30, 40, RED)))
     plain = "data:image/svg+xml," + "".join(f"%{byte:02x}" for byte in inner.encode())
-    same(whole(f'<image x="10" y="10" width="40" height="40" href="{plain}"/>'), made)
+    same(whole(f'<image x="10" y="10" width="40" height="40" href="{plain}"/>'), actual)
 
 
 def test_images_outside_the_folder_are_not_read(tmp_path):
@@ -207,12 +207,12 @@ def test_images_outside_the_folder_are_not_read(tmp_path):
         ("//localhost/a.png", False),
     ):
         path.write_text(svg(f'<image width="100" height="100" href="{href}"/>'))
-        made, warnings = prefilter.rasterize_svg(path, 4, 4)
-        assert (made[..., 3] == 1).all() == is_shown, href
+        actual, warnings = prefilter.rasterize_svg(path, 4, 4)
+        assert (actual[..., 3] == 1).all() == is_shown, href
         assert [warning.name for warning in warnings] == ([] if is_shown else ["<image>"])
     # A nested drawing cannot refer to files either.
     (folder / "inner.svg").write_text(path.read_text().replace("//localhost/a", "a%20b"))
     path.write_text(svg('<image width="100" height="100" href="inner.svg"/>'))
-    made, warnings = prefilter.rasterize_svg(path, 4, 4)
+    actual, warnings = prefilter.rasterize_svg(path, 4, 4)
     assert len(warnings) == 1
-    assert not made.any()
+    assert not actual.any()

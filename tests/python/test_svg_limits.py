@@ -138,9 +138,9 @@ def test_stored_filter_results_are_counted():
 
 def test_unread_filter_results_are_freed():
     steps = "".join(f'<feOffset in="SourceGraphic" result="r{k}"/>' for k in range(100))
-    made, _ = prefilter.rasterize_svg(svg(filtered(steps)), 100, 100)
+    actual, _ = prefilter.rasterize_svg(svg(filtered(steps)), 100, 100)
     plain, _ = prefilter.rasterize_svg(svg(filtered('<feOffset in="SourceGraphic"/>')), 100, 100)
-    np.testing.assert_array_equal(made, plain)
+    np.testing.assert_array_equal(actual, plain)
 
 
 def test_merging_takes_as_much_memory_for_any_number_of_inputs():

@@ -5,7 +5,7 @@
 import numpy as np
 import prefilter
 import pytest
-from drawings import box, by_hand, same, svg, whole
+from drawings import box, composited_boxes, same, svg, whole
 
 
 @pytest.mark.parametrize(
@@ -40,8 +40,8 @@ from drawings import box, by_hand, same, svg, whole
 )
 def test_odd_drawings_are_drawn(body):
     for light in ("srgb", "linear"):
-        made, _ = prefilter.rasterize_svg(svg(body), 16, 16, light=light)
-        assert np.isfinite(made).all()
+        actual, _ = prefilter.rasterize_svg(svg(body), 16, 16, light=light)
+        assert np.isfinite(actual).all()
 
 
 def test_layers_have_limits(monkeypatch):
@@ -67,7 +67,7 @@ def test_measured_elements_are_counted(monkeypatch):
 
     clip = f'<clipPath id="c" clipPathUnits="objectBoundingBox">{box(0, 0, 1, 1)}</clipPath>'
     body = clip + '<g clip-path="url(#c)">' * 20 + box(0, 0, 50, 50) * 20 + "</g>" * 20
-    same(whole(body), by_hand((0, 0, 50, 50, (0, 0, 0))))
+    same(whole(body), composited_boxes((0, 0, 50, 50, (0, 0, 0))))
     monkeypatch.setattr(limits, "MAX_MEASURED", 500)
     with pytest.raises(ValueError, match="source: boxes around groups of more than 500 elements"):
         whole(body)
@@ -100,9 +100,9 @@ def test_nested_patterns_are_limited():
         f'<rect width="0.5" height="1" fill="{f"url(#p{k - 1})" if k else "red"}"/></pattern>'
         for k in range(8)
     )
-    made = whole(patterns + box(20, 20, 60, 60, 'fill="url(#p1)"'))
+    actual = whole(patterns + box(20, 20, 60, 60, 'fill="url(#p1)"'))
     # Red fills half of the columns halfway.
-    np.testing.assert_allclose(made[25:55, 25:55, 3].mean(), 0.5, atol=0.01)
+    np.testing.assert_allclose(actual[25:55, 25:55, 3].mean(), 0.5, atol=0.01)
     assert np.isfinite(whole(patterns + box(20, 20, 60, 60, 'fill="url(#p7)"'))).all()
 
 
@@ -124,11 +124,11 @@ def test_garbled_drawings_are_drawn_or_refused():
         places = random.integers(120, len(data), random.integers(1, 6))
         data[places] = random.choice(letters, len(places))
         try:
-            made, _ = prefilter.rasterize_svg(data.tobytes(), 12, 12)
+            actual, _ = prefilter.rasterize_svg(data.tobytes(), 12, 12)
         except ValueError as error:
             assert str(error).startswith("source")  # noqa: PT017
         else:
-            assert np.isfinite(made).all()
+            assert np.isfinite(actual).all()
 
 
 LAYERED = (

@@ -137,7 +137,7 @@ def straight_colors(stops, offsets):
 @pytest.mark.parametrize("stops", [TWO, FADING])
 @pytest.mark.parametrize("light", ["srgb", "linear"])
 def test_gradient_interpolation(stops, light):
-    found = drawn(gradient(stops), light, 64)
+    actual = drawn(gradient(stops), light, 64)
     # The mean over each pixel, from many samples.
     offsets = (np.arange(64 * 50) + 0.5) / (64 * 50)
     values = straight_colors(stops, offsets)
@@ -145,8 +145,8 @@ def test_gradient_interpolation(stops, light):
         values[:, :3] = prefilter.to_linear(values[None, :, :3])[0]
     values[:, :3] *= values[:, 3:]
     expected = values.reshape(64, 50, 4).mean(1)
-    assert np.abs(found - expected).max() < 1 / 1020
-    assert np.abs(found - found[:1]).max() < 1e-5
+    assert np.abs(actual - expected).max() < 1 / 1020
+    assert np.abs(actual - actual[:1]).max() < 1e-5
 
 
 @pytest.mark.parametrize(
@@ -169,14 +169,14 @@ def test_gradient_interpolation(stops, light):
     ],
 )
 def test_linear_gradients(attributes, offset):
-    found = drawn(gradient(TWO, attributes))
+    actual = drawn(gradient(TWO, attributes))
     y, x = np.mgrid[0:100, 0:100] + 0.5
     expected = straight_colors(TWO, offset(x, y))
     # Pixels where the gradient restarts mix both ends.
     jumps = np.abs(np.gradient(expected, axis=1)).max(-1) > 0.1
     assert jumps.any() == ("repeat" in attributes)
-    assert np.abs(found - expected)[~jumps].max() < 0.02
-    assert np.abs(found - expected)[~jumps].mean() < 1e-3
+    assert np.abs(actual - expected)[~jumps].max() < 0.02
+    assert np.abs(actual - expected)[~jumps].mean() < 1e-3
 
 
 @pytest.mark.parametrize(
@@ -193,7 +193,7 @@ def test_linear_gradients(attributes, offset):
     ],
 )
 def test_radial_gradients(attributes, offset):
-    found = drawn(gradient(TWO, attributes, "radialGradient"))
+    actual = drawn(gradient(TWO, attributes, "radialGradient"))
     y, x = np.mgrid[0:100, 0:100] + 0.5
     if offset is None:
         # The circle at t has its center on the line from the focus f, and the radius 50 t: |d - t
@@ -204,8 +204,8 @@ def test_radial_gradients(attributes, offset):
     else:
         at = offset(x, y)
     expected = straight_colors(TWO, np.clip(at, 0, 1))
-    assert np.abs(found - expected).mean() < 1e-3
-    assert np.abs(found - expected).max() < 0.02
+    assert np.abs(actual - expected).mean() < 1e-3
+    assert np.abs(actual - expected).max() < 0.02
 
 
 @pytest.mark.parametrize(
@@ -220,12 +220,12 @@ def test_gradients_between_any_two_circles(cx, r, fx, fr, spread):
     attributes = f'gradientUnits="userSpaceOnUse" cx="{cx}" cy="50" r="{r}" fx="{fx}" fy="50" '
     attributes += f'fr="{fr}" spreadMethod="{spread}"'
     body = gradient(TWO, attributes, "radialGradient")
-    found = image(read(body).shapes_for(SIZE, SIZE))[::-1]
+    actual = image(read(body).shapes_for(SIZE, SIZE))[::-1]
     # The backdrop shows through.
     below = '<circle cx="50" cy="50" r="40" fill="blue"/>'
     over = image(read(below + body).shapes_for(SIZE, SIZE))[::-1]
     alone = image(read(below).shapes_for(SIZE, SIZE))[::-1]
-    nothing = (found[..., 3] == 0.0) & (alone[..., 3] > 1 - 1e-6)
+    nothing = (actual[..., 3] == 0.0) & (alone[..., 3] > 1 - 1e-6)
     assert nothing.any() == (fr <= 4 or fx == 30)
     np.testing.assert_allclose(over[nothing], alone[nothing], atol=1e-5)
     steps = np.linspace(-20, 20, 20_001)
@@ -240,12 +240,12 @@ def test_gradients_between_any_two_circles(cx, r, fx, fr, spread):
             on = np.flatnonzero((off[1:] * off[:-1] <= 0) & (radii[1:] >= 0))
             at.append(steps[on[-1]] if len(on) else None)
         if all(each is None for each in at):
-            np.testing.assert_allclose(found[y, x], 0.0, atol=1e-6)
+            np.testing.assert_allclose(actual[y, x], 0.0, atol=1e-6)
             checked += 1
         elif None not in at and np.ptp(np.floor(at)) == 0 and np.ptp(at) < 0.2:
             shares = np.array(at) % 1 if spread == "repeat" else np.clip(at, 0, 1)
             expected = straight_colors(TWO, shares).mean(0)
-            np.testing.assert_allclose(found[y, x], expected, atol=0.02)
+            np.testing.assert_allclose(actual[y, x], expected, atol=0.02)
             checked += 1
     assert checked > 8
 
@@ -349,9 +349,9 @@ def test_context_paints(kind, place):
             '<path d="M0 0H4V9H0z" fill="teal"/></pattern>'
         )
     expected = f'{clip}<rect width="100" height="100" fill="url(#q)" clip-path="url(#c)"/>'
-    made, _ = prefilter.rasterize_svg(svg(paint + body), 100, 100)
+    actual, _ = prefilter.rasterize_svg(svg(paint + body), 100, 100)
     other, _ = prefilter.rasterize_svg(svg(paint + expected), 100, 100)
-    np.testing.assert_allclose(made, other, atol=1e-5)
+    np.testing.assert_allclose(actual, other, atol=1e-5)
 
 
 def test_inherit_keyword():

@@ -45,8 +45,8 @@ def corner(shape):
 def test_strokes(attributes, options):
     lines = '<path d="M 20 80 L 50 20 70 80" fill="none" stroke="green" stroke-width="8"'
     drawing = read(f"{lines} {attributes}/>", light="srgb")
-    found = image(drawing.shapes_for(SIZE, SIZE))[::-1]
-    np.testing.assert_allclose(found, stroked(corner, 8, **options), atol=2e-3)
+    actual = image(drawing.shapes_for(SIZE, SIZE))[::-1]
+    np.testing.assert_allclose(actual, stroked(corner, 8, **options), atol=2e-3)
 
 
 def test_strokes_are_transformed():
@@ -54,19 +54,19 @@ def test_strokes_are_transformed():
         '<g transform="scale(4 1)"><path d="M 5 0 V 50 H 20" stroke="green" fill="none" '
         'stroke-width="2"/></g>'
     )
-    found = drawn(body)
+    actual = drawn(body)
     # A vertical line is widened to 8 pixels; a horizontal one stays 2 pixels wide.
-    assert found[10, :, 3].sum() == pytest.approx(8, abs=1e-3)
-    assert found[:, 50, 3].sum() == pytest.approx(2, abs=1e-3)
+    assert actual[10, :, 3].sum() == pytest.approx(8, abs=1e-3)
+    assert actual[:, 50, 3].sum() == pytest.approx(2, abs=1e-3)
 
 
 def test_strokes_are_computed_for_the_size():
     circle = '<circle cx="50" cy="50" r="40" fill="none" stroke="black" stroke-width="10"/>'
     drawing = read(circle)
     for size in (20, 100, 500):
-        found = image(drawing.shapes_for(size, size), size, size)
+        actual = image(drawing.shapes_for(size, size), size, size)
         area = math.pi * (45**2 - 35**2) * (size / 100) ** 2
-        assert found[..., 3].sum() == pytest.approx(area, rel=2e-4)
+        assert actual[..., 3].sum() == pytest.approx(area, rel=2e-4)
 
 
 def test_paint_order():

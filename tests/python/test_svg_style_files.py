@@ -23,12 +23,12 @@ def color(tmp_path):
             path = tmp_path / name
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_bytes(text if isinstance(text, bytes) else text.encode())
-        made, warnings = prefilter.rasterize_svg(
+        result, warnings = prefilter.rasterize_svg(
             tmp_path / "d" / "drawing.svg", 4, 4, dtype=np.uint8
         )
-        assert (made == made[0, 0]).all()
+        assert (result == result[0, 0]).all()
         names = {(255, 0, 0): "red", (0, 128, 0): "green", (0, 0, 0): "black", (0, 0, 255): "blue"}
-        return names[tuple(made[0, 0, :3].tolist())], [str(each) for each in warnings]
+        return names[tuple(result[0, 0, :3].tolist())], [str(each) for each in warnings]
 
     return found
 
@@ -107,8 +107,8 @@ def test_sheets_in_data_addresses(color):
     assert color({}, "", imported(f"url(data:text/css;base64,{data})")) == ("green", [])
     # Data addresses have no folder.
     inner = base64.b64encode(b"@import 'a.css';").decode()
-    found, (warning,) = color({"d/a.css": GREEN}, "", imported(f"url(data:;base64,{inner})"))
-    assert found == "black"
+    actual, (warning,) = color({"d/a.css": GREEN}, "", imported(f"url(data:;base64,{inner})"))
+    assert actual == "black"
     assert "that has no folder" in warning
 
 
@@ -141,35 +141,35 @@ def test_files_outside_the_folder_are_not_read(color, tmp_path, address, words):
     link.symlink_to(tmp_path / "a.css")
     if address == link.name and not link.is_symlink():
         pytest.skip("Wine makes no links")
-    found, (warning,) = color({"a.css": RED}, "", imported(f'"{address}"'))
-    assert found == "black"
+    actual, (warning,) = color({"a.css": RED}, "", imported(f'"{address}"'))
+    assert actual == "black"
     assert warning.startswith("@import '")
     assert words in warning
 
 
 def test_circular_imports_end(color):
     files = {"d/a.css": "@import 'b.css';" + GREEN, "d/b.css": "@import 'a.css';" + RED}
-    found, (warning,) = color(files, instruction())
-    assert found == "green"
+    actual, (warning,) = color(files, instruction())
+    assert actual == "green"
     assert "imports itself" in warning
     chain = {f"d/{index}.css": f"@import '{index + 1}.css';" for index in range(100)}
-    found, (warning,) = color({**chain, "d/a.css": "@import '0.css';" + GREEN}, instruction())
-    assert found == "green"
+    actual, (warning,) = color({**chain, "d/a.css": "@import '0.css';" + GREEN}, instruction())
+    assert actual == "green"
     assert "import each other" in warning
     # Ten levels of sheets, each with forty imports of the next.
     many = {f"d/{index}.css": f"@import '{index + 1}.css';" * 40 for index in range(10)}
-    found, warnings = color({**many, "d/a.css": "@import '0.css';" + GREEN}, instruction())
-    assert found == "green"
+    actual, warnings = color({**many, "d/a.css": "@import '0.css';" + GREEN}, instruction())
+    assert actual == "green"
     assert any("MiB together" in warning for warning in warnings)
 
 
 def test_large_sheets_are_not_read(color, monkeypatch):
     monkeypatch.setattr(style_rules, "MAX_BYTES", 5000)
-    found, (warning,) = color({"d/a.css": GREEN + " " * 5000}, instruction())
-    assert (found, "larger than" in warning) == ("black", True)
+    actual, (warning,) = color({"d/a.css": GREEN + " " * 5000}, instruction())
+    assert (actual, "larger than" in warning) == ("black", True)
     two = instruction() + instruction('href="b.css"')
-    found, (warning,) = color({"d/a.css": GREEN + " " * 3000, "d/b.css": RED + " " * 3000}, two)
-    assert (found, "together" in warning) == ("green", True)
+    actual, (warning,) = color({"d/a.css": GREEN + " " * 3000, "d/b.css": RED + " " * 3000}, two)
+    assert (actual, "together" in warning) == ("green", True)
 
 
 @pytest.mark.parametrize(
@@ -180,8 +180,10 @@ def test_odd_sheets_are_read(color, data):
 
 
 def test_imports_after_rules_are_ignored(color):
-    found, (warning,) = color({"d/a.css": GREEN}, "", f"<style>{RED} @import 'a.css';</style>{BOX}")
-    assert found == "red"
+    actual, (warning,) = color(
+        {"d/a.css": GREEN}, "", f"<style>{RED} @import 'a.css';</style>{BOX}"
+    )
+    assert actual == "red"
     assert "follows other rules" in warning
 
 

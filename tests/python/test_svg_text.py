@@ -385,8 +385,8 @@ def test_directions_equal_another_implementation():
         for base, name in ((0, "L"), (1, "R")):
             levels = embedding_levels(sample, base)
             order = visual_order(levels)
-            found = "".join(sample[k] for k in order)
-            assert found == bidi.get_display(sample, base_dir=name), (sample, base)
+            actual = "".join(sample[k] for k in order)
+            assert actual == bidi.get_display(sample, base_dir=name), (sample, base)
 
 
 def test_marks_are_placed_without_harfbuzz(tmp_path, monkeypatch):
@@ -473,9 +473,9 @@ def test_decompression_of_woff_is_limited(tmp_path, font):
 @pytest.mark.skipif(brotli is None, reason="needs brotli")
 def test_woff_2_fonts(tmp_path, font):
     file = io.BytesIO()
-    made = TTFont(font)
-    made.flavor = "woff2"
-    made.save(file)
+    actual = TTFont(font)
+    actual.flavor = "woff2"
+    actual.save(file)
     own = text("AiV", 'style="font-family: Own, Boxes"')
     drawing = read(font_face(file.getvalue()) + own, fonts=[make_font(tmp_path / "a.ttf", high=9)])
     expected = read(text("AiV"), fonts=[font])
@@ -508,13 +508,15 @@ def test_fonts_in_the_folder_are_read(tmp_path, font):
     for where, address in (("a.svg", "in/own.ttf"), ("in/a.svg", "own.ttf")):
         path = tmp_path / where
         path.write_text(svg(f"<style>{sheet % address}</style>{own}"))
-        made, warnings = prefilter.rasterize_svg(path, SIZE, SIZE, fonts=[font])
+        actual, warnings = prefilter.rasterize_svg(path, SIZE, SIZE, fonts=[font])
         assert warnings == ()
-        columns = np.flatnonzero(made[..., 3].max(0) > 0.5)
+        columns = np.flatnonzero(actual[..., 3].max(0) > 0.5)
         assert (columns[0], columns[-1]) == (20, 28)
     (tmp_path / "in/b.css").write_text(sheet % "own.ttf")
     (tmp_path / "b.svg").write_text(svg(f"<style>@import 'in/b.css';</style>{own}"))
-    assert (prefilter.rasterize_svg(tmp_path / "b.svg", SIZE, SIZE, fonts=[font])[0] == made).all()
+    assert (
+        prefilter.rasterize_svg(tmp_path / "b.svg", SIZE, SIZE, fonts=[font])[0] == actual
+    ).all()
     path.write_text(svg(f"<style>{sheet % '../../own.ttf'}</style>{own}"))
     make_font(tmp_path.parent / "own.ttf")
     _, (first, _) = prefilter.rasterize_svg(path, SIZE, SIZE, fonts=[font])
