@@ -44,14 +44,14 @@ def drawn(tmp_path):
 
 
 def colored(path, layers, version=None):
-    result = TTFont(make_font(path, kerning=False))
-    result["COLR"] = buildCOLR(
+    font = TTFont(make_font(path, kerning=False))
+    font["COLR"] = buildCOLR(
         layers if isinstance(layers, dict) and A in layers else {A: layers},
         version=version,
-        glyphMap=result.getReverseGlyphMap(),
+        glyphMap=font.getReverseGlyphMap(),
     )
-    result["CPAL"] = buildCPAL([PALETTE])
-    result.save(path)
+    font["CPAL"] = buildCPAL([PALETTE])
+    font.save(path)
     return path
 
 
@@ -393,14 +393,14 @@ def embedded(x, y, width, height):
 
 
 def with_sbix(path):
-    result = TTFont(make_font(path, kerning=False))
-    result["sbix"] = newTable("sbix")
+    font = TTFont(make_font(path, kerning=False))
+    font["sbix"] = newTable("sbix")
     for ppem in (10, 20):
-        strike = result["sbix"].strikes[ppem] = SbixStrike(ppem=ppem)
+        strike = font["sbix"].strikes[ppem] = SbixStrike(ppem=ppem)
         data = picture() if ppem == 20 else as_png(np.zeros((2, 2, 4), np.uint8))
         strike.glyphs[A] = Glyph(A, None, 2, 1, "png ", data)
         strike.glyphs[V] = Glyph(V, A, 0, 0, "dupe")
-    result.save(path)
+    font.save(path)
     return path
 
 
@@ -411,10 +411,10 @@ LINE_METRICS = (
 
 
 def with_cbdt(path):
-    result = TTFont(make_font(path, kerning=False))
-    result["CBDT"], result["CBLC"] = newTable("CBDT"), newTable("CBLC")
-    result["CBDT"].version = result["CBLC"].version = 3.0
-    one = cbdt_bitmap_format_17(b"", result)
+    font = TTFont(make_font(path, kerning=False))
+    font["CBDT"], font["CBLC"] = newTable("CBDT"), newTable("CBLC")
+    font["CBDT"].version = font["CBLC"].version = 3.0
+    one = cbdt_bitmap_format_17(b"", font)
     one.imageData, one.metrics = picture(), SmallGlyphMetrics()
     for name, value in (
         ("height", 5),
@@ -424,8 +424,8 @@ def with_cbdt(path):
         ("Advance", 12),
     ):
         setattr(one.metrics, name, value)
-    result["CBDT"].strikeData = [{A: one}]
-    strike, part = Strike(), eblc_index_sub_table_1(b"", result)
+    font["CBDT"].strikeData = [{A: one}]
+    strike, part = Strike(), eblc_index_sub_table_1(b"", font)
     strike.bitmapSizeTable = size = BitmapSizeTable()
     for name in ("hori", "vert"):
         metrics = SbitLineMetrics()
@@ -433,17 +433,17 @@ def with_cbdt(path):
             setattr(metrics, key, 0)
         setattr(size, name, metrics)
     size.colorRef = size.flags = 0
-    size.startGlyphIndex = size.endGlyphIndex = result.getGlyphID(A)
+    size.startGlyphIndex = size.endGlyphIndex = font.getGlyphID(A)
     size.ppemX = size.ppemY = 20
     size.bitDepth = 32
     part.indexFormat, part.imageFormat, part.names = 1, 17, [A]
-    part.firstGlyphIndex = part.lastGlyphIndex = result.getGlyphID(A)
+    part.firstGlyphIndex = part.lastGlyphIndex = font.getGlyphID(A)
     strike.indexSubTables = [part]
-    result["CBLC"].strikes = [strike]
+    font["CBLC"].strikes = [strike]
     # Bitmap fonts have no outlines.
     for tag in ("glyf", "loca"):
-        del result[tag]
-    result.save(path)
+        del font[tag]
+    font.save(path)
     return path
 
 
