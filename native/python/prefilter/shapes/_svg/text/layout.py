@@ -22,7 +22,7 @@ from ..._fonts.shaping import (
 from ...affine import Matrix, compose, translation
 from ..model.values import rotation
 from .characters import Character, Fitted, Span
-from .lettering import FontSelector
+from .font_selection import FontSelector
 
 _SPACES = (" ", "\u00a0")
 

@@ -18,8 +18,8 @@ from ..read.document import SvgElement
 from ..read.styles import Style
 from .characters import Span, TextReader
 from .color_glyphs import ColoredLetter, ColoredPiece
+from .font_selection import FontSelector
 from .layout import Cluster, TextLayout
-from .lettering import FontSelector
 
 # Thickness of text decorations, in em.
 _LINE_THICKNESS = 0.1
