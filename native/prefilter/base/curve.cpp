@@ -10,9 +10,9 @@
 namespace prefilter {
 namespace {
 
-constexpr int kMostLines = 1 << 14;
+constexpr int kMaxChords = 1 << 14;
 
-// De Casteljau's scheme: writes the control points of the part before t behind `first`, and leaves
+// De Casteljau's algorithm: writes the control points of the part before t to `first`, and leaves
 // those of the part after t in `points`.
 template <typename Point>
 void split(std::span<Point> points, double t, Point* first) {
@@ -41,7 +41,7 @@ std::array<Weighted, 3> weighted(const Curve& conic) {
           Weighted{conic.controls[2], 1.0}};
 }
 
-// Keeps the part between two parameters; `room` has place for as many points.
+// Restricts control points to the part between two parameters; `room` has space for as many points.
 template <typename Point>
 void keep_part(std::span<Point> points, double from, double to, Point* room) {
   if (to < 1.0) {
@@ -51,7 +51,7 @@ void keep_part(std::span<Point> points, double from, double to, Point* room) {
   if (from > 0.0) split(points, from / to, room);
 }
 
-// Lines over equal parts of the parameter are off by a bound on the second derivative / 8.
+// The error of a chord is at most the second derivative times the squared parameter step / 8.
 std::size_t line_count(const Curve& curve, double tolerance) {
   const auto& controls = curve.controls;
   double largest = 0.0;
@@ -61,10 +61,10 @@ std::size_t line_count(const Curve& curve, double tolerance) {
   }
   const double degree = curve.degree();
   const double lines = std::ceil(std::sqrt(degree * (degree - 1.0) / 8.0 * largest / tolerance));
-  return static_cast<std::size_t>(std::clamp(lines, 1.0, static_cast<double>(kMostLines)));
+  return static_cast<std::size_t>(std::clamp(lines, 1.0, static_cast<double>(kMaxChords)));
 }
 
-// The curve lies within the distance of its control point from the chord, times w / (1 + w).
+// The distance of the curve from its chord is at most that of its control point, times w / (1 + w).
 void flatten_conic(const std::array<Weighted, 3>& conic, double tolerance, int depth,
                    std::vector<Point2>* points) {
   const Point2 begin = (1.0 / conic[0].weight) * conic[0].point;
@@ -83,8 +83,8 @@ void flatten_conic(const std::array<Weighted, 3>& conic, double tolerance, int d
   flatten_conic(second, tolerance, depth - 1, points);
 }
 
-// The root in (0, 1) of a polynomial whose coefficients change their sign once, so that there is
-// just one: Newton's steps, or halves of the interval where these leave it.
+// The root in (0, 1) of a polynomial whose Bernstein coefficients change sign once, so that there
+// is exactly one: Newton's method, with bisection where it leaves the interval.
 double only_root(std::span<const double> coefficients) {
   const std::size_t size = coefficients.size();
   const double first =
@@ -92,8 +92,8 @@ double only_root(std::span<const double> coefficients) {
   double low = 0.0;
   double high = 1.0;
   double t = 0.5;
-  constexpr int kMostSteps = 80;
-  for (int step = 0; step < kMostSteps; ++step) {
+  constexpr int kMaxNewtonSteps = 80;
+  for (int step = 0; step < kMaxNewtonSteps; ++step) {
     std::array<double, Outline::kMostDegree + 1> values;
     std::copy(coefficients.begin(), coefficients.end(), values.begin());
     double slope = 0.0;
@@ -223,7 +223,7 @@ void append_flattened(const Curve& curve, double tolerance, std::vector<Point2>*
   points->push_back(curve.end());
 }
 
-// A polynomial has at most as many roots as its coefficients have changes of sign.
+// A polynomial has at most as many roots as its Bernstein coefficients have sign changes.
 void append_sign_changes(std::span<const double> coefficients, double from, double to,
                          std::vector<double>* changes) {
   int count = 0;

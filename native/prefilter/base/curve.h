@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// One segment of an outline: points, parts, and how finely lines follow it.
+// A single segment of an outline: evaluation, subdivision and flattening.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace prefilter {
 
-/// A segment's control points, and its weight as Outline::Segment has it.
+/// A segment's control points, and its weight as in Outline::Segment.
 struct Curve {
   std::span<const Point2> controls;
   double weight = 0.0;
@@ -27,7 +27,7 @@ inline Curve curve_of(const Outline& outline, const Outline::Segment& segment) {
   return {outline.controls(segment), segment.weight};
 }
 
-/// Room for a curve's control points. Only those that there are get written or copied.
+/// Fixed storage for a curve's control points, of which only the used ones are written or copied.
 class ControlPoints {
  public:
   explicit ControlPoints(std::span<const Point2> points) : count_(points.size()) {
@@ -53,19 +53,19 @@ class ControlPoints {
   std::size_t count_;
 };
 
-/// The point at t in [0, 1]; at 0 and 1 the ends, bit for bit.
+/// The point at t in [0, 1]; exactly the end points at 0 and 1.
 Point2 point_at(const Curve& curve, double t);
 
 Point2 derivative_at(const Curve& curve, double t);
 
-/// Appends a curve to the contour that an outline ends with, `end` in place of its last point; or
-/// backward, `end` in place of its first.
+/// Appends a curve to the last contour of an outline, optionally reversed. Its end point is
+/// replaced by `end`.
 void append_curve(const Curve& curve, bool reversed, const Point2& end, Outline* outline);
 
-/// Appends a contour that has segments, closed, or closed and backward.
+/// Appends a contour with at least one segment as a closed contour, optionally reversed.
 void append_contour(const Outline& from, std::size_t index, bool reversed, Outline* to);
 
-/// The curve between two parameters, `from` <= `to`, with control points of its own.
+/// The part of a curve between two parameters, `from` <= `to`, with its own control points.
 class PartOfCurve {
  public:
   PartOfCurve(const Curve& curve, double from, double to);
@@ -77,12 +77,12 @@ class PartOfCurve {
   double weight_;
 };
 
-/// Appends points of the curve, without its beginning and with its end, so that the lines between
-/// them are within `tolerance` of it; 2^14 of them at the most.
+/// Appends points of the curve, excluding its start but including its end, so that the chords are
+/// within `tolerance` of it; at most 2^14 points.
 void append_flattened(const Curve& curve, double tolerance, std::vector<Point2>* points);
 
-/// Appends where a polynomial in Bernstein form on [from, to], by its coefficients, changes its
-/// sign inside.
+/// Appends the sign changes, inside (from, to), of a polynomial given by its Bernstein coefficients
+/// on [from, to].
 void append_sign_changes(std::span<const double> coefficients, double from, double to,
                          std::vector<double>* changes);
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Sets of numbers that are joined (Galler and Fischer 1964), with paths halved (van Leeuwen and
-// van der Weide 1977).
+// Union-find (Galler and Fischer 1964) with path halving (van Leeuwen and van der Weide 1977).
 #pragma once
 
 #include <algorithm>
@@ -13,18 +12,18 @@
 
 namespace prefilter {
 
-/// The root of a set is its lowest member, in whatever order sets are joined.
+/// The root of a set is its lowest member, regardless of the order of joins.
 template <typename Index>
 class DisjointSets {
  public:
-  /// Of one member each.
+  /// Sets of one member each.
   explicit DisjointSets(std::size_t count = 0) : above_(count) {
     std::iota(above_.begin(), above_.end(), Index{0});
   }
 
   std::size_t size() const { return above_.size(); }
 
-  /// Adds a set of one member, and returns that.
+  /// Adds a set with one member, and returns it.
   Index add() {
     above_.push_back(static_cast<Index>(above_.size()));
     return above_.back();
@@ -41,7 +40,7 @@ class DisjointSets {
     above_[at(std::max(a, b))] = std::min(a, b);
   }
 
-  /// As `join`, from several threads at a time.
+  /// `join`, callable by several threads concurrently.
   void join_from_threads(Index i, Index j) {
     while (true) {
       const Index a = halve_from_threads(i);
@@ -54,14 +53,14 @@ class DisjointSets {
     }
   }
 
-  /// Of each member, its root.
+  /// The root of each member.
   std::vector<Index> roots() && {
-    // What is above is lower, and has its root already.
+    // Parents are lower, so they already refer to their roots.
     for (Index& above : above_) above = above_[at(above)];
     return std::move(above_);
   }
 
-  /// Of each member, its set's number, in order of roots; there are `*count`.
+  /// The number of each member's set, in order of roots; sets `*count` to the number of sets.
   std::vector<Index> numbers(Index* count) const {
     std::vector<Index> result(above_.size());
     *count = 0;
@@ -83,7 +82,7 @@ class DisjointSets {
     while (true) {
       const Index above = link(i).load(std::memory_order_relaxed);
       if (above == i) return i;
-      // A root is only ever joined to a lower one, so whatever is above stays so.
+      // Roots are only joined to lower ones, so ancestors remain ancestors.
       const Index next = link(above).load(std::memory_order_relaxed);
       if (next != above) link(i).store(next, std::memory_order_relaxed);
       i = next;

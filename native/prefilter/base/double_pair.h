@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Two doubles, four integers: for inner loops.
+// SIMD pairs of doubles and quadruples of integers.
 #pragma once
 
 #include <cmath>
@@ -12,7 +12,7 @@
 namespace prefilter {
 
 using DoublePair = Vector<double, 2>;
-/// Counted modulo 2^32.
+/// Arithmetic is modulo 2^32.
 using IntFour = Vector<std::uint32_t, 4>;
 
 inline DoublePair pair_of(double value) { return DoublePair{value, value}; }
@@ -36,18 +36,18 @@ inline void store_four(std::uint32_t* to, IntFour values) {
 }
 
 #if defined(PREFILTER_SSE4_1)
-/// The second where one is not a number.
+/// Returns the second operand if either is NaN.
 inline DoublePair lower(DoublePair a, DoublePair b) { return _mm_min_pd(a, b); }
 inline DoublePair higher(DoublePair a, DoublePair b) { return _mm_max_pd(a, b); }
 inline DoublePair floor(DoublePair a) { return _mm_floor_pd(a); }
 inline DoublePair sqrt(DoublePair a) { return _mm_sqrt_pd(a); }
-/// Which are not within `most` of 0, as bits.
+/// Bit mask of the elements whose magnitude is not at most `most`.
 inline int farther(DoublePair a, double most) {
   const __m128d size = _mm_andnot_pd(_mm_set1_pd(-0.0), a);
   return _mm_movemask_pd(_mm_cmpnle_pd(size, _mm_set1_pd(most)));
 }
-/// Rounded to the nearest, halves to even, in the first two; 2^31 where that has no 32 bits. The
-/// others are 0.
+/// Rounds to nearest, ties to even, into the first two elements; 2^31 if out of range. The others
+/// are 0.
 inline IntFour round_to_int(DoublePair a) { return reinterpret_cast<IntFour>(_mm_cvtpd_epi32(a)); }
 #else
 inline DoublePair lower(DoublePair a, DoublePair b) {
@@ -63,14 +63,14 @@ inline int farther(DoublePair a, double most) {
 }
 inline IntFour round_to_int(DoublePair a) {
   const auto rounded = [](double value) {
-    // As x86 has it where there is no such integer.
+    // The result of the x86 instruction if out of range.
     return std::abs(value) < 0x1p31 ? static_cast<std::uint32_t>(std::lrint(value)) : 1U << 31;
   };
   return IntFour{rounded(a[0]), rounded(a[1]), 0, 0};
 }
 #endif
 
-/// Rounded to the nearest, halves to even, modulo 2^32. The value must be within 2^63.
+/// Rounds to nearest, ties to even, modulo 2^32. The value must be within 2^63.
 inline std::uint32_t to_steps(double value) {
 #if defined(PREFILTER_SSE4_1)
   return static_cast<std::uint32_t>(_mm_cvtsd_si64(_mm_set_sd(value)));
@@ -79,8 +79,8 @@ inline std::uint32_t to_steps(double value) {
 #endif
 }
 
-/// 16 numbers that are counted as of below 0, too, times a factor, as bytes: rounded to the
-/// nearest, and those outside to 0 or 255.
+/// Converts 16 numbers, as signed integers times a factor, to bytes: rounded to nearest and clamped
+/// to 0 and 255.
 #if defined(PREFILTER_SSE4_1)
 inline void store_bytes(std::uint8_t* to, const std::uint32_t* values, float factor) {
   const auto four = [&](int i) {
@@ -101,7 +101,7 @@ inline void store_bytes(std::uint8_t* to, const std::uint32_t* values, float fac
 }
 #endif
 
-/// The first two of each.
+/// The first two elements of each.
 inline IntFour joined(IntFour low, IntFour high) { return shuffle<0, 1, 4, 5>(low, high); }
 
 }  // namespace prefilter

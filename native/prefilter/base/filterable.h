@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What can be filtered.
+// Checks of images before filtering.
 #pragma once
 
 #include <cmath>
@@ -13,13 +13,13 @@ namespace prefilter {
 /// Throws Error unless the image, called `name`, has 1 to 4 channels.
 void check_channels(const ImageView& image, const char* name = "image");
 
-/// Weighted sums over whole images of values up to this large do not overflow.
+/// Magnitude up to which weighted sums over whole images do not overflow.
 inline constexpr float kLargestValue = 1e30F;
 
-/// False for what is not a number, infinite or too large.
+/// False for NaN, infinite and too large values.
 inline bool is_filterable(float value) { return std::abs(value) <= kLargestValue; }
 
-/// True where every value of the image can be filtered.
+/// Whether all values of the image can be filtered.
 bool all_filterable(const ImageView& image, const Progress& progress, int threads);
 
 }  // namespace prefilter

@@ -10,7 +10,7 @@
 
 namespace prefilter {
 
-/// Gauss's rule of K points on [0, 1].
+/// The Gauss rule of K points on [0, 1].
 template <int K>
 struct GaussRule {
   std::array<double, K> nodes;
@@ -20,9 +20,9 @@ struct GaussRule {
 template <int K>
 const GaussRule<K>& gauss_rule() {
   static const GaussRule<K> rule = [] {
-    GaussRule<K> made{};
+    GaussRule<K> gauss{};
     for (int i = 0; i < K; ++i) {
-      // Newton's steps to a root of Legendre's polynomial, from Chebyshev's.
+      // Newton's method for a root of the Legendre polynomial, starting from Chebyshev's.
       double x = elementary::cos(std::numbers::pi * (i + 0.75) / (K + 0.5));
       double slope = 1.0;
       for (int step = 0; step < 20; ++step) {
@@ -36,10 +36,10 @@ const GaussRule<K>& gauss_rule() {
         slope = K * (x * value - before) / (x * x - 1.0);
         x -= value / slope;
       }
-      made.nodes[i] = 0.5 - 0.5 * x;
-      made.weights[i] = 1.0 / ((1.0 - x * x) * slope * slope);
+      gauss.nodes[i] = 0.5 - 0.5 * x;
+      gauss.weights[i] = 1.0 / ((1.0 - x * x) * slope * slope);
     }
-    return made;
+    return gauss;
   }();
   return rule;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Up to four channels, added and multiplied together by the processor.
+// SIMD vectors of up to four channels.
 #pragma once
 
 #include "prefilter/base/image.h"
@@ -8,13 +8,13 @@
 
 namespace prefilter {
 
-/// A float for each of kMaxChannels channels; those that an image lacks are unused.
+/// A float for each of kMaxChannels channels; unused ones are arbitrary.
 using Lanes = Vector<float, kMaxChannels>;
 
 inline Lanes lane_max(Lanes a, Lanes b) { return select(a > b, a, b); }
 inline Lanes lane_min(Lanes a, Lanes b) { return select(a < b, a, b); }
 
-/// A vector of the processor where a template argument is needed.
+/// A wrapper for use as a template argument, where vector attributes would be lost.
 struct LaneValues {
   Lanes v{};
 };

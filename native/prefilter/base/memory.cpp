@@ -18,9 +18,9 @@ std::string in_gigabytes(double bytes) {
 }  // namespace
 
 void check_memory(const std::string& what, double bytes) {
-  // What a stack holds is there; asking takes longer than drawing an icon.
-  constexpr double kAlwaysThere = 1 << 20;
-  if (bytes <= kAlwaysThere) return;
+  // Small amounts are always available; the query would take longer than drawing an icon.
+  constexpr double kAlwaysAvailable = 1 << 20;
+  if (bytes <= kAlwaysAvailable) return;
   const auto available = static_cast<double>(available_memory());
   if (bytes <= available) return;
   throw Error(ErrorCode::kOutOfMemory, what + " needs about " + in_gigabytes(bytes) + "; " +

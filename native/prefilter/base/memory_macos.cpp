@@ -9,7 +9,7 @@
 namespace prefilter {
 
 std::uint64_t available_memory() {
-  // What mach_host_self gives is to be given back.
+  // mach_host_self returns a port that must be released.
   const host_t host = mach_host_self();
   vm_size_t page_size = 0;
   vm_statistics64_data_t pages{};
@@ -20,7 +20,7 @@ std::uint64_t available_memory() {
           KERN_SUCCESS;
   mach_port_deallocate(mach_task_self(), host);
   if (!is_known) return std::numeric_limits<std::uint64_t>::max();
-  // Pages that nobody has used for a while are given to whoever asks.
+  // Inactive pages are reclaimed on demand.
   const std::uint64_t available = std::uint64_t{pages.free_count} + pages.inactive_count;
   return available * page_size;
 }

@@ -15,7 +15,7 @@ std::uint64_t available_memory() {
   MEMORYSTATUSEX status{};
   status.dwLength = sizeof status;
   if (GlobalMemoryStatusEx(&status) == 0) return std::numeric_limits<std::uint64_t>::max();
-  // Memory is promised only up to a limit, that of page files and memory together.
+  // Allocations are also limited by the total of memory and page files.
   return std::min(status.ullAvailPhys, status.ullAvailPageFile);
 }
 

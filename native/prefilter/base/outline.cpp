@@ -9,7 +9,7 @@
 namespace prefilter {
 namespace {
 
-// By factors: vectors that are told so for each contour would be copied for each.
+// Grows geometrically: exact reserves for each contour would copy the vector each time.
 template <typename T>
 void reserve_more(std::size_t count, std::vector<T>* values) {
   const std::size_t needed = values->size() + count;
@@ -24,7 +24,7 @@ void Outline::move_to(const Point2& point) {
   points_.push_back(point);
 }
 
-// A segment begins at the last point there is: that of the move, or the end of the one before it.
+// A segment starts at the last point: that of a move, or the end of the preceding segment.
 void Outline::begin_segment() {
   assert(!contours_.empty());
   if (!contours_.back().is_closed) return;

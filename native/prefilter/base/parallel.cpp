@@ -15,22 +15,22 @@ namespace prefilter {
 namespace {
 constexpr int kMaxThreads = 64;
 
-// Up to `count` threads, each running body(rank) with ranks from 1; fewer where the system has no
-// more. The destructor waits for them. (Not std::jthread: libc++ before version 20 hides it.)
-class Helpers {
+// Up to `count` threads, each running body(rank) with ranks from 1; fewer if the system cannot
+// create more. The destructor joins them. (std::jthread is hidden in libc++ before version 20.)
+class WorkerThreads {
  public:
   template <typename Body>
-  Helpers(int count, const Body& body) {
+  WorkerThreads(int count, const Body& body) {
     threads_.reserve(static_cast<std::size_t>(std::max(count, 0)));
     try {
       for (int rank = 1; rank <= count; ++rank) threads_.emplace_back(body, rank);
     } catch (const std::exception&) {
-      // No thread or no memory for one: the work is shared among those that there are.
+      // Thread creation failed: the work is shared among the existing threads.
     }
   }
-  Helpers(const Helpers&) = delete;
-  Helpers& operator=(const Helpers&) = delete;
-  ~Helpers() {
+  WorkerThreads(const WorkerThreads&) = delete;
+  WorkerThreads& operator=(const WorkerThreads&) = delete;
+  ~WorkerThreads() {
     for (std::thread& thread : threads_) thread.join();
   }
 
@@ -43,7 +43,7 @@ class Helpers {
 
 int resolve_threads(int threads) {
   if (threads > 0) return std::min(threads, kMaxThreads);
-  // Asked once: the system reads a file for it, which takes longer than drawing an icon.
+  // Cached, as the system reads a file, which takes longer than drawing an icon.
   static const int processors = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   return processors;
 }
@@ -74,11 +74,11 @@ void parallel_for(std::int64_t count, int threads, const Progress& progress,
   const auto helper_count =
       static_cast<int>(std::min<std::int64_t>(resolve_threads(threads), count)) - 1;
   {
-    const Helpers helpers(helper_count, [&](int) { work(false); });
+    const WorkerThreads workers(helper_count, [&](int) { work(false); });
     work(true);
   }
   if (failure) std::rethrow_exception(failure);
-  progress.report(1.0);  // A helper may have ended last.
+  progress.report(1.0);  // another thread may have finished last
 }
 
 void parallel_ranges(std::int64_t count, std::int64_t grain, int threads, const Progress& progress,
@@ -96,19 +96,19 @@ void parallel_team(int threads, const std::function<void(Team&)>& body) {
     body(alone);
     return;
   }
-  // The barrier is made once it is known how many threads there are; until then they wait.
+  // The barrier is created once the number of threads is known; until then they wait.
   std::optional<std::barrier<>> barrier;
   std::atomic<int> size{0};
-  const Helpers helpers(threads - 1, [&](int rank) {
+  const WorkerThreads workers(threads - 1, [&](int rank) {
     size.wait(0);
     Team member(rank, size, &*barrier);
     body(member);
   });
-  const int found = helpers.count() + 1;
-  barrier.emplace(found);
-  size.store(found);
+  const int team_size = workers.count() + 1;
+  barrier.emplace(team_size);
+  size.store(team_size);
   size.notify_all();
-  Team member(0, found, &*barrier);
+  Team member(0, team_size, &*barrier);
   body(member);
 }
 

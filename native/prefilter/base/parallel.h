@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Parallel loops whose results do not depend on the number of threads: each index writes only what
-// is its own, and sums are kept per index and added up in order by the caller.
+// Parallel loops whose results do not depend on the number of threads: each index only writes its
+// own data, and the caller adds up per-index sums in order.
 #pragma once
 
 #include <barrier>
@@ -12,29 +12,28 @@
 
 namespace prefilter {
 
-/// The number of threads that an argument asks for: itself (64 at the most), or for 0 one per
-/// processor.
+/// The number of threads for an argument: itself, at most 64, or for 0 one per processor.
 int resolve_threads(int threads);
 
-/// Calls body(i) once for every i in [0, count), on up to `threads` threads, in no set order.
-/// Rethrows the first exception of a body. The calling thread takes part and reports to `progress`
-/// between its indices; where that cancels, the others stop after the index in hand, and while that
-/// waits, so do they.
+/// Calls body(i) once for every i in [0, count), on up to `threads` threads, in unspecified order.
+/// Rethrows the first exception of a body. The calling thread participates, and reports to
+/// `progress` between its indices. If that cancels, the others stop after their current index;
+/// while its callback waits, they wait too.
 void parallel_for(std::int64_t count, int threads, const Progress& progress,
                   const std::function<void(std::int64_t)>& body);
 
-/// How many ranges parallel_ranges makes of [0, count): count / grain, rounded up.
+/// Number of ranges that parallel_ranges divides [0, count) into: count / grain, rounded up.
 constexpr std::int64_t range_count(std::int64_t count, std::int64_t grain) {
   return count / grain + (count % grain != 0 ? 1 : 0);
 }
 
-/// Calls body(begin, end) for every range of [0, count) from a multiple of `grain`, 1 or more, to
-/// the next or to the end: parallel_for over range_count(count, grain) ranges, where what an index
-/// takes is too short to be handed out by itself. The range that begins at b is number b / grain.
+/// Calls body(begin, end) for every range of [0, count) from a multiple of `grain`, at least 1, to
+/// the next or to the end. For indices that are too cheap to be scheduled individually. Range b /
+/// grain starts at b.
 void parallel_ranges(std::int64_t count, std::int64_t grain, int threads, const Progress& progress,
                      const std::function<void(std::int64_t, std::int64_t)>& body);
 
-/// A group of threads that walk through the same steps together.
+/// A team of threads that execute the same steps together.
 class Team {
  public:
   Team(int rank, int size, std::barrier<>* barrier) : rank_(rank), size_(size), barrier_(barrier) {}
@@ -43,7 +42,7 @@ class Team {
   void wait_for_all() {
     if (barrier_ != nullptr) barrier_->arrive_and_wait();
   }
-  /// This member's share of [0, count): contiguous, in order of rank.
+  /// This member's part of [0, count): contiguous, in order of rank.
   std::int64_t share_begin(std::int64_t count) const { return count * rank_ / size_; }
   std::int64_t share_end(std::int64_t count) const { return count * (rank_ + 1) / size_; }
 
@@ -53,8 +52,8 @@ class Team {
   std::barrier<>* barrier_;
 };
 
-/// Runs body on `threads` threads at once, or on as many as the system has. The body must not
-/// throw, and all members must reach the same calls of wait_for_all.
+/// Runs body on `threads` threads concurrently, or on as many as the system can create. The body
+/// must not throw, and all members must make the same calls of wait_for_all.
 void parallel_team(int threads, const std::function<void(Team&)>& body);
 
 }  // namespace prefilter

@@ -8,8 +8,8 @@
 
 namespace prefilter {
 namespace {
-constexpr std::chrono::milliseconds kInterval{30};
-// A callback may wait for a lock, such as Python's, which is no reason to keep all threads waiting.
+constexpr std::chrono::milliseconds kReportInterval{30};
+// A callback may wait for a lock, such as Python's, which should not stall all threads.
 constexpr std::chrono::milliseconds kPatience{200};
 
 std::int64_t ticks(std::chrono::steady_clock::duration time) {
@@ -18,7 +18,7 @@ std::int64_t ticks(std::chrono::steady_clock::duration time) {
 
 std::int64_t now_in_ticks() { return ticks(std::chrono::steady_clock::now().time_since_epoch()); }
 
-// Marks for how long a callback runs, whichever way it ends.
+// Records the time at which a callback was entered, for as long as it runs.
 class Call {
  public:
   explicit Call(std::atomic<std::int64_t>* called_at) : called_at_(called_at) {
@@ -52,7 +52,7 @@ void Progress::report(double fraction) const {
   const double whole =
       std::max(state_->highest, from_ + (to_ - from_) * std::clamp(fraction, 0.0, 1.0));
   const auto now = std::chrono::steady_clock::now();
-  if (whole < 1.0 && now - state_->last < kInterval) return;
+  if (whole < 1.0 && now - state_->last < kReportInterval) return;
   state_->last = now;
   state_->highest = whole;
   const Call call(&state_->called_at);

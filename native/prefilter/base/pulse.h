@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Canceling in the middle of steps whose number is not known.
+// Cancellation in loops with an unknown number of steps.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace prefilter {
 
-/// Reports that a part of the work is at its beginning, every some thousand steps: what a long sort
-/// or a library's loop has to offer for a cancel to be heard. The progress must outlive it.
+/// Reports 0 progress every few thousand steps, so that long sorts and library loops can be
+/// cancelled. The progress must outlive it.
 class Pulse {
  public:
   explicit Pulse(const Progress& progress) : progress_(progress) {}

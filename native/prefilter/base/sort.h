@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Sorting of much, on several threads, that can be stopped on the way.
+// Parallel, cancellable sorting.
 #pragma once
 
 #include <algorithm>
@@ -15,10 +15,10 @@ namespace prefilter {
 
 namespace sort_detail {
 
-constexpr std::size_t kPiece = 1U << 15;  // a few milliseconds of work
+constexpr std::size_t kPiece = 1U << 15;  // elements; a few milliseconds of work
 
-/// How many of the first `count` elements of two merged sorted ranges come from the first one,
-/// which goes first where elements are equal.
+/// Number of elements from the first range among the first `count` elements of two merged sorted
+/// ranges. Equal elements of the first range come first.
 template <typename T, typename Less>
 std::size_t share_of_first(const T* a, std::size_t a_size, const T* b, std::size_t b_size,
                            std::size_t count, const Less& less) {
@@ -46,8 +46,9 @@ void merge_piece(const T* a, std::size_t a_size, const T* b, std::size_t b_size,
 
 }  // namespace sort_detail
 
-/// Sorts by an order in which no two elements that differ are equal. Needs the same memory again.
-/// Throws Error(kCancelled), and then leaves the elements in some order.
+/// Sorts by a strict total order, under which distinct elements are never equivalent. Needs the
+/// same amount of memory again. Throws Error(kCancelled), and then leaves the elements in some
+/// order.
 template <typename T, typename Less = std::less<T>>
 void sort_in_parallel(std::vector<T>* values, const Progress& progress, int threads,
                       const Less& less = Less()) {
@@ -56,7 +57,7 @@ void sort_in_parallel(std::vector<T>* values, const Progress& progress, int thre
   const auto pieces = static_cast<std::int64_t>((count + kPiece - 1) / kPiece);
   int passes = 0;
   while ((kPiece << passes) < count) ++passes;
-  // A pass costs about a sixth of the sorting of the pieces.
+  // A pass takes about a sixth of the time of sorting the pieces.
   const double pass_share = 1.0 / (6.0 + passes);
   const double sorted = 1.0 - passes * pass_share;
   parallel_for(pieces, threads, progress.part(0.0, sorted), [&](std::int64_t piece) {

@@ -8,7 +8,7 @@
 
 namespace prefilter {
 
-/// A number in as few characters as tell it: 0.25, 1e-09, nan.
+/// Formats a number with %g: 0.25, 1e-09, nan.
 inline std::string to_text(double value) {
   char buffer[32];
   std::snprintf(buffer, sizeof buffer, "%g", value);

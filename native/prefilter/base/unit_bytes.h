@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Values from 0 to 1 as bytes.
+// Converts values from 0 to 1 to bytes.
 #pragma once
 
 #include <cmath>
@@ -12,8 +12,8 @@
 
 namespace prefilter {
 
-/// The float nearest to a value, from 0 to 1 as 0 to 255: rounded to the nearest, halves to even,
-/// and cut off outside. What is no number is 0.
+/// Converts a value from 0..1 to 0..255: rounded to nearest, ties to even, and clamped. NaN becomes
+/// 0.
 template <typename T>
 std::uint8_t unit_byte(T value) {
   const auto number = static_cast<float>(value);
@@ -28,13 +28,13 @@ inline __m128 load_floats(const double* from) {
 }
 #endif
 
-/// All of them.
+/// Converts many values.
 template <typename T>
 void unit_bytes(std::span<const T> values, std::uint8_t* out) {
   std::size_t i = 0;
 #if defined(PREFILTER_SSE4_1)
   const auto four = [&](std::size_t at) {
-    // What is below 0 or no number stays so, and packing makes 0 of that.
+    // Negative values and NaN remain, and are clamped to 0 by packing.
     const __m128 below = _mm_min_ps(_mm_set1_ps(1.0F), load_floats(values.data() + at));
     return _mm_cvtps_epi32(_mm_mul_ps(below, _mm_set1_ps(255.0F)));
   };

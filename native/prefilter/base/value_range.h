@@ -5,7 +5,7 @@
 
 namespace prefilter {
 
-/// Lowest and highest value a channel may take.
+/// Lowest and highest value of a channel.
 struct ValueRange {
   float low;
   float high;

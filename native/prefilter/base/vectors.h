@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Vectors of a few numbers, which the processor works out together. Arithmetic, comparisons and
-// shifts go number by number, as operators do; what has no operator is a function here.
+// Short SIMD vectors. Operators are elementwise; operations without an operator are functions.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
 
-// PREFILTER_PLAIN_VECTORS asks for the plain ones where a compiler has vectors, too.
+// PREFILTER_PLAIN_VECTORS selects the plain implementation even if the compiler has vectors.
 #if defined(__has_builtin) && !defined(PREFILTER_PLAIN_VECTORS)
 #if __has_builtin(__builtin_shufflevector) && __has_builtin(__builtin_convertvector)
 #define PREFILTER_COMPILER_VECTORS
@@ -21,12 +20,12 @@
 
 namespace prefilter {
 
-/// Plain C++, for compilers without vectors. Results have the same bits.
+/// Plain C++, for compilers without vector extensions. Results are bitwise the same.
 template <typename T, int kCount>
 struct PlainVector {
   T values[kCount];
 
-  /// What comparisons have for each number: -1 where they hold, else 0.
+  /// Result of comparisons: -1 where they hold, else 0.
   using Mask = PlainVector<
       std::conditional_t<
           sizeof(T) == 8, std::int64_t,
@@ -116,19 +115,19 @@ struct CompilerVector {
 template <typename T, int kCount>
 using Vector = typename CompilerVector<T, kCount>::Type;
 
-/// The number of `a` where the mask of a comparison is not 0, else that of `b`.
+/// Elements of `a` where the mask of a comparison is not 0, else those of `b`.
 template <typename Mask, typename Values>
 inline Values select(Mask mask, Values a, Values b) {
   return mask ? a : b;
 }
 
-/// The numbers of `a` and then `b` at these places.
+/// Elements of `a` followed by `b` at these indices.
 template <int... kPlaces, typename Values>
 inline auto shuffle(Values a, Values b) {
   return __builtin_shufflevector(a, b, kPlaces...);
 }
 
-/// As many numbers of another type, each converted as static_cast does.
+/// Converts each element like static_cast.
 template <typename To, typename From>
 inline To convert(From from) {
   return __builtin_convertvector(from, To);

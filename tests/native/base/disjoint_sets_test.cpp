@@ -27,7 +27,7 @@ Pairs random_pairs(std::int32_t members, std::size_t count) {
   return pairs;
 }
 
-// The lowest number that each can reach, by giving it on until nothing changes.
+// The lowest number that each can reach, by propagating it until nothing changes.
 std::vector<std::int32_t> lowest_reached(std::int32_t members, const Pairs& pairs) {
   std::vector<std::int32_t> lowest(static_cast<std::size_t>(members));
   for (std::int32_t i = 0; i < members; ++i) lowest[static_cast<std::size_t>(i)] = i;

@@ -15,17 +15,17 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// How many doubles lie between two numbers of a sign, at the most.
+// The number of doubles between two numbers of the same sign, clamped.
 double steps_between(double a, double b) {
   if (a == b) return 0.0;
   const double step = std::nextafter(std::abs(b), kInfinity) - std::abs(b);
   return std::abs(a - b) / step;
 }
 
-// The C library's own is off by more than ours.
+// The C library's error is larger than ours.
 double exact_cbrt(double x) { return static_cast<double>(std::cbrt(static_cast<long double>(x))); }
 
-TEST(Elementary, DifferHardlyFromTheSystems) {
+TEST(Elementary, MatchTheSystemLibrary) {
   std::mt19937_64 bits(7);
   const auto random = [&](double low, double high) {
     return low + (high - low) * static_cast<double>(bits() >> 11) * 0x1p-53;
@@ -72,7 +72,7 @@ TEST(Elementary, LengthsNeitherOverflowNorUnderflow) {
   EXPECT_TRUE(std::isnan(elementary::hypot(0.0, std::nan(""))));
 }
 
-// The hash is that of the builds for x86-64 and arm64: no other system may have another one.
+// The hash of the builds for x86-64 and arm64; all other systems must have the same.
 TEST(Elementary, AreTheSameEverywhere) {
   std::uint64_t hash = 0;
   std::uint64_t state = 1;

@@ -25,7 +25,7 @@ std::string refusal(const char* name) {
   return {};
 }
 
-TEST(Names, LeadThereAndBack) {
+TEST(Names, RoundTrip) {
   for (const Named<Season>& one : kSeasons) {
     EXPECT_EQ(value_named("season", one.name, kSeasons), one.value);
     EXPECT_EQ(name_in(kSeasons, one.value), one.name);
@@ -33,13 +33,13 @@ TEST(Names, LeadThereAndBack) {
   EXPECT_EQ(name_in(kSeasons, Season::kWinter), "");
 }
 
-TEST(Names, OthersAreRefusedWithAllThereAre) {
+TEST(Names, UnknownNamesListTheValidOnes) {
   EXPECT_EQ(refusal("winter"), "season: 'winter' is not one of spring, autumn");
   EXPECT_EQ(refusal(""), "season: '' is not one of spring, autumn");
   EXPECT_EQ(refusal("Spring"), "season: 'Spring' is not one of spring, autumn");
 }
 
-TEST(Names, AreTakenFromWhatHasThem) {
+TEST(Names, WorkForAnyElements) {
   struct Box {
     std::string name;
     int size;

@@ -33,7 +33,7 @@ TEST(ParallelFor, PassesOnTheExceptionOfABody) {
   EXPECT_THROW(fail(), std::runtime_error);
 }
 
-TEST(ParallelFor, ReportsTheEndWhenAHelperIsLast) {
+TEST(ParallelFor, ReportsTheEndWhenAWorkerIsLast) {
   const std::thread::id caller = std::this_thread::get_id();
   std::vector<double> seen;
   const Progress progress([&](double fraction) {
@@ -60,25 +60,26 @@ TEST(ParallelFor, StopsSoonWhenCancelled) {
   });
   const auto run = [&] {
     parallel_for(kCount, 2, progress, [&](std::int64_t) {
-      // The helper is held back until then, however the threads are scheduled.
+      // The worker thread is held back until then, regardless of scheduling.
       while (std::this_thread::get_id() != caller && !is_cancelled) std::this_thread::yield();
       if (is_cancelled) ++visits_after;
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     });
   };
   EXPECT_THROW(run(), Error);
-  // The index that the helper was held in, and those that it began before the caller had returned
-  // from its report; without a stop they would be all that the caller has left.
+  // The index in which the worker was held, and indices that it started before the caller returned
+  // from its report. Without cancellation it would visit all the remaining ones.
   EXPECT_LT(visits_after, kCount / 2);
 }
 
-TEST(ParallelFor, HelpersWaitForACallbackThatDoes) {
+TEST(ParallelFor, WorkersWaitForThePausedCallback) {
   std::atomic<int> visits = 0;
   int before = 0;
   int after = 0;
   const Progress progress([&](double fraction) {
     if (fraction < 1.0 && after == 0) {
-      // Helpers go on for a fifth of a second, and end the index in hand: on a busy machine later.
+      // Workers continue for a fifth of a second, and finish the current index, later on a busy
+      // machine.
       do {
         before = visits;
         std::this_thread::sleep_for(std::chrono::milliseconds(400));
@@ -92,7 +93,7 @@ TEST(ParallelFor, HelpersWaitForACallbackThatDoes) {
     ++visits;
   });
   EXPECT_GT(after, 0);
-  // Without a wait they would have visited all but those of the caller.
+  // Without waiting they would have visited all other indices.
   EXPECT_LT(after, 1500);
   EXPECT_EQ(visits, 2000);
 }

@@ -11,7 +11,7 @@
 namespace prefilter {
 namespace {
 
-// Every byte, both of its ends, and what is outside, at every place of a vector.
+// Every byte, both of its limits, and values out of range, at every position of a vector.
 TEST(UnitBytes, AreTheNearest) {
   std::vector<double> values = {-HUGE_VAL, -1.0, -0.0,
                                 HUGE_VAL,  1.5,  std::numeric_limits<double>::quiet_NaN()};

@@ -18,7 +18,7 @@ std::array<T, kCount> numbers(const Values& values) {
   return out;
 }
 
-// The vectors of the compiler, where it has some, and the plain ones must do what loops do.
+// Compiler vectors, if available, and plain vectors must agree with loops.
 template <typename Floats, typename Integers, typename Words, typename Bytes>
 void expect_arithmetic() {
   const Floats a{1.5F, -2.0F, 0.1F, 7.0F};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Elementary functions whose results have the same bits everywhere: those of C libraries differ,
-// also between processors. They err by less than 1 unit in the last place.
+// Elementary functions with bitwise the same results on all platforms, unlike those of C libraries,
+// which also differ between processors. Errors are below 1 unit in the last place.
 #pragma once
 
 #include <algorithm>
@@ -39,7 +39,7 @@ inline float pow(float x, float y) { return prefilter_powf(x, y); }
 inline double sin(double x) { return prefilter_sin(x); }
 inline double tan(double x) { return prefilter_tan(x); }
 
-/// The length of (x, y, z), also where its square is beyond the range of doubles.
+/// The length of (x, y, z), even if its square is beyond the range of doubles.
 inline double hypot(double x, double y, double z = 0.0) {
   const double square = x * x + y * y + z * z;
   if (square >= 0x1p-900 && square <= 0x1p900) return std::sqrt(square);

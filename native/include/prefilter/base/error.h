@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The one exception type of the library.
+// The only exception type of the library.
 //
-// Entry functions throw it for arguments that are out of range; the message names the argument,
-// what was found and what is allowed. Inner functions trust their preconditions and assert them.
+// Entry functions throw it for arguments that are out of range; the message contains the argument,
+// its value and the valid range. Inner functions assert their preconditions.
 #pragma once
 
 #include <stdexcept>
@@ -13,9 +13,9 @@ namespace prefilter {
 
 enum class ErrorCode {
   kInvalidArgument,  // a value that the caller can correct
-  kCancelled,        // the progress callback asked to stop
-  kOutOfMemory,      // the result would not fit into memory
-  kFile,             // the system refuses to open, read or write a file
+  kCancelled,        // the progress callback requested cancellation
+  kOutOfMemory,      // the result would exceed the memory
+  kFile,             // a file cannot be opened, read or written
 };
 
 class Error : public std::runtime_error {

@@ -18,7 +18,7 @@
 
 namespace prefilter {
 
-/// The difference of any two coordinates has to be finite as well.
+/// Differences of two coordinates must be finite as well.
 inline constexpr double kLargestCoordinate = 1e300;
 
 /// A point or a direction.
@@ -39,12 +39,12 @@ inline double dot(const Vector3& a, const Vector3& b) {
 inline Vector3 cross(const Vector3& a, const Vector3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-/// Neither overflows nor underflows on the way.
+/// Does not overflow or underflow internally.
 inline double length(const Vector3& a) { return elementary::hypot(a[0], a[1], a[2]); }
-/// The same where squares of the coordinates neither overflow nor underflow, and quicker.
+/// Faster, but overflows or underflows if squares of the coordinates do.
 inline double plain_length(const Vector3& a) { return std::sqrt(dot(a, a)); }
 
-/// A box along the axes.
+/// An axis-aligned box.
 struct Box {
   Vector3 low{};
   Vector3 high{};
@@ -64,7 +64,7 @@ struct Box {
       high[a] = std::max(high[a], other.high[a]);
     }
   }
-  /// Whether the boxes have a point in common.
+  /// Whether the boxes have a common point.
   bool overlaps(const Box& other) const {
     for (int a = 0; a < 3; ++a) {
       if (low[a] > other.high[a] || high[a] < other.low[a]) return false;
@@ -81,14 +81,14 @@ struct Box {
   }
 };
 
-/// The box that holds nothing: what it includes first becomes the box.
+/// The empty box; including a first point or box yields exactly that.
 inline constexpr Box kEmptyBox = {
     {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
      std::numeric_limits<double>::infinity()},
     {-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
      -std::numeric_limits<double>::infinity()}};
 
-/// Triangles that share vertices, as someone else holds them; counter-clockwise seen from outside.
+/// A view of triangles that share vertices; counterclockwise seen from outside.
 template <typename Index>
 struct MeshView {
   std::span<const Vector3> positions;
@@ -101,8 +101,7 @@ struct MeshView {
   }
 };
 
-/// Rows of three numbers as someone else holds them, in one of two types; they are read as the
-/// wider.
+/// A view of rows of three numbers in one of two types; reads return the wider type.
 template <typename Narrow, typename Wide>
 class RowView {
  public:
@@ -156,8 +155,7 @@ class RowView {
 using PositionView = RowView<float, double>;
 using TriangleView = RowView<std::int32_t, std::int64_t>;
 
-/// A mesh as callers pass it; counter-clockwise seen from outside. Its indices are not yet known to
-/// name vertices.
+/// A mesh passed by a caller; counterclockwise seen from outside. Indices may be out of range.
 struct InputMesh {
   PositionView positions;
   TriangleView triangles;
@@ -169,25 +167,25 @@ struct InputMesh {
   }
 };
 
-/// Triangles that share vertices; counter-clockwise seen from outside.
+/// Triangles that share vertices; counterclockwise seen from outside.
 struct TriangleMesh {
   std::vector<Vector3> positions;
   std::vector<std::array<std::int32_t, 3>> triangles;
 };
 
-/// Throws Error where a row holds a value that is not finite, or larger than `largest`. `rows` says
-/// what they are: "points: row".
+/// Throws Error if a value is not finite or its magnitude is above `largest`. `rows` is the prefix
+/// of row numbers in messages, as in "points: row".
 void check_points(const PositionView& points, const char* rows, double largest);
 
-/// Throws Error where an index names none of `count` vertices; `who` names it.
+/// Throws Error for an index that is out of range for `count` vertices; `who` identifies it.
 [[noreturn]] void throw_no_vertex(const std::string& who, std::int64_t vertex, std::size_t count);
 
-/// Throws Error for a mesh without triangles, or with more than the library counts (2^31 - 1
-/// vertices, 2^32 - 1 triangles); an index that names no vertex; a position as check_points says.
+/// Throws Error for a mesh without triangles, or with more than the library supports (2^31 - 1
+/// vertices, 2^32 - 1 triangles); for an index out of range; and for positions like check_points.
 void check_mesh(const InputMesh& mesh, double largest);
 
-/// Throws Error, with the name of the argument, where a box has no volume, is not finite, or is so
-/// thin for its distance from the origin that its finest cells have no volume.
+/// Throws Error, with the name of the argument, if a box has no volume, is not finite, or is so
+/// thin relative to its distance from the origin that its finest cells would have no volume.
 void check_box(const Box& box, const char* argument);
 
 }  // namespace prefilter

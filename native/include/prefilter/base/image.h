@@ -11,10 +11,10 @@
 
 namespace prefilter {
 
-/// Most channels an image may have.
+/// Maximum number of channels of an image.
 inline constexpr int kMaxChannels = 4;
 
-/// A view of interleaved rows without gaps: texel (x, y), channel c at data[(y * width + x) *
+/// A view of interleaved rows without padding: texel (x, y), channel c is at data[(y * width + x) *
 /// channels + c].
 struct ImageView {
   const float* data = nullptr;
@@ -32,18 +32,17 @@ struct ImageView {
   std::size_t value_count() const { return texel_count() * static_cast<std::size_t>(channels); }
 };
 
-/// Values of the 256 bytes, channel by channel.
+/// Values of the 256 bytes, per channel.
 using ByteValues = std::array<std::array<float, 256>, kMaxChannels>;
 
-/// The texels of an image as they are stored: floats, or bytes that stand for values. Bytes are
-/// turned into floats where they are read, so that an image of them takes no more memory than it
-/// does.
+/// The stored texels of an image: floats, or bytes with a table of values. Bytes are converted to
+/// floats when read, so that byte images need no further memory.
 class TexelSource {
  public:
   // NOLINTNEXTLINE(google-explicit-constructor): an image of floats is one
   TexelSource(const ImageView& floats)
       : width(floats.width), height(floats.height), channels(floats.channels), floats_(floats) {}
-  /// Interleaved rows without gaps, as ImageView has them.
+  /// Interleaved rows without padding, like ImageView.
   TexelSource(const std::uint8_t* bytes, int width_, int height_, int channels_,
               const ByteValues* values)
       : width(width_), height(height_), channels(channels_), bytes_(bytes), values_(values) {}
@@ -98,7 +97,7 @@ struct Image {
   }
 };
 
-/// What the bytes of an image stand for.
+/// Converts an image of bytes to floats.
 Image to_floats(const TexelSource& bytes, int threads);
 
 }  // namespace prefilter

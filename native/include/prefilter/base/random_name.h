@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What files are called until they are put in place.
+// Names of temporary files.
 #pragma once
 
 #include <cstddef>
@@ -8,11 +8,12 @@
 
 namespace prefilter {
 
-/// The digits of `random_name` that stand for this machine: its start and its name, four of each.
+/// Number of digits in `random_name` that identify this machine: half for its start, half for its
+/// name.
 constexpr std::size_t kMachineDigits = 8;
 
-/// ".prefilter-" and hexadecimal digits: those of this machine, and then eight that nobody else
-/// thinks of. What is left of a process that was killed is known by them.
+/// ".prefilter-" and hexadecimal digits: those of this machine, then eight random ones. Files left
+/// behind by killed processes are recognized by this pattern.
 std::string random_name();
 
 }  // namespace prefilter

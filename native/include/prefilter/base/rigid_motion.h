@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Turns and shifts, which keep all distances.
+// Rotations and translations.
 #pragma once
 
 #include <array>
@@ -10,25 +10,25 @@
 
 namespace prefilter {
 
-/// A motion: a point p goes to the products of the rows with p, plus the shift.
+/// A motion of points: p becomes the scalar products of the rows with p, plus the shift.
 struct RigidMotion {
   std::array<Vector3, 3> rows = {Vector3{1.0, 0.0, 0.0}, Vector3{0.0, 1.0, 0.0},
                                  Vector3{0.0, 0.0, 1.0}};
   Vector3 shift{};
 };
 
-/// Where a direction goes.
+/// Rotates a direction.
 inline Vector3 turned(const RigidMotion& motion, const Vector3& direction) {
   return {dot(motion.rows[0], direction), dot(motion.rows[1], direction),
           dot(motion.rows[2], direction)};
 }
 
-/// Where a point goes.
+/// Transforms a point.
 inline Vector3 moved(const RigidMotion& motion, const Vector3& point) {
   return turned(motion, point) + motion.shift;
 }
 
-/// Which point goes there.
+/// Transforms a point by the inverse motion.
 inline Vector3 moved_back(const RigidMotion& motion, const Vector3& point) {
   const Vector3 offset = point - motion.shift;
   Vector3 result{};
@@ -36,7 +36,7 @@ inline Vector3 moved_back(const RigidMotion& motion, const Vector3& point) {
   return result;
 }
 
-/// First one motion, then another.
+/// The composition of two motions.
 inline RigidMotion then(const RigidMotion& first, const RigidMotion& second) {
   RigidMotion result;
   for (std::size_t r = 0; r < 3; ++r) {

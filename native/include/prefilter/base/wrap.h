@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Wrap modes: what a texture lookup reads outside of the image.
+// Wrap modes: the texels that a lookup reads outside the image.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace prefilter {
 enum class Wrap {
   kClamp,   // the nearest texel of the image
   kRepeat,  // the image tiled
-  kBorder,  // zero, and what lies outside of the unit square weighs nothing
+  kBorder,  // zero; points outside the unit square have no weight
 };
 
 inline constexpr Named<Wrap> kWraps[] = {

@@ -11,12 +11,12 @@
 namespace prefilter {
 namespace {
 
-// Also tells the order of bytes.
+// Also detects a different byte order.
 constexpr std::uint64_t kMagic = 0x31504554'53464552;
-constexpr std::size_t kMostHeld = std::size_t{1} << 20U;
+constexpr std::size_t kMaxBufferedBytes = std::size_t{1} << 20U;
 constexpr std::uint64_t kWord = sizeof(std::uint64_t);
 
-// Not against anyone, but against what disks and networks do.
+// A checksum against disk and network errors, not against tampering.
 std::uint64_t sum_of(std::span<const std::byte> bytes) {
   std::uint64_t sum = bytes.size();
   for (std::size_t i = 0; i < bytes.size(); i += kWord) {
@@ -46,8 +46,8 @@ void ArchiveWriter::put_bytes(std::span<const std::byte> bytes, std::size_t coun
 }
 
 void ArchiveWriter::append(std::span<const std::byte> bytes) {
-  if (held_.size() + bytes.size() > kMostHeld) flush();
-  if (bytes.size() > kMostHeld) {
+  if (held_.size() + bytes.size() > kMaxBufferedBytes) flush();
+  if (bytes.size() > kMaxBufferedBytes) {
     staged_.file().write_at(size_, bytes);
     size_ += bytes.size();
     return;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Arrays in a file of our own, one after the other: what a step of long work leaves to the next.
+// Files with a sequence of arrays, which pass results from one stage of long work to the next.
 //
-// Each array is written with its length before it and a sum of its bytes after it, so that files
-// that are damaged are refused before anything is made of them.
+// Each array is preceded by its length and followed by a checksum, so that damaged files are
+// rejected before use.
 #pragma once
 
 #include <cstddef>
@@ -18,14 +18,14 @@
 
 namespace prefilter {
 
-/// What a file is: its kind, and of which work. Files of another one are refused.
+/// Identifies the kind of a file, and the work that it belongs to. Other files are rejected.
 struct ArchiveMark {
   std::string kind;
   std::string work;
 };
 
-/// Written beside its target, and put in place when it is whole. All functions throw Error(kFile)
-/// where the system refuses.
+/// Writes next to the target, and replaces it on commit. All functions throw Error(kFile) on system
+/// errors.
 class ArchiveWriter {
  public:
   ArchiveWriter(const std::string& target, const ArchiveMark& mark);
@@ -39,7 +39,7 @@ class ArchiveWriter {
   void put_all(const std::vector<T>& values) {
     put_all(std::span<const T>(values));
   }
-  /// Of a struct without gaps between its members.
+  /// For structs without padding.
   template <typename T>
   void put_structs(const std::vector<T>& values) {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -57,27 +57,27 @@ class ArchiveWriter {
   std::uint64_t size_ = 0;
 };
 
-/// Several threads may read at places of their own. Throws Error(kFile) where a file is damaged, or
-/// is none that a writer with this mark has made.
+/// Several threads may read at positions of their own. Throws Error(kFile) for a damaged file, or
+/// one not written with this mark.
 class ArchiveReader {
  public:
   ArchiveReader(const std::string& path, const ArchiveMark& mark);
 
-  /// The next array.
+  /// Reads the next array.
   template <typename T>
   std::vector<T> get_all() {
     const std::uint64_t at = place_;
     skip_all<T>();
     return all_at<T>(at);
   }
-  /// Passes the next array by; returns its length.
+  /// Skips the next array; returns its length.
   template <typename T>
   std::size_t skip_all() {
     const std::size_t count = count_at(place_, sizeof(T));
     place_ += 2 * sizeof(std::uint64_t) + count * sizeof(T);
     return count;
   }
-  /// Where the next array is, and the one that is there.
+  /// Position of the next array, and the array at a position.
   std::uint64_t place() const { return place_; }
   template <typename T>
   std::vector<T> all_at(std::uint64_t at) const {
@@ -86,7 +86,7 @@ class ArchiveReader {
     fill(at, std::as_writable_bytes(std::span(values)));
     return values;
   }
-  /// Refuses a file that goes on.
+  /// Rejects a file with data after the last array.
   void end() const;
 
   [[noreturn]] void refuse() const;

@@ -28,7 +28,7 @@ void ByteReader::seek(std::uint64_t offset) {
 
 std::span<const std::byte> ByteReader::peek(std::size_t least) {
   if (end_ - begin_ < least) {
-    // Small files take no large buffer.
+    // Small files need no large buffer.
     const std::uint64_t useful = std::max<std::uint64_t>(remaining(), 1);
     const std::size_t wanted =
         std::max(least, static_cast<std::size_t>(std::min<std::uint64_t>(kBufferSize, useful)));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A file from its first byte to its last, through a buffer of bounded size.
+// Reads a file sequentially through a buffer of bounded size.
 #pragma once
 
 #include <cstddef>
@@ -14,25 +14,25 @@
 
 namespace prefilter {
 
-/// All functions throw Error(kFile) where the system refuses.
+/// All functions throw Error(kFile) on system errors.
 class ByteReader {
  public:
   explicit ByteReader(const std::string& path);
-  /// From the beginning of a file that nobody writes to any more.
+  /// Reads from the beginning of a file that is no longer written to.
   explicit ByteReader(std::shared_ptr<const File> file);
 
-  /// As messages call the file.
+  /// The name of the file in messages.
   const std::string& name() const { return file_->name(); }
-  /// Of the file, in bytes, when it was opened.
+  /// Size of the file in bytes when it was opened.
   std::uint64_t size() const { return size_; }
-  /// Of the next byte.
+  /// Offset of the next byte.
   std::uint64_t offset() const { return buffer_offset_ + begin_; }
   std::uint64_t remaining() const { return size_ > offset() ? size_ - offset() : 0; }
   void seek(std::uint64_t offset);
-  /// The next bytes: `least` of them or more; fewer only at the end of the file. They stay where
-  /// they are until the next call.
+  /// The next bytes, at least `least` of them, fewer only at the end of the file. Valid until the
+  /// next call.
   std::span<const std::byte> peek(std::size_t least);
-  /// Passes bytes that peek has shown.
+  /// Skips bytes returned by peek.
   void skip(std::size_t count) { begin_ += count; }
 
  private:
@@ -40,7 +40,7 @@ class ByteReader {
   std::uint64_t size_;
   std::vector<std::byte> buffer_;
   std::uint64_t buffer_offset_ = 0;  // of the buffer's first byte in the file
-  std::size_t begin_ = 0;            // what of the buffer is not read yet: [begin_, end_)
+  std::size_t begin_ = 0;            // the unread part of the buffer is [begin_, end_)
   std::size_t end_ = 0;
 };
 

@@ -78,22 +78,26 @@ std::uint64_t File::size() const {
 }
 
 std::size_t File::read_at(std::uint64_t offset, std::span<std::byte> bytes) const {
-  std::size_t done = 0;
-  while (done < bytes.size()) {
-    const std::ptrdiff_t got = system_file::read(handle_, offset + done, bytes.subspan(done));
-    if (got < 0) throw_transfer_error(name_, "read", bytes.size() - done, offset + done);
+  std::size_t transferred = 0;
+  while (transferred < bytes.size()) {
+    const std::ptrdiff_t got =
+        system_file::read(handle_, offset + transferred, bytes.subspan(transferred));
+    if (got < 0)
+      throw_transfer_error(name_, "read", bytes.size() - transferred, offset + transferred);
     if (got == 0) break;
-    done += static_cast<std::size_t>(got);
+    transferred += static_cast<std::size_t>(got);
   }
-  return done;
+  return transferred;
 }
 
 void File::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
-  std::size_t done = 0;
-  while (done < bytes.size()) {
-    const std::ptrdiff_t put = system_file::write(handle_, offset + done, bytes.subspan(done));
-    if (put < 0) throw_transfer_error(name_, "write", bytes.size() - done, offset + done);
-    done += static_cast<std::size_t>(put);
+  std::size_t transferred = 0;
+  while (transferred < bytes.size()) {
+    const std::ptrdiff_t put =
+        system_file::write(handle_, offset + transferred, bytes.subspan(transferred));
+    if (put < 0)
+      throw_transfer_error(name_, "write", bytes.size() - transferred, offset + transferred);
+    transferred += static_cast<std::size_t>(put);
   }
 }
 

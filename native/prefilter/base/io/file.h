@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Open files, read and written at places that the caller names; errors say which file, and where.
+// Open files with positioned reads and writes, and error messages with file and offset.
 #pragma once
 
 #include <cstddef>
@@ -14,38 +14,37 @@
 
 namespace prefilter {
 
-/// An open regular file; closed when this goes. Several threads may read at once. All functions
-/// throw Error(kFile) where the system refuses; the message names the file and the bytes.
+/// An open regular file, closed on destruction. Several threads may read concurrently. All
+/// functions throw Error(kFile) on system errors; the message contains the file and the bytes.
 class File {
  public:
-  /// For reading. Throws where it does not exist, or is a folder, a device or the like.
+  /// Opens a file for reading. Throws if it does not exist, or is not a regular file.
   static File open(const std::string& path);
-  /// A new file for reading and writing: it is gone when it is closed, also by a kill. `name` is
-  /// what messages call it.
+  /// Creates an unnamed file for reading and writing, which disappears when closed, even if the
+  /// process is killed. `name` is its name in messages.
   static File create_temporary(const std::string& folder, std::string name);
-  /// The same, but one that link makes last; none where the system cannot do that.
+  /// The same, but `link` can give it a name; nothing if the system does not support that.
   static std::optional<File> create_linkable(const std::string& folder, std::string name);
-  /// A new file for reading and writing. Throws where there is one.
+  /// Creates a file for reading and writing. Throws if it exists.
   static File create(const std::string& path, std::string name);
 
   File(File&& other) noexcept;
   File& operator=(File&& other) noexcept;
   ~File();
 
-  /// As messages call it.
+  /// The name in messages.
   const std::string& name() const { return name_; }
   std::uint64_t size() const;
-  /// Returns how many bytes were read: fewer than were asked for only at the end of the file.
+  /// Returns the number of bytes read, fewer than requested only at the end of the file.
   std::size_t read_at(std::uint64_t offset, std::span<std::byte> bytes) const;
   void write_at(std::uint64_t offset, std::span<const std::byte> bytes);
-  /// Gives a linkable file a name. Throws where there is a file of that name.
+  /// Gives a linkable file a name. Throws if a file with that name exists.
   void link(const std::string& path);
-  /// Gives it the permissions of another file, where the system gives new files permissions of
-  /// their own.
+  /// Copies the permissions of another file, on systems where new files have default permissions.
   void copy_permissions(const std::string& from);
-  /// Has the disk hold all that was written.
+  /// Flushes all writes to the disk.
   void sync();
-  /// Closes it; unlike the destructor, throws where the system had put off an error until now.
+  /// Closes the file; unlike the destructor, throws for errors that the system has deferred.
   void close();
 
  private:
@@ -55,10 +54,10 @@ class File {
   std::string name_;
 };
 
-/// A path in a folder that nobody else thinks of.
+/// A path in a folder with a unique random name.
 std::string random_path(const std::string& folder);
 
-/// Throws Error(kFile) with a message made of `what` and the system's last error.
+/// Throws Error(kFile) with a message of `what` and the system's last error.
 [[noreturn]] void throw_system_error(const std::string& what);
 
 }  // namespace prefilter

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Paths as texts: UTF-8 on Windows, and elsewhere the bytes that the system has.
+// Conversion of paths to and from text: UTF-8 on Windows, the native bytes elsewhere.
 #pragma once
 
 #include <filesystem>

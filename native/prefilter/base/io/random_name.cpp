@@ -17,7 +17,7 @@ std::string hex(std::uint32_t number, std::size_t digits) {
   return text;
 }
 
-// A hash, FNV-1a, of half of them.
+// FNV-1a hash, folded to half of kMachineDigits.
 std::string machine_digits(std::string_view text) {
   std::uint32_t number = 2166136261U;
   for (const char byte : text) number = (number ^ static_cast<unsigned char>(byte)) * 16777619U;

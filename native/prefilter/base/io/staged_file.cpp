@@ -57,7 +57,7 @@ void StagedFile::commit() {
     path_ = path;
   }
   file_.sync();
-  // It is locked for as long as it has that name, so that nobody takes it for a dead process's.
+  // It stays locked while it has that name, so that no other process removes it as abandoned.
   if (!system_file::rename(path_, target_)) {
     throw_system_error("'" + target_ + "': cannot be replaced");
   }

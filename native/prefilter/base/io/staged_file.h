@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A file that is put in place when it is whole.
+// Files that replace their target only when complete.
 #pragma once
 
 #include <string>
@@ -9,23 +9,23 @@
 
 namespace prefilter {
 
-/// Written beside its target, and renamed: where anything fails, the target is left as it was, and
-/// nothing is left beside it. Where the system has files without names, that holds for a kill too.
-/// All functions throw Error(kFile) where the system refuses.
+/// Written next to its target and then renamed. On any failure the target is unchanged and nothing
+/// is left behind; on systems with unnamed files even if the process is killed. All functions throw
+/// Error(kFile) on system errors.
 class StagedFile {
  public:
-  /// The target may be there, or not; symbolic links are followed. Throws where it is a folder, a
-  /// device or the like, or where its folder is not there or cannot be written to.
+  /// The target may exist; symbolic links are followed. Throws if it is not a regular file, or if
+  /// its folder does not exist or is not writable.
   explicit StagedFile(const std::string& target);
   StagedFile(const StagedFile&) = delete;
   StagedFile& operator=(const StagedFile&) = delete;
   ~StagedFile();
 
-  /// What is written; messages call it by the name of the target.
+  /// The file to write to; its name in messages is the target's.
   File& file() { return file_; }
-  /// In which the target is.
+  /// The folder of the target.
   const std::string& folder() const { return folder_; }
-  /// Puts the file in place of the target; no more can be written.
+  /// Replaces the target; no more can be written.
   void commit();
 
  private:
@@ -33,7 +33,7 @@ class StagedFile {
 
   std::string target_;
   std::string folder_;
-  std::string path_;  // the name that the file has until then, if any
+  std::string path_;  // temporary name, if any
   File file_;
 };
 

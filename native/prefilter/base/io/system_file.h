@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What files need of the operating system: file.h and staged_file.h are made of it.
+// The operating system functions that file.h and staged_file.h are built on.
 #pragma once
 
 #include <cstddef>
@@ -11,51 +11,52 @@
 
 namespace prefilter::system_file {
 
-/// An open file, as the system calls it.
+/// A native file handle.
 using Handle = std::intptr_t;
 constexpr Handle kNone = -1;
 
 enum class Kind { kRegular, kFolder, kOther };
 
-// New files are locked until they are closed, as far as the file system can do that: who looks for
-// what dead processes have left knows by it that they are in use. On Windows none are left.
+// New files are locked until closed, if the file system supports it. Cleanup of files left behind
+// by dead processes skips locked ones. Windows leaves no such files.
 //
-// All that can fail says so by what it returns, and last_error() says why. Paths are UTF-8 on
-// Windows, and elsewhere the bytes that the system has.
+// Functions report failure by their result, and last_error() returns the reason. Paths are UTF-8 on
+// Windows, native bytes elsewhere.
 
-/// For reading, without waiting for the other end of a pipe; kNone where that fails.
+/// Opens for reading, without blocking on pipes; kNone on failure.
 Handle open(const std::string& path);
-/// A new file for reading and writing; kNone where that fails, as where there is one.
+/// Creates a file for reading and writing; kNone on failure, or if it exists.
 Handle create(const std::string& path);
-/// A new file that is gone when it is closed, also by a kill; kNone where that fails.
+/// Creates a file that disappears when closed, even if the process is killed; kNone on failure.
 Handle create_temporary(const std::string& folder);
-/// The same, but one that link makes last; kNone where the system cannot do that.
+/// The same, but `link` can give it a name; kNone if unsupported.
 Handle create_linkable(const std::string& folder);
-/// Gives a linkable file a name, where there is no file of that name yet.
+/// Gives a linkable file a name, unless a file with that name exists.
 bool link(Handle file, const std::string& path);
 bool close(Handle file);
 
 std::optional<Kind> kind(Handle file);
 std::optional<std::uint64_t> size(Handle file);
-/// How many bytes were read or written, which may be fewer than were asked for, and 0 at the end of
-/// the file; -1 where that fails.
+/// Number of bytes read or written, possibly fewer than requested, 0 at the end of the file; -1 on
+/// failure.
 std::ptrdiff_t read(Handle file, std::uint64_t offset, std::span<std::byte> bytes);
 std::ptrdiff_t write(Handle file, std::uint64_t offset, std::span<const std::byte> bytes);
 
-/// Has the disk hold what was written, or what the folder lists; not every system syncs folders.
+/// Flushes a file's contents, or a folder's entries, to the disk; not every system can sync
+/// folders.
 bool sync(Handle file);
 void sync_folder(const std::string& folder);
 
-/// Gives a file the permissions of another, where a file that is renamed keeps its own.
+/// Copies permissions, on systems where a renamed file keeps its own.
 bool copy_permissions(const std::string& from, Handle to);
-/// Renames a file, in place of another one where there is one.
+/// Renames a file, replacing an existing one.
 bool rename(const std::string& from, const std::string& to);
 bool remove(const std::string& path);
 
-/// Why the last call of this thread failed.
+/// The reason for the last failure in this thread.
 std::string last_error();
 
-/// What tells a start of the system from others, if it says so, and what the machine is called.
+/// An identifier of this start of the system, if available, and the machine's name.
 std::string boot_name();
 std::string host_name();
 

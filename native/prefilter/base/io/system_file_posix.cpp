@@ -19,7 +19,7 @@
 namespace prefilter::system_file {
 namespace {
 
-// As open() has it, what the user's umask takes away aside.
+// The mode for open(), to which the umask applies.
 constexpr mode_t kNewFileMode = 0666;
 
 int descriptor_of(Handle file) { return static_cast<int>(file); }
@@ -33,7 +33,7 @@ Handle open_retried(const std::string& path, int flags) {
 
 std::string own_link(Handle file) { return "/proc/self/fd/" + std::to_string(file); }
 
-// Waits for who has found a new file before it was locked, and then removes it.
+// Waits for processes that found a new file before it was locked, and remove it.
 void lock(Handle file) {
   while (::flock(descriptor_of(file), LOCK_EX) != 0 && errno == EINTR) {
   }
@@ -70,7 +70,7 @@ Handle create(const std::string& path) {
 
 Handle create_temporary(const std::string& folder) {
   if (const Handle file = create_unnamed(folder); file != kNone) return file;
-  // File systems that know no unnamed files have it named for a moment.
+  // On file systems without unnamed files, it has a name for a moment.
   while (true) {
     const std::string path = random_path(folder);
     const Handle file = create(path);
@@ -85,7 +85,7 @@ Handle create_temporary(const std::string& folder) {
 
 Handle create_linkable(const std::string& folder) {
   const Handle file = create_unnamed(folder);
-  // Without /proc there is no way to its name.
+  // Without /proc it cannot be linked.
   if (file == kNone || ::access(own_link(file).c_str(), F_OK) == 0) return file;
   close(file);
   return kNone;

@@ -18,7 +18,7 @@
 namespace prefilter::system_file {
 namespace {
 
-// Others may read, write, rename and remove what is open here, as on other systems.
+// Allows others to read, write, rename and remove open files, as on other systems.
 constexpr DWORD kShared = FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE;
 constexpr DWORD kReadWrite = GENERIC_READ | GENERIC_WRITE;
 
@@ -33,7 +33,7 @@ Handle open_with(const std::string& path, DWORD access, DWORD disposition, DWORD
       CreateFileW(wide(path).c_str(), access, kShared, nullptr, disposition, flags, nullptr));
 }
 
-// Whether the file is to be gone when it is closed.
+// Sets whether the file is removed when closed.
 bool set_removed(Handle file, bool is_removed) {
   FILE_DISPOSITION_INFO info{};
   info.DeleteFile = is_removed ? TRUE : FALSE;
@@ -56,7 +56,7 @@ bool rename_open(Handle file, const std::string& path, FILE_INFO_BY_HANDLE_CLASS
                                     static_cast<DWORD>(buffer.size())) != 0;
 }
 
-// As ReadFile and WriteFile want to be told where.
+// Position for ReadFile and WriteFile.
 OVERLAPPED at(std::uint64_t offset) {
   OVERLAPPED place{};
   place.Offset = static_cast<DWORD>(offset & 0xFFFFFFFFU);
@@ -73,8 +73,7 @@ bool is_read_only(const std::string& path) {
   return attributes != INVALID_FILE_ATTRIBUTES && (attributes & FILE_ATTRIBUTE_READONLY) != 0;
 }
 
-// Renames a file in place of one that is open, as far as it is shared: that one is moved away
-// first.
+// Renames a file over one that is open in a compatible sharing mode, by moving that away first.
 bool rename_over_open(const std::string& from, const std::string& to) {
   if (is_read_only(to)) return false;
   const Handle replaced = open_with(to, DELETE, OPEN_EXISTING, FILE_ATTRIBUTE_NORMAL);
@@ -93,8 +92,8 @@ bool rename_over_open(const std::string& from, const std::string& to) {
   return is_done;
 }
 
-// The error is that of a file that is open elsewhere, if it is.
-void tell_if_open_elsewhere(const std::string& path) {
+// Replaces the last error by a sharing violation if the file is open elsewhere.
+void report_if_open_elsewhere(const std::string& path) {
   const DWORD error = GetLastError();
   const Handle file = open_with(path, DELETE, OPEN_EXISTING, FILE_FLAG_BACKUP_SEMANTICS);
   if (file != kNone) close(file);
@@ -102,7 +101,7 @@ void tell_if_open_elsewhere(const std::string& path) {
                                                                           : error);
 }
 
-// What other systems say too; 0 for other errors.
+// The errno of an error that other systems have too; 0 for others.
 int common_error(DWORD error) {
   switch (error) {
     case ERROR_FILE_NOT_FOUND:
@@ -134,7 +133,7 @@ int common_error(DWORD error) {
 }  // namespace
 
 Handle open(const std::string& path) {
-  // Folders, too, so that they can be told from what is not there.
+  // Also opens folders, to distinguish them from missing files.
   return open_with(path, GENERIC_READ, OPEN_EXISTING, FILE_FLAG_BACKUP_SEMANTICS);
 }
 
@@ -150,7 +149,7 @@ Handle create_temporary(const std::string& folder) {
   }
 }
 
-// One that is to be removed until link changes that: it has a name, and nobody can open it.
+// Creates a file marked for removal, until link changes that: it has a name, but cannot be opened.
 Handle create_linkable(const std::string& folder) {
   while (true) {
     const std::string path = random_path(folder);
@@ -207,13 +206,13 @@ bool sync(Handle file) { return FlushFileBuffers(handle_of(file)) != 0; }
 
 void sync_folder(const std::string&) {}
 
-// Those of a new file follow from its folder.
+// Permissions of new files are inherited from the folder.
 bool copy_permissions(const std::string&, Handle) { return true; }
 
 bool rename(const std::string& from, const std::string& to) {
   const Handle file = open_with(from, DELETE, OPEN_EXISTING, FILE_ATTRIBUTE_NORMAL);
   if (file == kNone) return false;
-  // In one step also where the other is open, and shared; not every file system can.
+  // Atomic even if the other file is open and shared, but not supported by every file system.
   const bool is_done =
       rename_open(file, to, FileRenameInfoEx,
                   FILE_RENAME_FLAG_REPLACE_IF_EXISTS | FILE_RENAME_FLAG_POSIX_SEMANTICS);
@@ -225,7 +224,7 @@ bool rename(const std::string& from, const std::string& to) {
   const DWORD error = GetLastError();
   if (error == ERROR_ACCESS_DENIED && rename_over_open(from, to)) return true;
   SetLastError(error);
-  tell_if_open_elsewhere(to);
+  report_if_open_elsewhere(to);
   return false;
 }
 

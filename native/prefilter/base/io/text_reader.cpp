@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kLongestLine = std::size_t{1} << 24;
 
-// std::from_chars leaves open whether a number is too large or too small.
+// std::from_chars does not tell overflow from underflow.
 double out_of_range(std::string_view word) {
   const std::size_t exponent = word.find_first_of("eE");
   const std::size_t digit = word.find_first_of("123456789");
@@ -91,7 +91,7 @@ bool to_number(std::string_view word, double* number) {
   if (error == std::errc::result_out_of_range) *number = out_of_range({word.data(), rest});
   const std::string_view more(rest, end);
   if (more.empty()) return true;
-  // Microsoft's library wrote these.
+  // Written by Microsoft's C library.
   if (more.starts_with("#INF")) {
     *number *= std::numeric_limits<double>::infinity();
   } else if (more.starts_with("#IND") || more.starts_with("#QNAN") || more.starts_with("#SNAN")) {

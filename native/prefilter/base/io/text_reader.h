@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Lines of numbers.
+// Reads lines of numbers.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,13 @@
 
 namespace prefilter {
 
-/// A place in a file to come back to.
+/// A position in a file to return to.
 struct TextPlace {
   std::uint64_t offset = 0;
-  std::uint64_t line = 0;  // lines before it
+  std::uint64_t line = 0;  // number of lines before it
 };
 
-/// A file line by line; of what is not text it reads bytes.
+/// Reads a file line by line; binary parts are read through bytes().
 class TextReader {
  public:
   explicit TextReader(ByteReader bytes) : bytes_(std::move(bytes)) {}
@@ -28,15 +28,16 @@ class TextReader {
   ByteReader& bytes() { return bytes_; }
   const std::string& name() const { return bytes_.name(); }
 
-  /// What ends lines: "\n", with or without "\r" before it, unless this says otherwise.
+  /// Sets the line end; the default is "
+  /// ", optionally preceded by "\r".
   void set_line_end(char end) { end_ = end; }
-  /// Of the line that was read last, from 1 on.
+  /// Number of the last line, from 1.
   std::uint64_t line() const { return line_; }
 
-  /// The next line without its end; false where there are no more. It stays where
-  /// it is until the next call. Throws Error for a line that is no text: longer than 16 MiB.
+  /// Reads the next line, without its end; false at the end of the file. It is valid until the next
+  /// call. Throws Error for a line longer than 16 MiB, which is not text.
   bool next_line(std::string_view* line);
-  /// Passes a line.
+  /// Skips a line.
   bool skip_line();
 
   TextPlace place() const { return {bytes_.offset(), line_}; }
@@ -45,10 +46,9 @@ class TextReader {
     line_ = place.line;
   }
 
-  /// "'cloud.ply': line 7", of the line that was read last.
+  /// Location of the last line, as in "'cloud.ply': line 7".
   std::string where() const { return name() + ": line " + std::to_string(line_); }
-  /// Replaces values by the numbers of the line that was read last. Throws Error where something
-  /// else is among them.
+  /// Replaces `values` by the numbers in the last line. Throws Error if it contains anything else.
   void parse(std::string_view line, std::string_view separators, std::vector<double>* values) const;
 
  private:
@@ -57,20 +57,20 @@ class TextReader {
   std::uint64_t line_ = 0;
 };
 
-/// What separates the words of a line, where commas do not.
+/// Word separators in lines, other than commas.
 inline constexpr std::string_view kBlanks = " \t\r\v\f";
 
-/// Takes the first word off a line; empty where there is none.
+/// Removes the first word from a line and returns it; empty if there is none.
 std::string_view take_word(std::string_view* line, std::string_view separators = kBlanks);
 
-/// A number as programs write it, also "+1", "nan", "inf", "1.#QNAN"; what is too large becomes
-/// infinite. False where the word is none.
+/// Parses a number in any common notation, including "+1", "nan", "inf", "1.#QNAN"; too large ones
+/// become infinite. False if the word is not a number.
 bool to_number(std::string_view word, double* number);
 
-/// A count in decimal digits. False where the word is none, or 2^63 or more.
+/// Parses a count in decimal digits. False if the word is not one, or for 2^63 and more.
 bool to_count(std::string_view word, std::uint64_t* count);
 
-/// A piece of a file for a message: in quotes, shortened, without what a terminal would obey.
+/// A part of a file for a message: quoted, shortened, and without terminal control characters.
 std::string in_quotes(std::string_view text);
 
 }  // namespace prefilter

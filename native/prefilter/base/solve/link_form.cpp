@@ -13,17 +13,18 @@ namespace prefilter {
 
 namespace {
 
-// A link's share of a texel.
-struct Use {
+// A link's coefficient of a texel.
+struct LinkCoefficient {
   std::ptrdiff_t at;
   std::uint32_t link;
   float share;
 };
 
-// Those of the links all of whose texels are part of the system, in the order of the texels.
-std::vector<Use> uses_of(const std::vector<TexelLink>& links,
-                         const std::function<bool(std::ptrdiff_t)>& is_part, Pulse* pulse) {
-  std::vector<Use> uses;
+// The coefficients of all links whose texels are all part of the system, sorted by texel.
+std::vector<LinkCoefficient> coefficients_of(const std::vector<TexelLink>& links,
+                                             const std::function<bool(std::ptrdiff_t)>& is_part,
+                                             Pulse* pulse) {
+  std::vector<LinkCoefficient> uses;
   for (std::size_t i = 0; i < links.size(); ++i) {
     pulse->step();
     const TexelLink& link = links[i];
@@ -35,10 +36,11 @@ std::vector<Use> uses_of(const std::vector<TexelLink>& links,
       uses.push_back({link.texels[k], static_cast<std::uint32_t>(i), link.shares[k]});
     }
   }
-  std::stable_sort(uses.begin(), uses.end(), [pulse](const Use& a, const Use& b) {
-    pulse->step();
-    return a.at < b.at;
-  });
+  std::stable_sort(uses.begin(), uses.end(),
+                   [pulse](const LinkCoefficient& a, const LinkCoefficient& b) {
+                     pulse->step();
+                     return a.at < b.at;
+                   });
   return uses;
 }
 
@@ -47,11 +49,11 @@ struct Product {
   double value;
 };
 
-// What a texel has with each, one after the other, by its uses.
-void find_products(const std::vector<TexelLink>& links, std::span<const Use> uses,
+// The products of a texel with every other texel, from its links.
+void find_products(const std::vector<TexelLink>& links, std::span<const LinkCoefficient> uses,
                    std::vector<Product>* products) {
   products->clear();
-  for (const Use& use : uses) {
+  for (const LinkCoefficient& use : uses) {
     const TexelLink& link = links[use.link];
     const double share = static_cast<double>(link.weight) * use.share;
     for (int k = 0; k < link.count; ++k) {
@@ -67,7 +69,7 @@ void find_products(const std::vector<TexelLink>& links, std::span<const Use> use
 LinkForm::LinkForm(const std::vector<TexelLink>& links,
                    const std::function<bool(std::ptrdiff_t)>& is_part, const Progress& progress) {
   Pulse pulse(progress);
-  const std::vector<Use> uses = uses_of(links, is_part, &pulse);
+  const std::vector<LinkCoefficient> uses = coefficients_of(links, is_part, &pulse);
   std::vector<Product> products;
   for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
     pulse.step();

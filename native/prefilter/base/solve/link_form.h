@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Sums of shares of a few texels, wherever they are, whose squares a system minimizes too.
+// Squared linear combinations of a few texels, as an additional term of a minimized form.
 #pragma once
 
 #include <array>
@@ -16,17 +16,17 @@ namespace prefilter {
 
 struct TexelLink {
   static constexpr int kMostTexels = 8;
-  std::array<std::ptrdiff_t, kMostTexels> texels;  // as NinePointSystem::at has them
+  std::array<std::ptrdiff_t, kMostTexels> texels;  // as in NinePointSystem::at
   std::array<float, kMostTexels> shares;
   int count = 0;
-  float weight = 0.0F;  // of the square
+  float weight = 0.0F;  // of the squared combination
 };
 
-/// The sum of the squares of links, as a form: what each texel has with itself and with others.
+/// The sum of the squares of links as a quadratic form: a sparse symmetric matrix of texels.
 class LinkForm {
  public:
   LinkForm() = default;
-  /// Leaves out links that read a texel that is not part of the system.
+  /// Ignores links to texels that are not part of the system.
   LinkForm(const std::vector<TexelLink>& links, const std::function<bool(std::ptrdiff_t)>& is_part,
            const Progress& progress);
 
@@ -34,21 +34,21 @@ class LinkForm {
 
   struct Texel {
     std::ptrdiff_t at = 0;
-    float own = 0.0F;       // with itself
-    std::size_t first = 0;  // of its entries, up to that of the next texel
+    float own = 0.0F;       // diagonal entry
+    std::size_t first = 0;  // its first off-diagonal entry; they end where the next texel's begin
   };
   struct Entry {
     std::ptrdiff_t at;
     float value;
   };
-  /// In order of `at`, with one more behind the last.
+  /// Sorted by `at`, with an additional end marker.
   const std::vector<Texel>& texels() const { return texels_; }
-  /// Those of a texel that texels() has at `k`, with the others.
+  /// The off-diagonal entries of texels()[k].
   const Entry* begin(std::size_t k) const { return entries_.data() + texels_[k].first; }
   const Entry* end(std::size_t k) const { return entries_.data() + texels_[k + 1].first; }
   std::size_t entry_count() const { return entries_.size(); }
 
-  /// The value for each channel of texels in the order of `at`.
+  /// The value of the form for each channel; `texel(at)` returns texels.
   std::array<double, kMaxChannels> value(
       const std::function<const LaneValues&(std::ptrdiff_t)>& texel) const;
 

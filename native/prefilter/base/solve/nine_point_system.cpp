@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A mass matrix that is scaled by its diagonal has a condition number of about 9 on whole texels,
-// so a few Gauss-Seidel sweeps do; and a sweep that clamps each texel as it goes converges to the
-// solution of the problem with ranges.
+// Projected Gauss-Seidel. A mass matrix scaled by its diagonal has a condition number of about 9 on
+// fully covered texels, so a few sweeps suffice. Clamping each texel in a sweep converges to the
+// constrained solution.
 #include "prefilter/base/solve/nine_point_system.h"
 
 #include <algorithm>
@@ -18,8 +18,8 @@
 namespace prefilter {
 namespace {
 
-// Levels of fewer texels are not worth a second thread.
-constexpr std::int64_t kTexelsWorthThreads = 256 * 256;
+// Levels with fewer texels are solved by a single thread.
+constexpr std::int64_t kMinParallelTexels = 256 * 256;
 constexpr std::int64_t kRowsPerReport = 64;
 
 float of(float entry) { return entry; }
@@ -53,7 +53,7 @@ void NinePointSystem<Entry>::add_cell(int column, int row, const TentProducts& p
                                       const TentIntegrals& right) {
   const int x[2] = {wrap_index(column, width_, wrap_.u), wrap_index(column + 1, width_, wrap_.u)};
   const int y[2] = {wrap_index(row, height_, wrap_.v), wrap_index(row + 1, height_, wrap_.v)};
-  // Both ends may be one texel: at a clamped edge, or where an axis has only one.
+  // Both ends may be the same texel: at a clamped edge, or along an axis with a single one.
   const int dx = x[0] == x[1] ? 0 : 1;
   const int dy = y[0] == y[1] ? 0 : 1;
 
@@ -102,7 +102,7 @@ int NinePointSystem<Entry>::row_beside(int y, int step) const {
   return wrap_.v == Wrap::kRepeat ? height_ - 1 - y : height_;
 }
 
-// A row whose texels take steps.
+// A row whose texels are relaxed.
 template <typename Entry>
 class NinePointSystem<Entry>::Row {
  public:
@@ -124,15 +124,16 @@ class NinePointSystem<Entry>::Row {
       texel_low_ = options.texel_ranges->low.data() + system->at(0, y);
       texel_high_ = options.texel_ranges->high.data() + system->at(0, y);
     }
-    // Open ranges are as wide as floats go, and not infinite: times an alpha of 0 they are 0.
-    constexpr float kWidest = std::numeric_limits<float>::max();
+    // Unlimited ranges end at the largest float, not at infinity, which times an alpha of 0 would
+    // be NaN.
+    constexpr float kUnlimited = std::numeric_limits<float>::max();
     for (int c = 0; c < kMaxChannels; ++c) {
-      low_[c] = std::max(options.ranges[c].low, -kWidest);
-      high_[c] = std::min(options.ranges[c].high, kWidest);
+      low_[c] = std::max(options.ranges[c].low, -kUnlimited);
+      high_[c] = std::min(options.ranges[c].high, kUnlimited);
     }
   }
 
-  // Steps of the texels [begin, end).
+  // Relaxes texels [begin, end).
   void relax(int begin, int end) {
     const auto at_end = [&](int x) {
       relax_one(x, x == 0 ? before_first() : x - 1, x + 1 == width_ ? after_last() : x + 1,
@@ -144,9 +145,9 @@ class NinePointSystem<Entry>::Row {
     if (std::max(begin, middle_end) < end) at_end(end - 1);
   }
 
-  // A step of one texel, with `pull` added to its right side.
-  void relax_linked(int x, Lanes pull) {
-    relax_one(x, x == 0 ? before_first() : x - 1, x + 1 == width_ ? after_last() : x + 1, pull);
+  // Relaxes one texel, with `link_sum` added to its right side.
+  void relax_linked(int x, Lanes link_sum) {
+    relax_one(x, x == 0 ? before_first() : x - 1, x + 1 == width_ ? after_last() : x + 1, link_sum);
   }
 
   // Whether a channel of a texel moved by more than the tolerance.
@@ -157,15 +158,15 @@ class NinePointSystem<Entry>::Row {
   }
 
  private:
-  // Past the row's end is a texel of zeros.
+  // A texel of zeros follows each row.
   int before_first() const { return repeat_ && width_ > 1 ? width_ - 1 : width_; }
   int after_last() const { return repeat_ && width_ > 1 ? 0 : width_; }
 
-  void relax_one(int x, int west, int east, Lanes pull) {
-    // A little over-relaxation saves sweeps; from about 1.3 on it costs some.
+  void relax_one(int x, int west, int east, Lanes link_sum) {
+    // A little over-relaxation saves sweeps; from about 1.3 on it costs sweeps.
     constexpr float kRelaxation = 1.15F;
     const Lanes old = values_[x].v;
-    Lanes sum = right_side_[x].v + pull;
+    Lanes sum = right_side_[x].v + link_sum;
     sum -= of(here_[x].east) * values_[east].v;
     sum -= of(here_[x].north) * north_values_[x].v;
     sum -= of(south_[x].north) * south_values_[x].v;
@@ -280,10 +281,10 @@ template <typename Entry>
 int NinePointSystem<Entry>::solve(const SolveOptions& options, const Progress& progress) {
   const Lanes typical = typical_values();
 
-  // A row is relaxed while it or a row beside it still moves; the slot past the last row is for a
-  // row that is not there. Rows of one color, 0 and 1 in turn, are not beside each other, so they
-  // can move at the same time; of an odd number that repeats, the last is beside the first, and
-  // comes by itself.
+  // A row is relaxed as long as it or a neighboring row still moves; the slot past the last row
+  // stands for missing neighbors. Rows of one color, alternating between 0 and 1, are not adjacent,
+  // so they are relaxed concurrently. In an odd number of repeating rows the last one is adjacent
+  // to the first, and is relaxed separately.
   std::vector<unsigned char> moves(static_cast<std::size_t>(height_) + 1, 1);
   moves[height_] = 0;
   const auto relax = [&](int y) {
@@ -305,7 +306,7 @@ int NinePointSystem<Entry>::solve(const SolveOptions& options, const Progress& p
       stop = true;
     }
   };
-  const bool small = static_cast<std::int64_t>(width_) * height_ < kTexelsWorthThreads;
+  const bool small = static_cast<std::int64_t>(width_) * height_ < kMinParallelTexels;
   parallel_team(small ? 1 : resolve_threads(options.threads), [&](Team& team) {
     while (!done) {
       for (int color = 0; color < 2; ++color) {
@@ -347,7 +348,7 @@ std::vector<LaneValues> NinePointSystem<Entry>::product() const {
     const std::ptrdiff_t north = at(0, row_beside(y, 1));
     for (int x = 0; x < width_; ++x) {
       if (!is_part(here + x)) continue;
-      // Past the row's end is a texel of zeros.
+      // A texel of zeros follows each row.
       const int west = x > 0 ? x - 1 : repeat ? width_ - 1 : width_;
       const int east = x + 1 < width_ ? x + 1 : repeat ? 0 : width_;
       const Stencil& stencil = stencils_[here + x];
@@ -412,7 +413,7 @@ std::array<double, kMaxChannels> NinePointSystem<Entry>::form(const std::vector<
   using Sums = std::array<double, kMaxChannels>;
   std::vector<Sums> rows(static_cast<std::size_t>(height_));
   const bool repeat = wrap_.u == Wrap::kRepeat && width_ > 1;
-  const bool small = static_cast<std::int64_t>(width_) * height_ < kTexelsWorthThreads;
+  const bool small = static_cast<std::int64_t>(width_) * height_ < kMinParallelTexels;
   parallel_for(height_, small ? 1 : threads, Progress(), [&](std::int64_t row) {
     const int y = static_cast<int>(row);
     const Stencil* here = stencils_.data() + at(0, y);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Linear systems between the texels of one level in which each texel meets its eight neighbors,
-// and their solution within ranges.
+// Sparse linear systems for the texels of one level, which couple each texel with its eight
+// neighbors, and their solution within ranges.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@
 
 namespace prefilter {
 
-/// A range for each texel, in the order of NinePointSystem::at, as wide as floats go at the most.
+/// A range for each texel, in the order of NinePointSystem::at; limits must be finite floats.
 struct TexelRanges {
   std::vector<LaneValues> low;
   std::vector<LaneValues> high;
@@ -27,19 +27,19 @@ struct TexelRanges {
 
 struct SolveOptions {
   std::array<ValueRange, kMaxChannels> ranges{};
-  // Instead of those, where texels have ranges of their own.
+  // Ranges of individual texels, which replace those above.
   const TexelRanges* texel_ranges = nullptr;
-  // Whether the ranges of the first three channels are multiplied by a texel's fourth, its alpha.
+  // Whether the ranges of the first three channels are multiplied by the texel's fourth, alpha.
   bool ranges_times_alpha = false;
-  // Stops when no texel moves by more than this, against its own value or a typical one of its
-  // channel, whichever is larger.
+  // Stops when no texel moves by more than this, relative to the larger of its own value and a
+  // typical one of its channel.
   double tolerance = 1e-5;
   int max_sweeps = 300;
   int threads = 0;
 };
 
-/// A symmetric system for up to four channels at once. Its entries are float where the channels
-/// share them, and LaneValues where each has its own.
+/// A symmetric system for up to four channels at once. The type of its entries is float if the
+/// channels share them, and LaneValues if each has its own.
 template <typename Entry>
 class NinePointSystem {
  public:
@@ -48,14 +48,14 @@ class NinePointSystem {
   int width() const { return width_; }
   int height() const { return height_; }
 
-  /// Integrals, over a cell between four texel centers, of the products of the tents there: those
-  /// along x of low x low, low x high and high x high, for the same along y, at [3 * y + x].
+  /// Integrals of the products of the four tents over a cell between texel centers: for low x low,
+  /// low x high and high x high along x and the same along y, at [3 * y + x].
   using TentProducts = std::array<Entry, 9>;
-  /// Integrals of what stands on the right, times the tents: low and high along x, at [2 * y + x].
+  /// Integrals of the target times the tents: low and high along x, at [2 * y + x].
   using TentIntegrals = std::array<LaneValues, 4>;
 
   /// Adds the integrals over the cell between texels (column, row) and (column + 1, row + 1). Cells
-  /// that share texels must not be added at the same time.
+  /// that share texels must not be added concurrently.
   void add_cell(int column, int row, const TentProducts& products, const TentIntegrals& right);
 
   std::ptrdiff_t at(int x, int y) const { return static_cast<std::ptrdiff_t>(y) * stride_ + x; }
@@ -64,24 +64,24 @@ class NinePointSystem {
   LaneValues& right_side(std::ptrdiff_t at) { return right_side_[at]; }
   LaneValues& texel(std::ptrdiff_t at) { return texels_[at]; }
   const LaneValues& texel(std::ptrdiff_t at) const { return texels_[at]; }
-  /// What add_cell and add_links put together is forgotten; texels stay.
+  /// Removes all cells and links; texels remain.
   void clear();
 
   const LaneValues& right_side(std::ptrdiff_t at) const { return right_side_[at]; }
 
-  /// The system times its texels, in the order of `at`; 0 beside texels with a diagonal of 0. To be
-  /// called before invert_diagonal.
+  /// The matrix times the texels, in the order of `at`; 0 next to texels with a diagonal of 0. To
+  /// be called before invert_diagonal.
   std::vector<LaneValues> product() const;
 
-  /// Makes the system ready for `solve`: from here on `diagonal` holds the inverse, or 0 for texels
-  /// that are not part of it (a diagonal of 0), which stay as they are.
+  /// Prepares for `solve`: from here on `diagonal` contains the inverse, or 0 for texels that are
+  /// not part of the system (with a diagonal of 0), which do not change.
   void invert_diagonal();
   bool is_part(std::ptrdiff_t at) const;
 
-  /// Has links count, which are those of texels that are part of the system: the squares of each
-  /// channel times its weight; where channels share entries the weight of the first is for all.
-  /// None for a null pointer or weights of 0. To be called after invert_diagonal; links must
-  /// outlive what is done with the system then.
+  /// Adds the squares of links, between texels that are part of the system, with a weight per
+  /// channel. If channels share entries, the first weight applies to all. A null pointer or weights
+  /// of 0 remove links. To be called after invert_diagonal; the links must outlive their use in the
+  /// system.
   void weigh_links(const LinkForm* links, Lanes weights);
 
   void swap_right_side(std::vector<LaneValues>* right) { right_side_.swap(*right); }
@@ -89,19 +89,18 @@ class NinePointSystem {
   /// Allocates the texels, all 0.
   void make_texels() { texels_.assign(stencils_.size(), LaneValues{}); }
 
-  /// Moves the texels to the solution within the ranges, from where they are: projected
-  /// Gauss-Seidel, by rows of alternating color, so the result is the same for any number of
-  /// threads. Where the system is all but singular, as under charts that shrink to points, texels
-  /// may stop some way from it: moving them on would change the minimized form by next to nothing.
-  /// Returns the number of sweeps.
+  /// Moves the texels from their current values to the solution within the ranges, by projected
+  /// Gauss-Seidel over rows of alternating color; the result is the same for any number of threads.
+  /// If the system is nearly singular, as under charts that shrink to points, texels may stop some
+  /// distance from the solution, where the objective hardly changes. Returns the number of sweeps.
   int solve(const SolveOptions& options, const Progress& progress);
 
-  /// t' A t - 2 b' t of each channel, for the texels t and the matrix A without links, from whose
-  /// diagonal `less` is taken. To be called after invert_diagonal.
+  /// t' A t - 2 b' t for each channel, with the texels t and the matrix A without links, reduced by
+  /// `less` on its diagonal. To be called after invert_diagonal.
   std::array<double, kMaxChannels> form(const std::vector<LaneValues>& b, float less,
                                         int threads) const;
 
-  /// The texels as an image; the system is gone then.
+  /// Returns the texels as an image, and destroys the system.
   Image take_image(int channels);
 
  private:
@@ -117,33 +116,32 @@ class NinePointSystem {
   class Row;
 
   void add_pair(int x, int y, int dx, int dy, Entry value);
-  // The row below (step -1) or above (1), or the row of zeros where there is none.
+  // The row below (step -1) or above (1), or the row of zeros if there is none.
   int row_beside(int y, int step) const;
-  // One step of every texel of a row; true where a channel moved by more than the tolerance.
+  // Relaxes every texel of a row; true if a channel moved by more than the tolerance.
   bool relax_row(int y, const SolveOptions& options, Lanes typical);
-  // The first of the texels that links meet in a row, or after it.
+  // The first linked texel in a row, or after it.
   std::vector<LinkForm::Texel>::const_iterator first_linked(int y) const;
-  // One step of every texel that links meet, in order: they can be anywhere, so they move by
-  // themselves. Marks the rows of those that moved.
+  // Relaxes every linked texel, sequentially because links may connect distant texels. Marks the
+  // rows of texels that moved.
   void relax_linked(const SolveOptions& options, Lanes typical, std::vector<unsigned char>* moves,
                     const std::function<bool()>& goes_on);
-  // A typical value of each channel: the median over rows of the mean magnitude of the texels in
-  // use.
+  // A typical value of each channel: the median over rows of the mean magnitude of texels in use.
   Lanes typical_values() const;
 
   int width_;
   int height_;
   WrapModes wrap_;
-  // Rows are one texel longer than the level, and there is one more of them: entries of zero, which
-  // are what texels at the edge of a clamped or bordered level have as neighbors.
+  // Rows have one additional texel, and there is one additional row, with entries of zero: the
+  // neighbors of texels at the edge of a clamped or bordered level.
   int stride_;
   std::vector<Stencil> stencils_;
   std::vector<LaneValues> right_side_;
   std::vector<LaneValues> texels_;
 
-  const LinkForm* links_ = nullptr;  // of those that count
+  const LinkForm* links_ = nullptr;
   Lanes link_weights_{};
-  std::vector<Entry> alone_;  // the diagonals without links of the texels that they meet
+  std::vector<Entry> alone_;  // the diagonals of linked texels without their links
 };
 
 }  // namespace prefilter

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // Nested dissection: A. George, Nested dissection of a regular finite element mesh (1973), with
-// cuts between the coordinates. Factors row by row along the elimination tree: T. A. Davis,
-// Algorithm 849: a concise sparse Cholesky factorization package (2005).
+// cuts by coordinates. Up-looking factorization along the elimination tree: T. A. Davis, Algorithm
+// 849: a concise sparse Cholesky factorization package (2005).
 #include "prefilter/base/solve/sparse_factors.h"
 
 #include <algorithm>
@@ -13,14 +13,14 @@ namespace prefilter {
 namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-// Parts of so few rows are not cut any further.
-constexpr std::size_t kUncut = 24;
-// Steps with so many products between two reports.
+// Parts with at most this many rows are not dissected.
+constexpr std::size_t kMaxLeafRows = 24;
+// Multiplications between two progress reports.
 constexpr std::size_t kProductsPerReport = 1U << 21U;
-// Of what a row has on the diagonal: what is left of it must not be rounding alone.
-constexpr double kLeastPivot = 1e-13;
+// Relative to a row's diagonal entry: smaller pivots are rounding errors.
+constexpr double kMinPivot = 1e-13;
 
-// Lists of numbers, one after the other.
+// Concatenated lists of numbers.
 struct Lists {
   std::vector<std::size_t> begins;
   std::vector<std::uint32_t> items;
@@ -49,15 +49,15 @@ Lists neighbors_of(std::size_t count, std::span<const SparseEntry> lower) {
   return lists;
 }
 
-// Puts rows into the order in which they are eliminated: both sides of a cut, each cut in turn,
-// before the rows between them.
+// Sorts rows into elimination order: both sides of a cut, recursively, before the rows between
+// them.
 class Dissection {
  public:
   Dissection(const Lists& neighbors, std::span<const Vector3> places)
       : neighbors_(neighbors), places_(places), stamps_(places.size(), 0) {}
 
   void sort(std::span<std::uint32_t> rows) {
-    if (rows.size() <= kUncut) return;
+    if (rows.size() <= kMaxLeafRows) return;
     Box box = kEmptyBox;
     for (const std::uint32_t row : rows) box.include(places_[row]);
     int axis = 0;
@@ -100,22 +100,22 @@ bool comes_first(const SparseEntry& a, const SparseEntry& b) {
   return a.row != b.row ? a.row < b.row : a.column < b.column;
 }
 
-// One entry for each place, the sum of all there.
-void add_up(std::vector<SparseEntry>* entries) {
-  // Stable, so that the sums of what is at one place do not depend on the library's sort.
+// Sums entries at the same position.
+void sum_duplicates(std::vector<SparseEntry>* entries) {
+  // Stable, so that the order of summation does not depend on the standard library.
   std::stable_sort(entries->begin(), entries->end(), comes_first);
-  std::size_t kept = 0;
+  std::size_t unique_count = 0;
   for (const SparseEntry& entry : *entries) {
-    if (kept > 0 && !comes_first((*entries)[kept - 1], entry)) {
-      (*entries)[kept - 1].value += entry.value;
+    if (unique_count > 0 && !comes_first((*entries)[unique_count - 1], entry)) {
+      (*entries)[unique_count - 1].value += entry.value;
     } else {
-      (*entries)[kept++] = entry;
+      (*entries)[unique_count++] = entry;
     }
   }
-  entries->resize(kept);
+  entries->resize(unique_count);
 }
 
-// The entries in the order of elimination: rows and columns are steps, and sorted.
+// Renumbers and sorts the entries by elimination step.
 void sort_by_steps(std::span<const std::uint32_t> order, std::vector<SparseEntry>* entries) {
   std::vector<std::uint32_t> steps(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) steps[order[i]] = static_cast<std::uint32_t>(i);
@@ -127,7 +127,7 @@ void sort_by_steps(std::span<const std::uint32_t> order, std::vector<SparseEntry
   std::sort(entries->begin(), entries->end(), comes_first);
 }
 
-// Where the entries of each row begin, and where the last one ends.
+// Start index of each row's entries, followed by the end.
 std::vector<std::size_t> row_begins_of(std::size_t count, std::span<const SparseEntry> entries) {
   std::vector<std::size_t> begins(count + 1, 0);
   for (const SparseEntry& entry : entries) ++begins[entry.row + 1];
@@ -135,7 +135,7 @@ std::vector<std::size_t> row_begins_of(std::size_t count, std::span<const Sparse
   return begins;
 }
 
-// Calls visit(column) for the columns up the elimination tree from one, until one that `seen` has
+// Calls visit(column) for the columns from one up the elimination tree, until one that was visited
 // for this row.
 template <typename Visit>
 void for_path(std::uint32_t row, std::uint32_t column, std::span<const std::uint32_t> parents,
@@ -146,7 +146,7 @@ void for_path(std::uint32_t row, std::uint32_t column, std::span<const std::uint
   }
 }
 
-// The elimination tree, and how long the columns of the factor become.
+// The elimination tree, and the lengths of the factor's columns.
 struct EliminationTree {
   std::vector<std::uint32_t> parents;
   std::vector<std::size_t> lengths;
@@ -176,7 +176,7 @@ SparseFactors::SparseFactors(std::vector<SparseEntry> lower, std::span<const Vec
     : order_(places.size()), diagonal_(places.size()), begins_(places.size() + 1, 0) {
   const std::size_t count = places.size();
   progress.report(0.0);
-  add_up(&lower);
+  sum_duplicates(&lower);
   progress.report(0.1);
   for (std::size_t i = 0; i < count; ++i) order_[i] = static_cast<std::uint32_t>(i);
   Dissection(neighbors_of(count, lower), places).sort(order_);
@@ -205,9 +205,9 @@ bool SparseFactors::factorize(std::span<const SparseEntry> entries,
   std::vector<std::uint32_t> seen(count, kNone);
   std::vector<std::size_t> ends(begins_.begin(), begins_.end() - 1);
   std::size_t since_report = 0;
-  double done = 0.0;
+  double finished_products = 0.0;
   for (std::uint32_t row = 0; row < count; ++row) {
-    // The columns in which the row is not 0, each after those below it in the tree.
+    // The nonzero columns of the row, each after its descendants in the tree.
     std::size_t top = count;
     seen[row] = row;
     double own = 0.0;
@@ -236,11 +236,11 @@ bool SparseFactors::factorize(std::span<const SparseEntry> entries,
       values_[end] = share;
       ++ends[column];
     }
-    if (!(own > kLeastPivot * scale)) return false;
+    if (!(own > kMinPivot * scale)) return false;
     diagonal_[row] = own;
     if (since_report > kProductsPerReport) {
-      done += static_cast<double>(std::exchange(since_report, 0));
-      progress.report(done / std::max(products, 1.0));
+      finished_products += static_cast<double>(std::exchange(since_report, 0));
+      progress.report(finished_products / std::max(products, 1.0));
     }
   }
   progress.report(1.0);

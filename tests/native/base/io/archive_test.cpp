@@ -19,7 +19,7 @@ using Triple = std::array<std::int32_t, 3>;
 
 const ArchiveMark kMark = {"parts", "of a work"};
 const std::vector<double> kNumbers = {1.5, -0.0, 1e300};
-const std::vector<std::uint8_t> kBytes(3 << 20, 7);  // more than is held back
+const std::vector<std::uint8_t> kBytes(3 << 20, 7);  // more than the buffer holds
 const std::vector<Triple> kTriples = {{1, 2, 3}, {-4, 5, 6}};
 
 void write(const std::string& path) {
@@ -53,7 +53,7 @@ void read_all(const std::string& path) {
   file.end();
 }
 
-TEST(Archive, GivesBackWhatWasPut) {
+TEST(Archive, RoundTripsArrays) {
   const TestFolder folder;
   const std::string path = folder.path("archive");
   write(path);
@@ -77,7 +77,7 @@ TEST(Archive, RefusesOtherKindsAndWorks) {
   EXPECT_THROW(ArchiveReader(folder.path("none"), kMark), Error);
 }
 
-TEST(Archive, RefusesWhatIsDamaged) {
+TEST(Archive, RefusesDamagedFiles) {
   const TestFolder folder;
   const std::string path = folder.path("archive");
   write(path);
@@ -97,7 +97,7 @@ TEST(Archive, RefusesWhatIsDamaged) {
   longer.push_back(std::byte{0});
   replace(path, longer);
   EXPECT_THROW(read_all(path), Error);
-  // A length that no memory has is refused before anything is made of it.
+  // An impossible length is rejected before memory is allocated.
   std::vector<std::byte> huge = whole;
   const std::size_t length_at = whole.size() - (2 * sizeof(Triple)) - 2 * sizeof(std::uint64_t);
   for (std::size_t i = 0; i < sizeof(std::uint64_t); ++i) huge[length_at + i] = std::byte{0xff};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Folders, and disks that are full, for tests of files.
+// Folders and full disks for tests of files.
 #pragma once
 
 #ifndef _WIN32
@@ -18,7 +18,7 @@
 
 namespace prefilter {
 
-/// A new folder, removed with all that is in it.
+/// A new folder, removed with its contents.
 class TestFolder {
  public:
   TestFolder() {
@@ -35,7 +35,7 @@ class TestFolder {
   std::string path(const std::string& name) const {
     return to_text((path_ / to_path(name)).make_preferred());
   }
-  /// Whether files in it can do without a name; older overlays, of containers, cannot do that.
+  /// Whether its file system supports unnamed files; older overlays, as in containers, do not.
   bool has_unnamed_files() const {
 #ifdef O_TMPFILE
     const int descriptor = ::open(path().c_str(), O_RDWR | O_TMPFILE, 0600);
@@ -45,7 +45,7 @@ class TestFolder {
     return false;
 #endif
   }
-  /// How many files a mesh is while it is written, as far as they have names.
+  /// The number of named files while a mesh is written.
   std::size_t names_while_written() const {
 #ifdef _WIN32
     return 2;
@@ -63,7 +63,7 @@ class TestFolder {
 };
 
 #ifndef _WIN32
-/// While it is there no file grows beyond so many bytes: what a full disk does, for any user.
+/// During its lifetime files cannot grow beyond a limit, like on a full disk, for any user.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {

@@ -15,7 +15,7 @@
 namespace prefilter {
 namespace {
 
-// Umlauts, Chinese, and a sign beyond 16 bits.
+// Umlauts, Chinese, and a character beyond 16 bits.
 const char* const kName =
     "Gr\xC3\xB6\xC3\x9F"
     "e \xE5\xA4\xA7\xE5\xB0\x8F \xF0\x9F\x93\x90.bin";
@@ -56,7 +56,7 @@ TEST(StagedFile, HasTheModeOfTheFileThatItReplaces) {
 #endif
 }
 
-TEST(StagedFile, ReplacesAFileThatIsRead) {
+TEST(StagedFile, ReplacesAnOpenFile) {
   const TestFolder folder;
   const std::string path = folder.path("file");
   write(path, "before");
@@ -79,7 +79,7 @@ TEST(StagedFile, LeavesTheTargetWithoutCommit) {
 }
 
 #ifdef _WIN32
-TEST(StagedFile, TellsOfATargetThatIsOpenElsewhere) {
+TEST(StagedFile, ReportsATargetThatIsOpenElsewhere) {
   const TestFolder folder;
   const std::string path = folder.path("file");
   write(path, "before");

@@ -49,7 +49,7 @@ TEST(TemporaryFile, IsInTheSystemsFolderWithoutAnyOther) {
   EXPECT_EQ(found, value);
 }
 
-TEST(TemporaryFile, TellsOfAFolderThatIsNotThere) {
+TEST(TemporaryFile, ReportsAMissingFolder) {
   const TestFolder folder;
   try {
     TemporaryFile file(folder.path("none"));
@@ -62,7 +62,7 @@ TEST(TemporaryFile, TellsOfAFolderThatIsNotThere) {
 }
 
 #ifndef _WIN32
-TEST(TemporaryFile, TellsOfAFullDiskAndWritesOnLater) {
+TEST(TemporaryFile, ReportsAFullDiskAndCanContinue) {
   const TestFolder folder;
   TemporaryFile file(folder.path());
   const std::vector<std::byte> bytes(10000, std::byte{3});

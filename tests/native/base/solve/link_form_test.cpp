@@ -17,7 +17,7 @@ std::vector<TexelLink> random_links(std::mt19937* random, int count) {
   std::vector<TexelLink> links(static_cast<std::size_t>(count));
   for (TexelLink& link : links) {
     link.count = 1 + static_cast<int>((*random)() % TexelLink::kMostTexels);
-    for (int k = 0; k < link.count; ++k) {  // a texel may be there twice
+    for (int k = 0; k < link.count; ++k) {  // a texel may occur twice
       link.texels[k] = static_cast<std::ptrdiff_t>((*random)() % kTexels);
       link.shares[k] = share(*random);
     }
@@ -86,7 +86,7 @@ TEST(LinkForm, IsTheMatrixOfTheSumOfSquares) {
   }
 }
 
-TEST(LinkForm, NoLinksAreNone) {
+TEST(LinkForm, IsEmptyWithoutLinks) {
   EXPECT_TRUE(LinkForm().empty());
   TexelLink link;
   link.count = 1;

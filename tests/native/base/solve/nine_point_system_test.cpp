@@ -13,7 +13,7 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// The same equations, all of them: one matrix, and a right side a channel.
+// The same equations as a dense matrix, with a right side per channel.
 struct Dense {
   int count = 0;
   std::vector<double> matrix;
@@ -21,7 +21,7 @@ struct Dense {
 
   double& at(int i, int j) { return matrix[static_cast<std::size_t>(i) * count + j]; }
 
-  // By Gauss's elimination; the matrix is positive definite.
+  // Gauss elimination; the matrix is positive definite.
   std::vector<std::array<double, kMaxChannels>> solution() const {
     Dense left = *this;
     for (int k = 0; k < count; ++k) {
@@ -46,7 +46,7 @@ struct Both {
   Dense dense;
 };
 
-// Every cell with some weight at random places of it, and random values there.
+// Weights at random places of every cell, with random values.
 Both random_system(int width, int height, WrapModes wrap, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> uniform(0.0F, 1.0F);
@@ -92,7 +92,7 @@ Both random_system(int width, int height, WrapModes wrap, unsigned seed) {
       both.system.add_cell(column, row, products, right);
     }
   }
-  // So that it is far from singular.
+  // Keeps it far from singular.
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       both.system.diagonal(both.system.at(x, y)) += 0.1F;
@@ -166,7 +166,7 @@ TEST(NinePointSystem, ProductsAndFormsAreThoseOfTheMatrix) {
   }
 }
 
-// Within ranges a texel is at an end only where the form falls beyond it (Karush, Kuhn, Tucker).
+// A texel is at a limit of its range only if the form decreases beyond it (Karush, Kuhn, Tucker).
 void expect_optimal(const Both& both, const SolveOptions& options, int width, int height) {
   Dense dense = both.dense;
   int at_ends = 0;
@@ -195,7 +195,7 @@ void expect_optimal(const Both& both, const SolveOptions& options, int width, in
   EXPECT_GT(at_ends, 3);
 }
 
-TEST(NinePointSystem, EndsWhereRangesEnd) {
+TEST(NinePointSystem, RespectsRanges) {
   for (const bool times_alpha : {false, true}) {
     Both both = random_system(6, 5, kWraps[1], times_alpha ? 7 : 8);
     SolveOptions options = exact();
@@ -226,7 +226,7 @@ TEST(NinePointSystem, LinksCountByTheirWeight) {
     const LinkForm form(
         {across}, [](std::ptrdiff_t) { return true; }, Progress());
     both.system.invert_diagonal();
-    // Another weight before leaves nothing behind.
+    // An earlier weight has no effect.
     both.system.weigh_links(&form, Lanes{} + 9.0F);
     both.system.weigh_links(&form, Lanes{} + weight);
     both.system.solve(exact(), Progress());

@@ -10,7 +10,7 @@
 namespace prefilter {
 namespace {
 
-// What the entries stand for, all of it.
+// The entries as a dense matrix.
 std::vector<std::vector<double>> dense(std::size_t size, const std::vector<SparseEntry>& lower) {
   std::vector<std::vector<double>> matrix(size, std::vector<double>(size, 0.0));
   for (const SparseEntry& entry : lower) {
@@ -54,8 +54,8 @@ TEST(SparseFactors, SolveRandomSystems) {
   }
 }
 
-TEST(SparseFactors, ADiscreteLaplacianOnAGrid) {
-  // Its inverse is known along diagonals of sines.
+TEST(SparseFactors, SolveALaplacian) {
+  // Its inverse is known in the basis of sines.
   constexpr std::uint32_t kSide = 120;
   std::vector<Vector3> places;
   std::vector<SparseEntry> lower;
@@ -84,18 +84,18 @@ TEST(SparseFactors, ADiscreteLaplacianOnAGrid) {
   }
 }
 
-TEST(SparseFactors, TellWhatIsNotDefinite) {
+TEST(SparseFactors, DetectIndefiniteMatrices) {
   const std::vector<Vector3> places(2);
   EXPECT_FALSE(SparseFactors({{0, 0, 1.0}, {1, 0, 1.0}, {1, 1, 1.0}}, places, {}).is_definite());
   EXPECT_FALSE(SparseFactors({{0, 0, 1.0}, {1, 1, -1.0}}, places, {}).is_definite());
   EXPECT_FALSE(SparseFactors({{0, 0, 1.0}}, places, {}).is_definite());
-  // What is left of the second row is e; a row's own size is what it is compared with.
+  // The remainder of the second row is e, compared with the row's own size.
   const auto is_definite = [&](double e, double size) {
     return SparseFactors({{0, 0, size}, {1, 0, size}, {1, 1, size + e * size}}, places, {})
         .is_definite();
   };
   for (const double size : {1e-20, 1.0, 1e20}) {
-    EXPECT_FALSE(is_definite(0x1p-44, size));  // 5.7e-14: rounding, for all that is known
+    EXPECT_FALSE(is_definite(0x1p-44, size));  // 5.7e-14: indistinguishable from rounding
     EXPECT_TRUE(is_definite(0x1p-42, size));
   }
 }
