@@ -14,7 +14,7 @@
 namespace prefilter {
 namespace {
 
-// A side of a triangle; `half` is three times the triangle plus the corner where it begins.
+// A side of a triangle; `half` is three times the triangle plus the corner where the side starts.
 struct Side {
   std::uint64_t ends;  // the lower vertex in the high bits
   std::uint32_t half;
@@ -24,7 +24,7 @@ struct Side {
   }
 };
 
-// For each vertex, the first of those at its place.
+// For each vertex, the first vertex at its position.
 std::vector<std::uint32_t> welded(const PositionView& positions, const Progress& progress,
                                   int threads) {
   std::vector<std::uint32_t> order(positions.size());

@@ -14,10 +14,10 @@
 namespace prefilter {
 namespace {
 
-constexpr float kSeam = 1e-4F;
-// Slits that are left when so many times the triangles were reached are parted triangle by
-// triangle.
-constexpr std::size_t kMostWork = 40;
+constexpr float kSeamTolerance = 1e-4F;
+// Work limit, in visited triangles per triangle of the mesh. Slits that remain then are separated
+// triangle by triangle.
+constexpr std::size_t kMaxVisitsPerTriangle = 40;
 
 Vector3 middle_of(const InputMesh& mesh, std::uint32_t triangle) {
   const auto& [a, b, c] = mesh.triangles[triangle];
@@ -25,10 +25,10 @@ Vector3 middle_of(const InputMesh& mesh, std::uint32_t triangle) {
   return (1.0 / 3.0) * (at(a) + at(b) + at(c));
 }
 
-// Parts pieces at slits.
-class Halving {
+// Divides charts at slits, half way between their sides.
+class SlitSplitter {
  public:
-  Halving(const InputMesh& mesh, const ChartLinks& links, std::vector<std::int32_t>* charts)
+  SlitSplitter(const InputMesh& mesh, const ChartLinks& links, std::vector<std::int32_t>* charts)
       : mesh_(mesh),
         links_(links),
         charts_(*charts),
@@ -38,7 +38,7 @@ class Halving {
   }
 
   void run(const Progress& progress) {
-    const std::size_t most = kMostWork * charts_.size();
+    const std::size_t most = kMaxVisitsPerTriangle * charts_.size();
     for (const auto& [one, other] : links_.slits) {
       if (charts_[one] != charts_[other]) continue;
       if (work_ > most) break;
@@ -48,7 +48,7 @@ class Halving {
   }
 
  private:
-  // What is nearer to `other` than to `one` gets a number of its own.
+  // Gives the triangles closer to `other` than to `one` a new number.
   void part(std::uint32_t one, std::uint32_t other) {
     reach(one, 0.0, 0);
     reach(other, 0.0, 1);
@@ -94,11 +94,11 @@ class Halving {
   std::priority_queue<Step, std::vector<Step>, std::greater<>> queue_;
 };
 
-// Grows pieces that have one pair of UVs at each vertex.
-class Growing {
+// Grows pieces with a unique pair of UVs at each vertex.
+class PieceGrower {
  public:
-  Growing(const InputMesh& mesh, std::span<const CornerUvs> maps,
-          std::span<const std::uint32_t> place, const ChartLinks& links)
+  PieceGrower(const InputMesh& mesh, std::span<const CornerUvs> maps,
+              std::span<const std::uint32_t> place, const ChartLinks& links)
       : mesh_(mesh), maps_(maps), place_(place), links_(links), held_(place.size(), {-1, 0}) {}
 
   std::vector<std::int32_t> run(std::span<const std::int32_t> charts) {
@@ -156,14 +156,14 @@ class Growing {
 }  // namespace
 
 bool are_near_uvs(const std::array<float, 2>& a, const std::array<float, 2>& b) {
-  return std::abs(a[0] - b[0]) <= kSeam && std::abs(a[1] - b[1]) <= kSeam;
+  return std::abs(a[0] - b[0]) <= kSeamTolerance && std::abs(a[1] - b[1]) <= kSeamTolerance;
 }
 
 void cut_charts(const InputMesh& mesh, std::span<const CornerUvs> maps,
                 std::span<const std::uint32_t> place, const ChartLinks& links,
                 const Progress& progress, std::vector<std::int32_t>* charts) {
-  Halving(mesh, links, charts).run(progress);
-  *charts = Growing(mesh, maps, place, links).run(*charts);
+  SlitSplitter(mesh, links, charts).run(progress);
+  *charts = PieceGrower(mesh, maps, place, links).run(*charts);
   progress.report(1.0);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Charts that meet themselves at a seam, as that of a tube that is slit, are cut into pieces.
+// Divides charts that adjoin themselves at a seam, such as that of an unrolled tube.
 #pragma once
 
 #include <array>
@@ -14,23 +14,22 @@
 
 namespace prefilter {
 
-/// How the triangles of a mesh meet.
+/// Adjacency of the triangles of a mesh.
 struct ChartLinks {
-  /// The triangles beyond the edges of each that are no seams; none if negative.
+  /// The triangles beyond the three edges of each triangle; negative at seams.
   std::vector<std::array<std::int32_t, 3>> beyond;
-  /// The triangles on both sides of the seams whose UVs differ at both ends.
+  /// Pairs of triangles on both sides of seams whose UVs differ at both ends.
   std::vector<std::array<std::uint32_t, 2>> slits;
 };
 
-/// Whether UVs are the same at a seam.
+/// Whether UVs are equal up to the tolerance of seams.
 bool are_near_uvs(const std::array<float, 2>& a, const std::array<float, 2>& b);
 
-/// Gives pieces of charts numbers of their own, so that triangles of one number have the same UVs
-/// wherever they share a vertex. Two sides of a slit are parted half way between them, by the way
-/// from middle to middle of triangles.
+/// Divides charts so that triangles with the same number have the same UVs at every shared vertex.
+/// The two sides of a slit are separated half way between them, measured along triangle centers.
 ///
-/// `place` is the same for vertices that count as one; `charts` has a number for each triangle,
-/// from 0 without gaps in order of first triangles, and so it has afterward.
+/// `place` is equal for vertices that are identified. `charts` has a number per triangle,
+/// consecutive from 0 in order of first triangles, both before and after.
 void cut_charts(const InputMesh& mesh, std::span<const CornerUvs> maps,
                 std::span<const std::uint32_t> place, const ChartLinks& links,
                 const Progress& progress, std::vector<std::int32_t>* charts);

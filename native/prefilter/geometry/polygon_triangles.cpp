@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Ear clipping in whole numbers.
+// Ear clipping with integer coordinates.
 //
-// Let w(x) be how often a polygon winds around a point x of the plane, and let the inside be where
-// w = 1; elsewhere w = 0. An ear is a corner b between a and c such that a, b, c turn to the left,
-// no edge of the polygon meets the open triangle abc, and w = 1 there. Then w is constant in the
+// Let w(x) be the winding number of a polygon around a point x of the plane, and assume w = 1
+// inside and w = 0 elsewhere. An ear is a corner b between a and c such that a, b, c turn left, no
+// edge of the polygon intersects the open triangle abc, and w = 1 there. Then w is constant in the
 // triangle, and the polygon without b has the winding number w - 1 there and w elsewhere: again 1
-// or 0. So the triangles that are clipped are disjoint and cover the inside. A simple polygon has
-// two ears (Meisters 1975), and so does one that is the limit of simple polygons, such as one with
-// bridges to its holes: what the ears of those become in the limit is an ear, or a corner with
-// a, b, c on a line, whose removal changes no winding number.
+// or 0. So the clipped triangles are disjoint and cover the inside. A simple polygon has two ears
+// (Meisters 1975). So does a limit of simple polygons, such as one with bridges to its holes: in
+// the limit, their ears become ears, or corners with a, b, c on a line, whose removal does not
+// change the winding number.
 #include "prefilter/geometry/polygon_triangles.h"
 
 #include <algorithm>
@@ -25,8 +25,8 @@ namespace {
 
 using Triangle = std::array<std::int64_t, 3>;
 
-/// Coordinates lie within 2^28 of 0: three times a difference is below 2^31, so that the difference
-/// of two products of such is below 2^63.
+/// Coordinates are below 2^28 in magnitude: three times a difference is below 2^31, so that the
+/// difference of two products of these is below 2^63.
 struct GridPoint {
   std::int64_t x;
   std::int64_t y;
@@ -35,12 +35,12 @@ struct GridPoint {
 };
 constexpr int kGridBits = 28;
 
-/// Twice the signed area of a triangle, positive where it turns to the left.
+/// Twice the signed area of a triangle, positive for a left turn.
 std::int64_t doubled_area(GridPoint a, GridPoint b, GridPoint c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/// Newell's normal: its coordinates are twice the areas of the polygon's projections.
+/// Newell's normal: its components are twice the areas of the polygon's projections.
 Vector3 newell_normal(std::span<const Vector3> points) {
   Vector3 normal{};
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -49,8 +49,9 @@ Vector3 newell_normal(std::span<const Vector3> points) {
   return normal;
 }
 
-/// Projects along the normal to the plane of two axes, where the polygon winds to the left.
-std::vector<GridPoint> projected(std::span<const Vector3> points) {
+/// Projects along the largest component of the normal to the plane of the other two axes, so that
+/// the polygon winds counterclockwise.
+std::vector<GridPoint> project_to_plane(std::span<const Vector3> points) {
   const Vector3 normal = newell_normal(points);
   std::size_t axis = 0;
   for (std::size_t a = 1; a < 3; ++a) {
@@ -70,7 +71,7 @@ std::vector<GridPoint> projected(std::span<const Vector3> points) {
   }
   std::vector<GridPoint> grid(points.size(), GridPoint{0, 0});
   if (!(extent > 0.0 && std::isfinite(extent))) return grid;
-  // A power of two, so that numbers with few digits stay as they are.
+  // A power of two, so that coordinates with few digits remain exact.
   const int shift = kGridBits - 1 - std::ilogb(extent);
   for (std::size_t i = 0; i < grid.size(); ++i) {
     grid[i] = {std::llrint(std::ldexp(plane[i][0], shift)),
@@ -91,7 +92,7 @@ class EarClipper {
     left_ = count;
   }
 
-  /// The triangles as corners of the polygon.
+  /// The triangles as indices of the polygon's corners.
   std::vector<std::array<std::size_t, 3>> clip() {
     std::vector<std::array<std::size_t, 3>> triangles;
     std::size_t corner = 1;
@@ -111,8 +112,8 @@ class EarClipper {
     return doubled_area(points_[previous_[corner]], points_[corner], points_[next_[corner]]);
   }
 
-  /// The first corner from `start` on that fits best. Ears whose third side passes through no
-  /// corner come first, as then no triangle without an area is left over.
+  /// The best corner from `start` on. Ears whose third side passes through no corner are preferred,
+  /// as they do not leave behind triangles without area.
   std::size_t find(std::size_t start) {
     std::size_t ear = kNone;
     std::size_t flat = kNone;
@@ -133,11 +134,11 @@ class EarClipper {
     } while (corner != start);
     if (flat != kNone) return flat;
     if (ear != kNone) return ear;
-    // Only a polygon that crosses itself gets here; removing any corner keeps its signed area.
+    // Only reached by self-crossing polygons; removing any corner preserves the signed area.
     return convex != kNone ? convex : start;
   }
 
-  /// Returns the corner after the one that is removed.
+  /// Returns the corner after the removed one.
   std::size_t remove(std::size_t corner) {
     const std::size_t before = previous_[corner];
     const std::size_t after = next_[corner];
@@ -151,14 +152,14 @@ class EarClipper {
 
   bool is_ear(std::size_t corner) {
     const auto [begin, end] = blocking_[corner];
-    // An edge that was in the way is still, until one of its ends is removed.
+    // An edge that intersected the triangle before still does, until one of its ends is removed.
     if (begin != kNone && next_[begin] == end) return false;
     const std::size_t edge = edge_through(corner);
     blocking_[corner] = {edge, edge == kNone ? kNone : next_[edge]};
     return edge == kNone && winding_in(corner) == 1;
   }
 
-  /// The beginning of an edge that meets the open triangle at a corner; none if there is none.
+  /// The start of an edge that intersects the open triangle at a corner; kNone without one.
   std::size_t edge_through(std::size_t corner) const {
     const GridPoint a = points_[previous_[corner]];
     const GridPoint b = points_[corner];
@@ -175,8 +176,8 @@ class EarClipper {
     return kNone;
   }
 
-  /// Whether a segment meets an open triangle that turns to the left. Two convex sets of the plane
-  /// are disjoint just where the line of a side of one of them separates them.
+  /// Whether a segment intersects an open, counterclockwise triangle. Two convex sets in the plane
+  /// are disjoint exactly if a line through a side of one of them separates them.
   static bool meets_inside(GridPoint a, GridPoint b, GridPoint c, GridPoint p, GridPoint q) {
     if (doubled_area(a, b, p) <= 0 && doubled_area(a, b, q) <= 0) return false;
     if (doubled_area(b, c, p) <= 0 && doubled_area(b, c, q) <= 0) return false;
@@ -186,7 +187,7 @@ class EarClipper {
     return p == q || (low < 0 && high > 0);
   }
 
-  /// Whether a corner lies within the side that removing a corner makes.
+  /// Whether a corner lies on the open side that removing a corner would create.
   bool passes_corner(std::size_t corner) const {
     const GridPoint a = points_[previous_[corner]];
     const GridPoint c = points_[next_[corner]];
@@ -200,7 +201,8 @@ class EarClipper {
     return false;
   }
 
-  /// The winding number in the triangle at an ear, where no edge passes: at its middle, times 3.
+  /// The winding number in the triangle at an ear, which no edge crosses, evaluated at its center;
+  /// coordinates are multiplied by 3.
   std::int64_t winding_in(std::size_t corner) const {
     const GridPoint a = points_[previous_[corner]];
     const GridPoint b = points_[corner];
@@ -276,7 +278,7 @@ std::vector<Triangle> triangulate_polygons(const PositionView& positions,
     } else if (size > 3) {
       points.clear();
       for (std::size_t k = 0; k < size; ++k) points.push_back(at(k) - at(0));
-      for (const auto& [a, b, c] : EarClipper(projected(points)).clip()) add(a, b, c);
+      for (const auto& [a, b, c] : EarClipper(project_to_plane(points)).clip()) add(a, b, c);
     }
     first += size;
     if (size > 0) progress.report(static_cast<double>(first) / static_cast<double>(corners.size()));

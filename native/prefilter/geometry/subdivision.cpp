@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Uniform refinement by OpenSubdiv, then its limit masks for positions and texture coordinates.
+// Refines uniformly with OpenSubdiv, then applies its limit masks to positions and texture
+// coordinates.
 #include "prefilter/geometry/subdivision.h"
 
 #include <opensubdiv/far/error.h>
@@ -27,10 +28,10 @@ namespace Far = OpenSubdiv::Far;
 namespace Sdc = OpenSubdiv::Sdc;
 
 constexpr double kMaxTriangles = 1 << 25;
-constexpr double kBytesPerTriangle = 370.0;  // measured, at the peak
-constexpr std::int64_t kMaxValence = 65535;  // Far's
+constexpr double kBytesPerTriangle = 370.0;  // measured peak
+constexpr std::int64_t kMaxValence = 65535;  // limit of OpenSubdiv's Far
 
-// What OpenSubdiv interpolates: N numbers.
+// A value of N components that OpenSubdiv interpolates.
 template <int N>
 struct Values {
   std::array<double, N> v;
@@ -39,7 +40,7 @@ struct Values {
   void AddWithWeight(const Values& other, double weight) {
     for (int i = 0; i < N; ++i) v[i] += weight * other.v[i];
   }
-  // The weights that OpenSubdiv has as literals of type float are all meant to be sixths.
+  // All weights that OpenSubdiv writes as float literals are meant to be multiples of 1/6.
   void AddWithWeight(const Values& other, float weight) {
     AddWithWeight(other, std::round(6.0 * weight) / 6.0);
   }
@@ -119,10 +120,11 @@ void check_faces(const PolygonArrays& mesh, SubdivisionScheme scheme) {
 }
 
 double triangles_at(const PolygonArrays& mesh, SubdivisionScheme scheme, int level) {
-  // Far cuts a face of n corners into n quads, and each of those into four a level.
-  const double of_level = std::ldexp(1.0, 2 * level);
-  if (scheme == SubdivisionScheme::kLoop) return static_cast<double>(mesh.face_count) * of_level;
-  return static_cast<double>(mesh.corner_count) * of_level / 2.0;
+  // Far divides a face of n corners into n quads, and each quad into four per level.
+  const double quads_per_face = std::ldexp(1.0, 2 * level);
+  if (scheme == SubdivisionScheme::kLoop)
+    return static_cast<double>(mesh.face_count) * quads_per_face;
+  return static_cast<double>(mesh.corner_count) * quads_per_face / 2.0;
 }
 
 void check_level(const PolygonArrays& mesh, const SubdivisionOptions& options) {
@@ -192,7 +194,7 @@ Sdc::Options far_options(const SubdivisionOptions& options) {
   return rules;
 }
 
-// Far prints its errors where nobody asked for them. They are known by what it returns.
+// Far prints its errors; they are also visible from its return values.
 void silence_far() {
   static std::once_flag once;
   std::call_once(once, [] {
@@ -201,10 +203,10 @@ void silence_far() {
   });
 }
 
-// The control mesh as OpenSubdiv wants it.
+// The control mesh in OpenSubdiv's layout.
 struct ControlMesh {
   std::vector<int> face_sizes;
-  std::vector<int> face_vertices;  // of those that faces name, in order
+  std::vector<int> face_vertices;  // indices of used vertices, in order
   std::vector<int> uv_of_corner;
   std::vector<int> crease_edges;
   std::vector<float> crease_sharpness;
@@ -212,7 +214,7 @@ struct ControlMesh {
   std::vector<float> corner_sharpness;
   Points points;
   Uvs uvs;
-  Weights weights;  // of vertices
+  Weights weights;  // per vertex
 
   explicit ControlMesh(const PolygonArrays& mesh);
   std::unique_ptr<Far::TopologyRefiner> refiner(const SubdivisionOptions& options) const;
@@ -289,8 +291,8 @@ std::unique_ptr<Far::TopologyRefiner> ControlMesh::refiner(
   mesh.fvarChannels = &channel;
 
   using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
-  const Factory::Options how(far_scheme(options.scheme), far_options(options));
-  std::unique_ptr<Far::TopologyRefiner> made(Factory::Create(mesh, how));
+  const Factory::Options refinement(far_scheme(options.scheme), far_options(options));
+  std::unique_ptr<Far::TopologyRefiner> made(Factory::Create(mesh, refinement));
   if (made == nullptr) {
     throw_invalid("face_vertices: a vertex has more than " + std::to_string(kMaxValence) +
                   " edges");
@@ -311,11 +313,11 @@ void check_creases(const PolygonArrays& mesh, const ControlMesh& control,
   }
 }
 
-// An array that OpenSubdiv fills, entry by entry, and that lets a cancel through meanwhile.
+// An array that OpenSubdiv fills, which checks for cancellation at each access.
 template <typename Values>
-class Filled {
+class CancellableArray {
  public:
-  Filled(Values* values, Pulse* pulse) : values_(*values), pulse_(*pulse) {}
+  CancellableArray(Values* values, Pulse* pulse) : values_(*values), pulse_(*pulse) {}
   auto& operator[](int i) {
     pulse_.step();
     return values_[i];
@@ -331,7 +333,7 @@ struct Refined {
   Points points;
   Uvs uvs;
   Weights weights;
-  std::vector<int> base_faces;  // that each refined face is a part of
+  std::vector<int> base_faces;  // per refined face
 };
 
 Refined refine(const ControlMesh& control, const Far::TopologyRefiner& refiner, int level,
@@ -347,13 +349,13 @@ Refined refine(const ControlMesh& control, const Far::TopologyRefiner& refiner, 
     next.uvs.resize(topology.GetNumFVarValues());
     const Progress part = progress.part(static_cast<double>(l - 1) / level, 1.0);
     Pulse pulse(part);
-    Filled points(&next.points, &pulse);
-    Filled uvs(&next.uvs, &pulse);
+    CancellableArray points(&next.points, &pulse);
+    CancellableArray uvs(&next.uvs, &pulse);
     primvars.Interpolate(l, now.points, points);
     primvars.InterpolateFaceVarying(l, now.uvs, uvs);
     if (!now.weights.empty()) {
       next.weights.resize(topology.GetNumVertices());
-      Filled weights(&next.weights, &pulse);
+      CancellableArray weights(&next.weights, &pulse);
       primvars.InterpolateVarying(l, now.weights, weights);
     }
     next.base_faces.resize(topology.GetNumFaces());
@@ -366,11 +368,11 @@ Refined refine(const ControlMesh& control, const Far::TopologyRefiner& refiner, 
   const Progress limits = progress.part(1.0, 1.0);
   Pulse pulse(limits);
   Points points(now.points.size());
-  Filled limit_points(&points, &pulse);
+  CancellableArray limit_points(&points, &pulse);
   primvars.Limit(now.points, limit_points);
   now.points = std::move(points);
   Uvs uvs(now.uvs.size());
-  Filled limit_uvs(&uvs, &pulse);
+  CancellableArray limit_uvs(&uvs, &pulse);
   primvars.LimitFaceVarying(now.uvs, limit_uvs);
   now.uvs = std::move(uvs);
   return now;
@@ -424,9 +426,9 @@ Surface subdivide(const PolygonArrays& mesh, const SubdivisionOptions& options) 
   const std::unique_ptr<Far::TopologyRefiner> refiner = control.refiner(options);
   check_creases(mesh, control, refiner->GetLevel(0));
   options.progress.report(0.1);
-  Far::TopologyRefiner::UniformOptions how(options.level);
-  how.fullTopologyInLastLevel = true;  // The limit masks look at it.
-  refiner->RefineUniform(how);
+  Far::TopologyRefiner::UniformOptions refinement(options.level);
+  refinement.fullTopologyInLastLevel = true;  // needed for the limit masks
+  refiner->RefineUniform(refinement);
   const Refined refined = refine(control, *refiner, options.level, options.progress.part(0.4, 0.8));
   const Surface surface = triangulated(mesh, refined, refiner->GetLevel(options.level),
                                        options.progress.part(0.8, 1.0));

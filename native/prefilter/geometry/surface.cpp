@@ -27,7 +27,7 @@ void check_finite(const double* values, std::size_t rows, std::size_t columns,
   }
 }
 
-// A normal, as long as twice the triangle's area.
+// A normal with the length of twice the triangle's area.
 Vector3 triangle_normal(const Surface& surface, std::size_t k) {
   const auto& [a, b, c] = surface.triangles[k];
   const std::vector<Vector3>& points = surface.positions;
@@ -73,7 +73,7 @@ double weight_of(const TexturedMesh& mesh, std::size_t triangle) {
   return 1.0;
 }
 
-// What a linear map does to normals that are as long as areas: its cofactors.
+// The cofactors of a linear map, which transform area vectors.
 std::array<Vector3, 3> cofactors(const AffineMap& map) {
   const auto row = [&](int i) { return Vector3{map[i][0], map[i][1], map[i][2]}; };
   return {cross(row(1), row(2)), cross(row(2), row(0)), cross(row(0), row(1))};
@@ -128,7 +128,7 @@ Surface place_surface(const Surface& surface, std::span<const AffineMap> maps) {
   for (std::size_t k = 0; k < surface.triangle_count(); ++k) {
     const Vector3 normal = triangle_normal(surface, k);
     const double before = length(normal);
-    if (before == 0.0) continue;  // Flat before is flat after.
+    if (before == 0.0) continue;  // triangles without area stay flat
     double after = 0.0;
     for (const std::array<Vector3, 3>& map : normal_maps) after += length(apply(map, normal));
     placed.areas[k] = surface.areas[k] * (after / before);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Sutherland and Hodgman's polygon clipping, in barycentric coordinates of each triangle: these
-// measure areas where texture coordinates are degenerate, too.
+// Sutherland-Hodgman polygon clipping in barycentric coordinates, which measure areas even if
+// texture coordinates are degenerate.
 #include "prefilter/geometry/udim_tile.h"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ using TriangleUvs = std::array<TextureCoordinate, 3>;
 
 struct Corner {
   Barycentric weights;
-  double uv[2];  // in the tile: the unit square
+  double uv[2];  // relative to the tile: the unit square
 };
 
 // A triangle cut by four lines has at most seven corners.
@@ -35,7 +35,7 @@ struct Polygon {
 
 double coordinate(const TextureCoordinate& uv, int axis) { return axis == 0 ? uv.u : uv.v; }
 
-// What part of its triangle lies between three points of it.
+// The fraction of the triangle between three of its points.
 double share(const Corner& a, const Corner& b, const Corner& c) {
   return std::abs((b.weights[0] - a.weights[0]) * (c.weights[1] - a.weights[1]) -
                   (c.weights[0] - a.weights[0]) * (b.weights[1] - a.weights[1]));
@@ -66,7 +66,7 @@ class Clipper {
     }
     for (int axis = 0; axis < 2; ++axis) {
       if (is_beyond(polygon, axis)) return;
-      if (is_level(polygon, axis)) {
+      if (is_flat_along(polygon, axis)) {
         if (!holds(polygon.corners[0].uv[axis], axis)) return;
       } else {
         polygon = cut(polygon, axis, 0.0, 1.0);
@@ -86,31 +86,31 @@ class Clipper {
                        [axis](const Corner& corner) { return corner.uv[axis] > 1.0; });
   }
 
-  static bool is_level(const Polygon& polygon, int axis) {
+  static bool is_flat_along(const Polygon& polygon, int axis) {
     const auto& corners = polygon.corners;
     return corners[0].uv[axis] == corners[1].uv[axis] && corners[1].uv[axis] == corners[2].uv[axis];
   }
 
-  // The last column has its right edge: no tile is there that would have it.
+  // The right edge belongs to the tile in the last column, as no tile follows.
   bool holds(double value, int axis) const {
     if (value == 1.0) return axis == 0 && origin_[0] == kColumns - 1;
     return value >= 0.0 && value < 1.0;
   }
 
-  // The part of a polygon on the side of a line where direction * (uv[axis] - line) >= 0.
+  // The part of a polygon where direction * (uv[axis] - line) >= 0.
   Polygon cut(const Polygon& polygon, int axis, double line, double direction) const {
-    Polygon kept;
+    Polygon part;
     for (int i = 0; i < polygon.count; ++i) {
       const Corner& a = polygon.corners[i];
       const Corner& b = polygon.corners[(i + 1) % polygon.count];
       const double from = direction * (a.uv[axis] - line);
       const double to = direction * (b.uv[axis] - line);
-      if (from >= 0.0) kept.push(a);
+      if (from >= 0.0) part.push(a);
       if ((from > 0.0 && to < 0.0) || (from < 0.0 && to > 0.0)) {
-        kept.push(crossing(a, b, axis, line));
+        part.push(crossing(a, b, axis, line));
       }
     }
-    return kept;
+    return part;
   }
 
   Corner crossing(const Corner& a, const Corner& b, int axis, double line) const {
@@ -121,20 +121,20 @@ class Clipper {
     return between(a, b, t, axis, line);
   }
 
-  // Where an edge of the triangle meets the line: the same for both triangles of the edge, to the
-  // bit, if they have the same texture coordinates.
+  // The intersection of an edge of the triangle with the line: bitwise the same for both triangles
+  // of the edge if they have the same texture coordinates.
   Corner edge_crossing(int opposite, int axis, double line) const {
     int low = (opposite + 1) % 3;
     int high = (opposite + 2) % 3;
     const auto& vertices = surface_.triangles[triangle_];
     if (vertices[high] < vertices[low]) std::swap(low, high);
     const auto corner = [&](int i) {
-      Corner found{};
-      found.weights[i] = 1.0;
+      Corner result{};
+      result.weights[i] = 1.0;
       for (int k = 0; k < 2; ++k) {
-        found.uv[k] = coordinate(surface_.uvs[triangle_][i], k) - origin_[k];
+        result.uv[k] = coordinate(surface_.uvs[triangle_][i], k) - origin_[k];
       }
-      return found;
+      return result;
     };
     const Corner a = corner(low);
     const Corner b = corner(high);
@@ -142,27 +142,29 @@ class Clipper {
   }
 
   static Corner between(const Corner& a, const Corner& b, double t, int axis, double line) {
-    Corner found{};
-    for (int i = 0; i < 3; ++i) found.weights[i] = (1.0 - t) * a.weights[i] + t * b.weights[i];
-    for (int k = 0; k < 2; ++k) found.uv[k] = (1.0 - t) * a.uv[k] + t * b.uv[k];
-    found.uv[axis] = line;
-    return found;
+    Corner result{};
+    for (int i = 0; i < 3; ++i) result.weights[i] = (1.0 - t) * a.weights[i] + t * b.weights[i];
+    for (int k = 0; k < 2; ++k) result.uv[k] = (1.0 - t) * a.uv[k] + t * b.uv[k];
+    result.uv[axis] = line;
+    return result;
   }
 
-  void add_part(const Polygon& polygon, const std::array<int, 3>& chosen,
+  void add_part(const Polygon& polygon, const std::array<int, 3>& corner_indices,
                 std::array<std::int32_t, 8>* known) {
     const auto& corners = polygon.corners;
-    const double part = share(corners[chosen[0]], corners[chosen[1]], corners[chosen[2]]);
+    const double part =
+        share(corners[corner_indices[0]], corners[corner_indices[1]], corners[corner_indices[2]]);
     if (part == 0.0) return;
     clipped_.areas.push_back(surface_.areas[triangle_] * part);
     std::array<std::int32_t, 3>& vertices = clipped_.triangles.emplace_back();
     TriangleUvs& uvs = clipped_.uvs.emplace_back();
     for (int i = 0; i < 3; ++i) {
-      const Corner& corner = corners[chosen[i]];
-      std::int32_t& id = (*known)[chosen[i]];
+      const Corner& corner = corners[corner_indices[i]];
+      std::int32_t& id = (*known)[corner_indices[i]];
       if (id < 0) id = vertex(corner);
       vertices[i] = id;
-      // A cut along one axis may leave the other coordinate off the tile by rounding.
+      // After a cut along one axis, the other coordinate may be slightly off the tile due to
+      // rounding.
       uvs[i] = {std::clamp(corner.uv[0], 0.0, 1.0), std::clamp(corner.uv[1], 0.0, 1.0)};
     }
   }
@@ -181,10 +183,10 @@ class Clipper {
       int low = (i + 1) % 3;
       int high = (i + 2) % 3;
       if (vertices[high] < vertices[low]) std::swap(low, high);
-      const auto [found, is_new] =
+      const auto [result, is_new] =
           edge_vertices_.try_emplace({vertices[low], vertices[high], corner.weights[high]}, 0);
-      if (is_new) found->second = new_vertex(corner);
-      return found->second;
+      if (is_new) result->second = new_vertex(corner);
+      return result->second;
     }
     return new_vertex(corner);
   }
@@ -202,9 +204,9 @@ class Clipper {
   const Surface& surface_;
   std::array<int, 2> origin_;
   Surface clipped_;
-  std::size_t triangle_ = 0;  // the one that is cut
+  std::size_t triangle_ = 0;  // the triangle being clipped
   std::vector<std::int32_t> vertex_map_;
-  // By the edge's lower and higher vertex, and how far from the lower one.
+  // Keys: the edge's lower and higher vertex, and the fraction of the way from the lower one.
   std::map<std::tuple<std::int32_t, std::int32_t, double>, std::int32_t> edge_vertices_;
 };
 

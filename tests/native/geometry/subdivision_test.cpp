@@ -19,7 +19,7 @@ struct Mesh {
   std::vector<std::int64_t> face_vertices;
   std::vector<double> face_uvs;
 
-  // A different corner in the texture for every corner of the mesh, or the same for a vertex.
+  // Different texture coordinates for every corner of the mesh, or one per vertex.
   void add_uvs(bool seams) {
     for (std::size_t i = 0; i < face_vertices.size(); ++i) {
       const double value = seams ? static_cast<double>(i) : static_cast<double>(face_vertices[i]);
@@ -69,8 +69,8 @@ TEST(Subdivide, CornersOfACubeGoHalfWay) {
   }
 }
 
-// Random polygon soups: edges of many faces, faces that meet in vertices only, any winding.
-TEST(Subdivide, TakesWhateverIsThrownAtIt) {
+// Random polygon soups: edges of many faces, faces that share vertices only, any orientation.
+TEST(Subdivide, AcceptsRandomPolygons) {
   for (unsigned seed = 0; seed < 150; ++seed) {
     std::mt19937 random(seed);
     Mesh mesh;

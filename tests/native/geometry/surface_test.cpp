@@ -35,7 +35,7 @@ TEST(MakeSurface, MeasuresAreas) {
   EXPECT_DOUBLE_EQ(surface.total_area(), 10.5);
 }
 
-TEST(MakeSurface, NamesWhatIsWrong) {
+TEST(MakeSurface, ErrorsNameTheArgument) {
   Arrays arrays;
   arrays.triangles.clear();
   EXPECT_EQ(message_of(arrays), "triangles: none; at least one is needed");

@@ -12,7 +12,7 @@
 namespace prefilter {
 namespace {
 
-// The share of a triangle's area that lies in a tile, by many samples on a grid of it.
+// The share of a triangle's area in a tile, from a grid of samples.
 double sampled_share(const std::array<TextureCoordinate, 3>& uvs, int column, int row) {
   constexpr int kSteps = 700;
   int inside = 0;
@@ -42,15 +42,15 @@ Surface random_surface(unsigned seed, int triangles) {
     for (TextureCoordinate& uv : surface.uvs.back()) {
       uv = {uniform(random), uniform(random)};
       if (k % 3 == 1) uv.v = 0.75;        // a line in the texture
-      if (k % 3 == 2) uv.u = 1.5 * uv.v;  // a slanted one
+      if (k % 3 == 2) uv.u = 1.5 * uv.v;  // a slanted line
       surface.positions.push_back({uv.u, uv.v, uniform(random)});
     }
   }
   return surface;
 }
 
-// A triangle that is a line in the texture, along an edge between two tiles, is in one of them.
-TEST(UdimTile, WhatLiesBetweenTilesIsInTheNext) {
+// A triangle that is a line in the texture, on the edge between two tiles, belongs to one of them.
+TEST(UdimTile, TrianglesOnEdgesBelongToTheNextTile) {
   for (const bool along_u : {false, true}) {
     Surface surface;
     surface.triangles = {{0, 1, 2}};
@@ -73,7 +73,7 @@ TEST(UdimTile, WhatLiesBetweenTilesIsInTheNext) {
   }
 }
 
-TEST(UdimTile, SharesAreThoseOfSamples) {
+TEST(UdimTile, SharesMatchSampling) {
   for (unsigned seed = 0; seed < 12; ++seed) {
     Surface surface = random_surface(seed, 3);
     for (int k = 0; k < 3; ++k) {
@@ -114,7 +114,7 @@ TEST(UdimTile, IndicesNameVerticesAndUvsLieInTheSquare) {
   }
 }
 
-TEST(UdimTile, NamesNumbersThatAreNone) {
+TEST(UdimTile, RefusesInvalidNumbers) {
   for (const int number : {-1, 0, 1000, 10000}) {
     EXPECT_THROW(udim_tile(Surface(), number), Error) << number;
   }

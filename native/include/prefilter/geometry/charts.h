@@ -13,17 +13,17 @@
 
 namespace prefilter {
 
-/// The UVs of a mesh's triangles, corner by corner.
+/// The UVs of a mesh's triangles, per corner.
 using CornerUvs = std::span<const std::array<std::array<float, 2>, 3>>;
 
-/// A number for each triangle, from 0 in order of their first triangles: the same for those that
-/// hang together by edges which are seams of none of the maps. An edge is a seam where its two
-/// triangles have UVs at an end that are more than 1e-4 apart; edges of one or three and more
-/// triangles part, too. Vertices at one place count as one. Where triangles of one number would
-/// have different UVs at a vertex, as on both sides of a slit, they get several: the border between
-/// these runs about half way between the sides.
+/// Numbers the charts of a mesh: returns the chart of each triangle, numbered by first triangles
+/// from 0. Charts are connected by edges that are not a seam of any map. An edge is a seam if the
+/// UVs of its two triangles differ by more than 1e-4 at an end; edges with one triangle, or three
+/// and more, separate charts too. Vertices at the same position are identified. If triangles of a
+/// chart have different UVs at a vertex, as on both sides of a slit, the chart is divided, with a
+/// border about half way between the sides.
 ///
-/// Throws Error for a mesh that is none, and a map that has not as many triangles;
+/// Throws Error for an invalid mesh, and for a map with a different number of triangles;
 /// Error(kCancelled).
 std::vector<std::int32_t> find_charts(const InputMesh& mesh, std::span<const CornerUvs> maps,
                                       const Progress& progress, int threads);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// For each corner of a surface, the nearest point of the mesh that it was made of.
+// For each corner of a remeshed surface, finds the nearest point of the original mesh.
 #pragma once
 
 #include <array>
@@ -14,19 +14,19 @@
 
 namespace prefilter {
 
-/// Points of a mesh, and which of them the corners of a surface have.
+/// Points of a mesh, and the index of the point for each corner of a surface's triangles.
 struct CornerPoints {
-  std::vector<SurfacePoint> points;  // first one for each vertex
+  std::vector<SurfacePoint> points;  // first, one for each vertex
   std::vector<std::array<std::int32_t, 3>> corners;
 };
 
-/// For each corner of a surface's triangle, the nearest point of those triangles of a mesh that
-/// have the label of the triangle that it came from. A vertex between triangles of several labels
-/// has a point for each; that of its first triangle is the vertex's own.
+/// For each corner of a surface's triangles, finds the nearest point on those triangles of a mesh
+/// that have the same label as the triangle's origin. A vertex between several labels has a point
+/// for each; the point for its first triangle is at the vertex's own index.
 ///
-/// `origins` holds a triangle of the mesh for each one of the surface; what is near is found fast.
-/// Throws Error for a surface or mesh that is none, labels and origins that are not as many as the
-/// triangles, an origin that names no triangle; Error(kCancelled).
+/// `origins` holds the index of a mesh triangle for each surface triangle; nearby origins speed up
+/// the search. Throws Error for an invalid surface or mesh, if the numbers of labels and origins do
+/// not match the triangles, and for an origin out of range; Error(kCancelled).
 CornerPoints find_corner_points(const InputMesh& surface, std::span<const std::int32_t> origins,
                                 const InputMesh& mesh, std::span<const std::int32_t> labels,
                                 const Progress& progress, int threads);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The box, area and volume of a mesh.
+// Bounding box, area and volume of a mesh.
 #pragma once
 
 #include "prefilter/base/geometry.h"
@@ -9,13 +9,13 @@
 namespace prefilter {
 
 struct MeshMeasures {
-  Box box = kEmptyBox;  // of the triangles; vertices that none of them has do not count
+  Box box = kEmptyBox;  // of the triangles; unused vertices do not count
   double area = 0.0;
-  double volume = 0.0;  // enclosed; negative inside out. Of an open mesh, as seen from a corner
+  double volume = 0.0;  // enclosed; negative if inside out. For open meshes relative to a corner
 };
 
-/// One pass over the triangles, which are not copied. The same for any number of threads. Throws
-/// Error for a mesh that is no mesh; Error(kCancelled).
+/// Measures a mesh in one pass over the triangles, without copying them. The result is the same for
+/// any number of threads. Throws Error for an invalid mesh; Error(kCancelled).
 MeshMeasures measure_mesh(const InputMesh& mesh, const Progress& progress, int threads);
 
 }  // namespace prefilter

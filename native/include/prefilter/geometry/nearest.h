@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The point of a mesh nearest to each of many points.
+// Finds the nearest point on a mesh for many points.
 #pragma once
 
 #include <array>
@@ -14,37 +14,37 @@
 
 namespace prefilter {
 
-/// A point of a triangle: the sum of its corners times these.
+/// A point of a triangle: the sum of its corners times `weights`.
 struct SurfacePoint {
   std::int64_t triangle = 0;
-  Vector3 weights{};      // 0 and up; their sum is 1
-  double distance = 0.0;  // to what was asked for
+  Vector3 weights{};      // nonnegative, with sum 1
+  double distance = 0.0;  // from the query point
 };
 
-/// A mesh made ready for searches: a tree of boxes over a copy of it.
+/// A copy of a mesh with a bounding box tree for searches.
 class NearestPoints {
  public:
-  /// Triangles of zero area are segments or points. Throws Error for a mesh without triangles, an
-  /// index that names no vertex, positions that are not finite or above 1e150, whose squares would
-  /// overflow; Error(kCancelled).
+  /// Triangles of zero area act as segments or points. Throws Error for a mesh without triangles,
+  /// an index out of range, and for positions that are not finite or above 1e150, whose squares
+  /// would overflow; Error(kCancelled).
   NearestPoints(const InputMesh& mesh, const Progress& progress, int threads);
 
-  /// The same, for searches on triangles of one label alone: one for each triangle. Throws Error
-  /// where there are not as many.
+  /// The same with a label per triangle, for searches restricted to one label. Throws Error unless
+  /// there are as many labels as triangles.
   NearestPoints(const InputMesh& mesh, std::span<const std::int32_t> labels,
                 const Progress& progress, int threads);
   ~NearestPoints();
 
-  /// The points of the triangles nearest to these; of several triangles at the same distance, the
-  /// one with the lowest index. A search takes longer the more triangles there are whose boxes are
-  /// nearer than that: all of them for triangles in a stack, or around one vertex. The same for any
-  /// number of threads. Throws Error for points as for positions above; Error(kCancelled).
+  /// Finds the nearest point for each query; at equal distances, on the triangle with the lowest
+  /// index. Searches are slower the more triangles have boxes closer than the nearest point, as in
+  /// a stack, or around a common vertex. The result is the same for any number of threads. Throws
+  /// Error for query points like for positions above; Error(kCancelled).
   std::vector<SurfacePoint> find(std::span<const Vector3> points, const Progress& progress,
                                  int threads) const;
 
-  /// Likewise, each point's on triangles with the label of the triangle `origins` has for it; the
-  /// nearer that is, the faster. Throws Error for an index that names no triangle, and where there
-  /// are not as many as points.
+  /// The same, but each point only considers triangles with the label of its triangle in `origins`;
+  /// nearby origins make it faster. Throws Error for an index out of range, or unless there is one
+  /// per point.
   std::vector<SurfacePoint> find_on(std::span<const Vector3> points,
                                     std::span<const std::int32_t> origins, const Progress& progress,
                                     int threads) const;
@@ -54,7 +54,7 @@ class NearestPoints {
   std::unique_ptr<const Tree> tree_;
 };
 
-/// The same in one step, for a mesh that is asked once.
+/// The same in one step, for a single search.
 std::vector<SurfacePoint> nearest_points(std::span<const Vector3> points, const InputMesh& mesh,
                                          const Progress& progress, int threads);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Limit surfaces of subdivision meshes, through OpenSubdiv.
+// Limit surfaces of subdivision meshes, computed with OpenSubdiv.
 #pragma once
 
 #include <cstddef>
@@ -20,24 +20,24 @@ inline constexpr Named<SubdivisionScheme> kSubdivisionSchemes[] = {
     {"loop", SubdivisionScheme::kLoop},
     {"bilinear", SubdivisionScheme::kBilinear}};
 
-/// What boundaries of the mesh do.
+/// Treatment of mesh boundaries.
 enum class SubdivisionBoundary {
-  kEdgeOnly,       // they are smooth curves
-  kEdgeAndCorner,  // the same, but vertices of one face stay where they are
+  kEdgeOnly,       // smooth curves
+  kEdgeAndCorner,  // the same, but vertices with a single face are fixed
 };
 
 inline constexpr Named<SubdivisionBoundary> kSubdivisionBoundaries[] = {
     {"edge-and-corner", SubdivisionBoundary::kEdgeAndCorner},
     {"edge-only", SubdivisionBoundary::kEdgeOnly}};
 
-/// Where texture coordinates stay linear, from nowhere to everywhere. The first five are smooth
-/// inside of charts.
+/// Where texture coordinates are interpolated linearly, from nowhere to everywhere. All but the
+/// last are smooth inside charts.
 enum class UvInterpolation {
-  kSmoothAll,                           // chart boundaries are smooth curves, seams or not
-  kPreserveCorners,                     // corners of charts stay
-  kPreserveCornersAndJunctions,         // and where three or more charts meet
-  kPreserveCornersJunctionsAndConcave,  // and concave corners, and ends of seams
-  kPreserveBoundaries,                  // chart boundaries stay as they are
+  kSmoothAll,                           // chart boundaries are smooth curves, on seams too
+  kPreserveCorners,                     // corners of charts are fixed
+  kPreserveCornersAndJunctions,         // and points where three or more charts meet
+  kPreserveCornersJunctionsAndConcave,  // and concave corners and ends of seams
+  kPreserveBoundaries,                  // all chart boundaries are fixed
   kNone,                                // linear everywhere
 };
 
@@ -50,27 +50,27 @@ inline constexpr Named<UvInterpolation> kUvInterpolations[] = {
     {"preserve-boundaries", UvInterpolation::kPreserveBoundaries},
     {"smooth-all", UvInterpolation::kSmoothAll}};
 
-/// Raw arrays of a polygon mesh, as a caller has them.
+/// Raw arrays of a polygon mesh, owned by the caller.
 struct PolygonArrays {
   const double* positions = nullptr;  // vertex_count x 3
   std::size_t vertex_count = 0;
-  const std::int64_t* face_sizes = nullptr;  // face_count numbers of corners
+  const std::int64_t* face_sizes = nullptr;  // face_count corner counts
   std::size_t face_count = 0;
   const std::int64_t* face_vertices = nullptr;  // corner_count indices, face by face
   const double* face_uvs = nullptr;             // corner_count x 2
   std::size_t corner_count = 0;
   const std::int64_t* crease_edges = nullptr;  // crease_count x 2 vertices
-  const double* crease_sharpness = nullptr;    // crease_count; 0 and up
+  const double* crease_sharpness = nullptr;    // crease_count values, 0 and up
   std::size_t crease_count = 0;
   const std::int64_t* corner_vertices = nullptr;  // sharp_corner_count vertices
-  const double* corner_sharpness = nullptr;       // sharp_corner_count; 0 and up
+  const double* corner_sharpness = nullptr;       // sharp_corner_count values, 0 and up
   std::size_t sharp_corner_count = 0;
-  const double* weights = nullptr;             // one for each of weights_of
-  WeightsOf weights_of = WeightsOf::kNothing;  // kTriangles: for each face; kCorners is not allowed
-  const bool* kept = nullptr;  // face_count; which faces the surface has. All where null
+  const double* weights = nullptr;             // one per element of weights_of
+  WeightsOf weights_of = WeightsOf::kNothing;  // kTriangles: per face; kCorners is not allowed
+  const bool* kept = nullptr;  // face_count flags: faces to include in the surface; null for all
 };
 
-/// Sharpness from here on is infinite.
+/// Sharpness from this value on is infinite.
 constexpr double kInfiniteSharpness = 10.0;
 constexpr int kMaxSubdivisionLevel = 10;
 
@@ -82,19 +82,18 @@ struct SubdivisionOptions {
   Progress progress;
 };
 
-/// The limit surface of a mesh: its faces are refined `level` times, and the vertices moved to
-/// where infinitely many times would take them. So are texture coordinates, under the rule for
-/// them. The areas of the triangles approach the limit's with the square of their size.
+/// The limit surface of a mesh: refines the faces `level` times and moves vertices to the limit of
+/// infinite refinement. Texture coordinates are refined too, by their own interpolation rule. The
+/// error of the triangles' areas decreases with the square of their size.
 ///
-/// Corners of a vertex with equal texture coordinates are joined, the others are seams. Edges of
-/// more than two faces, and vertices where sheets meet, are infinitely sharp. Vertices of no face
-/// are dropped. Weights of vertices are interpolated linearly, those of faces are their parts'.
+/// Corners of a vertex with equal texture coordinates are joined, others form seams. Edges of more
+/// than two faces, and non-manifold vertices, are infinitely sharp. Vertices without faces are
+/// dropped. Vertex weights are interpolated linearly; face weights apply to all parts of the face.
 ///
-/// Throws Error for a mesh without faces, or without one that is kept; faces of fewer than three
-/// corners (Loop: of other than three) or that name a vertex twice; indices out of range; creases
-/// that are no edges; values that are not finite; negative sharpness or weights; a level that is
-/// out of range, or makes more than 2^25 triangles; and, from the progress callback, when
-/// cancelled.
+/// Throws Error for a mesh without faces, or without a kept one; faces with fewer than three
+/// corners (Loop: other than three) or with a repeated vertex; indices out of range; creases that
+/// are not edges; values that are not finite; negative sharpness or weights; a level that is out of
+/// range or makes more than 2^25 triangles; and, from the progress callback, when cancelled.
 Surface subdivide(const PolygonArrays& mesh, const SubdivisionOptions& options);
 
 }  // namespace prefilter

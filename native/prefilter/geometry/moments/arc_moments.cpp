@@ -21,18 +21,18 @@ inline Lanes lanes_at(const float* values) {
   return lanes;
 }
 
-// To the nearest, halves away from 0: as far from it for an edge and for its reverse.
+// Rounds to the nearest, halves away from 0, so that an edge and its reverse cancel.
 inline IntegerLanes rounded(Lanes values) {
   return convert<IntegerLanes>(select(values < 0.0F, values - 0.5F, values + 0.5F));
 }
 
-// Toward 0 of what has this much, of [0, 1), added to its size. Where that is as good as random,
-// sums of arcs much smaller than the unit are right on average.
+// Rounds down after adding `share`, in [0, 1), to the magnitude. If the share is pseudorandom, sums
+// of arcs much smaller than the unit are unbiased.
 inline IntegerLanes rounded(Lanes values, Lanes share) {
   return convert<IntegerLanes>(select(values < 0.0F, values - share, values + share));
 }
 
-// As good as random, and the same for an edge and for its reverse, which are cut alike.
+// Pseudorandom, and equal for an edge and its reverse, which are cut at the same points.
 inline Lanes share_of(Lanes x, Lanes y) {
   BitLanes bits =
       std::bit_cast<BitLanes>(x) * 0x9E3779B1U ^ std::bit_cast<BitLanes>(y) * 0x85EBCA77U;
@@ -41,7 +41,7 @@ inline Lanes share_of(Lanes x, Lanes y) {
   return convert<Lanes>(std::bit_cast<IntegerLanes>(bits >> 8)) * 0x1p-24F;
 }
 
-// Of four vectors, in place.
+// Transposes four vectors in place.
 inline void transpose(IntegerLanes* rows) {
   const IntegerLanes a = shuffle<0, 4, 1, 5>(rows[0], rows[1]);
   const IntegerLanes b = shuffle<2, 6, 3, 7>(rows[0], rows[1]);
@@ -55,8 +55,8 @@ inline void transpose(IntegerLanes* rows) {
 
 constexpr float kScale = 1 << kMomentBits;
 
-// Of P_b, 0 at both ends of a row for b above 0: y^(b + 1) - (1/2)^(b + 1) for odd b,
-// y (y^b - (1/2)^b) for even b, over b + 1.
+// Antiderivatives of P_b, which for b above 0 vanish at both ends of a row: y^(b + 1) - (1/2)^(b +
+// 1) for odd b, y (y^b - (1/2)^b) for even b, divided by b + 1.
 template <std::size_t kCount>
 void antiderivatives(Lanes y, std::array<IntegerLanes, kCount>* values) {
   (*values)[0] = rounded(y * kScale);
@@ -70,11 +70,11 @@ void antiderivatives(Lanes y, std::array<IntegerLanes, kCount>* values) {
   }
 }
 
-// Adds the integrals of x^(a + 1) P_b(y) dy along lines, one a lane, to those at [a * (N + 1) + b].
+// Adds the integrals of x^(a + 1) P_b(y) dy along lines, one per lane, at [a * (N + 1) + b].
 template <int N>
 inline void integrate_lines(Lanes x0, Lanes y0, Lanes x1, Lanes y1, Lanes signs, Lanes* sums) {
-  // x^(a + 1) P_b has degree 2 N + 1 at the most along a line: this is exact up to N = 4, and
-  // beyond the highest powers, of less than 1/2, are off by less than 1e-8.
+  // Along a line x^(a + 1) P_b has a degree of at most 2 N + 1. The rule is exact up to N = 4;
+  // beyond, the error of the highest powers, with arguments of at most 1/2, is below 1e-8.
   constexpr int kPoints = N < 5 ? N + 1 : 6;
   constexpr int kCount = N + 1;
   const auto& rule = gauss_rule<kPoints>();
@@ -101,14 +101,13 @@ inline void integrate_lines(Lanes x0, Lanes y0, Lanes x1, Lanes y1, Lanes signs,
   }
 }
 
-// Into how many parts an arc is cut. Where it is bent, or of a high degree, so many powers of t do
-// not do: it is halved. Inline, as arcs are many: called, it takes a third longer with what
-// follows.
+// The number of parts into which to divide an arc: it is halved until it is straight enough for the
+// quadrature. Inline, because a function call takes a third longer per arc.
 inline int parts_of(const ParametricCurve& curve, const CellArc& arc) {
-  constexpr int kMostParts = 256;
-  constexpr double kMostBend = 0.06;
-  constexpr double kShort = 0.25;  // of the parameter: over it a conic is as good as a polynomial
-  int parts = curve.kind == CurveKind::kConic && arc.t_end - arc.t_begin > kShort ? 2 : 1;
+  constexpr int kMaxParts = 256;
+  constexpr double kMaxBend = 0.06;
+  constexpr double kMaxConicStep = 0.25;  // parameter range over which a conic is nearly polynomial
+  int parts = curve.kind == CurveKind::kConic && arc.t_end - arc.t_begin > kMaxConicStep ? 2 : 1;
   if (curve.kind == CurveKind::kBezier) {
     const double turns = static_cast<double>(curve.controls.size()) * (arc.t_end - arc.t_begin);
     while (parts < turns) parts *= 2;
@@ -122,24 +121,24 @@ inline int parts_of(const ParametricCurve& curve, const CellArc& arc) {
       const Point2 off = curve.at(t) - 0.5 * (a + c);
       return std::abs(off.x) + std::abs(off.y);
     }
-    // Of polynomials up to the third degree the second derivative in the middle tells it.
+    // For polynomials up to degree 3, the second derivative at the center suffices.
     const double half = 0.5 * (t_end - t_begin);
     const Point2 off = (half * half) * (curve.powers[2] + (3.0 * t) * curve.powers[3]);
     return std::abs(off.x) + std::abs(off.y);
   };
-  while (parts < kMostParts) {
+  while (parts < kMaxParts) {
     const double step = (arc.t_end - arc.t_begin) / parts;
     double most = 0.0;
     for (int part = 0; part < parts; ++part) {
       most = std::max(most, bend(arc.t_begin + part * step, arc.t_begin + (part + 1) * step));
     }
-    if (most < kMostBend) break;
+    if (most < kMaxBend) break;
     parts *= 2;
   }
   return parts;
 }
 
-// Calls use(point, slope of y, weight) for the nodes of a rule over [from, from + step], in order.
+// Calls use(point, slope of y, weight) for the nodes of a quadrature rule over [from, from + step].
 template <int kPoints, typename Use>
 inline void for_nodes(const ParametricCurve& curve, double from, double step, const Use& use) {
   const auto& rule = gauss_rule<kPoints>();
@@ -152,7 +151,7 @@ inline void for_nodes(const ParametricCurve& curve, double from, double step, co
     return;
   }
   for (int k = 0; k < kPoints; k += 2) {
-    // Of an odd number the last one goes twice.
+    // The last of an odd number of nodes is evaluated twice.
     const int next = k + 1 < kPoints ? k + 1 : k;
     const DoublePair nodes{rule.nodes[k], rule.nodes[next]};
     const ParametricCurve::Pair pair = curve.pair_at(from + nodes * step);
@@ -178,7 +177,7 @@ void ArcBatch<N>::flush_lanes(int first, Cells* cells) {
   const Lanes signs = lanes_at(&signs_[first]);
   Lanes sums[kCount * kCount] = {};
   integrate_lines<N>(x0, y0, x1, y1, signs, sums);
-  // The sums of each arc, in the order of the cells', one arc a lane.
+  // Sums of each arc in the layout of the cells, one arc per lane.
   IntegerLanes whole[ArcMoments<N>::kSums] = {};
   const Lanes share = share_of(x1, y1);
   for (int a = 0; a < kCount; ++a) {

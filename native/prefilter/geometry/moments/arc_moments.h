@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The integrals along an arc in a cell that the moments of what lies right of it are made of.
+// Integrals along arcs in a cell, from which the moments of the region to their right are computed.
 #pragma once
 
 #include <array>
@@ -14,25 +14,25 @@
 
 namespace prefilter {
 
-/// Sums over the arcs in a cell, in fractions of 2^-kMomentBits. Whole numbers add up to the same
-/// in any order; the arcs of an edge that two shapes share cancel; and what a closed contour leaves
-/// behind its last arc is 0. They are added modulo 2^32: only what comes out needs to fit, which is
-/// up to 32 windings.
+/// Fixed-point precision of the sums over arcs: multiples of 2^-kMomentBits. Integer sums do not
+/// depend on their order; arcs of an edge shared by two shapes cancel exactly; and behind the last
+/// arc of a closed contour the sum is exactly 0. Sums are modulo 2^32, so only the final result
+/// must fit, which allows up to 32 windings.
 inline constexpr int kMomentBits = 26;
 
-/// What arcs leave in one cell. Coordinates in it run from -1/2 to 1/2 around its center. Along y
-/// moments are those of P_b(y) = y^b less its mean over the cell for even b above 0, so that P_0
-/// alone tells a full row.
+/// Sums over the arcs in one cell. Cell coordinates run from -1/2 to 1/2. Moments along y use
+/// P_b(y) = y^b minus, for even b above 0, its mean over the cell, so that full rows only affect
+/// P_0.
 template <int N>
 struct ArcMoments {
   static constexpr int kCount = N + 1;
   static constexpr int kAcross = kCount * kCount;
-  /// Whole vectors of them, wherever in them one is read from.
+  /// Padded to whole vectors, wherever reading starts.
   static constexpr int kSums =
       (kAcross + (kCount + 1) / 2 * 2 + kMaxChannels - 1) / kMaxChannels * kMaxChannels;
 
-  /// The integrals of x^(a + 1) / (a + 1) P_b(y) dy at [a * kCount + b], and from kAcross on those
-  /// of P_b(y) dy.
+  /// The integrals of x^(a + 1) / (a + 1) P_b(y) dy at [a * kCount + b], followed from kAcross on
+  /// by the integrals of P_b(y) dy.
   alignas(16) std::array<std::uint32_t, kSums> sums{};
 
   std::int32_t inside(int a, int b) const {
@@ -42,14 +42,14 @@ struct ArcMoments {
   bool is_zero() const;
 };
 
-/// Arcs on their way to cells, several of which are calculated at once.
+/// A batch of arcs, several of which are integrated at once.
 template <int N>
 class ArcBatch {
  public:
   using Cells = std::vector<ArcMoments<N>>;
 
-  /// Adds a line, or an arc of a curve, in coordinates of the cell at `place`; the region on its
-  /// right counts `sign` times, 1 or -1.
+  /// Adds a line, or an arc of a curve, in coordinates of the cell with index `place`. The region
+  /// to its right counts `sign` times, 1 or -1.
   void add_line(Point2 begin, Point2 end, int sign, std::int32_t place, Cells* cells) {
     x0_[size_] = static_cast<float>(begin.x);
     y0_[size_] = static_cast<float>(begin.y);
@@ -62,20 +62,18 @@ class ArcBatch {
   void add_curve(const ParametricCurve& curve, const CellArc& arc, Point2 center, int sign,
                  std::int32_t place, Cells* cells) {
     add_inside(curve, arc, center, sign, &(*cells)[place]);
-    // The lane has no extent along x and stands for what is across alone; what that adds inside is
-    // x^(a + 1) / (a + 1) at 0, which is nothing.
+    // A line at x = 0 adds the integrals across only: inside, it adds x^(a + 1) / (a + 1) = 0.
     add_line({0.0, arc.begin.y - center.y}, {0.0, arc.end.y - center.y}, sign, place, cells);
   }
-  /// What an arc of a curve adds inside of a cell, at once.
+  /// Immediately adds the integrals of an arc inside a cell.
   static void add_inside(const ParametricCurve& curve, const CellArc& arc, Point2 center, int sign,
                          ArcMoments<N>* cell);
-  /// What was added may only then be in the cells.
+  /// Adds all pending arcs to the cells.
   void flush(Cells* cells);
 
  private:
   static constexpr int kLanes = kMaxChannels;
-  // More than are calculated at once: what has just been written, float by float, is slow to read
-  // as a vector.
+  // Several vectors long, because reading a vector right after writing its floats is slow.
   static constexpr int kSize = 16 * kLanes;
   static constexpr int kCount = N + 1;
 
@@ -90,7 +88,7 @@ class ArcBatch {
   std::array<std::int32_t, kSize> places_{};
 };
 
-/// The mean of y^b over [-1/2, 1/2]: its integral over a cell.
+/// Mean of y^b over [-1/2, 1/2], its integral over a cell.
 constexpr double mean_power(int b) {
   if (b % 2 != 0) return 0.0;
   double mean = 1.0 / (b + 1);
@@ -98,7 +96,7 @@ constexpr double mean_power(int b) {
   return mean;
 }
 
-/// x^(a + 1) / (a + 1) at a cell's high end.
+/// x^(a + 1) / (a + 1) at a cell's upper end.
 constexpr double at_high_end(int a) {
   double power = 1.0;
   for (int i = 0; i <= a; ++i) power *= 0.5;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Unit cells cut further along one axis, and pieces cut to the parts.
+// Subdivides unit cells along one axis, and cuts pieces at the subdivisions.
 #pragma once
 
 #include <cmath>
@@ -14,19 +14,19 @@ namespace prefilter {
 class AxisParts {
  public:
   AxisParts() = default;
-  /// Lines [first_line, last_line] of `lines`, times `scale`; every whole number from the first to
-  /// the last must be among them.
+  /// Uses lines [first_line, last_line] of `lines`, multiplied by `scale`. They must include every
+  /// whole number from the first to the last.
   AxisParts(const std::vector<double>& lines, int first_line, int last_line, double scale);
 
   int count() const { return static_cast<int>(widths_.size()); }
   double low(int part) const { return lows_[part]; }
   double width(int part) const { return widths_[part]; }
-  /// The first part of a cell, given from 0.
+  /// The first part of a cell; cells are numbered from 0.
   int first_of(int cell) const { return first_of_[cell]; }
   int parts_of(int cell) const { return first_of_[cell + 1] - first_of_[cell]; }
 
-  /// Calls use(part, piece) for what lies in each part of a cell. A piece without extent along the
-  /// axis goes to one part.
+  /// Cuts a piece in a cell, and calls use(part, piece) for each part with some of it. A piece
+  /// without extent along the axis belongs to a single part.
   template <typename Use>
   void cut(const CellPiece& piece, int axis, int cell, const Use& use) const;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Monotone curves cut along the lines of a grid of unit cells.
+// Cuts monotone curves along the lines of a grid of unit cells.
 #pragma once
 
 #include <algorithm>
@@ -19,8 +19,8 @@ struct GridWindow {
   int end_row = 0;
 };
 
-/// What a curve leaves in one cell, in the order of its parameter. Where it crosses a line of the
-/// grid its coordinate is exactly the line's.
+/// The part of a curve in one cell, in the order of its parameter. At crossings of grid lines its
+/// coordinate is exactly the line's.
 struct CellArc {
   double t_begin = 0.0;
   double t_end = 1.0;
@@ -28,21 +28,22 @@ struct CellArc {
   Point2 end;
 };
 
-/// Cuts a piece to the cells of a window: calls in_cell(column, row, arc) for each one that it
-/// passes, and left_of_window(row, y_begin, y_end) for what lies left of the window. What lies
-/// right of it, above or below is left out; so is what is level, as no integral over y sees it.
+/// Cuts a curve into the cells of a window. Calls in_cell(column, row, arc) for each cell that it
+/// passes, and left_of_window(row, y_begin, y_end) for parts left of the window. Parts to the
+/// right, above or below are dropped, and so are horizontal curves, which contribute nothing to
+/// integrals over y.
 template <typename InCell, typename LeftOfWindow>
 void cut_to_cells(const MonotoneCurve& piece, const GridWindow& window, const InCell& in_cell,
                   const LeftOfWindow& left_of_window);
 
-/// The same for a line, from its lower end, which is quicker: calls in_cell(column, row, begin,
-/// end).
+/// The same for a line, starting at its lower end, which is faster: calls in_cell(column, row,
+/// begin, end).
 template <typename InCell, typename LeftOfWindow>
 void cut_line_to_cells(Point2 begin, Point2 end, const GridWindow& window, const InCell& in_cell,
                        const LeftOfWindow& left_of_window);
 
-/// The same for what rises from `begin` to `end`, where x_at(y) and y_at(x) say; x_at() stays
-/// between both ends.
+/// The same for any curve that rises from `begin` to `end`, given by x_at(y) and y_at(x); x_at()
+/// stays between both ends.
 template <typename XAt, typename YAt, typename InCell, typename LeftOfWindow>
 void cut_rising_to_cells(Point2 begin, Point2 end, const XAt& x_at, const YAt& y_at,
                          const GridWindow& window, const InCell& in_cell,
@@ -50,22 +51,21 @@ void cut_rising_to_cells(Point2 begin, Point2 end, const XAt& x_at, const YAt& y
 
 namespace internal {
 
-// The cell that a curve is in at a coordinate, from where it goes on rising or falling.
+// The cell in which a curve continues from a coordinate, rising or falling.
 inline int cell_at(double value, bool rises) {
   return static_cast<int>(rises ? std::floor(value) : std::ceil(value) - 1.0);
 }
 
-// The column that it is in, first_column - 1 for all left of the window, end_column for all right
-// of it.
+// The column, clamped to first_column - 1 left of the window and end_column right of it.
 inline int column_at(double x, bool rises, const GridWindow& window) {
   if (x < window.first_column) return window.first_column - 1;
   if (x > window.end_column) return window.end_column;
   return std::clamp(cell_at(x, rises), window.first_column - 1, window.end_column);
 }
 
-// Where a piece passes coordinates, and its own; of lines without asking the curve.
-struct PieceWay {
-  explicit PieceWay(const MonotoneCurve& monotone)
+// A curve and its directions, with shortcuts for lines.
+struct CurveCursor {
+  explicit CurveCursor(const MonotoneCurve& monotone)
       : piece(monotone),
         is_line(monotone.curve.kind == CurveKind::kLine),
         x_rises(monotone.end.x >= monotone.begin.x),
@@ -73,10 +73,10 @@ struct PieceWay {
         begin(monotone.begin),
         slope(monotone.end - monotone.begin) {}
 
-  double pass_x(double value, double low) const {
+  double parameter_at_x(double value, double low) const {
     return is_line ? (value - begin.x) / slope.x : crossing(piece, 0, value, low);
   }
-  double pass_y(double value, double low) const {
+  double parameter_at_y(double value, double low) const {
     return is_line ? (value - begin.y) / slope.y : crossing(piece, 1, value, low);
   }
   double x_at(double t) const { return is_line ? begin.x + t * slope.x : piece.curve.at(t).x; }
@@ -90,35 +90,35 @@ struct PieceWay {
   Point2 slope;
 };
 
-// Where the piece comes into the window's rows.
-inline CellArc first_arc(const PieceWay& way, const GridWindow& window) {
-  CellArc arc{way.piece.t_begin, way.piece.t_begin, way.begin, way.begin};
-  if (way.y_rises ? arc.begin.y < window.first_row : arc.begin.y > window.end_row) {
-    arc.begin.y = way.y_rises ? window.first_row : window.end_row;
-    arc.t_begin = way.pass_y(arc.begin.y, arc.t_begin);
-    arc.begin.x = way.x_at(arc.t_begin);
+// The point where the curve enters the window's rows.
+inline CellArc first_arc(const CurveCursor& cursor, const GridWindow& window) {
+  CellArc arc{cursor.piece.t_begin, cursor.piece.t_begin, cursor.begin, cursor.begin};
+  if (cursor.y_rises ? arc.begin.y < window.first_row : arc.begin.y > window.end_row) {
+    arc.begin.y = cursor.y_rises ? window.first_row : window.end_row;
+    arc.t_begin = cursor.parameter_at_y(arc.begin.y, arc.t_begin);
+    arc.begin.x = cursor.x_at(arc.t_begin);
   }
   return arc;
 }
 
-// Ends an arc at the line of the grid that comes first: that at next.x, passed at t_x, or that at
-// next.y, passed at t_y.
-inline void end_at_line(const PieceWay& way, double t_x, double t_y, const Point2& next,
+// Ends an arc at the first grid line: at next.x, reached at parameter t_x, or at next.y, reached at
+// t_y.
+inline void end_at_line(const CurveCursor& cursor, double t_x, double t_y, const Point2& next,
                         CellArc* arc) {
   arc->t_end = std::min(t_x, t_y);
   const Point2& begin = arc->begin;
   if (t_x <= t_y) {
     arc->end.x = next.x;
   } else {
-    const double x = way.x_at(t_y);
-    arc->end.x = way.x_rises ? std::clamp(x, begin.x, std::max(begin.x, next.x))
-                             : std::clamp(x, std::min(begin.x, next.x), begin.x);
+    const double x = cursor.x_at(t_y);
+    arc->end.x = cursor.x_rises ? std::clamp(x, begin.x, std::max(begin.x, next.x))
+                                : std::clamp(x, std::min(begin.x, next.x), begin.x);
   }
   if (t_y <= t_x) {
     arc->end.y = next.y;
   } else {
-    const double y = way.y_at(t_x);
-    arc->end.y = way.y_rises ? std::clamp(y, begin.y, next.y) : std::clamp(y, next.y, begin.y);
+    const double y = cursor.y_at(t_x);
+    arc->end.y = cursor.y_rises ? std::clamp(y, begin.y, next.y) : std::clamp(y, next.y, begin.y);
   }
 }
 
@@ -129,15 +129,15 @@ void cut_to_cells(const MonotoneCurve& piece, const GridWindow& window, const In
                   const LeftOfWindow& left_of_window) {
   const Point2 end = piece.end;
   if (piece.begin.y == end.y) return;
-  const internal::PieceWay way(piece);
-  const bool x_rises = way.x_rises;
-  const bool y_rises = way.y_rises;
+  const internal::CurveCursor cursor(piece);
+  const bool x_rises = cursor.x_rises;
+  const bool y_rises = cursor.y_rises;
   if (std::max(piece.begin.y, end.y) <= window.first_row) return;
   if (std::min(piece.begin.y, end.y) >= window.end_row) return;
   if (std::min(piece.begin.x, end.x) >= window.end_column) return;
 
   constexpr double kNever = std::numeric_limits<double>::infinity();
-  CellArc arc = internal::first_arc(way, window);
+  CellArc arc = internal::first_arc(cursor, window);
   const int left = window.first_column - 1;
   int column = internal::column_at(arc.begin.x, x_rises, window);
   int row = internal::cell_at(arc.begin.y, y_rises);
@@ -148,20 +148,20 @@ void cut_to_cells(const MonotoneCurve& piece, const GridWindow& window, const In
     const Point2 next{static_cast<double>(x_rises ? column + 1 : column),
                       static_cast<double>(y_rises ? row + 1 : row)};
     if (t_x < 0.0) {
-      const bool there_is = x_rises ? column < window.end_column && next.x < end.x
-                                    : column >= window.first_column && next.x > end.x;
-      t_x = there_is ? way.pass_x(next.x, arc.t_begin) : kNever;
+      const bool crosses = x_rises ? column < window.end_column && next.x < end.x
+                                   : column >= window.first_column && next.x > end.x;
+      t_x = crosses ? cursor.parameter_at_x(next.x, arc.t_begin) : kNever;
     }
     if (t_y < 0.0) {
-      const bool there_is = y_rises ? next.y < end.y : next.y > end.y;
-      t_y = there_is ? way.pass_y(next.y, arc.t_begin) : kNever;
+      const bool crosses = y_rises ? next.y < end.y : next.y > end.y;
+      t_y = crosses ? cursor.parameter_at_y(next.y, arc.t_begin) : kNever;
     }
     const bool is_last = t_x == kNever && t_y == kNever;
     if (is_last) {
       arc.t_end = piece.t_end;
       arc.end = end;
     } else {
-      internal::end_at_line(way, t_x, t_y, next, &arc);
+      internal::end_at_line(cursor, t_x, t_y, next, &arc);
     }
     if (column == left) {
       left_of_window(row, arc.begin.y, arc.end.y);
@@ -200,7 +200,7 @@ void cut_rising_to_cells(Point2 begin, Point2 end, const XAt& x_at, const YAt& y
   while (from.y < y_end) {
     Point2 to{end.x, end.y};
     if (row + 1 < end.y) to = {x_at(row + 1), row + 1.0};
-    // From column to column within the row.
+    // Steps through the columns within the row.
     const int step = x_rises ? 1 : -1;
     for (;;) {
       const double line = x_rises ? column + 1 : column;

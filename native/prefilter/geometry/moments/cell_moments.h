@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Moments of a measure on a grid cell, and how they nest.
+// Moments of a measure on a grid cell, and their transfer to larger cells.
 //
-// The measure is the surface's area carried into the texture; the cell is [0, 1]^2 in its own
-// coordinates. Moments up to degree 2 along each axis hold all that products of two bilinear
-// functions need (section 7.3), and those of a cell are a fixed combination of those of its four
+// The measure is the surface's area mapped to the texture; the cell is [0, 1]^2 in its own
+// coordinates. Moments up to degree 2 along each axis suffice for products of two bilinear
+// functions (section 7.3). Those of a cell are a fixed linear combination of those of its four
 // quarters.
 #pragma once
 
@@ -36,7 +36,8 @@ struct CellMoments {
   bool empty() const { return weight[0] == 0.0; }
 };
 
-/// Where a cell lies in another along one axis: the coordinate x in it is offset + scale * x there.
+/// The position of a cell in another one along an axis: coordinate x in the cell is offset + scale
+/// * x in the other.
 struct Placement {
   double offset = 0.0;
   double scale = 1.0;
@@ -44,7 +45,7 @@ struct Placement {
 
 namespace internal {
 
-/// Moments along one axis in a parent's coordinate from those in the child's.
+/// Transfers moments along one axis from a child's to its parent's coordinates.
 template <int kDegrees>
 inline void lift(const double* child, int stride, const Placement& place, double* parent) {
   const double m0 = child[0];

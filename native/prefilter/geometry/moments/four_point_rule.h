@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Quadrature over a cell from the moments of its measure.
+// Quadrature over a cell, derived from the moments of its measure.
 #pragma once
 
 #include <algorithm>
@@ -11,16 +11,16 @@
 
 namespace prefilter {
 
-/// Four points at one standard deviation from the mean along each axis. With weights that follow
-/// the correlation they have the measure's moments 1, x, y, x^2, y^2 and xy, and none is negative;
-/// for a uniform measure they are Gauss's rule of degree 3.
+/// Four points at one standard deviation from the mean along each axis, with nonnegative weights
+/// that depend on the correlation. They reproduce the moments 1, x, y, x^2, y^2 and xy of the
+/// measure; for a uniform measure they are the Gauss rule of degree 3.
 struct FourPointRule {
   double mean_x = 0.0;
   double mean_y = 0.0;
   double deviation_x = 0.0;
   double deviation_y = 0.0;
-  double same = 0.0;      // weight of the points that are on the same side along both axes
-  double opposite = 0.0;  // weight of the others
+  double same = 0.0;      // weight of points 0 and 3, on the same side along both axes
+  double opposite = 0.0;  // weight of points 1 and 2
 
   explicit FourPointRule(const WeightMoments& moments) {
     const double mass = moments[0];
@@ -42,8 +42,7 @@ struct FourPointRule {
   double y(int k) const { return k < 2 ? mean_y - deviation_y : mean_y + deviation_y; }
   double weight(int k) const { return k == 0 || k == 3 ? same : opposite; }
 
-  /// What an image integrates to at each point, such that sums over the points times 1, x, y and xy
-  /// are its moments.
+  /// Values at the points for an image: their sums times 1, x, y and xy are its moments.
   std::array<double, 4> integrals(const ImageMoments& image) const {
     const double along_x = deviation_x > 0.0 ? 1.0 / deviation_x : 0.0;
     const double along_y = deviation_y > 0.0 ? 1.0 / deviation_y : 0.0;
@@ -58,7 +57,7 @@ struct FourPointRule {
   }
 
  private:
-  // A variance that is all rounding counts as none.
+  // Variances of the size of rounding errors count as 0.
   static double deviation(double variance) { return variance > 1e-10 ? std::sqrt(variance) : 0.0; }
 };
 

@@ -12,7 +12,7 @@ namespace {
 
 double component(const Point2& point, int axis) { return axis == 0 ? point.x : point.y; }
 
-// The roots in (0, 1) of a + b t + c t^2, by a form that does not cancel.
+// The roots of a + b t + c t^2 in (0, 1), by a formula without cancellation.
 int quadratic_roots(double a, double b, double c, double* roots) {
   int count = 0;
   const auto keep = [&](double root) {
@@ -124,7 +124,7 @@ double internal::halve_conic(std::span<const Point2> controls, double weight,
 
 namespace {
 
-// Along one axis: what ParametricCurve says of it, to the bit.
+// One coordinate of a ParametricCurve, with bitwise the same values.
 class AxisCurve {
  public:
   AxisCurve(const ParametricCurve& curve, int axis) : curve_(curve), axis_(axis) {
@@ -176,9 +176,9 @@ double crossing(const MonotoneCurve& piece, int axis, double value, double low) 
   const double at_high = component(piece.end, axis) - value;
   double t = low;
   if (at_high != at_low) t = low - at_low * (high - low) / (at_high - at_low);
-  // Newton's steps, or halves of the interval where these leave it.
-  constexpr int kMostSteps = 60;
-  for (int step = 0; step < kMostSteps; ++step) {
+  // Newton's method, with bisection where it leaves the interval.
+  constexpr int kMaxNewtonSteps = 60;
+  for (int step = 0; step < kMaxNewtonSteps; ++step) {
     if (!(t > low && t < high)) t = 0.5 * (low + high);
     const double off = curve.at(t) - value;
     if (off == 0.0) return t;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Curves cut where they turn: pieces along which x and y each only rise or only fall.
+// Curves divided at their turning points, into pieces on which x and y are monotone.
 #pragma once
 
 #include <algorithm>
@@ -13,17 +13,17 @@
 
 namespace prefilter {
 
-/// The kinds of curves that have formulas of their own.
+/// Kinds of curves with specific formulas.
 enum class CurveKind : std::uint8_t { kLine, kQuadratic, kCubic, kConic, kBezier };
 
 /// A curve over t in [0, 1].
 struct ParametricCurve {
   CurveKind kind = CurveKind::kLine;
-  /// Of lines, quadratics and cubics, by powers of t; of conics, the numerator's.
+  /// Coefficients by powers of t: of lines, quadratics, cubics, and the numerator of conics.
   std::array<Point2, 4> powers{};
-  /// Of conics, by powers of t.
+  /// Coefficients of the denominator of conics, by powers of t.
   std::array<double, 3> denominator{1.0, 0.0, 0.0};
-  /// Of Bezier curves of degree 4 and above; someone else's.
+  /// Control points of Bezier curves of degree 4 and above, owned by the caller.
   std::span<const Point2> controls;
 
   ParametricCurve() = default;
@@ -35,17 +35,17 @@ struct ParametricCurve {
     if (kind != CurveKind::kConic) return sum;
     return (1.0 / (denominator[0] + t * (denominator[1] + t * denominator[2]))) * sum;
   }
-  /// At two parameters at once, of curves that are no Bezier ones: what at() and derivative() say,
-  /// to the bit.
+  /// Evaluates at two parameters at once, with bitwise the results of at() and derivative(). Not
+  /// for kBezier.
   struct Pair {
     DoublePair x;
     DoublePair y;
     DoublePair y_slope;
   };
   Pair pair_at(DoublePair t) const;
-  /// By t.
+  /// The derivative by t.
   Point2 derivative(double t) const { return derivative(t, at(t)); }
-  /// The same where the point there is known.
+  /// The same if the point at t is known.
   Point2 derivative(double t, const Point2& point) const {
     if (kind == CurveKind::kBezier) return bezier_derivative(t);
     const Point2 slope = powers[1] + t * (2.0 * powers[2] + (3.0 * t) * powers[3]);
@@ -75,7 +75,7 @@ inline ParametricCurve::Pair ParametricCurve::pair_at(DoublePair t) const {
   return pair;
 }
 
-/// From t_begin to t_end along a curve neither x nor y turns.
+/// The part of a curve from t_begin to t_end, on which x and y are monotone.
 struct MonotoneCurve {
   ParametricCurve curve;
   double t_begin = 0.0;
@@ -84,26 +84,26 @@ struct MonotoneCurve {
   Point2 end;
 };
 
-/// Most places where a curve turns along one axis or the other.
+/// Maximum number of turning points of a segment.
 inline constexpr int kMostTurns = 2 * Outline::kMostDegree;
 
-/// Where a curve turns, rising, inside of (0, 1); returns how many places.
+/// Finds the turning points in (0, 1), in increasing order; returns their number.
 int turning_points(const ParametricCurve& curve, std::span<const Point2> controls,
                    std::array<double, kMostTurns>* turns);
 
-/// Whether a segment is cut from its end to its begin. Of two shapes that share an edge, each holds
-/// it the other way round: cut from the same end, it adds to one, to the last bit, what it takes
-/// from the other.
+/// Whether a segment is divided from its end to its start. Two shapes that share an edge traverse
+/// it in opposite directions; dividing it from the same end makes their contributions cancel to the
+/// last bit.
 bool is_cut_backward(std::span<const Point2> controls);
 
 namespace internal {
 
-/// A conic between weights of 1 as two of them, halved at t = 1/2: control points one after
-/// another, of which they share the middle. Returns the weight of both.
+/// Splits a conic with end weights 1 at t = 1/2 into two such conics: returns their common weight,
+/// and the consecutive control points, of which they share the middle one.
 double halve_conic(std::span<const Point2> controls, double weight, std::array<Point2, 5>* halves);
 
-/// Halves make a weight the closer to 1 the more often. Outside of this range the speed along a
-/// conic changes too much for quadrature.
+/// Each halving brings a weight closer to 1. Outside this range the speed along a conic varies too
+/// much for quadrature.
 constexpr bool is_even(double weight) { return weight == 0.0 || (weight > 0.6 && weight < 1.5); }
 
 template <typename Use>
@@ -134,8 +134,8 @@ void for_monotone_parts(std::span<const Point2> controls, double weight, const U
 
 }  // namespace internal
 
-/// Calls use(const MonotoneCurve&, bool backward) for the pieces of a segment, given by its
-/// control points, in the order in which they are cut.
+/// Calls use(const MonotoneCurve&, bool backward) for the pieces of a segment, given by its control
+/// points, in the order of division.
 template <typename Use>
 void for_monotone_pieces(std::span<const Point2> controls, double weight, const Use& use) {
   const bool backward = is_cut_backward(controls);
@@ -147,8 +147,8 @@ void for_monotone_pieces(std::span<const Point2> controls, double weight, const 
   const auto use_turned = [&](const MonotoneCurve& piece) { use(piece, backward); };
   internal::for_monotone_parts(controls, weight, use_turned);
 }
-/// Where a piece passes a value of x (axis 0) or y (axis 1) between `low` and its end; the piece
-/// is on either side of it at these two.
+/// Parameter at which a piece reaches a value of x (axis 0) or y (axis 1), between `low` and its
+/// end, which lie on opposite sides of the value.
 double crossing(const MonotoneCurve& piece, int axis, double value, double low);
 
 }  // namespace prefilter

@@ -11,19 +11,19 @@
 
 namespace prefilter {
 
-/// Polynomials over a piece, of s in [0, 1]: x from a column on, y, and the integral of x dy.
+/// Polynomials of s in [0, 1] over a piece: x relative to a column, y, and the integral of x dy.
 struct MonotonePolynomials {
   CubicPowers x{};
   CubicPowers y{};
-  std::array<double, 6> area{};  // of s^1 to s^6
+  std::array<double, 6> area{};  // coefficients of s^1 to s^6
   double column = 0.0;
 
-  /// Of a piece of a quadratic or a cubic.
+  /// From a piece of a quadratic or a cubic.
   explicit MonotonePolynomials(const MonotoneCurve& piece) : column(std::floor(piece.begin.x)) {
     const auto& powers = piece.curve.powers;
     const double t = piece.t_begin;
     const double w = piece.t_end - piece.t_begin;
-    // p(t + w s), but for the begin, which is as it is.
+    // p(t + w s), except that the start point is exact.
     const Point2 p1 = w * (powers[1] + t * (2.0 * powers[2] + (3.0 * t) * powers[3]));
     const Point2 p2 = (w * w) * (powers[2] + (3.0 * t) * powers[3]);
     const Point2 p3 = (w * w * w) * powers[3];

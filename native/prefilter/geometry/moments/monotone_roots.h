@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Where polynomials that only rise or only fall pass many values.
+// Solves monotone polynomials for many values.
 #pragma once
 
 #include <algorithm>
@@ -10,27 +10,27 @@
 
 namespace prefilter {
 
-/// A polynomial of degree 3 by powers, or of degree 2 whose last coefficient is 0.
+/// Coefficients of a cubic, by powers; 0 for the last one of a quadratic.
 using CubicPowers = std::array<double, 4>;
 
-/// How far from their values roots may be.
-inline constexpr double kMostMiss = 3e-5;
+/// Largest residual of a root.
+inline constexpr double kMaxResidual = 3e-5;
 
-/// Roots in [0, 1] of a polynomial that rises or falls there.
+/// Roots in [0, 1] of a polynomial that is monotone there.
 template <bool kIsCubic>
 class MonotoneRoots {
  public:
   struct Roots {
     DoublePair s;
-    DoublePair miss;  // of the polynomial there, what it has above the value; at most kMostMiss
+    DoublePair miss;  // residual: the polynomial at s minus the value, at most kMaxResidual
   };
 
   explicit MonotoneRoots(const CubicPowers& p)
       : p_(p), p0_(pair_of(p[0])), p1_(pair_of(p[1])), p2_(pair_of(p[2])), p3_(pair_of(p[3])) {
     const double rise = p[1] + p[2] + p[3];
     const double scale = 1.0 / rise;
-    // Slopes at both ends, where the polynomial rises by 1; a monotone cubic has none above 4.
-    // Where it is level, they are 0.
+    // Slopes at both ends, scaled to a total rise of 1; clamped to [0, 4], the range for monotone
+    // cubics. 0 if the polynomial is constant.
     const auto slope = [&](double sum) { return std::min(std::max(0.0, sum * scale), 4.0); };
     const double first_slope = slope(p[1]);
     const double last_slope = slope(p[1] + 2.0 * p[2] + 3.0 * p[3]);
@@ -40,9 +40,10 @@ class MonotoneRoots {
     bend_ = pair_of(first_slope + last_slope - 2.0);
   }
 
-  /// For values beyond those at the ends it is the end.
+  /// Returns the nearest end for values beyond those at the ends.
   Roots operator()(DoublePair values) const {
-    // The rational function with the same ends and slopes there; a quadratic is one.
+    // Initial guess: the rational function with the same values and slopes at both ends, which is
+    // exact for quadratics.
     const DoublePair zero{};
     const DoublePair one = pair_of(1.0);
     const DoublePair v = higher(lower((values - p0_) * scale_, one), zero);
@@ -54,30 +55,30 @@ class MonotoneRoots {
     if constexpr (kIsCubic) {
       s = two_steps(s, miss, values);
       miss = value_at(s) - values;
-      for (int step = 0; farther(miss, kMostMiss) != 0; ++step) {
-        // A root does not depend on that beside it.
-        const int far = farther(miss, kMostMiss);
+      for (int step = 0; farther(miss, kMaxResidual) != 0; ++step) {
+        // Each root must not depend on the other in the pair.
+        const int far = farther(miss, kMaxResidual);
         const DoublePair next = two_steps(s, miss, values);
         for (int i = 0; i < 2; ++i) {
-          if ((far >> i & 1) != 0) s[i] = step < kMostSteps ? next[i] : by_halves(values[i]);
+          if ((far >> i & 1) != 0) s[i] = step < kMaxRootSteps ? next[i] : bisect(values[i]);
         }
         miss = value_at(s) - values;
-        if (step == kMostSteps) break;
+        if (step == kMaxRootSteps) break;
       }
     }
     return {s, miss};
   }
 
  private:
-  static constexpr double kTiny = 1e-300;  // makes 0 of 0 / 0
-  static constexpr int kMostSteps = 6;
+  static constexpr double kTiny = 1e-300;  // turns 0 / 0 into 0
+  static constexpr int kMaxRootSteps = 6;
 
   DoublePair value_at(DoublePair s) const {
-    // Products side by side are there sooner than Horner's, one after another.
+    // Estrin's scheme has a shorter dependency chain than Horner's.
     if constexpr (kIsCubic) return (p0_ + s * p1_) + (s * s) * (p2_ + s * p3_);
     return (p0_ + s * p1_) + (s * s) * p2_;
   }
-  // A step of Halley's, and one of Newton's with the slope that the first foretells.
+  // A step of Halley's method, then one of Newton's with the slope extrapolated from the first.
   DoublePair two_steps(DoublePair s, DoublePair miss, DoublePair values) const {
     const DoublePair bend = 3.0 * p3_ * s;
     const DoublePair half_second = p2_ + bend;
@@ -89,8 +90,8 @@ class MonotoneRoots {
     return inside(s - (value_at(s) - values) * (over_slope + over_slope * (off * inverse)));
   }
   static DoublePair inside(DoublePair s) { return higher(lower(s, pair_of(1.0)), DoublePair{}); }
-  // For the few cubics that are level somewhere.
-  double by_halves(double value) const {
+  // Bisection, for the few cubics with a vanishing slope.
+  double bisect(double value) const {
     double low = 0.0;
     double high = 1.0;
     for (int step = 0; step < 52; ++step) {

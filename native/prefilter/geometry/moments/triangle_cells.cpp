@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Cutting follows section 7.2 (triangles cut so that their images meet only one cell); the moments
-// of a piece are closed forms, triangle by triangle of its fan.
+// Cuts triangles by section 7.2, so that the image of each piece lies in one cell. The moments of a
+// piece are closed forms, summed over its triangle fan.
 #include "prefilter/geometry/moments/triangle_cells.h"
 
 #include <algorithm>
@@ -12,32 +12,32 @@
 namespace prefilter {
 namespace {
 
-// Along x and along y.
-using Both = Vector<double, 2>;
+// x and y.
+using XyPair = Vector<double, 2>;
 
-Both swapped(Both v) { return Both{v[1], v[0]}; }
-double sum(Both v) { return v[0] + v[1]; }
+XyPair swapped(XyPair v) { return XyPair{v[1], v[0]}; }
+double sum(XyPair v) { return v[0] + v[1]; }
 
-// The coefficients of s^a t^b, a and b in {0, 1, 2}, of a product of power series
-// 1 / (1 - s x - t y), one for each of some points (x, y). Those that change places with x and y
-// are kept together.
+// Coefficients of s^a t^b, with a and b in {0, 1, 2}, of a product of power series 1 / (1 - s x - t
+// y), one for each of several points (x, y). Coefficients that are exchanged with x and y are
+// stored in pairs.
 struct PointSeries {
   double c00;
-  Both c10_01;
-  Both c20_02;
+  XyPair c10_01;
+  XyPair c20_02;
   double c11;
-  Both c21_12;
+  XyPair c21_12;
   double c22;
 };
 
-PointSeries series_of(Both point) {
+PointSeries series_of(XyPair point) {
   const double xy = point[0] * point[1];
   return {1.0, point, point * point, 2.0 * xy, 3.0 * xy * point, 6.0 * xy * xy};
 }
 
-// Division by 1 - s x - t y is a recurrence: each coefficient gets x times the new one before it in
-// s, and y times that before it in t.
-PointSeries with_point(PointSeries series, Both point) {
+// Division by 1 - s x - t y is a recurrence: each coefficient gets x times the preceding new one in
+// s, plus y times the preceding one in t.
+PointSeries with_point(PointSeries series, XyPair point) {
   series.c10_01 += series.c00 * point;
   series.c20_02 += point * series.c10_01;
   series.c11 += sum(point * swapped(series.c10_01));
@@ -55,10 +55,10 @@ void add(double factor, const PointSeries& series, PointSeries* to) {
   to->c22 += factor * series.c22;
 }
 
-// The mean of x^a y^b over a triangle is 2 a! b! / (a + b + 2)! times the coefficient of s^a t^b of
-// the product for its corners: with barycentric coordinates b_i,
-// (s x + t y)^n = (sum_i b_i (s x_i + t y_i))^n, and the mean of b_0^i b_1^j b_2^k is
-// 2 i! j! k! / (i + j + k + 2)!, which cancels the multinomial coefficients.
+// The mean of x^a y^b over a triangle is 2 a! b! / (a + b + 2)! times the coefficient of s^a t^b in
+// the product for its corners: with barycentric coordinates b_i, (s x + t y)^n = (sum_i b_i (s x_i
+// + t y_i))^n, and the mean of b_0^i b_1^j b_2^k is 2 i! j! k! / (i + j + k + 2)!, which cancels
+// the multinomial coefficients.
 void add_means(const PointSeries& series, WeightMoments* moments) {
   (*moments)[0] += series.c00;
   (*moments)[1] += series.c10_01[0] * (1.0 / 3.0);
@@ -81,9 +81,9 @@ GridPoint between(const GridPoint& p, const GridPoint& q, double f) {
   return {p.x + f * (q.x - p.x), p.y + f * (q.y - p.y)};
 }
 
-// Adds to both the point of the edge from corner i to corner k where the coordinate along `axis` is
-// `value`, and exactly that. The parameter is taken from the same end whichever way the edge runs,
-// so two triangles that share it agree.
+// Adds the point on the edge from corner i to corner k with exactly `value` as its coordinate along
+// `axis` to both parts. It is computed from the same end for both directions of the edge, so that
+// triangles sharing the edge agree.
 void add_crossing(const CellPiece& piece, int i, int k, int axis, double value, CellPiece* low,
                   CellPiece* high) {
   if (coordinate(piece.corners[i], axis) > coordinate(piece.corners[k], axis)) std::swap(i, k);
@@ -118,7 +118,7 @@ Range extent(const CellPiece& piece, int axis) {
   return range;
 }
 
-// Cuts away what lies outside of [low, high] along an axis.
+// Clips a piece to [low, high] along an axis.
 void keep_between(CellPiece* piece, int axis, double low, double high) {
   const Range range = extent(*piece, axis);
   CellPiece inside;
@@ -133,9 +133,9 @@ void keep_between(CellPiece* piece, int axis, double low, double high) {
   }
 }
 
-// Cells of a row that lie inside of a piece which was cut to that row. The piece is convex, so it
-// holds the rectangle between the larger of its left ends and the smaller of its right ends on the
-// row's two sides.
+// The cells of a row inside a piece that was clipped to the row. The piece is convex, so it
+// contains the rectangle between the larger of its left ends and the smaller of its right ends on
+// the row's two sides.
 CellSpan full_cells(const CellPiece& row, int y) {
   const double sides[2] = {static_cast<double>(y), static_cast<double>(y + 1)};
   double left = -HUGE_VAL;
@@ -159,11 +159,11 @@ void add_if_massive(int x, int y, const CellPiece& piece, CellSink* sink) {
   if (piece.mass() > 0.0) sink->add_piece(x, y, piece);
 }
 
-// Sends a piece of row y, which extends over `range`, to the sink, column by column.
+// Sends a piece in row y with the extent `range` to the sink, column by column.
 void sweep_columns(const CellPiece& row, int y, const Range& range, const CellWindow& window,
                    CellSink* sink) {
   const CellSpan span = cell_span(range.low, range.high);
-  // Only a point or an upright segment can lie on the window's far side, which is not the window's.
+  // Only points and vertical segments can lie on the window's far side, which is outside.
   if (span.first >= window.x1) return;
   CellPiece pieces[3];
   const CellPiece* rest = &row;
@@ -210,9 +210,9 @@ double CellPiece::mass() const {
 
 void CellPiece::add_moments(double cell_x, double cell_y, WeightMoments* moments) const {
   const std::array<GridPoint, kMaxCorners>& points = is_barycentric ? sources : corners;
-  const Both cell = {cell_x, cell_y};
-  const auto point = [&](int i) { return Both{corners[i].x, corners[i].y} - cell; };
-  // Triangles (0, i - 1, i) of the fan. What all have in common, corner 0, comes in at the end.
+  const XyPair cell = {cell_x, cell_y};
+  const auto point = [&](int i) { return XyPair{corners[i].x, corners[i].y} - cell; };
+  // Triangles (0, i - 1, i) of the fan. Their common corner 0 is multiplied in at the end.
   PointSeries total{};
   for (int i = 2; i < count; ++i) {
     const double mass = 0.5 * mass_per_area * twice_area(points[0], points[i - 1], points[i]);
@@ -255,9 +255,9 @@ CellPiece whole_piece(const MassTriangle& triangle, bool is_barycentric) {
   piece.count = 3;
   std::copy(p.begin(), p.end(), piece.corners.begin());
 
-  // Rounding of the coordinates makes areas wrong by about 1e-16 of length times magnitude. Where
-  // that could be more than 1e-7 of the area, areas are taken in barycentric space.
-  constexpr double kFlat = 1e-9;
+  // Rounding errors of areas are about 1e-16 of length times magnitude of the coordinates. Where
+  // they could exceed 1e-7 of the area, areas are computed in barycentric coordinates.
+  constexpr double kMaxFlatness = 1e-9;
   double length = 0.0;
   double magnitude = 0.0;
   for (int i = 0; i < 3; ++i) {
@@ -267,7 +267,7 @@ CellPiece whole_piece(const MassTriangle& triangle, bool is_barycentric) {
     magnitude = std::max({magnitude, std::abs(a.x), std::abs(a.y)});
   }
   const double doubled = twice_area(p[0], p[1], p[2]);
-  piece.is_barycentric = is_barycentric || doubled <= kFlat * length * magnitude;
+  piece.is_barycentric = is_barycentric || doubled <= kMaxFlatness * length * magnitude;
   if (piece.is_barycentric) {
     piece.sources[0] = {0.0, 0.0};
     piece.sources[1] = {1.0, 0.0};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A binary tree of boxes over things in the order of the Morton curve.
+// A binary bounding box tree over items in Morton order.
 #pragma once
 
 #include <algorithm>
@@ -19,45 +19,45 @@
 
 namespace prefilter {
 
-/// Nodes are parts of the curve, split where cells of an octree meet, so that boxes of points do
+/// Nodes are ranges of the curve, split at boundaries of octree cells, so that boxes of points do
 /// not overlap.
 class BoxTree {
  public:
   struct Node {
     Box box;
-    std::uint32_t begin;  // the first item below the node
-    std::uint32_t end;    // behind the last one
-    std::uint32_t right;  // the second child; the first is the next node; 0 for a leaf
+    std::uint32_t begin;  // first item below the node
+    std::uint32_t end;    // one past the last item
+    std::uint32_t right;  // the second child, 0 for a leaf; the first child is the next node
   };
 
   BoxTree() = default;
 
-  /// Over the items at these places of the curve, in order and fewer than 2^32; a leaf has at most
-  /// `leaf_items`. `box_of(item)` is where one is.
+  /// Builds a tree over items with these sorted Morton keys, fewer than 2^32. Leaves have at most
+  /// `leaf_items` items. `box_of(item)` is the bounding box of an item.
   template <typename BoxOf>
   BoxTree(std::span<const std::uint64_t> keys, std::size_t leaf_items, const BoxOf& box_of,
           const Progress& progress);
 
   bool is_empty() const { return nodes_.empty(); }
-  /// The root first, and each node before those below it.
+  /// In preorder, starting with the root.
   std::span<const Node> nodes() const { return nodes_; }
 
-  /// Calls `visit(node)` for the leaves that are left, near ones first, where each node on the way
-  /// has `may_be(squared, node)`: whether what is below the node, and no nearer to the point than
-  /// the root of `squared`, is still of interest. Nodes are numbers in `nodes()`.
+  /// Visits leaves, roughly from near to far: calls `visit(node)` for a leaf if `may_be(squared,
+  /// node)` holds for it and all its ancestors, where `squared` is the squared distance of the
+  /// node's box from the point. Nodes are indices into `nodes()`.
   template <typename MayBe, typename Visit>
   void search(const Vector3& point, const MayBe& may_be, const Visit& visit) const;
 
-  /// Calls `visit(node)` for the leaves whose boxes have a point in common with this one.
+  /// Calls `visit(node)` for the leaves whose boxes intersect this one.
   template <typename Visit>
   void for_overlapping(const Box& box, const Visit& visit) const;
 
  private:
-  // As many splits as a key has bits, and then as an index has, where all keys are the same.
-  static constexpr std::size_t kDeepest = 3 * kMortonBits + 32;
+  // The number of bits of a key, plus those of an index if all keys are equal.
+  static constexpr std::size_t kMaxDepth = 3 * kMortonBits + 32;
 
-  // Where the second child of a node begins: where the first bit changes in which its keys differ,
-  // or in the middle.
+  // Start of the second child of a node: at the first change of the highest differing bit of its
+  // keys, or in the middle.
   static std::uint32_t split(std::span<const std::uint64_t> keys, std::uint32_t begin,
                              std::uint32_t end) {
     const std::uint64_t differing = keys[begin] ^ keys[end - 1];
@@ -83,7 +83,7 @@ BoxTree::BoxTree(std::span<const std::uint64_t> keys, std::size_t leaf_items, co
     std::uint32_t parent;
   };
   constexpr std::uint32_t kNoParent = std::numeric_limits<std::uint32_t>::max();
-  std::array<Waiting, kDeepest> waiting;
+  std::array<Waiting, kMaxDepth> waiting;
   std::size_t count = 0;
   waiting[count++] = {0, static_cast<std::uint32_t>(keys.size()), kNoParent};
   Pulse pulse(progress);
@@ -115,7 +115,7 @@ void BoxTree::search(const Vector3& point, const MayBe& may_be, const Visit& vis
     std::size_t node;
     double squared;
   };
-  std::array<Waiting, kDeepest> waiting;
+  std::array<Waiting, kMaxDepth> waiting;
   std::size_t count = 0;
   waiting[count++] = {0, nodes_[0].box.squared_distance(point)};
   while (count > 0) {
@@ -139,7 +139,7 @@ void BoxTree::search(const Vector3& point, const MayBe& may_be, const Visit& vis
 template <typename Visit>
 void BoxTree::for_overlapping(const Box& box, const Visit& visit) const {
   if (nodes_.empty()) return;
-  std::array<std::uint32_t, kDeepest> waiting;
+  std::array<std::uint32_t, kMaxDepth> waiting;
   std::size_t count = 0;
   waiting[count++] = 0;
   while (count > 0) {

@@ -10,12 +10,12 @@
 namespace prefilter {
 namespace {
 
-constexpr double kLargest = 1e150;
+constexpr double kMaxCornerCoordinate = 1e150;
 constexpr std::int32_t kNone = -1;
 
 void check(const InputMesh& surface, std::span<const std::int32_t> origins,
            std::span<const std::int32_t> labels, std::size_t triangles) {
-  check_mesh(surface, kLargest);
+  check_mesh(surface, kMaxCornerCoordinate);
   if (labels.size() != triangles) {
     throw_invalid("labels: found " + std::to_string(labels.size()) + " for " +
                   std::to_string(triangles) + " triangles; one each is needed");
@@ -36,10 +36,11 @@ void check(const InputMesh& surface, std::span<const std::int32_t> origins,
 CornerPoints find_corner_points(const InputMesh& surface, std::span<const std::int32_t> origins,
                                 const InputMesh& mesh, std::span<const std::int32_t> labels,
                                 const Progress& progress, int threads) {
-  check_mesh(mesh, kLargest);
+  check_mesh(mesh, kMaxCornerCoordinate);
   check(surface, origins, labels, mesh.triangles.size());
 
-  // The points asked for: a vertex with the label of its first triangle, then those with others.
+  // Query points: each vertex with the label of its first triangle, then vertices with further
+  // labels.
   const std::size_t vertices = surface.positions.size();
   std::vector<std::int32_t> origin_of(vertices, kNone);
   std::vector<std::size_t> vertex_of;
@@ -71,7 +72,7 @@ CornerPoints find_corner_points(const InputMesh& surface, std::span<const std::i
   points.reserve(origin_of.size());
   for (const Vector3& position : surface.positions) points.push_back(position);
   for (const std::size_t vertex : vertex_of) points.push_back(surface.positions[vertex]);
-  // A vertex of no triangle gets whatever the first triangle has.
+  // Vertices without triangles use the origin of the first triangle.
   for (std::int32_t& origin : origin_of) origin = origin == kNone ? 0 : origin;
 
   const NearestPoints tree(mesh, labels, progress.part(0.05, 0.5), threads);

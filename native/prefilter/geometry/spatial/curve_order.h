@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Points in the order of the Morton curve through their box.
+// Sorts points along the Morton curve through their bounding box.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace prefilter {
 
-/// A point's place along the Morton curve.
+/// A point's key on the Morton curve, and its index.
 struct CurvePlace {
   std::uint64_t key;
   std::uint32_t index;
@@ -25,8 +25,8 @@ struct CurvePlace {
   }
 };
 
-/// The places of `count` points, in order; `point_of(i)` is one of them, and finite. Points at one
-/// position have one key.
+/// The keys of `count` finite points `point_of(i)`, sorted. Points at the same position have the
+/// same key.
 template <typename PointOf>
 std::vector<CurvePlace> along_curve(std::size_t count, const PointOf& point_of,
                                     const Progress& progress, int threads) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The Morton curve: the order of the cells of an octree.
+// The Morton curve, which orders the cells of an octree.
 #pragma once
 
 #include <array>
@@ -9,10 +9,10 @@
 
 namespace prefilter {
 
-/// Cells along an axis that a place on the curve can tell apart: 2^21.
+/// Bits per axis: the curve distinguishes 2^21 cells along each axis.
 inline constexpr int kMortonBits = 21;
 
-/// The bits of a number below 2^21, with two zeros between them.
+/// Inserts two zeros between the bits of a number below 2^21.
 constexpr std::uint64_t spread_bits(std::uint64_t n) {
   n = (n | (n << 32U)) & 0x001F00000000FFFFU;
   n = (n | (n << 16U)) & 0x001F0000FF0000FFU;
@@ -22,7 +22,7 @@ constexpr std::uint64_t spread_bits(std::uint64_t n) {
   return n;
 }
 
-/// Every third bit of a number, close together: the inverse of spread_bits.
+/// Extracts every third bit of a number: the inverse of spread_bits.
 constexpr std::uint64_t gather_bits(std::uint64_t n) {
   n &= 0x1249249249249249U;
   n = (n | (n >> 2U)) & 0x10C30C30C30C30C3U;
@@ -33,7 +33,7 @@ constexpr std::uint64_t gather_bits(std::uint64_t n) {
   return n;
 }
 
-/// Where a cell is along the curve; x has the lowest bits. Coordinates from 0 to 2^21 - 1.
+/// Index of a cell on the curve, with x in the lowest bits. Coordinates are from 0 to 2^21 - 1.
 inline std::uint64_t morton_index(const std::array<int, 3>& cell) {
   std::uint64_t index = 0;
   for (int a = 0; a < 3; ++a) {
@@ -43,7 +43,7 @@ inline std::uint64_t morton_index(const std::array<int, 3>& cell) {
   return index;
 }
 
-/// The cell at a place along the curve.
+/// The cell at an index on the curve.
 inline std::array<int, 3> morton_cell(std::uint64_t index) {
   return {static_cast<int>(gather_bits(index)), static_cast<int>(gather_bits(index >> 1U)),
           static_cast<int>(gather_bits(index >> 2U))};

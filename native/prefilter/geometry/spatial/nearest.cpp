@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A binary tree of boxes over the triangles in the order of the Morton curve through their middles.
+// A bounding box tree over the triangles, in Morton order of their centers.
 //
-// Identical triangles are one, with the lowest of their indices: as their boxes may be nearer than
-// they are, no box could leave them out, and each search would look at all of them.
+// Identical triangles are merged, with the lowest of their indices: since the boxes may be closer
+// than the triangles, no box would exclude any of them, and each search would test them all.
 #include "prefilter/geometry/nearest.h"
 
 #include <algorithm>
@@ -23,19 +23,19 @@ namespace prefilter {
 namespace {
 
 constexpr std::size_t kLeafTriangles = 4;
-// So few that a task ends soon even where a search looks at very many triangles.
+// Small, so that tasks end soon even if searches test very many triangles.
 constexpr std::int64_t kPointsPerTask = 64;
 constexpr std::int64_t kRowsPerTask = 1 << 15;
 constexpr double kLargestNear = 1e150;
 
-// The corners of a triangle in an order that does not depend on the one that they are named in.
+// The corners of a triangle, sorted to be independent of the starting corner.
 std::array<Vector3, 3> sorted_corners(const InputMesh& mesh, std::size_t triangle) {
   std::array<Vector3, 3> corners = mesh.corners(triangle);
   std::sort(corners.begin(), corners.end());
   return corners;
 }
 
-// A triangle among others with the same middle.
+// A triangle to be compared with others at the same center.
 struct Copy {
   std::array<Vector3, 3> corners;
   std::int32_t label;
@@ -48,20 +48,20 @@ struct Copy {
   }
 };
 
-// Leaves of identical triangles with one label, which have the same key, the one with the lowest
-// index. Sets the place of each triangle, or of that one.
+// Removes all but the first of identical triangles with the same label, whose keys are equal. Sets
+// the position of each triangle on the curve, or that of the remaining copy.
 void drop_copies(const InputMesh& mesh, std::span<const std::int32_t> labels,
                  const Progress& progress, int threads, std::vector<CurvePlace>* places,
                  std::span<std::uint32_t> place_of) {
-  constexpr std::size_t kMany = 1U << 15;
+  constexpr std::size_t kCopiesPerSort = 1U << 15;
   std::vector<Copy> copies;
-  std::size_t kept = 0;
+  std::size_t distinct = 0;
   for (std::size_t begin = 0, end = 0; begin < places->size(); begin = end) {
     const std::uint64_t key = (*places)[begin].key;
     while (end < places->size() && (*places)[end].key == key) ++end;
     const auto keep = [&](std::uint32_t index) {
-      if (!place_of.empty()) place_of[index] = static_cast<std::uint32_t>(kept);
-      (*places)[kept++] = {key, index};
+      if (!place_of.empty()) place_of[index] = static_cast<std::uint32_t>(distinct);
+      (*places)[distinct++] = {key, index};
     };
     if (end == begin + 1) {
       keep((*places)[begin].index);
@@ -72,7 +72,7 @@ void drop_copies(const InputMesh& mesh, std::span<const std::int32_t> labels,
       const std::uint32_t index = (*places)[i].index;
       copies.push_back({sorted_corners(mesh, index), labels.empty() ? 0 : labels[index], index});
     }
-    if (copies.size() < kMany) {
+    if (copies.size() < kCopiesPerSort) {
       std::sort(copies.begin(), copies.end());
     } else {
       sort_in_parallel(&copies, progress, threads);
@@ -81,11 +81,11 @@ void drop_copies(const InputMesh& mesh, std::span<const std::int32_t> labels,
       if (i == 0 || !copies[i].is_of(copies[i - 1])) {
         keep(copies[i].index);
       } else if (!place_of.empty()) {
-        place_of[copies[i].index] = static_cast<std::uint32_t>(kept - 1);
+        place_of[copies[i].index] = static_cast<std::uint32_t>(distinct - 1);
       }
     }
   }
-  places->resize(kept);
+  places->resize(distinct);
 }
 
 struct Best {
@@ -94,7 +94,7 @@ struct Best {
   std::uint32_t index = 0;
   Vector3 weights{};
 
-  /// Whether what is no nearer than this, with no lower index, may be the best.
+  /// Whether a triangle at least this far away, with at least this index, may be better.
   bool may_be(double at_least, std::uint32_t lowest) const {
     return at_least < squared || (at_least == squared && lowest < index);
   }
@@ -115,7 +115,7 @@ class NearestPoints::Tree {
                                     int threads) const;
 
  private:
-  // Returns where the triangles are along the curve.
+  // Returns the Morton keys of the triangles.
   std::vector<std::uint64_t> sort_triangles(const InputMesh& mesh,
                                             std::span<const std::int32_t> labels,
                                             const Progress& progress, int threads);
@@ -124,11 +124,12 @@ class NearestPoints::Tree {
   void search(const Vector3& point, std::optional<std::int32_t> label, Best* best) const;
 
   std::vector<Vector3> positions_;
-  // Along the Morton curve through their middles, each once; and their indices in the mesh.
+  // Distinct triangles in Morton order of their centers, and their indices in the mesh.
   std::vector<std::array<std::int32_t, 3>> triangles_;
   std::vector<std::uint32_t> indices_;
-  std::vector<std::int32_t> labels_;   // as the triangles; empty for none
-  std::vector<std::uint32_t> places_;  // of each of the mesh's triangles, or its first copy
+  std::vector<std::int32_t> labels_;  // per triangle in Morton order; empty without labels
+  std::vector<std::uint32_t>
+      places_;  // position of each of the mesh's triangles, or of its remaining copy
   BoxTree boxes_;
   std::vector<std::uint32_t> lowest_indices_;  // for each node of the tree
 };
@@ -205,8 +206,8 @@ void NearestPoints::Tree::try_triangle(std::size_t place, const Vector3& point, 
   const Vector3 weights = nearest_weights(point, a, b, c);
   Vector3 offset;
   for (int x = 0; x < 3; ++x) {
-    // Rounding must not take it out of its box: boxes farther than the best are left out, and which
-    // these are depends on where a search begins.
+    // Clamped to the triangle's box: otherwise a search could exclude the box because of rounding,
+    // depending on its starting point.
     const double at = weights[0] * a[x] + weights[1] * b[x] + weights[2] * c[x];
     const double low = std::min({a[x], b[x], c[x]});
     const double high = std::max({a[x], b[x], c[x]});
@@ -233,8 +234,8 @@ void NearestPoints::Tree::search(const Vector3& point, std::optional<std::int32_
 std::vector<SurfacePoint> NearestPoints::Tree::find(std::span<const Vector3> points,
                                                     const Progress& progress, int threads) const {
   check_points(points, "points: row", kLargestNear);
-  // Along the curve a point's neighbors come before it: the triangle nearest to them is a good
-  // first guess, and what was read for them is at hand.
+  // Along the curve, neighboring points follow each other: the nearest triangle of the previous
+  // point is a good initial guess, and its surroundings are in the cache.
   const std::vector<CurvePlace> order = along_curve(
       points.size(), [&](std::size_t i) { return points[i]; }, progress.part(0.0, 0.1), threads);
   std::vector<SurfacePoint> found(points.size());

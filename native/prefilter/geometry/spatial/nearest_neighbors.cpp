@@ -22,7 +22,7 @@ bool is_usable(const Vector3& point) {
          std::abs(point[2]) <= kLargestNeighbor;
 }
 
-// Identical points, which have the same key, next to each other.
+// Sorts identical points, which have the same key, next to each other.
 void sort_by_position(std::span<const Vector3> points, std::vector<CurvePlace>* order,
                       const Progress& progress, int threads) {
   const auto is_before = [&](const CurvePlace& a, const CurvePlace& b) {
@@ -75,10 +75,10 @@ void Neighbors::add(std::uint32_t place, double square) {
 
 NeighborSearch::NeighborSearch(std::span<const Vector3> points, const Progress& progress,
                                int threads) {
-  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
-  if (points.size() > kMost) {
-    throw_invalid("points: found " + std::to_string(points.size()) + "; " + std::to_string(kMost) +
-                  " are the most");
+  constexpr std::size_t kMaxPoints = std::numeric_limits<std::int32_t>::max();
+  if (points.size() > kMaxPoints) {
+    throw_invalid("points: found " + std::to_string(points.size()) + "; " +
+                  std::to_string(kMaxPoints) + " are the most");
   }
   std::vector<std::uint32_t> usable;
   usable.reserve(points.size());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The nearest of many points to each of them.
+// Nearest neighbors within a point cloud.
 #pragma once
 
 #include <cstddef>
@@ -15,10 +15,10 @@
 
 namespace prefilter {
 
-/// What a search found; used for one search after another.
+/// The result of a search; reusable to avoid allocations.
 class Neighbors {
  public:
-  /// Places from near to far, and the squares of their distances.
+  /// Neighbors from near to far, and their squared distances.
   std::span<const std::uint32_t> places() const { return places_; }
   std::span<const double> squares() const { return squares_; }
 
@@ -28,37 +28,36 @@ class Neighbors {
   void add(std::uint32_t place, double square);
 
   std::size_t most_ = 0;
-  double worst_ = 0.0;  // what is no nearer than the root of this is of no interest
+  double worst_ = 0.0;  // squared distance beyond which candidates are rejected
   std::vector<std::uint32_t> places_;
   std::vector<double> squares_;
 };
 
-/// Points made ready for searches of their neighbors: each position once, along the Morton curve,
-/// under a tree of boxes. All that follows names them by their places on the curve.
+/// A searchable copy of points: distinct positions in Morton order, with a bounding box tree.
+/// Positions are identified by their index ("place") in this order.
 class NeighborSearch {
  public:
-  /// The place of a point that has none.
+  /// The place of a point that was left out.
   static constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
 
-  /// Points that hold a value that is not finite, or above 1e150, whose square would overflow, are
-  /// left out. Throws Error for more than 2^31 - 1 points; Error(kCancelled).
+  /// Leaves out points with a coordinate that is not finite, or above 1e150, whose square would
+  /// overflow. Throws Error for more than 2^31 - 1 points; Error(kCancelled).
   NeighborSearch(std::span<const Vector3> points, const Progress& progress, int threads);
 
-  /// The distinct positions, by their places.
+  /// The distinct positions, indexed by place.
   std::span<const Vector3> positions() const { return positions_; }
-  /// The place of each of the points that were given; kNowhere for those left out.
+  /// The place of each input point; kNowhere for omitted ones.
   std::span<const std::uint32_t> places() const { return places_; }
 
-  /// The `count` positions (at least 1) nearest to one of them, which is one of these; all of them
-  /// where there are fewer. Which of several at one distance it is depends on nothing but the
-  /// points.
+  /// Finds the `count` positions, at least 1, that are nearest to a position, including itself; all
+  /// of them if there are fewer. Ties are resolved deterministically.
   void find(std::uint32_t place, std::size_t count, Neighbors* found) const;
 
-  /// The place of the position that is nearest to any finite point, and nearer than the root of
-  /// `squared`; kNowhere where there is none.
+  /// The place of the position nearest to a finite point, if it is closer than the square root of
+  /// `squared`; else kNowhere.
   std::uint32_t nearest(const Vector3& point, double squared) const;
 
-  /// Calls `visit(place)` for all positions nearer to a point than the root of `squared`.
+  /// Calls `visit(place)` for all positions closer to a point than the square root of `squared`.
   template <typename Visit>
   void for_near(const Vector3& point, double squared, const Visit& visit) const {
     if (tree_.is_empty()) return;
@@ -72,7 +71,7 @@ class NeighborSearch {
     });
   }
 
-  /// The box of the positions.
+  /// The bounding box of the positions.
   Box box() const { return tree_.is_empty() ? kEmptyBox : tree_.nodes()[0].box; }
 
  private:

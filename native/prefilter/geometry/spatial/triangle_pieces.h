@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Triangles cut into small ones, and what these are like.
+// Small triangles: measures and subdivision.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ inline Box triangle_box(const std::array<Vector3, 3>& corners) {
   return box;
 }
 
-/// The halves of a triangle with a side that is longer than `size`: the longest one is cut.
+/// Halves a triangle at its longest side, if that is longer than `size`.
 inline std::optional<std::array<std::array<Vector3, 3>, 2>> halves_of(
     const std::array<Vector3, 3>& corners, double size) {
   std::size_t longest = 0;
@@ -45,8 +45,8 @@ inline std::optional<std::array<std::array<Vector3, 3>, 2>> halves_of(
   return {{{{a, middle, c}, {middle, b, c}}}};
 }
 
-/// Calls visit(corners) for pieces of a triangle with no side longer than `size`, of those parts of
-/// it that are of interest by `may_be(corners)`.
+/// Subdivides a triangle until no side is longer than `size`, and calls visit(corners) for the
+/// pieces. Skips parts for which `may_be(corners)` is false.
 template <typename MayBe, typename Visit>
 void for_pieces(const std::array<Vector3, 3>& corners, double size, const MayBe& may_be,
                 const Visit& visit) {

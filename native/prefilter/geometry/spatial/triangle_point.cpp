@@ -8,8 +8,8 @@
 namespace prefilter {
 namespace {
 
-// Where a point's foot on the segment from the origin along `edge` is, in [0, 1]; `along` is the
-// point's product with the edge.
+// Parameter in [0, 1] of the point of the segment from the origin along `edge` that is nearest to a
+// point; `along` is the point's scalar product with the edge.
 double on_segment(double along, double squared_length) {
   return squared_length > 0.0 ? std::clamp(along / squared_length, 0.0, 1.0) : 0.0;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // G. Barill, N. Dickson, R. Schmidt, D. Levin, A. Jacobson, Fast winding numbers for soups and
-// clouds (2018), of the lowest order. Solid angles: A. van Oosterom, J. Strackee, The solid angle
-// of a plane triangle (1983).
+// clouds (2018), first order. Solid angles: A. van Oosterom, J. Strackee, The solid angle of a
+// plane triangle (1983).
 #include "prefilter/geometry/spatial/winding_numbers.h"
 
 #include <algorithm>
@@ -19,13 +19,13 @@ namespace {
 
 constexpr std::size_t kTrianglesPerLeaf = 4;
 constexpr std::int64_t kWindingsPerTask = 256;
-constexpr double kLargestTurning = 1e100;
-// Below rounding: the point is in the triangle's plane.
+constexpr double kMaxWindingCoordinate = 1e100;
+// Relative determinant below which a point lies in the triangle's plane.
 constexpr double kInPlane = 1e-12;
-// Nodes that wait on the way down: one for each split, of which the tree has fewer.
-constexpr std::size_t kDeepest = 128;
+// Size of the stack of pending nodes: one per level of the tree, which has fewer.
+constexpr std::size_t kMaxPendingNodes = 128;
 
-// As a share of all directions.
+// The solid angle of a triangle, as a fraction of the full sphere.
 double solid_angle(const std::array<Vector3, 3>& triangle, const Vector3& point) {
   const Vector3 a = triangle[0] - point;
   const Vector3 b = triangle[1] - point;
@@ -35,11 +35,11 @@ double solid_angle(const std::array<Vector3, 3>& triangle, const Vector3& point)
   const double lc = plain_length(c);
   const double volume = dot(a, cross(b, c));
   if (std::abs(volume) <= kInPlane * la * lb * lc) return 0.0;
-  const double rest = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-  return elementary::atan2(volume, rest) / (2.0 * std::numbers::pi);
+  const double denominator = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
+  return elementary::atan2(volume, denominator) / (2.0 * std::numbers::pi);
 }
 
-// The sign of a number that is a sum of products of sizes `scale`; 0 below rounding.
+// The sign of a sum of products with magnitudes of `scale`; 0 within rounding errors.
 int sign_of(double value, double scale) {
   constexpr double kRounding = 1e-9;
   return value > kRounding * scale ? 1 : value < -kRounding * scale ? -1 : 0;
@@ -54,10 +54,10 @@ bool may_meet(const std::array<Vector3, 3>& triangle, const Box& box) {
   return true;
 }
 
-// 1 where the segment leaves through the triangle, -1 where it enters, 0 where it does neither;
-// nothing if that is in doubt.
-std::optional<int> passage(const std::array<Vector3, 3>& triangle, const Vector3& from,
-                           const Vector3& to) {
+// 1 if the segment leaves through the triangle, -1 if it enters, 0 if it misses it; nothing if
+// uncertain.
+std::optional<int> crossing_sign(const std::array<Vector3, 3>& triangle, const Vector3& from,
+                                 const Vector3& to) {
   const auto& [a, b, c] = triangle;
   const Vector3 normal = cross(b - a, c - a);
   const double area = plain_length(normal);
@@ -82,7 +82,7 @@ std::optional<int> passage(const std::array<Vector3, 3>& triangle, const Vector3
 }  // namespace
 
 WindingNumbers::WindingNumbers(const InputMesh& mesh, const Progress& progress, int threads) {
-  check_mesh(mesh, kLargestTurning);
+  check_mesh(mesh, kMaxWindingCoordinate);
   const auto middle_of = [&](std::size_t triangle) {
     const auto corners = mesh.corners(triangle);
     Vector3 middle = corners[0] + corners[1] + corners[2];
@@ -150,7 +150,7 @@ auto WindingNumbers::far_of(std::size_t n, std::vector<double>* areas) const -> 
 double WindingNumbers::at(const Vector3& point, double far_radii) const {
   const auto nodes = tree_.nodes();
   double winding = 0.0;
-  std::array<std::uint32_t, kDeepest> waiting;
+  std::array<std::uint32_t, kMaxPendingNodes> waiting;
   std::size_t count = 0;
   waiting[count++] = 0;
   while (count > 0) {
@@ -183,7 +183,7 @@ std::optional<double> WindingNumbers::excess(const Vector3& from, const Vector3&
     const BoxTree::Node& leaf = tree_.nodes()[node];
     for (std::uint32_t item = leaf.begin; is_sure && item < leaf.end; ++item) {
       if (!may_meet(triangles_[item], box)) continue;
-      const std::optional<int> one = passage(triangles_[item], from, to);
+      const std::optional<int> one = crossing_sign(triangles_[item], from, to);
       is_sure = one.has_value();
       sum += one.value_or(0);
     }
@@ -194,7 +194,7 @@ std::optional<double> WindingNumbers::excess(const Vector3& from, const Vector3&
 
 std::vector<double> WindingNumbers::find(std::span<const Vector3> points, const Progress& progress,
                                          int threads) const {
-  check_points(points, "points: row", kLargestTurning);
+  check_points(points, "points: row", kMaxWindingCoordinate);
   std::vector<double> result(points.size());
   parallel_ranges(static_cast<std::int64_t>(points.size()), kWindingsPerTask, threads, progress,
                   [&](std::int64_t begin, std::int64_t end) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// How often a mesh winds around points, open or not.
+// Winding numbers of closed and open meshes around points.
 #pragma once
 
 #include <optional>
@@ -13,41 +13,42 @@
 
 namespace prefilter {
 
-/// Generalized winding numbers: the solid angle that the triangles take up, seen from a point, as a
-/// share of all directions; positive where they are seen from their back. A closed mesh has 1
-/// inside and 0 outside, in steps at its surface; holes make it smooth. Seen from a point in its
-/// own plane a triangle takes up nothing, so on the surface it is the mean of both sides.
+/// Generalized winding numbers: the total solid angle of the triangles seen from a point, as a
+/// fraction of the sphere; positive for back faces. A closed mesh has 1 inside and 0 outside, with
+/// a jump at its surface; holes make the transition smooth. From a point in its own plane a
+/// triangle has no solid angle, so on the surface the value is the mean of both sides.
 class WindingNumbers {
  public:
-  /// Throws Error as check_mesh does, for positions above 1e100; Error(kCancelled).
+  /// Throws Error like check_mesh, with a limit of 1e100 for positions; Error(kCancelled).
   WindingNumbers(const InputMesh& mesh, const Progress& progress, int threads);
 
-  /// To about 0.01: what is far away is taken as one plane piece. The same for any number of
-  /// threads. Throws Error for points that are not finite; Error(kCancelled).
+  /// Winding numbers of points, accurate to about 0.01: distant triangles are approximated
+  /// together. The result is the same for any number of threads. Throws Error for points that are
+  /// not finite; Error(kCancelled).
   std::vector<double> find(std::span<const Vector3> points, const Progress& progress,
                            int threads) const;
 
-  /// What is this many radii away is taken as one piece: 2 are enough to tell 0 from 1.
+  /// Approximates nodes farther away than this many radii; 2 suffice to distinguish 0 from 1.
   double at(const Vector3& point, double far_radii = 4.0) const;
 
-  /// What the winding number at `from` is more than at `to`: one for each triangle that the segment
-  /// leaves through, less those that it enters through. Nothing where it all but meets the border
-  /// of one. Takes what the triangles near the segment take.
+  /// The winding number at `from` minus that at `to`: the number of triangles through which the
+  /// segment leaves minus those through which it enters. Nothing if it passes too close to the
+  /// border of a triangle. The time depends only on the triangles near the segment.
   std::optional<double> excess(const Vector3& from, const Vector3& to) const;
 
  private:
-  // What a node's triangles are from afar.
-  struct Far {
+  // The far-field approximation of a node's triangles.
+  struct FarField {
     Vector3 middle;
-    Vector3 normal;  // the sum of their areas along their normals
+    Vector3 normal;  // sum of the area vectors
     double squared_radius;
   };
-  // That of a node whose children have theirs; `areas` are the nodes', this one's is set.
-  Far far_of(std::size_t n, std::vector<double>* areas) const;
+  // Approximates a node whose children have been processed; sets its entry in `areas`.
+  FarField far_field_of(std::size_t n, std::vector<double>* areas) const;
 
   std::vector<std::array<Vector3, 3>> triangles_;  // along the Morton curve
   BoxTree tree_;
-  std::vector<Far> fars_;
+  std::vector<FarField> far_fields_;
 };
 
 }  // namespace prefilter

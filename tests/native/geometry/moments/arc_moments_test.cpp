@@ -12,7 +12,7 @@
 namespace prefilter {
 namespace {
 
-// Half of what an image by the box filter may be off.
+// Half of the error allowed for an image with the box filter.
 constexpr double kCurveBound = 5e-7;
 constexpr double kUnit = 1.0 / (1 << kMomentBits);
 
@@ -22,7 +22,7 @@ struct Integrals {
   std::array<double, N + 1> across{};
 };
 
-// By Simpson's rule over t, with many steps.
+// Simpson's rule over t, with many steps.
 template <int N>
 Integrals<N> integrals(const ParametricCurve& curve, double t_begin, double t_end, Point2 center,
                        int steps = 400) {
@@ -110,7 +110,7 @@ TYPED_TEST(ArcMomentsOf, CurvesAreTheirIntegrals) {
   }
 }
 
-// Whose points crowd together at their ends, or in the middle.
+// Their points concentrate at the ends or in the middle.
 TYPED_TEST(ArcMomentsOf, SharpConicsAreTheirIntegrals) {
   constexpr int kN = TestFixture::kDegree;
   ArcBatch<kN> batch;
@@ -168,7 +168,7 @@ TYPED_TEST(ArcMomentsOf, WhatCrossesTheWholeRowIsWhole) {
   }
 }
 
-// Sums are modulo 2^32: what is taken away again may have been more than they hold.
+// Sums are modulo 2^32: intermediate results may overflow.
 TYPED_TEST(ArcMomentsOf, ManyWindingsComeAndGo) {
   constexpr int kN = TestFixture::kDegree;
   ArcBatch<kN> batch;

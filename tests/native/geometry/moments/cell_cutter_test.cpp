@@ -103,8 +103,8 @@ TEST(CutCurveToCells, ArcsLieInTheirCells) {
   });
 }
 
-// What a window sees is what a larger one does; what lies left of it keeps its heights.
-TEST(CutCurveToCells, WindowsShowPartsOfTheSame) {
+// A window yields the same arcs as a larger one; arcs to its left keep their heights.
+TEST(CutCurveToCells, WindowsAgreeWithLargerOnes) {
   for_random_pieces(270, [](int trial, const MonotoneCurve& piece) {
     const Cut whole = cut(piece, kAround);
     for (const GridWindow& window :
@@ -152,7 +152,7 @@ TEST(CutLineToCells, IsTheSameAsForCurves) {
     piece.begin = begin;
     piece.end = end;
     for (const GridWindow& window : {kAround, GridWindow{3, 6, 2, 7}}) {
-      std::map<std::pair<int, int>, Point2> sums;  // of heights, and of x times them
+      std::map<std::pair<int, int>, Point2> sums;  // sums of heights, and of x times heights
       std::map<int, double> left;
       for (const Arc& found : cut(piece, window).arcs) {
         const Point2 mean = 0.5 * (found.arc.begin + found.arc.end);

@@ -9,7 +9,7 @@
 namespace prefilter {
 namespace {
 
-// The moments of a point mass are the monomials at the point, in whichever cell's coordinates.
+// The moments of a point mass are the monomials at the point, in the coordinates of any cell.
 CellMoments<2> point_mass(double x, double y) {
   CellMoments<2> moments;
   for (int b = 0; b < 3; ++b) {

@@ -25,7 +25,8 @@ std::vector<Piece> pieces_of(std::span<const Point2> controls, double weight) {
   return pieces;
 }
 
-// Controls of curves of degree 4 and above are someone else's: pieces are looked at as they come.
+// Curves of degree 4 and above only refer to their control points, so pieces are checked
+// immediately.
 template <typename Check>
 void for_random_curves(int trials, const Check& check) {
   std::mt19937 random(1);
@@ -100,7 +101,7 @@ TEST(MonotonePieces, AreTheSameFromTheOtherEnd) {
   }
 }
 
-TEST(MonotonePieces, OfALineIsTheLine) {
+TEST(MonotonePieces, LinesAreSinglePieces) {
   const std::vector<Point2> controls = {{1.0, 2.0}, {3.0, 7.0}};
   const std::vector<Piece> pieces = pieces_of(controls, 0.0);
   ASSERT_EQ(pieces.size(), 1U);
@@ -108,7 +109,7 @@ TEST(MonotonePieces, OfALineIsTheLine) {
   EXPECT_EQ(pieces[0].curve.curve.kind, CurveKind::kLine);
 }
 
-TEST(MonotonePieces, OfPointsAreThere) {
+TEST(MonotonePieces, PointsAreSinglePieces) {
   for (const std::size_t count : {2U, 3U, 4U, 6U, 61U}) {
     const std::vector<Point2> controls(count, Point2{3.0, 4.0});
     for (const double weight : {0.0, 0.5, 1e6}) {
@@ -131,7 +132,7 @@ std::vector<double> turns_of(const std::vector<Point2>& controls, double weight)
 }
 
 TEST(TurningPoints, OfKnownCurves) {
-  // y = 4 t (1 - t), as a quadratic and with its degree raised.
+  // y = 4 t (1 - t), as a quadratic, and with its degree raised.
   const std::vector<std::vector<Point2>> arches = {
       {{0, 0}, {1, 2}, {2, 0}},
       {{0, 0}, {2.0 / 3, 4.0 / 3}, {4.0 / 3, 4.0 / 3}, {2, 0}},
@@ -166,7 +167,7 @@ TEST(Crossing, IsWhereTheCurveIs) {
   });
 }
 
-TEST(ParametricCurve, IsBernsteinsSum) {
+TEST(ParametricCurve, MatchesBernsteinPolynomials) {
   std::mt19937 random(5);
   for (int trial = 0; trial < 180; ++trial) {
     const RandomCurve random_one = any_curve(&random, trial, 1.0);
@@ -187,7 +188,7 @@ TEST(ParametricCurve, IsBernsteinsSum) {
   }
 }
 
-TEST(ParametricCurve, SaysOfTwoParametersWhatItSaysOfEach) {
+TEST(ParametricCurve, PairsMatchSingleParameters) {
   for_random_curves(60, [](int, const RandomCurve&, const MonotoneCurve& piece) {
     const ParametricCurve& curve = piece.curve;
     if (curve.kind == CurveKind::kBezier) return;

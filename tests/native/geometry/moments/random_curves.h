@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Curves of every kind, and points of them by Bernstein's polynomials.
+// Curves of every kind, and reference points by Bernstein polynomials.
 #pragma once
 
 #include <cmath>
@@ -24,7 +24,7 @@ inline RandomCurve random_curve(std::mt19937* random, int degree, double size) {
   return curve;
 }
 
-/// Lines, Bezier curves up to a high degree, and conics of weights from 1e-3 to 1e3, in turns.
+/// Lines, Bezier curves up to a high degree, and conics with weights from 1e-3 to 1e3, in turns.
 inline RandomCurve any_curve(std::mt19937* random, int trial, double size) {
   constexpr int kDegrees[] = {1, 2, 3, 2, 4, 5, 8, 30, 60};
   RandomCurve curve = random_curve(random, kDegrees[trial % 9], size);

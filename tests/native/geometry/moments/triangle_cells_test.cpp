@@ -11,7 +11,7 @@
 namespace prefilter {
 namespace {
 
-// Moments of each cell, with whole cells as pieces are.
+// Sums moments per cell, treating full cells as pieces.
 class Collector final : public CellSink {
  public:
   void add_full(int y, int x0, int x1, double density) override {
@@ -37,7 +37,7 @@ class Collector final : public CellSink {
   int full_cells = 0;
 };
 
-// The same by brute force: the mass at the middle of many small triangles.
+// Brute force: masses at the centers of many small triangles.
 std::map<std::pair<int, int>, WeightMoments> sample(const MassTriangle& triangle, int steps) {
   std::map<std::pair<int, int>, WeightMoments> cells;
   const auto& p = triangle.corners;
@@ -139,7 +139,7 @@ TEST(CutToCells, GridLinesAreSharedOnce) {
 }
 
 TEST(CutToCells, SpreadsFlatTrianglesAlongTheirSegment) {
-  // Two thirds of the way is the kink of the density; the first half of the segment holds 3/8.
+  // The density has a kink at two thirds; the first half of the segment contains 3/8.
   Collector sink;
   cut_to_cells({{{{0, 0.5}, {4, 0.5}, {8.0 / 3.0, 0.5}}}, 1.0}, {0, 0, 4, 4}, &sink);
   EXPECT_EQ(sink.cells.size(), 4U);
@@ -149,8 +149,8 @@ TEST(CutToCells, SpreadsFlatTrianglesAlongTheirSegment) {
 
 TEST(CutToCells, GivesFlatTrianglesOnGridLinesToOneCell) {
   const MassTriangle cases[] = {
-      {{{{2, 0.5}, {2, 3.5}, {2, 1.5}}}, 1.0},  // upright
-      {{{{0.5, 2}, {3.5, 2}, {1.5, 2}}}, 1.0},  // level
+      {{{{2, 0.5}, {2, 3.5}, {2, 1.5}}}, 1.0},  // vertical
+      {{{{0.5, 2}, {3.5, 2}, {1.5, 2}}}, 1.0},  // horizontal
       {{{{2, 2}, {2, 2}, {2, 2}}}, 1.0},        // a point at a corner of four cells
       {{{{0, 0}, {3, 3}, {1, 1}}}, 1.0},        // through corners
   };

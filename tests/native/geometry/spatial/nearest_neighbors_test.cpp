@@ -67,7 +67,7 @@ TEST(NeighborSearch, TakesGridsWhereManyDistancesAreTheSame) {
   expect_nearest(points, 16);
 }
 
-TEST(NeighborSearch, TakesCopiesForOne) {
+TEST(NeighborSearch, MergesCopies) {
   std::vector<Vector3> points = random_points(4, 40, {1, 1, 1});
   for (int i = 0; i < 400; ++i) points.push_back(points[static_cast<std::size_t>(i * 7 % 40)]);
   points.push_back({0.0, 0.0, 0.0});
@@ -75,14 +75,14 @@ TEST(NeighborSearch, TakesCopiesForOne) {
   const NeighborSearch search(points, Progress(), 2);
   EXPECT_EQ(search.positions().size(), 41U);
   EXPECT_EQ(search.places()[440], search.places()[441]);
-  // Different points at one place of the curve, which a far one makes coarse.
+  // Different points with the same key, because a distant point makes the curve coarse.
   std::vector<Vector3> close = random_points(5, 200, {1e-9, 1e-9, 1e-9});
   for (int i = 0; i < 200; ++i) close.push_back(close[static_cast<std::size_t>(i)]);
   close.push_back({1.0, 1.0, 1.0});
   expect_nearest(close, 7);
 }
 
-TEST(NeighborSearch, OfManyCopiesIsSoonDone) {
+TEST(NeighborSearch, ManyCopiesAreFast) {
   std::vector<Vector3> points(300000, Vector3{1.0, 2.0, 3.0});
   for (std::size_t i = 0; i < points.size(); i += 2) points[i][0] = 1.0 + 1e-12;
   points.push_back({9.0, 9.0, 9.0});
@@ -90,7 +90,7 @@ TEST(NeighborSearch, OfManyCopiesIsSoonDone) {
   EXPECT_EQ(search.positions().size(), 3U);
 }
 
-TEST(NeighborSearch, LeavesOutWhatIsNotFinite) {
+TEST(NeighborSearch, LeavesOutNonfinitePoints) {
   std::vector<Vector3> points = random_points(6, 10, {1, 1, 1});
   points[3][1] = NAN;
   points[5][2] = INFINITY;

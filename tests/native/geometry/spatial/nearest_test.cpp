@@ -49,8 +49,8 @@ Vector3 point_at(const Soup& soup, const SurfacePoint& at) {
   return p;
 }
 
-// The distance to a triangle by projected gradient over its two free weights, from a fine start:
-// slow, and another method.
+// The distance to a triangle by projected gradient over two barycentric weights from a grid of
+// starts: slow, but independent.
 double slow_distance(const Vector3& p, const Vector3& a, const Vector3& b, const Vector3& c) {
   double best = 1e300;
   double best_v = 0.0;
@@ -126,12 +126,12 @@ TEST(NearestPoints, TakeSegmentsAndPointsForTriangles) {
   EXPECT_NEAR(found[2].distance, 1.0, 1e-12);
 }
 
-TEST(NearestPoints, AreFoundAgainByATreeThatIsKept) {
+TEST(NearestPoints, TreesAreReusable) {
   Soup soup = random_soup(5, 300, 0.2);
   const Soup asked = random_soup(6, 50, 0.5);
   const auto wanted = nearest_points(asked.positions, soup.view(), Progress(), 1);
   const NearestPoints tree(soup.view(), Progress(), 1);
-  soup = Soup();  // The tree has a copy.
+  soup = Soup();  // the tree has a copy
   for (std::size_t i = 0; i < asked.positions.size(); ++i) {
     const auto found = tree.find(std::span(asked.positions).subspan(i, 1), Progress(), 1);
     EXPECT_EQ(found[0].triangle, wanted[i].triangle);
@@ -140,7 +140,7 @@ TEST(NearestPoints, AreFoundAgainByATreeThatIsKept) {
   EXPECT_TRUE(tree.find({}, Progress(), 1).empty());
 }
 
-// The lowest index among triangles at one distance, found by looking at all of them one by one.
+// The lowest index among triangles at the same distance, compared with a linear search.
 TEST(NearestPoints, HaveTheLowestIndexOfSeveral) {
   Soup soup = random_soup(7, 60, 0.4);
   std::mt19937 random(8);
@@ -152,7 +152,7 @@ TEST(NearestPoints, HaveTheLowestIndexOfSeveral) {
     soup.triangles.push_back(triangle);
   }
   std::shuffle(soup.triangles.begin(), soup.triangles.end(), random);
-  // On the vertices many triangles are at distance 0.
+  // At vertices many triangles have distance 0.
   for (std::size_t v = 0; v < soup.positions.size(); v += 5) {
     const Vector3& vertex = soup.positions[v];
     std::int64_t lowest = -1;
@@ -167,8 +167,8 @@ TEST(NearestPoints, HaveTheLowestIndexOfSeveral) {
   }
 }
 
-// Each search would look at all of them: hundreds of times the seconds allowed.
-TEST(NearestPoints, OfManyCoincidentTrianglesAreFoundSoon) {
+// Without merging, searches would test all of them, and take hundreds of times as long.
+TEST(NearestPoints, CoincidentTrianglesAreFast) {
   constexpr std::size_t kCopies = 120000;
   Soup soup;
   soup.positions = {{0, 0, 0}, {1, 0, 0.5}, {0, 1, 0.25}, {3, 3, 3}};

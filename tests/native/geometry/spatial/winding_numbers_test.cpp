@@ -38,7 +38,7 @@ TEST(WindingNumbers, OfASphere) {
   }
 }
 
-// Along any segment the number changes by what is crossed.
+// Along any segment the number changes by the signed number of crossings.
 TEST(WindingNumbers, ExcessIsTheDifference) {
   testing::Mesh mesh = testing::sphere_mesh({0.5, 0.5, 0.5}, 0.4, 60);
   const testing::Mesh other = testing::sphere_mesh({0.6, 0.5, 0.5}, 0.3, 40);
@@ -71,21 +71,20 @@ TEST(WindingNumbers, ExcessIsTheDifference) {
 }
 
 TEST(WindingNumbers, OfAnOpenBox) {
-  // One of six sides is missing: from the middle, a sixth of all directions.
+  // One of six sides is missing: seen from the center, a sixth of the sphere.
   const testing::Mesh mesh = testing::box_mesh({0, 0, 0}, {1, 1, 1});
   Triangles triangles = triangles_of(mesh);
   triangles.resize(10);
   const WindingNumbers winding({mesh.positions, triangles}, Progress(), 1);
   EXPECT_NEAR(winding.at({0.5, 0.5, 0.5}), 5.0 / 6.0, 1e-12);
-  // In the middle of the missing side all that is missing is in the point's plane.
+  // At the center of the missing side, it lies in the point's plane.
   EXPECT_NEAR(winding.at({1.0, 0.5, 0.5}), 0.5, 1e-12);
-  // On the side across: the mean of both its sides, less the solid angle of a square from its
-  // distance.
+  // On the opposite side: the mean of both its sides, minus the solid angle of the missing square.
   const double missing = 4.0 * std::atan(0.25 / std::sqrt(1.5)) / (4.0 * std::acos(-1.0));
   EXPECT_NEAR(winding.at({0.0, 0.5, 0.5}), 0.5 - missing, 1e-12);
 }
 
-// By the formula of van Oosterom and Strackee, triangle by triangle.
+// The formula of van Oosterom and Strackee, summed over all triangles.
 double sum_of_solid_angles(const testing::Mesh& mesh, const Triangles& triangles,
                            const Vector3& point) {
   double sum = 0.0;
@@ -102,7 +101,7 @@ double sum_of_solid_angles(const testing::Mesh& mesh, const Triangles& triangles
   return sum / (4.0 * std::acos(-1.0));
 }
 
-TEST(WindingNumbers, OfWhatIsOpenAreTheSumOfSolidAngles) {
+TEST(WindingNumbers, OpenMeshesAreTheSumOfSolidAngles) {
   testing::Mesh mesh = testing::sphere_mesh({0.5, 0.5, 0.5}, 0.4, 40);
   std::mt19937 random(2);
   std::uniform_real_distribution<double> uniform(-0.5, 1.5);
