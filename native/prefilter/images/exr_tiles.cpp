@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// "OpenEXR File Layout": tile chunks, and ZIP: bytes of even and odd places apart, their
-// differences, deflated.
+// "OpenEXR File Layout": tile chunks, and ZIP compression: bytes at even and odd positions are
+// separated, differenced and deflated.
 #include "prefilter/images/exr_tiles.h"
 
 #include <libdeflate.h>
@@ -19,7 +19,7 @@
 namespace prefilter {
 namespace {
 
-// Faster and smaller than what OpenEXR's library does by default (zlib's level 4).
+// Faster and smaller than the default of the OpenEXR library (zlib level 4).
 constexpr int kCompressionLevel = 2;
 constexpr std::int64_t kTilesPerRange = 16;
 constexpr int kHeaderSize = 5 * sizeof(std::int32_t);
@@ -30,7 +30,7 @@ struct FreeCompressor {
   }
 };
 
-// A processor's word, which is little-endian wherever this runs.
+// Stores a value in native byte order: all supported processors are little-endian.
 template <typename T>
 void put(T value, std::uint8_t* to) {
   std::memcpy(to, &value, sizeof(T));
@@ -57,7 +57,7 @@ class TileWriter {
   std::int64_t write(int column, int row, std::vector<std::uint8_t>* chunks) {
     gather(column, row);
     const std::size_t begin = chunks->size();
-    // Where bytes do not become fewer they stay as they are.
+    // Data that does not compress is stored raw.
     chunks->resize(begin + kHeaderSize + raw_.size());
     std::uint8_t* data = chunks->data() + begin + kHeaderSize;
     rearrange();
@@ -83,7 +83,7 @@ class TileWriter {
                                        : std::clamp(value, -kLargestHalf, kLargestHalf));
   }
 
-  // The values of a tile as the file has them, row by row and channel by channel.
+  // Gathers the values of a tile in file order: row by row and channel by channel.
   void gather(int column, int row) {
     const int x0 = column * kExrTileSide;
     const int y0 = row * kExrTileSide;
@@ -93,7 +93,7 @@ class TileWriter {
     std::uint8_t* to = raw_.data();
     for (int y = 0; y < height; ++y) {
       const int image_row = level_.height - 1 - (y0 + y);
-      // Channels are in the order of their names: A, B, G, R, or A, Y.
+      // Channels are sorted by name: A, B, G, R, or A, Y.
       for (int c = level_.channels - 1; c >= 0; --c) {
         if (!level_.has_bytes()) {
           gather_floats(level_.floats().texel(x0, image_row), width, c, to);
@@ -139,7 +139,7 @@ class TileWriter {
   }
 
   void rearrange() {
-    // Values have an even number of bytes.
+    // The number of bytes is even, as values have two or four.
     const std::size_t half = raw_.size() / 2;
     split_.resize(raw_.size());
     for (std::size_t i = 0; i < half; ++i) {

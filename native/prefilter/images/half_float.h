@@ -10,7 +10,7 @@ namespace prefilter {
 
 inline constexpr float kLargestHalf = 65504.0F;
 
-/// The bits of the nearest half float, ties to even. Beyond the range it is infinite.
+/// The bits of the nearest half float, ties to even; infinite beyond the range.
 inline std::uint16_t half_bits(float value) {
   constexpr std::uint32_t kInfinity = 0x7f800000;
   constexpr std::uint32_t kTooLarge = 0x477ff000;        // 65520, halfway past the largest
@@ -22,7 +22,7 @@ inline std::uint16_t half_bits(float value) {
   if (magnitude > kInfinity) return sign | 0x7e00;
   if (magnitude >= kTooLarge) return sign | 0x7c00;
   if (magnitude < kSmallestNormal) {
-    // Adding 1/2 leaves as many bits as a subnormal half has, rounded by the processor.
+    // The sum has the precision of a subnormal half in its lowest bits; the processor rounds it.
     const float shifted = std::bit_cast<float>(magnitude) + 0.5F;
     return static_cast<std::uint16_t>(
         sign | (std::bit_cast<std::uint32_t>(shifted) - std::bit_cast<std::uint32_t>(0.5F)));

@@ -12,8 +12,8 @@ namespace {
 
 int nearest_byte(float linear) { return static_cast<int>(linear_to_srgb(linear) * 255.0F + 0.5F); }
 
-// The least value from 0 to 1 whose byte is this one, by halves of the range of positive floats,
-// which are in the order of their bits.
+// The smallest value in [0, 1] with this byte, by bisection over the bit patterns of positive
+// floats, which are ordered like their values.
 float least_value_of(int byte) {
   std::uint32_t below = 0;
   auto at = std::bit_cast<std::uint32_t>(1.0F);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Fast decoding of sRGB, with its slope, for fits that evaluate it very often.
+// Fast sRGB decoding with its slope, for iterative fits.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 
 namespace prefilter {
 
-/// srgb_to_linear by linear interpolation in a table: in [0, 1] within 1e-7, beyond it exact to
-/// rounding.
+/// srgb_to_linear by linear interpolation in a table: accurate to 1e-7 in [0, 1], and exact up to
+/// rounding outside.
 class SrgbDecoder {
  public:
   struct Result {

@@ -24,7 +24,7 @@ float value_of(std::uint16_t half) {
   return (half & 0x8000) != 0 ? -magnitude : magnitude;
 }
 
-TEST(HalfFloat, KeepsItsOwnValues) {
+TEST(HalfFloat, KeepsRepresentableValues) {
   for (int bits = 0; bits < 1 << 16; ++bits) {
     const auto half = static_cast<std::uint16_t>(bits);
     if ((half & 0x7c00) == 0x7c00) continue;
@@ -77,7 +77,7 @@ TEST(ExrTiles, ChunksSayWhereTheyBelong) {
   EXPECT_EQ(at, chunks.bytes.size());
 }
 
-TEST(ExrTiles, WhatDoesNotBecomeSmallerStaysAsItIs) {
+TEST(ExrTiles, IncompressibleTilesAreStoredRaw) {
   const float texel[] = {0.25F, 0.5F, 1.0F};
   const ExrChunks chunks = exr_tiles(ImageView{texel, 1, 1, 3}, 0, 0, 1, {});
   ASSERT_EQ(chunks.bytes.size(), 20U + 6U);
@@ -85,7 +85,7 @@ TEST(ExrTiles, WhatDoesNotBecomeSmallerStaysAsItIs) {
   EXPECT_EQ(std::memcmp(chunks.bytes.data() + 20, expected, sizeof(expected)), 0);
 }
 
-TEST(ExrTiles, BytesAreTheValuesThatTheyStandFor) {
+TEST(ExrTiles, BytesAreDecoded) {
   const ByteValues values = byte_values(true);
   for (const bool multiplies : {false, true}) {
     for (const bool half : {false, true}) {

@@ -14,8 +14,7 @@ namespace {
 
 int nearest_byte(float linear) { return static_cast<int>(linear_to_srgb(linear) * 255.0F + 0.5F); }
 
-// Bytes change nowhere but at 255 places, and the floats on both sides of each are looked at; in
-// between, at many more.
+// Tests the floats on both sides of all 255 transitions between bytes, and many more in between.
 TEST(SrgbByteEncoder, GivesTheNearestByte) {
   const SrgbByteEncoder& encoder = SrgbByteEncoder::instance();
   int begins = 0;

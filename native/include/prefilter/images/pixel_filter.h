@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// All filters of pixels that users choose from: what makes images, or levels, asks this table.
+// The table of all pixel filters that users can choose, for images and for levels.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +14,10 @@
 namespace prefilter {
 
 enum class FilterUse : std::uint8_t {
-  kRaster,    // images of shapes
-  kResize,    // images of other sizes
-  kMipmap,    // levels in texture space
-  kSampling,  // samples, and the tables and levels that approximate them
+  kRaster,    // rasterized shapes
+  kResize,    // resized images
+  kMipmap,    // mipmap levels filtered in texture space
+  kSampling,  // samples, and the tables and levels for them
 };
 
 inline constexpr Named<FilterUse> kFilterUses[] = {{"raster", FilterUse::kRaster},
@@ -27,19 +27,19 @@ inline constexpr Named<FilterUse> kFilterUses[] = {{"raster", FilterUse::kRaster
 
 struct PixelFilter {
   std::string_view name;   // "lanczos3"
-  std::string_view label;  // as users see it, "Lanczos 3"
+  std::string_view label;  // in the user interface, "Lanczos 3"
   double radius;           // half the width of its support, in pixels
-  const Kernel* kernel;    // along each axis; null for others
-  bool is_radial;          // a WindowedJinc of that radius
+  const Kernel* kernel;    // along each axis; null if not separable
+  bool is_radial;          // a WindowedJinc with this radius
   std::span<const FilterUse> uses;
 
   bool is_for(FilterUse use) const;
 };
 
-/// All filters, by a table in kernel.cpp.
+/// All filters, from a table in kernel.cpp.
 std::span<const PixelFilter> pixel_filters();
 
-/// Those that may be used so, in the same order.
+/// The filters for a use, in the same order.
 std::vector<PixelFilter> filters_for(FilterUse use);
 
 }  // namespace prefilter

@@ -12,37 +12,37 @@
 
 namespace prefilter {
 
-/// "radial2" and "radial3": a WindowedJinc of that radius.
+/// "radial2" and "radial3": a WindowedJinc with this radius.
 struct RadialFilter {
   int radius;
   bool operator==(const RadialFilter&) const = default;
 };
 
-/// "least-squares": the texels that come closest to the image once they are enlarged bilinearly.
+/// "least-squares": the texels whose bilinear enlargement is closest to the image.
 struct BilinearFit {
   bool operator==(const BilinearFit&) const = default;
 };
 
-/// A kernel along each axis, or one of these.
+/// A kernel for both axes, or one of the above.
 using ResizeFilter = std::variant<const Kernel*, RadialFilter, BilinearFit>;
 
-/// Whether values may go beyond those of the old texels around.
+/// Whether values may exceed the range of nearby source texels.
 enum class Ringing {
-  kAuto,   // of least squares they may not, of others they may
-  kLimit,  // they may not
+  kAuto,  // limited for least squares, allowed for all other filters
+  kLimit,
   kAllow,
 };
 
 inline constexpr Named<Ringing> kRingings[] = {
     {"auto", Ringing::kAuto}, {"limit", Ringing::kLimit}, {"allow", Ringing::kAllow}};
 
-/// All there are: every kernel, and the others.
+/// All resize filters: every kernel, and the others.
 std::vector<ResizeFilter> resize_filters();
 
 /// The public name, such as "lanczos3".
 std::string name_of(const ResizeFilter& filter);
 
-/// The filter of a public name. Throws Error for any other, naming all.
+/// The filter with a public name. Throws Error for any other name and lists the valid ones.
 ResizeFilter resize_filter(const std::string& name);
 
 }  // namespace prefilter

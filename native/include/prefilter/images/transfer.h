@@ -13,15 +13,16 @@ namespace prefilter {
 float srgb_to_linear(float encoded);
 float linear_to_srgb(float linear);
 
-/// The image with its color channels decoded or encoded. A fourth channel is alpha and stays.
+/// Decodes or encodes the color channels of an image. A fourth channel is alpha and does not
+/// change.
 Image decode_srgb(const ImageView& image, int threads);
 Image encode_srgb(const ImageView& image, int threads);
 
-/// What bytes stand for: a 255th each, and for the color channels of an image with `srgb` what
-/// that is decoded. A fourth channel is alpha.
+/// The values of the 256 bytes: multiples of 1/255, decoded for the color channels if `srgb`. A
+/// fourth channel is alpha.
 ByteValues byte_values(bool srgb);
 
-/// The image as such bytes, to the nearest; values beyond [0, 1] become 0 or 255.
+/// Converts an image to such bytes, rounded to the nearest; values outside [0, 1] become 0 or 255.
 std::vector<std::uint8_t> to_bytes(const ImageView& image, bool srgb, int threads);
 
 }  // namespace prefilter

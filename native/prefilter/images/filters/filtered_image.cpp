@@ -17,7 +17,7 @@ namespace prefilter {
 namespace {
 
 constexpr std::uint8_t kOpaque = 255;
-constexpr float kShare = 1.0F / 255.0F;
+constexpr float kByteUnit = 1.0F / 255.0F;
 
 bool is_opaque(const TexelSource& bytes, int alpha) {
   for (int y = 0; y < bytes.height; ++y) {
@@ -29,7 +29,7 @@ bool is_opaque(const TexelSource& bytes, int alpha) {
   return true;
 }
 
-// Colors times alpha, the last of the channels.
+// Reads colors multiplied by alpha, the last channel.
 template <int C, typename Value>
 void read_multiplied(const std::uint8_t* byte, int count, const Value& value, float* to) {
   for (int i = 0; i < count; ++i, byte += C, to += C) {
@@ -64,7 +64,7 @@ void read_texels(const std::uint8_t* bytes, int channels, bool is_multiplied, in
 }
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr ValueRange kNothing = {kInfinity, -kInfinity};
+constexpr ValueRange kEmptyRange = {kInfinity, -kInfinity};
 
 ValueRange widened(const ValueRange& a, const ValueRange& b) {
   return {std::min(a.low, b.low), std::max(a.high, b.high)};
@@ -108,9 +108,9 @@ void FilteredImage::read(int y, int begin, int end, float* values) const {
   const std::uint8_t* const bytes = source_.byte_texel(begin, y);
   if (has_shares_ && !is_multiplied_) {
     const int count = (end - begin) * source_.channels;
-    for (int i = 0; i < count; ++i) values[i] = static_cast<float>(bytes[i]) * kShare;
+    for (int i = 0; i < count; ++i) values[i] = static_cast<float>(bytes[i]) * kByteUnit;
   } else if (has_shares_) {
-    const auto share = [](std::uint8_t byte, int) { return static_cast<float>(byte) * kShare; };
+    const auto share = [](std::uint8_t byte, int) { return static_cast<float>(byte) * kByteUnit; };
     read_texels(bytes, source_.channels, is_multiplied_, end - begin, share, values);
   } else {
     const auto value = [this](std::uint8_t byte, int c) { return source_.value(byte, c); };
@@ -118,7 +118,7 @@ void FilteredImage::read(int y, int begin, int end, float* values) const {
   }
 }
 
-// Whether bytes stand for values that rise or not: each that is there is looked at.
+// Finds the ranges of the colors that occur; byte values need not be increasing.
 void FilteredImage::find_byte_colors(const Options& options) {
   using Seen = std::array<std::array<unsigned char, 256>, 3>;
   constexpr int kRows = 64;
@@ -135,7 +135,7 @@ void FilteredImage::find_byte_colors(const Options& options) {
                   });
   for (int c = 0; c < alpha_; ++c) {
     ValueRange& range = colors_[c];
-    range = kNothing;
+    range = kEmptyRange;
     for (int byte = 0; byte <= kOpaque; ++byte) {
       const bool is_seen = std::any_of(parts.begin(), parts.end(),
                                        [&](const Seen& seen) { return seen[c][byte] != 0; });
@@ -180,7 +180,7 @@ void FilteredImage::multiply_by_alpha(const FindRead& find_read, const Options& 
   is_multiplied_ = true;
   Image& copy = own_copy();
   std::vector<std::array<ValueRange, 3>> rows(static_cast<std::size_t>(copy.height));
-  for (std::array<ValueRange, 3>& row : rows) row.fill(kNothing);
+  for (std::array<ValueRange, 3>& row : rows) row.fill(kEmptyRange);
   parallel_for(copy.height, options.threads, options.progress.part(0.8, 1.0),
                [&](std::int64_t row) {
                  float* texel = copy.texel(0, static_cast<int>(row));
@@ -196,7 +196,7 @@ void FilteredImage::multiply_by_alpha(const FindRead& find_read, const Options& 
                    }
                  }
                });
-  colors_.fill(kNothing);
+  colors_.fill(kEmptyRange);
   for (const std::array<ValueRange, 3>& row : rows) {
     for (int c = 0; c < alpha_; ++c) colors_[c] = widened(colors_[c], row[c]);
   }
@@ -224,15 +224,15 @@ ValueRange FilteredImage::solved_range(int channel, ValueRange bounds) const {
 void FilteredImage::divide_by_alpha(WrapModes wrap, const Progress& progress, int threads,
                                     Image* level) const {
   if (!is_multiplied_) return;
-  // What is covered less than this cannot be seen, and its color is mostly rounding.
-  constexpr float kLeastAlpha = 1e-3F;
+  // Colors below this alpha are invisible, and mostly rounding errors.
+  constexpr float kMinVisibleAlpha = 1e-3F;
   std::vector<float> weights(level->view().texel_count());
   parallel_for(level->height, threads, progress.part(0.0, 0.5), [&](std::int64_t row) {
     float* texel = level->texel(0, static_cast<int>(row));
     float* weight = weights.data() + row * level->width;
     for (int x = 0; x < level->width; ++x, texel += level->channels) {
       const float alpha = texel[alpha_];
-      weight[x] = alpha > kLeastAlpha ? alpha : 0.0F;
+      weight[x] = alpha > kMinVisibleAlpha ? alpha : 0.0F;
       for (int c = 0; c < alpha_; ++c) {
         const float color = weight[x] > 0.0F ? texel[c] / alpha : 0.0F;
         texel[c] = std::min(std::max(color, colors_[c].low), colors_[c].high);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// An image as the filters read it: finite, and multiplied by its alpha where that counts.
+// Prepares an image for filters: checks that it is finite, and multiplies it by alpha if necessary.
 #pragma once
 
 #include <array>
@@ -15,74 +15,73 @@
 
 namespace prefilter {
 
-/// The image itself where it can be read as it is, else a copy. The source must outlive it.
+/// Refers to the source if it needs no change, else holds a copy. The source must outlive it.
 class FilteredImage {
  public:
   /// 1 for each texel that the filter reads, else 0.
   using FindRead = std::function<std::vector<unsigned char>()>;
 
   struct Options {
-    // The channel, the last of two to four, that is coverage and which the others are not
-    // multiplied by yet; none where every channel is filtered as it stands.
+    // The coverage channel, the last of two to four, by which the others are not yet multiplied;
+    // none to filter every channel independently.
     std::optional<int> alpha;
-    // Whether what is filtered is opaque where the image is: not where a border of nothing counts.
-    // Colors are multiplied by alpha, and divided, only where it may be less than 1.
+    // Whether results are opaque where the image is; false if a transparent border takes part.
+    // Colors are only multiplied by alpha, and divided, if it can be below 1.
     bool stays_opaque = true;
-    // Whether bytes have to be floats, also where alpha plays no part.
+    // Whether bytes must be converted to floats even if alpha plays no part.
     bool needs_floats = true;
-    // Whether bytes stay bytes whatever alpha does, because `read` is asked for what they are.
+    // Whether bytes are never converted as a whole, because the caller uses `read`.
     bool is_read_by_rows = false;
-    const char* name = "image";  // what errors call it
+    const char* name = "image";  // in error messages
     int threads = 0;
     Progress progress;
   };
 
-  /// `find_read` is called where not all texels are finite, or opaque. Throws Error where a texel
-  /// that is read is not finite or beyond 1e30; others that are not become 0.
+  /// `find_read` is only called if some texels are not finite or not opaque. Throws Error if a
+  /// texel that is read is not finite or beyond 1e30; other such texels become 0.
   FilteredImage(const TexelSource& source, const FindRead& find_read, const Options& options);
 
-  /// What is read: bytes as they are, or floats.
+  /// The texels to filter: unmodified bytes, or floats.
   TexelSource texels() const { return floats_.data == nullptr ? source_ : TexelSource(floats_); }
-  /// The same; no data where bytes are read as they are.
+  /// The texels to filter as floats; without data if they are unmodified bytes.
   const ImageView& floats() const { return floats_; }
 
-  /// The values of bytes, multiplied by alpha where `is_multiplied`: of texels from `begin` to
-  /// before `end` of a row. To be called where there are no `floats`.
+  /// Converts texels [begin, end) of a row of bytes to values, multiplied by alpha if
+  /// `is_multiplied`. Only valid without `floats`.
   void read(int y, int begin, int end, float* values) const;
 
   int width() const { return source_.width; }
   int height() const { return source_.height; }
   int channels() const { return source_.channels; }
 
-  /// Whether colors were multiplied by an alpha that is not 1 everywhere, or does not stay so.
+  /// Whether colors were multiplied by alpha, because it is not 1 everywhere or will not stay so.
   bool is_multiplied() const { return is_multiplied_; }
 
-  /// What a channel may be while it is solved for, `bounds` being what it may be in the end. Where
-  /// colors were multiplied by alpha, a color that is seen lies within the bounds and within the
-  /// image's own range: it is the quotient of two solutions, and where little is covered a small
-  /// error of either would make it anything.
+  /// The range of a channel for a solver, from the range `bounds` of the final result. If colors
+  /// are multiplied by alpha, a visible color must also stay within the image's own range. It is a
+  /// quotient of two solutions, and at low coverage small errors of either would make it arbitrary.
   ValueRange solved_range(int channel, ValueRange bounds) const;
 
-  /// Divides the colors of a level by its alpha where those of the image were multiplied by it.
-  /// Those of texels with hardly any alpha come from around them.
+  /// Divides the colors of a level by its alpha if they were multiplied. Colors with hardly any
+  /// alpha are filled from their surroundings.
   void divide_by_alpha(WrapModes wrap, const Progress& progress, int threads, Image* level) const;
 
  private:
   void check(const FindRead& find_read, const Options& options);
   void multiply_by_alpha(const FindRead& find_read, const Options& options);
   Image& own_copy();
-  // The ranges of the colors of bytes that are not transparent.
+  // Finds the ranges of the colors of non-transparent byte texels.
   void find_byte_colors(const Options& options);
-  // Where bytes stand for a 255th each, which takes no table.
+  // Whether bytes are multiples of 1/255, which needs no table.
   bool bytes_are_shares() const;
 
   const TexelSource& source_;
   ImageView floats_;
-  int alpha_;  // the channel, where there is one
+  int alpha_;  // the channel, if any
   Image copy_;
   bool is_multiplied_ = false;
   bool has_shares_ = false;
-  std::array<ValueRange, 3> colors_{};  // of texels with alpha, before they are multiplied by it
+  std::array<ValueRange, 3> colors_{};  // of non-transparent texels, before multiplication by alpha
 };
 
 }  // namespace prefilter

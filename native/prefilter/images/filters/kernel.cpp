@@ -48,14 +48,14 @@ struct Row {
   double radius;
   std::span<const FilterUse> uses;
   bool is_radial = false;
-  // Of a kernel: the width and the degree of its pieces, and the function from 0 to the radius.
+  // For kernels: width and degree of the pieces, and the function from 0 to the radius.
   double piece_width = 0.0;
   int degree = 0;
   double (*function)(double) = nullptr;
 };
 
-// Of the kernels that are no polynomials, lanczos2 is off by 6e-6 at the most, lanczos3 by 2e-6,
-// and gaussian, which ends with a step of 3.5e-6, by 1e-6.
+// Interpolation errors of the kernels that are not piecewise polynomials: lanczos2 at most 6e-6,
+// lanczos3 2e-6, and gaussian, which ends with a step of 3.5e-6, 1e-6.
 constexpr Row kKernelRows[] = {
     {"box", "Box", 0.5, kEverything, false, 1.0, 0, [](double) { return 1.0; }},
     {"tent", "Tent", 1.0, kEverything, false, 1.0, 1, [](double x) { return 1.0 - x; }},
@@ -81,7 +81,7 @@ const std::vector<Kernel>& all_kernels() {
   return kernels;
 }
 
-// Where the pieces interpolate.
+// The interpolation nodes.
 double node(int k, int degree) {
   if (degree == 0) return 0.5;
   return 0.5 - 0.5 * elementary::cos(std::numbers::pi * k / degree);
@@ -110,7 +110,7 @@ double polynomial(const Kernel::Piece& piece, int degree, double t) {
   return value;
 }
 
-// From 0 to t, for a piece of width 1.
+// Integral from 0 to t, for a piece of width 1.
 double polynomial_integral(const Kernel::Piece& piece, int degree, double t) {
   double value = piece[degree] / (degree + 1);
   for (int k = degree - 1; k >= 0; --k) value = value * t + piece[k] / (k + 1);
@@ -151,7 +151,7 @@ std::size_t Kernel::piece_at(double x, double* t) const {
 }
 
 double Kernel::value(double x) const {
-  // Of the two halves, the same one on either side: the value is even to the last bit.
+  // Evaluates the same half for both signs, so that values are even to the last bit.
   const double distance = std::abs(x);
   if (!(distance <= radius_)) return 0.0;
   double t = 0.0;
@@ -215,7 +215,7 @@ Taps kernel_taps(const Kernel& kernel, double center, double width) {
   std::vector<double> values;
   Taps taps;
   if (kernel.degree() == 0) {
-    // Scales are ratios of whole numbers: an edge this close to a texel's is the texel's.
+    // Scales are ratios of integers, so edges this close to a texel's edge coincide with it.
     constexpr double kOnEdge = 1e-9;
     taps.first = static_cast<int>(std::floor(center - reach + kOnEdge));
     const int end = static_cast<int>(std::ceil(center + reach - kOnEdge));

@@ -11,8 +11,8 @@ namespace prefilter {
 namespace {
 
 struct Layer {
-  Image image;                 // weighted means; anything where the weight is 0
-  std::vector<float> weights;  // at most 1, so that a full texel is not outvoted by a fuller one
+  Image image;                 // weighted means; undefined where the weight is 0
+  std::vector<float> weights;  // clamped to 1, so that full texels are not outvoted
 };
 
 Layer pull(const Layer& fine, int channels, const Progress& progress, int threads) {
@@ -44,13 +44,13 @@ Layer pull(const Layer& fine, int channels, const Progress& progress, int thread
 }
 
 void push_row(const Image& coarse, WrapModes wrap, int channels, int y, Layer* fine) {
-  // The border of a fill is the nearest texel: black would be just the bleeding that it prevents.
+  // Fills use the nearest texel at the border, as zeros would bleed in.
   const auto at = [](int index, int size, Wrap mode) {
     return wrap_index(index, size, mode == Wrap::kRepeat ? mode : Wrap::kClamp);
   };
   for (int x = 0; x < fine->image.width; ++x) {
     if (fine->weights[static_cast<std::size_t>(y) * fine->image.width + x] > 0.0F) continue;
-    // A fine texel's center is a quarter of a coarse texel off the center of the one above it.
+    // The center of a fine texel is a quarter of a coarse texel away from its parent's center.
     const int columns[2] = {x / 2, x / 2 + (x % 2 == 0 ? -1 : 1)};
     const int rows[2] = {y / 2, y / 2 + (y % 2 == 0 ? -1 : 1)};
     float* target = fine->image.texel(x, y);
@@ -80,7 +80,7 @@ void fill_holes(const std::vector<float>& weights, WrapModes wrap, int channels,
   std::vector<Layer> layers;
   layers.push_back({std::move(*image), weights});
   while (layers.back().image.width > 1 || layers.back().image.height > 1) {
-    // Most of the work is at the first layer.
+    // The first layer takes most of the time.
     const Progress part = layers.size() == 1 ? progress.part(0.0, 0.4) : progress.part(0.4, 0.5);
     layers.push_back(pull(layers.back(), channels, part, threads));
   }

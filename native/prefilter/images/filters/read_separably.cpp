@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Columns first, as they go through whole rows; a band of rows of the result at a time, in strips
-// whose source rows stay in the processor's cache. Sums are added in an order that depends on
-// nothing but the channels.
+// Columns are filtered first, as this accesses whole rows; one band of rows of the result at a
+// time, in strips whose source rows stay in the processor's cache. The order of summation depends
+// only on the channel count.
 #include "prefilter/images/filters/read_separably.h"
 
 #include <algorithm>
@@ -29,8 +29,8 @@ void store(Four values, float* to) { std::memcpy(to, &values, sizeof values); }
 
 Four all(float value) { return Four{value, value, value, value}; }
 
-// Values that are added at once along columns. Rows have as many more than they need.
-constexpr int kColumnsAtOnce = 32;
+// Values summed at once along columns. Rows are padded to a multiple of it.
+constexpr int kColumnLanes = 32;
 
 struct WeightedTexels {
   float weight;
@@ -38,8 +38,8 @@ struct WeightedTexels {
 };
 
 void add_columns(const std::vector<WeightedTexels>& rows, std::ptrdiff_t count, float* sums) {
-  constexpr int kVectors = kColumnsAtOnce / kFour;
-  for (std::ptrdiff_t i = 0; i < count; i += kColumnsAtOnce) {
+  constexpr int kVectors = kColumnLanes / kFour;
+  for (std::ptrdiff_t i = 0; i < count; i += kColumnLanes) {
     Four sum[kVectors] = {};
     for (const WeightedTexels& row : rows) {
       const Four weight = all(row.weight);
@@ -65,14 +65,14 @@ std::size_t most_taps(const AxisTaps& taps) {
       ->weights.size();
 }
 
-// Taps along rows, as they are multiplied: each weight once a channel, and all of them filled up
+// Taps along rows, in the layout of multiplication: each weight is repeated per channel, and padded
 // with zeros to whole groups of lanes.
 template <int C>
 class RowTaps {
  public:
   static constexpr int kLanes = C == 3 ? 12 : 4;
   static constexpr int kVectors = kLanes / kFour;
-  static constexpr int kTexels = kLanes / C;  // of a group
+  static constexpr int kTexels = kLanes / C;  // per group
 
   RowTaps(const AxisTaps& taps, int source_size)
       : groups_(static_cast<int>((most_taps(taps) + kTexels - 1) / kTexels)),
@@ -95,10 +95,10 @@ class RowTaps {
 
   int size() const { return static_cast<int>(starts_.size()); }
   int groups() const { return groups_; }
-  /// How many texels of a padded row are ahead of the source's, and behind.
+  /// Number of padding texels before the row's source texels, and behind.
   int before() const { return before_; }
   int after() const { return after_; }
-  /// Where the taps of a target texel begin in a padded row.
+  /// Start of the taps of a target texel in a padded row.
   std::ptrdiff_t start(int target) const { return starts_[static_cast<std::size_t>(target)]; }
   const float* weights(int target) const {
     return weights_.data() + static_cast<std::ptrdiff_t>(target) * groups_ * kLanes;
@@ -139,9 +139,9 @@ class ByteFilter {
         wrap_(wrap),
         stride_(static_cast<std::ptrdiff_t>(along_x_.before() + source.width() + along_x_.after()) *
                     C +
-                kColumnsAtOnce) {}
+                kColumnLanes) {}
 
-  /// Rows [begin, end) of the result.
+  /// Computes rows [begin, end) of the result.
   void make(int begin, int end, Image* target) const {
     const auto band =
         std::make_unique_for_overwrite<float[]>(static_cast<std::size_t>((end - begin) * stride_));
@@ -158,13 +158,12 @@ class ByteFilter {
 
  private:
   using Along = RowTaps<C>;
-  // Rows that are filtered side by side, so that sums stay in registers and do not wait for
-  // themselves.
+  // Rows filtered side by side, so that sums stay in registers and their latencies overlap.
   static constexpr int kRows = C == 3 ? 4 : 8;
-  // Of a strip: what a row of the result reads of it stays in the first cache.
+  // Width of a strip. The part of it that a row of the result reads fits in the first-level cache.
   static constexpr int kStripTexels = 256 / C;
 
-  // A row of a strip, and what it counts for a row of the result.
+  // A row of a strip, and its weight in a row of the result.
   struct Tap {
     std::ptrdiff_t place;
     float weight;
@@ -173,7 +172,7 @@ class ByteFilter {
   void add_columns_of(int begin, int end, float* band) const {
     std::vector<int> read;
     const std::vector<std::vector<Tap>> taps = taps_of(begin, end, &read);
-    constexpr std::ptrdiff_t kStride = kStripTexels * C + kColumnsAtOnce;
+    constexpr std::ptrdiff_t kStride = kStripTexels * C + kColumnLanes;
     const auto strip = std::make_unique_for_overwrite<float[]>(read.size() * kStride);
     std::vector<WeightedTexels> rows;
     for (int x = 0; x < source_.width(); x += kStripTexels) {
@@ -193,7 +192,7 @@ class ByteFilter {
     }
   }
 
-  // The taps of rows [begin, end), and which rows of the source they read, in rising order.
+  // The taps of rows [begin, end), and the source rows that they read, in increasing order.
   std::vector<std::vector<Tap>> taps_of(int begin, int end, std::vector<int>* read) const {
     const auto each = [&](const auto& visit) {
       for (int y = begin; y < end; ++y) {
@@ -215,7 +214,7 @@ class ByteFilter {
     return taps;
   }
 
-  // What wraps around the row is put beside it.
+  // Copies the wrapped texels beside the row.
   void pad(float* row) const {
     const auto copy = [&](int x) {
       const int from = wrap_index(x, source_.width(), wrap_.u);
@@ -248,10 +247,10 @@ class ByteFilter {
   Along along_x_;
   const AxisTaps& along_y_;
   WrapModes wrap_;
-  std::ptrdiff_t stride_;  // of a padded row
+  std::ptrdiff_t stride_;  // of a padded row, in values
 };
 
-// How many rows of the source a row of the result reads, and each one after it more.
+// Number of source rows per row of the result, and per additional row.
 struct RowsRead {
   RowsRead(int source_size, int target_size, const Kernel& kernel)
       : by_each(std::max(1.0, static_cast<double>(source_size) / target_size)),
@@ -260,8 +259,8 @@ struct RowsRead {
   double of_one;
 };
 
-constexpr double kMostValuesAtOnce = 1 << 23;  // that are read at a time
-constexpr double kMostRows = 64;               // that are made at a time
+constexpr double kMaxValuesRead = 1 << 23;  // per band
+constexpr double kMaxBandRows = 64;
 
 double row_values(int source_width, int width, int channels) {
   return static_cast<double>(std::max(source_width, width)) * channels;
@@ -283,7 +282,7 @@ Image filtered(const FilteredImage& source, const AxisTaps& along_x, const AxisT
 
 bool reads_few_rows(const TexelSource& image, int width, int height, const Kernel& kernel) {
   const double rows = RowsRead(image.height, height, kernel).of_one;
-  return rows * row_values(image.width, width, image.channels) <= kMostValuesAtOnce;
+  return rows * row_values(image.width, width, image.channels) <= kMaxValuesRead;
 }
 
 Image filter_bytes_separably(const FilteredImage& bytes, int width, int height,
@@ -292,11 +291,11 @@ Image filter_bytes_separably(const FilteredImage& bytes, int width, int height,
   const AxisTaps along_x = taps_or_itself(kernel, bytes.width(), width);
   const AxisTaps along_y = taps_or_itself(kernel, bytes.height(), height);
   const RowsRead read(bytes.height(), height, kernel);
-  const double most = kMostValuesAtOnce / row_values(bytes.width(), width, bytes.channels());
-  // Enough parts for all threads; the first rows of each are read for the one before it too.
+  const double most = kMaxValuesRead / row_values(bytes.width(), width, bytes.channels());
+  // Enough bands for all threads; the first source rows of each are read for the previous band too.
   const double share = static_cast<double>(height) / (2 * resolve_threads(threads));
   const auto rows = static_cast<int>(
-      std::clamp(std::min(share, (most - read.of_one) / read.by_each), 1.0, kMostRows));
+      std::clamp(std::min(share, (most - read.of_one) / read.by_each), 1.0, kMaxBandRows));
   switch (bytes.channels()) {
     case 1:
       return filtered<1>(bytes, along_x, along_y, rows, wrap, progress, threads);

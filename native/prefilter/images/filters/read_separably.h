@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Filtering bytes along x and along y.
+// Separable filtering of byte images.
 #pragma once
 
 #include "prefilter/images/filters/filtered_image.h"
@@ -8,12 +8,12 @@
 
 namespace prefilter {
 
-/// Whether no row of the result takes so much of the image that a cancel would wait for it.
+/// Whether every row of the result reads a small enough part of the image for prompt cancellation.
 bool reads_few_rows(const TexelSource& image, int width, int height, const Kernel& kernel);
 
-/// What filter_separably makes of an image of bytes that is read by rows, to within a few
-/// millionths: sums are of floats, as bytes do not tell the difference, and bytes become floats a
-/// few rows at a time. Of images that `reads_few_rows` says yes to.
+/// Same result as filter_separably for an image of bytes read by rows, up to a few millionths. Sums
+/// are floats, as bytes need no more precision, and only a few rows at a time are converted.
+/// Requires `reads_few_rows`.
 Image filter_bytes_separably(const FilteredImage& bytes, int width, int height,
                              const Kernel& kernel, WrapModes wrap, const Progress& progress,
                              int threads);

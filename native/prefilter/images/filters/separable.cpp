@@ -11,13 +11,13 @@
 namespace prefilter {
 namespace {
 
-// Sums are of doubles, in the order of the taps, so that constants stay what they are to the last
-// bit, and no result depends on how the work is shared.
+// Sums are doubles, added in the order of the taps, so that constant images stay exactly constant
+// and results do not depend on the number of threads.
 
-// Rows are filtered several at once, their values side by side: no sum then waits for itself. With
-// this many values, which 1 to 4 divide, compilers keep all sums in registers.
-constexpr int kValuesAtOnce = 12;
-constexpr int rows_at_once(int channels) { return kValuesAtOnce / channels; }
+// Several rows are filtered side by side, so that the latencies of their sums overlap. Compilers
+// keep this many sums, a multiple of 1 to 4, in registers.
+constexpr int kInterleavedValues = 12;
+constexpr int rows_at_once(int channels) { return kInterleavedValues / channels; }
 
 int first_source(const AxisTaps& taps) {
   const auto first = std::min_element(
@@ -33,8 +33,8 @@ int end_source(const AxisTaps& taps) {
   return end;
 }
 
-// The rows from `y` on, texel by texel, with wrapped texels ahead and behind, so that taps need no
-// test. Of rows past the last one, that one.
+// Copies rows from `y` on, interleaved texel by texel, with wrapped texels before and behind, so
+// that taps need no bounds check. Rows past the end repeat the last one.
 template <int C>
 void pad_rows(const ImageView& source, int y, Wrap mode, int before, int after,
               std::vector<double>* padded) {
@@ -110,7 +110,7 @@ Image filter_rows(const ImageView& source, const AxisTaps& taps, Wrap mode,
   return target;
 }
 
-// A row of the source, and what it counts.
+// A row of the source, and its weight.
 struct WeightedRow {
   double weight;
   const float* values;
@@ -136,11 +136,11 @@ Image filter_columns(const ImageView& source, const AxisTaps& taps, Wrap mode,
   Image target(source.width, static_cast<int>(taps.size()), source.channels);
   std::size_t most_taps = 1;
   for (const Taps& texel : taps) most_taps = std::max(most_taps, texel.weights.size());
-  // Sums stay in the fastest cache, and no block takes so long that a cancel would wait for it.
-  constexpr std::size_t kMostValues = 1024;
-  constexpr std::size_t kMostTerms = 1 << 22;
-  const auto block_values =
-      static_cast<std::ptrdiff_t>(std::clamp<std::size_t>(kMostTerms / most_taps, 16, kMostValues));
+  // Sums stay in the first-level cache, and blocks are short enough for prompt cancellation.
+  constexpr std::size_t kMaxBlockValues = 1024;
+  constexpr std::size_t kMaxBlockTerms = 1 << 22;
+  const auto block_values = static_cast<std::ptrdiff_t>(
+      std::clamp<std::size_t>(kMaxBlockTerms / most_taps, 16, kMaxBlockValues));
   const std::ptrdiff_t row_values = static_cast<std::ptrdiff_t>(source.width) * source.channels;
   const std::int64_t blocks = range_count(row_values, block_values);
   parallel_for(target.height * blocks, threads, progress, [&](std::int64_t item) {
@@ -181,8 +181,8 @@ Image filter_separably(const ImageView& source, const AxisTaps& along_x, const A
   if (along_x.empty() && along_y.empty()) return Image(source);
   if (along_y.empty()) return filter_rows(source, along_x, wrap.u, progress, threads);
   if (along_x.empty()) return filter_columns(source, along_y, wrap.v, progress, threads);
-  // Where only the rows grow, the columns come first: what lies in between is then no larger than
-  // both the source and the target.
+  // If only the rows grow, columns come first: the intermediate image is then no larger than both
+  // the source and the target.
   if (std::cmp_greater(along_x.size(), source.width) &&
       std::cmp_less(along_y.size(), source.height)) {
     const Image columns = filter_columns(source, along_y, wrap.v, progress.part(0.0, 0.5), threads);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Filtering along x and along y.
+// Separable filters along x and y.
 #pragma once
 
 #include <vector>
@@ -12,20 +12,21 @@
 
 namespace prefilter {
 
-/// The taps of each target texel along an axis, the first source texels in rising order; none where
-/// the axis stays as it is.
+/// The taps of each target texel along an axis, with nondecreasing first source texels; empty if
+/// the axis is not filtered.
 using AxisTaps = std::vector<Taps>;
 
-/// The taps of a kernel; none for sizes that are equal.
+/// The taps of a kernel; empty for equal sizes.
 AxisTaps resampling_taps(const Kernel& kernel, int source_size, int target_size);
 
-/// The image whose texel (i, j) is the sum, over the taps of i along x and of j along y, of what
-/// the source has there. Taps outside of the source read what the wrap mode says.
+/// Filters an image: texel (i, j) of the result is the sum over the taps of i along x and of j
+/// along y. The wrap mode defines the values of taps outside the source.
 Image filter_separably(const ImageView& source, const AxisTaps& along_x, const AxisTaps& along_y,
                        WrapModes wrap, const Progress& progress, int threads);
 
-/// The image of width x height texels, each the kernel-weighted mean of the source around it. An
-/// axis whose size stays is left alone. What lies outside of the source is as the wrap mode says.
+/// Resizes an image to width x height texels, each the kernel-weighted mean of the source around
+/// it. An axis whose size does not change is not filtered. The wrap mode defines the texels outside
+/// the source.
 Image filter_separably(const ImageView& source, int width, int height, const Kernel& kernel,
                        WrapModes wrap, const Progress& progress, int threads);
 

@@ -10,9 +10,9 @@
 namespace prefilter {
 namespace {
 
-constexpr std::array<float, 3> kShares = {1.0F / 6.0F, 2.0F / 3.0F, 1.0F / 6.0F};
+constexpr std::array<float, 3> kTentWeights = {1.0F / 6.0F, 2.0F / 3.0F, 1.0F / 6.0F};
 
-// A texel of up to four channels, and how much it counts.
+// A texel of up to four channels, and its weight.
 struct Weighed {
   Lanes value{};
   float share = 0.0F;
@@ -25,7 +25,7 @@ struct Weighed {
 
 }  // namespace
 
-// Shares are products of those along the axes, so columns are summed up first, then rows of sums.
+// Weights are products of weights along the axes: columns are summed first, then rows of sums.
 Image tent_means(const ImageView& image, const std::vector<unsigned char>& read, WrapModes wrap,
                  int threads) {
   Image means(image);
@@ -42,8 +42,8 @@ Image tent_means(const ImageView& image, const std::vector<unsigned char>& read,
         if (!counts(x, from_y)) continue;
         const float* texel = image.texel(x, from_y);
         Weighed& column = columns[static_cast<std::size_t>(x)];
-        for (int c = 0; c < image.channels; ++c) column.value[c] += kShares[j] * texel[c];
-        column.share += kShares[j];
+        for (int c = 0; c < image.channels; ++c) column.value[c] += kTentWeights[j] * texel[c];
+        column.share += kTentWeights[j];
       }
     }
     for (int x = 0; x < image.width; ++x) {
@@ -52,7 +52,7 @@ Image tent_means(const ImageView& image, const std::vector<unsigned char>& read,
       for (int i = 0; i < 3; ++i) {
         const int at = x + i - 1;
         const int from_x = at >= 0 && at < image.width ? at : wrap_index(at, image.width, wrap.u);
-        if (from_x >= 0) sum.add(columns[static_cast<std::size_t>(from_x)], kShares[i]);
+        if (from_x >= 0) sum.add(columns[static_cast<std::size_t>(from_x)], kTentWeights[i]);
       }
       float* mean = means.texel(x, y);
       for (int c = 0; c < image.channels; ++c) mean[c] = sum.value[c] / sum.share;

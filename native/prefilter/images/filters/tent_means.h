@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Means of an image under the tents of its own texels.
+// Means of an image under the tents of its texels.
 #pragma once
 
 #include <vector>
@@ -10,9 +10,9 @@
 
 namespace prefilter {
 
-/// Each texel becomes the mean of the interpolated image under its tent: of it and its eight
-/// neighbors, 2/3 and 1/6 along each axis. Texels that are not `read` (0) do not count, and stay
-/// as they are; an empty `read` stands for all. Neither does what lies beyond a border.
+/// Replaces each texel by the mean of the interpolated image under its tent: its 3 x 3 neighborhood
+/// with weights 1/6, 2/3, 1/6 along each axis. Texels with 0 in `read` have no weight and do not
+/// change; an empty `read` stands for all. Texels beyond a border have no weight either.
 Image tent_means(const ImageView& image, const std::vector<unsigned char>& read, WrapModes wrap,
                  int threads);
 

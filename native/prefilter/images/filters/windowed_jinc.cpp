@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Section 1.1: the jinc filter, and the window of figure 1.6.
+// Section 1.1: the jinc filter with the window of figure 1.6.
 #include "prefilter/images/filters/windowed_jinc.h"
 
 #include <array>
@@ -15,30 +15,31 @@ namespace {
 
 using std::numbers::pi;
 
-// Below this the next terms of the series are less than rounding.
-constexpr double kSmall = 1e-3;
+// Below this, the omitted terms of the series are smaller than rounding.
+constexpr double kMaxSeriesArgument = 1e-3;
 
 double smooth_sinc(double x) {
   const double angle = pi * x;
-  if (std::abs(angle) < kSmall) return 1.0 - angle * angle * (1.0 - angle * angle / 20.0) / 6.0;
+  if (std::abs(angle) < kMaxSeriesArgument)
+    return 1.0 - angle * angle * (1.0 - angle * angle / 20.0) / 6.0;
   return elementary::sin(angle) / angle;
 }
 
 double jinc(double r) {
   const double x = pi * r;
-  if (std::abs(x) < kSmall) return 0.5 - x * x * (1.0 - x * x / 24.0) / 16.0;
+  if (std::abs(x) < kMaxSeriesArgument) return 0.5 - x * x * (1.0 - x * x / 24.0) / 16.0;
   return bessel_j1(x) / x;
 }
 
 }  // namespace
 
-// J_k fall off fast beyond k = x. From far enough there, where any start will do, the recurrence
-// J_{k-1} = 2 k / x J_k - J_{k+1} is stable downwards and gives all J_k up to a factor, which
-// J_0 + 2 (J_2 + J_4 + ...) = 1 settles (Miller's algorithm).
+// Miller's algorithm: J_k decays quickly beyond k = x. Starting there with arbitrary values, the
+// recurrence J_{k-1} = 2 k / x J_k - J_{k+1} is stable downwards and yields all J_k up to a factor,
+// which is determined by J_0 + 2 (J_2 + J_4 + ...) = 1.
 double bessel_j1(double x) {
   const double size = std::abs(x);
-  if (size < kSmall) return 0.5 * x * (1.0 - x * x * (1.0 - x * x / 24.0) / 8.0);
-  // The last term is for where x is large, and the fall begins slowly.
+  if (size < kMaxSeriesArgument) return 0.5 * x * (1.0 - x * x * (1.0 - x * x / 24.0) / 8.0);
+  // The last term is for large x, where the decay starts slowly.
   const int start = 2 * static_cast<int>((size + 24.0 + 6.0 * elementary::cbrt(size)) / 2.0);
   double above = 0.0;
   double here = 1e-300;
@@ -61,7 +62,7 @@ double bessel_j1(double x) {
 
 WindowedJinc::WindowedJinc(double radius) : radius_(radius) {
   assert(radius > 0.0);
-  // Gauss's rule of eight points, on intervals of at most half a texel.
+  // Eight-point Gauss rule, on intervals of at most half a texel.
   constexpr std::array<double, 4> kPoints = {0.1834346424956498, 0.5255324099163290,
                                              0.7966664774136267, 0.9602898564975363};
   constexpr std::array<double, 4> kWeights = {0.3626837833783620, 0.3137066458778873,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // Section 1.1, the equation before figure 1.8, with the bilinear basis as in section 7.3. The basis
-// functions are products of tents along x and y, and so are the integrals over them.
+// functions, and so the integrals over them, are products of tents along x and y.
 #include "prefilter/images/resize/bilinear_fit.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 
 using LineProducts = std::array<double, 3>;
 
-// The integrals of tents along one axis, in target texels.
+// Integrals of tents along one axis, in target texels.
 class TentAxis {
  public:
   TentAxis(int source_size, int target_size, Wrap wrap) : repeat_(wrap == Wrap::kRepeat) {
@@ -33,15 +33,15 @@ class TentAxis {
   }
 
   int size() const { return static_cast<int>(taps_.size()); }
-  /// The mean over the source under each tent.
+  /// Taps of the mean over the source under each tent.
   const AxisTaps& mean_taps() const { return taps_; }
-  /// The integral of a target texel's tent.
+  /// Integral of a target texel's tent.
   double mass(int i) const { return masses_[static_cast<std::size_t>(i)]; }
-  /// Cells lie between the centers of target texels k and k + 1, from the first to the last.
+  /// Cell k lies between the centers of target texels k and k + 1.
   int first_cell() const { return repeat_ ? 0 : -1; }
   int last_cell() const { return size() - 1; }
-  /// Integrals of the products of a cell's two tents, low x low, low x high and high x high, over
-  /// the part of it that lies in the image.
+  /// Integrals of the products of a cell's two tents (low x low, low x high and high x high) over
+  /// its part inside the image.
   LineProducts products(int cell) const {
     const double from = !repeat_ && cell == -1 ? 0.5 : 0.0;
     const double to = !repeat_ && cell == last_cell() ? 0.5 : 1.0;
@@ -55,11 +55,11 @@ class TentAxis {
   }
 
  private:
-  // The integrals over source texels of the basis function of target texel i.
+  // Integrals over source texels of the basis function of target texel i.
   static Taps taps(int i, int source_size, int target_size, Wrap wrap) {
     static const Kernel& tent = *find_kernel("tent");
     const double ratio = static_cast<double>(source_size) / target_size;
-    // At a clamped edge, the tent of the texel that would come next is the last one's too.
+    // At a clamped edge the last texel also has the tent of its virtual neighbor.
     const int first = wrap == Wrap::kClamp && i == 0 ? -1 : i;
     const int last = wrap == Wrap::kClamp && i == target_size - 1 ? target_size : i;
     Taps taps;
@@ -85,7 +85,7 @@ class TentAxis {
   std::vector<double> masses_;
 };
 
-// Cells of the same parity share no texels, but for the last of an odd ring, which comes by itself.
+// Cells of equal parity share no texels. The last cell of an odd ring is added separately.
 void add_cells(const TentAxis& x_axis, const TentAxis& y_axis, const Progress& progress,
                int threads, NinePointSystem<float>* system) {
   const auto add_row = [&](int row) {
@@ -111,7 +111,7 @@ void add_cells(const TentAxis& x_axis, const TentAxis& y_axis, const Progress& p
   if (first <= last) add_row(last);
 }
 
-// How an image's channels lie in those of a system, whose last is alpha where that counts.
+// Maps channels of an image to lanes of a system, whose last lane is alpha if it is constrained.
 class LanesOfChannels {
  public:
   LanesOfChannels(int channels, const SolveOptions& solve)
@@ -125,7 +125,7 @@ class LanesOfChannels {
   bool has_alpha_;
 };
 
-// The ranges of texels as a system has them: within both, less what the system is solved for.
+// Ranges of the system's texels: the intersection of both ranges, minus the offset.
 TexelRanges lane_ranges(const RangesAround& around, const SolveOptions& solve,
                         const LanesOfChannels& lane, Lanes offset,
                         const NinePointSystem<float>& system) {
@@ -163,8 +163,8 @@ Image fit_bilinearly(const ImageView& source, int width, int height, WrapModes w
 
   const LanesOfChannels lane(level.channels, solve);
   SolveOptions by_lanes = solve;
-  // Solved for what the first texel is not, where that is the same problem: constants then stay
-  // what they are to the last bit.
+  // Solves for differences from the first texel if that is equivalent, so that constant images stay
+  // exactly constant.
   Lanes offset{};
   const bool ends_at_zero = wrap.u == Wrap::kBorder || wrap.v == Wrap::kBorder;
   for (int c = 0; c < level.channels; ++c) {

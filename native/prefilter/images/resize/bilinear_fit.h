@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Resizing by least squares for bilinear interpolation.
+// Least-squares resizing for bilinear interpolation.
 #pragma once
 
 #include "prefilter/base/image.h"
@@ -14,11 +14,11 @@ namespace prefilter {
 /// The image c of width x height texels that minimizes, within the ranges of `solve`,
 ///   integral over the image of (I(x) - sum_i c_i b_i(x))^2 dx
 /// where I are the source's texels as squares, and b_i are the tents that interpolate c bilinearly,
-/// wrapped around the image as the wrap mode says (section 1.1 with the bilinear basis). With
-/// clamp, the outermost texels reach out to the image's edge; with border there are zeros around
-/// them. With ranges_times_alpha the last channel is alpha. `around`, where it is given, has ranges
-/// for each texel, within which it stays too; with ranges_times_alpha, of colors before they are
-/// multiplied.
+/// wrapped around the image by the wrap mode (section 1.1 with the bilinear basis). In clamp mode
+/// the outermost texels extend to the image's edge; in border mode they are surrounded by zeros. If
+/// ranges_times_alpha is set, the last channel is alpha. `around`, if not null, further restricts
+/// each texel to its own range; if ranges_times_alpha is set, that is the range of colors before
+/// multiplication.
 Image fit_bilinearly(const ImageView& source, int width, int height, WrapModes wrap,
                      const SolveOptions& solve, const RangesAround* around,
                      const Progress& progress);

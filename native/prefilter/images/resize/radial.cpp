@@ -18,8 +18,8 @@
 namespace prefilter {
 namespace {
 
-// WindowedJinc as a function of the squared distance, in which it is smooth: cubics that meet it at
-// their thirds, off by 1e-9 at the most.
+// WindowedJinc as a function of the squared distance, in which it is smooth: piecewise cubics that
+// interpolate it at thirds of each piece, with an error of at most 1e-9.
 class RadialTable {
  public:
   explicit RadialTable(int radius)
@@ -52,8 +52,8 @@ class RadialTable {
   std::array<std::array<double, 4>, kPieces> pieces_;
 };
 
-// Which source texels a target texel reads along an axis. Target texels whose centers lie alike
-// between source texels are of the same phase.
+// The source texels that a target texel reads along an axis. Target texels with the same position
+// relative to source texels have the same phase.
 class Axis {
  public:
   Axis(int source_size, int target_size, int radius)
@@ -66,10 +66,10 @@ class Axis {
 
   int phases() const { return phases_; }
   int phase(int target) const { return target % phases_; }
-  /// The first source texel, of taps() many.
+  /// The first of taps() source texels.
   int first(int target) const { return first_of_phase(phase(target)) + target / phases_ * step_; }
   int taps() const { return static_cast<int>(std::floor(2.0 * reach_)) + 1; }
-  /// The square of how far tap `tap` of a phase is from the center.
+  /// Squared distance of tap `tap` of a phase from the center.
   double squared_distance(int phase, int tap) const {
     const double away = (first_of_phase(phase) + tap + 0.5 - center(phase)) / unit_;
     return away * away;
@@ -89,13 +89,13 @@ class Axis {
   double reach_;
 };
 
-// Values that are added side by side: some taps of a texel, channel by channel.
+// Values summed side by side: some taps of a texel, channel by channel.
 constexpr int lanes_of(int channels) { return channels == 3 ? 12 : 4; }
 
-// What some target texels of one row are made of.
+// Sums of some target texels in a row.
 struct Sums {
-  std::vector<double> values;   // weighted, texel by texel, in lanes
-  std::vector<double> weights;  // of each texel
+  std::vector<double> values;   // weighted sums, texel by texel, in lanes
+  std::vector<double> weights;  // sum of weights of each texel
 
   void add(const Sums& other) {
     std::transform(values.begin(), values.end(), other.values.begin(), values.begin(),
@@ -105,7 +105,8 @@ struct Sums {
   }
 };
 
-// Part of the work: target texels [begin, end) of rows [y, end_y), and of their taps along y some.
+// A part of the work: target texels [begin, end) of rows [y, end_y), and a range of their taps
+// along y.
 struct Part {
   int y;
   int end_y;
@@ -115,13 +116,13 @@ struct Part {
   int end_tap;
 };
 
-// The weights of one row of taps for target texels [begin, end), and sums by them. Weights stand
-// once a channel, so that they and the values of a row are multiplied side by side.
+// The weights of one row of taps for target texels [begin, end). Each weight is repeated per
+// channel, to be multiplied with the values of a row side by side.
 template <int C>
 class RowWeights {
  public:
   static constexpr int kLanes = lanes_of(C);
-  static constexpr int kTaps = kLanes / C;  // that are added at once
+  static constexpr int kTaps = kLanes / C;  // summed at once
 
   RowWeights(const Axis& axis, const RadialTable& table, int begin, int end)
       : axis_(axis), table_(table), begin_(begin), end_(end) {
@@ -144,12 +145,13 @@ class RowWeights {
     }
   }
 
-  /// How many different weights texels have.
+  /// Number of distinct sets of weights.
   std::size_t slots() const { return slot_count_; }
-  /// Of a texel, in what `move_to` adds up.
+  /// Index of a texel's set of weights, as in the sums of `move_to`.
   std::size_t slot(int x) const { return static_cast<std::size_t>(slots_[x - begin_]); }
 
-  /// Weighs the taps of the row at that squared distance, and adds the weights of each slot up.
+  /// Computes the weights of the taps in a row at that squared distance, and adds them to `sums`
+  /// per slot.
   void move_to(double y_distance, std::vector<double>* sums) {
     first_ = axis_.taps();
     int last = 0;
@@ -169,10 +171,10 @@ class RowWeights {
     groups_ = std::max(0, (last + kTaps - first_) / kTaps);
   }
 
-  /// Adds a row, which begins at the source's texel `first` and goes on for kTaps more than taps
-  /// reach, to the values of the target texels.
+  /// Adds a row to the values of the target texels. It starts at source texel `first` and is padded
+  /// by kTaps texels beyond the last tap.
   void add_row(const double* row, int first, double* values) const {
-    // Texels of one phase are added together: sums then do not wait for themselves.
+    // Texels of one phase are summed together, so that the latencies of their sums overlap.
     constexpr int kTogether = C == 3 ? 2 : 4;
     const int step = axis_.phases();
     int x = begin_;
@@ -225,14 +227,14 @@ class RowWeights {
   int begin_;
   int end_;
   bool shares_ = false;
-  int stride_ = 0;           // values of a slot's weights, and of zeros behind them
+  int stride_ = 0;           // number of values per slot: weights, then zeros
   std::vector<int> firsts_;  // the first tap of each target texel
-  std::vector<int> slots_;   // whose weights it has
+  std::vector<int> slots_;   // index of each target texel's weights
   std::size_t slot_count_ = 0;
   std::vector<double> weights_;
   std::vector<double> distances_;
-  int first_ = 0;   // the first tap that weighs anything
-  int groups_ = 0;  // from there on
+  int first_ = 0;   // the first tap with a nonzero weight
+  int groups_ = 0;  // number of groups from there on
 };
 
 class Filter {
@@ -247,7 +249,7 @@ class Filter {
   const Axis& x_axis() const { return x_axis_; }
   const Axis& y_axis() const { return y_axis_; }
 
-  /// Row by row.
+  /// The sums of each row.
   std::vector<Sums> sums(const Part& part) const {
     switch (source_.channels) {
       case 1:
@@ -262,7 +264,7 @@ class Filter {
   }
 
  private:
-  // Each row of the source is read once for all rows of the part.
+  // Reads each row of the source once for all rows of the part.
   template <int C>
   std::vector<Sums> sums_of(const Part& part) const {
     const auto count = static_cast<std::size_t>(part.end - part.begin);
@@ -341,20 +343,21 @@ void write(const Sums& sums, int channels, float* texel) {
 Image filter_radially(const ImageView& source, int width, int height, int radius, WrapModes wrap,
                       const Progress& progress, int threads) {
   const Filter filter(source, width, height, radius, wrap);
-  // No part takes so long that a cancel would wait for it: where a single texel does, its taps are
-  // parted too.
-  constexpr double kMostTerms = 1 << 22;
-  constexpr int kMostTexels = 512;
-  constexpr int kMostBand = 8;
+  // Parts are short enough for prompt cancellation: if necessary, even the taps of a single texel
+  // are divided.
+  constexpr double kMaxPartTerms = 1 << 22;
+  constexpr int kMaxPartTexels = 512;
+  constexpr int kMaxBand = 8;
   const int rows = filter.y_axis().taps();
   const double row_terms = filter.x_axis().taps();
   const int texels =
-      static_cast<int>(std::clamp<double>(kMostTerms / (row_terms * rows), 1, kMostTexels));
-  const int rows_together = static_cast<int>(std::clamp<double>(kMostTerms / row_terms, 1, rows));
+      static_cast<int>(std::clamp<double>(kMaxPartTerms / (row_terms * rows), 1, kMaxPartTexels));
+  const int rows_together =
+      static_cast<int>(std::clamp<double>(kMaxPartTerms / row_terms, 1, rows));
   const std::int64_t blocks = range_count(width, texels);
   const std::int64_t pieces = texels > 1 ? 1 : range_count(rows, rows_together);
-  // Of texels that are many at a time, several rows are made together.
-  const int band = texels == kMostTexels ? kMostBand : 1;
+  // Parts with the maximum of texels comprise several rows.
+  const int band = texels == kMaxPartTexels ? kMaxBand : 1;
   const auto part_of = [&](std::int64_t block, std::int64_t piece) {
     Part part{};
     part.y = static_cast<int>(block / blocks) * band;

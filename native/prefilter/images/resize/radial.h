@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Resizing by a filter of the distance.
+// Resizes images with a radial filter.
 #pragma once
 
 #include "prefilter/base/image.h"
@@ -9,8 +9,9 @@
 
 namespace prefilter {
 
-/// The image with width x height texels, each the mean of the texels around it, weighted by
-/// WindowedJinc of their distance in units of the wider ones of old and new texels along each axis.
+/// Resizes an image to width x height texels, each the mean of the texels around it weighted by
+/// WindowedJinc of their distance. The unit along each axis is the larger of source and target
+/// texels.
 Image filter_radially(const ImageView& source, int width, int height, int radius, WrapModes wrap,
                       const Progress& progress, int threads);
 

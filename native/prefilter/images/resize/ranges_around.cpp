@@ -12,7 +12,7 @@
 namespace prefilter {
 namespace {
 
-constexpr float kWidest = std::numeric_limits<float>::max();
+constexpr float kUnlimited = std::numeric_limits<float>::max();
 
 // The source texels around target texels along an axis.
 class Around {
@@ -26,11 +26,11 @@ class Around {
   /// Calls visit(texel) for each, -1 for the border.
   template <typename Visit>
   void each(int target, const Visit& visit) const {
-    constexpr double kOnEdge = 1e-9;  // Texels that no more than touch do not count.
+    constexpr double kOnEdge = 1e-9;  // texels that only touch do not count
     const double center = (target + 0.5) * ratio_;
     const auto first = static_cast<int>(std::floor(center - reach_ + kOnEdge));
     const auto end = static_cast<int>(std::ceil(center + reach_ - kOnEdge));
-    if (end - first >= source_size_ + 2) {  // All there are, and what is beyond.
+    if (end - first >= source_size_ + 2) {  // all texels, and the border
       for (int texel = wrap_ == Wrap::kBorder ? -1 : 0; texel < source_size_; ++texel) visit(texel);
       return;
     }
@@ -48,8 +48,8 @@ class Around {
 struct Ranges {
   explicit Ranges(std::size_t count) : low(count), high(count) { clear(); }
   void clear() {
-    std::fill(low.begin(), low.end(), kWidest);
-    std::fill(high.begin(), high.end(), -kWidest);
+    std::fill(low.begin(), low.end(), kUnlimited);
+    std::fill(high.begin(), high.end(), -kUnlimited);
   }
   void add(std::size_t at, float value) { add(at, value, value); }
   void add(std::size_t at, float least, float greatest) {
@@ -60,7 +60,7 @@ struct Ranges {
   std::vector<float> high;
 };
 
-// The ranges over rows of the source.
+// Ranges over rows of the source.
 class RowRanges {
  public:
   RowRanges(const TexelSource& source, std::optional<int> alpha)
@@ -79,7 +79,7 @@ class RowRanges {
     }
   }
 
-  /// A texel of zeros, which as coverage is transparent.
+  /// A texel of zeros; if there is alpha, it is transparent and its colors do not count.
   void add_border(std::size_t at, Ranges* ranges) const {
     for (std::size_t c = 0; c < channels_; ++c) {
       if (!alpha_ || c == static_cast<std::size_t>(*alpha_)) ranges->add(at + c, 0.0F);
@@ -133,8 +133,8 @@ RangesAround ranges_around(const TexelSource& source, std::optional<int> alpha, 
       });
       for (std::size_t c = 0; c < channels; ++c) {
         const bool counts = texel.low[c] <= texel.high[c];
-        result.low.texel(x, y)[c] = counts ? texel.low[c] : -kWidest;
-        result.high.texel(x, y)[c] = counts ? texel.high[c] : kWidest;
+        result.low.texel(x, y)[c] = counts ? texel.low[c] : -kUnlimited;
+        result.high.texel(x, y)[c] = counts ? texel.high[c] : kUnlimited;
       }
     }
   });

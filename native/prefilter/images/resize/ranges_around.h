@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What values an image has around each texel of one of another size.
+// Ranges of the values around each texel of a resized image.
 #pragma once
 
 #include <optional>
@@ -11,21 +11,21 @@
 
 namespace prefilter {
 
-/// The least and the greatest value of each channel around each texel.
+/// The minimum and maximum of each channel around each texel.
 struct RangesAround {
   Image low;
   Image high;
 };
 
-/// The ranges of the source texels that lie under the tent of each of width x height target texels:
-/// in the square around its center of two target texels a side, or two source texels where these
-/// are wider. With `alpha`, a channel that is taken for [0, 1], colors of transparent texels do not
-/// count; a channel that no texel counts for has a range as wide as floats go. Of outside the image
-/// there is what the wrap mode says.
+/// The ranges of the source texels under the tent of each of width x height target texels: in a
+/// square around its center with a side of two target texels, or two source texels if these are
+/// wider. If there is a channel `alpha`, its own range is [0, 1], and colors of transparent texels
+/// do not count. Channels without any texel that counts are unlimited. The wrap mode defines the
+/// texels outside the image.
 RangesAround ranges_around(const TexelSource& source, std::optional<int> alpha, int width,
                            int height, WrapModes wrap, const Progress& progress, int threads);
 
-/// Moves texels into the ranges.
+/// Clamps texels to the ranges.
 void limit_to(const RangesAround& ranges, int threads, Image* image);
 
 }  // namespace prefilter

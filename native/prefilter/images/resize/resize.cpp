@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Sections 1.1 and 1.1.2: images are filtered in linear light, before they are sampled.
+// Sections 1.1 and 1.1.2: filters images in linear light before sampling.
 #include "prefilter/images/resize.h"
 
 #include <algorithm>
@@ -24,12 +24,12 @@
 namespace prefilter {
 namespace {
 
-constexpr int kMostTexels = 1 << 20;  // along a side
+constexpr int kMaxResizedSide = 1 << 20;  // along a side
 
 void check_size(const char* name, int size) {
-  if (size < 1 || size > kMostTexels) {
+  if (size < 1 || size > kMaxResizedSide) {
     throw_invalid(std::string(name) + ": " + std::to_string(size) + "; a whole number from 1 to " +
-                  std::to_string(kMostTexels) + " is needed");
+                  std::to_string(kMaxResizedSide) + " is needed");
   }
 }
 
@@ -47,7 +47,7 @@ void check_arguments(const TexelSource& image, int width, int height,
     throw_invalid("threads: " + std::to_string(options.threads) +
                   "; a positive number is needed, or 0 for all processors");
   }
-  // Filtering along one axis first leaves no more in between than the larger of the two images.
+  // The intermediate image after filtering one axis is no larger than the larger of both images.
   const double texels = static_cast<double>(width) * height;
   const double most = std::max(texels, static_cast<double>(image.width) * image.height);
   constexpr double kBytesPerSolvedTexel = 56.0;
@@ -61,7 +61,7 @@ void check_arguments(const TexelSource& image, int width, int height,
                    (is_limited ? (kBytesPerLimitedTexel + 8.0 * image.channels) * texels : 0.0));
 }
 
-// The channel of coverage.
+// The index of the coverage channel, if any.
 std::optional<int> alpha_channel(int channels, bool premultiplied) {
   if (premultiplied || (channels != 2 && channels != 4)) return std::nullopt;
   return channels - 1;
@@ -69,7 +69,7 @@ std::optional<int> alpha_channel(int channels, bool premultiplied) {
 
 class Resizer {
  public:
-  /// `around` is none where ringing is not limited.
+  /// `around` is null unless ringing is limited.
   Resizer(const FilteredImage& image, const RangesAround* around, int width, int height,
           const ResizeOptions& options)
       : image_(image), around_(around), width_(width), height_(height), options_(options) {}

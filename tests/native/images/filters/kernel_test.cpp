@@ -16,8 +16,8 @@ double sinc(double x) {
   return x == 0.0 ? 1.0 : std::sin(std::numbers::pi * x) / (std::numbers::pi * x);
 }
 
-// What each kernel is by its definition, up to a factor, from 0 to its radius; how far it may be
-// from that; and how far from constant its sum over the texels is.
+// The definition of each kernel, up to a factor, from 0 to its radius; the allowed error; and the
+// allowed variation of its sum over the texels.
 struct Definition {
   double radius;
   double (*value)(double);
@@ -29,7 +29,7 @@ const std::map<std::string, Definition>& definitions() {
   static const std::map<std::string, Definition> all = {
       {"box", {0.5, [](double) { return 1.0; }, 0.0, 0.0}},
       {"tent", {1.0, [](double x) { return 1.0 - x; }, 1e-15, 1e-15}},
-      // Three boxes convolved: second differences of half squares, cut off at 0.
+      // Three boxes convolved: second differences of half squares, clipped at 0.
       {"bspline2",
        {1.5,
         [](double x) {
@@ -56,7 +56,7 @@ const std::map<std::string, Definition>& definitions() {
   return all;
 }
 
-// By Simpson's rule between multiples of 1/2, where the kernels may have a kink.
+// Simpson's rule between multiples of 1/2, where kernels may have a kink.
 template <typename Function>
 double quadrature(double from, double to, const Function& function) {
   constexpr int kParts = 64;
@@ -71,7 +71,7 @@ double quadrature(double from, double to, const Function& function) {
   return sum;
 }
 
-TEST(Kernels, AreTheirDefinitions) {
+TEST(Kernels, MatchTheirDefinitions) {
   for (const Kernel& kernel : kernels()) {
     const std::string name(kernel.name());
     ASSERT_TRUE(definitions().contains(name)) << "nothing to compare '" << name << "' with";
@@ -130,7 +130,7 @@ TEST(Kernels, AreContinuousUnlessOfDegreeZero) {
     for (double x = 0.0; x < kernel.radius(); x += 0.5) {
       EXPECT_NEAR(kernel.value(x - 1e-9), kernel.value(x + 1e-9), 2e-8) << kernel.name();
     }
-    // The Gaussian is cut off there.
+    // The Gaussian is truncated there.
     const double end = kernel.name() == "gaussian" ? std::exp(-4.0 * std::numbers::pi) : 0.0;
     EXPECT_NEAR(kernel.value(kernel.radius()), end, 1e-14 + 1e-5 * end) << kernel.name();
   }
@@ -164,7 +164,7 @@ TEST(ResamplingTaps, AreTheKernelAndSymmetric) {
     for (const int factor : {1, 2, 3, 4, 16, 64}) {
       const Taps taps = resampling_taps(kernel, factor, 0);
       const std::size_t count = taps.weights.size();
-      // Symmetric about the middle of the first target texel.
+      // Symmetric about the center of the first target texel.
       EXPECT_EQ(2 * taps.first + static_cast<int>(count), factor);
       double sum = 0.0;
       for (int i = -300; i < 300; ++i) sum += kernel.value((i + 0.5) / factor - 0.5);
@@ -177,14 +177,14 @@ TEST(ResamplingTaps, AreTheKernelAndSymmetric) {
   }
 }
 
-TEST(ResamplingTaps, OfABoxAreItsTexels) {
+TEST(ResamplingTaps, BoxTapsAreItsTexels) {
   const Taps taps = resampling_taps(box_kernel(), 4, 0);
   EXPECT_EQ(taps.first, 0);
   EXPECT_EQ(taps.weights, (std::vector<double>{0.25, 0.25, 0.25, 0.25}));
 }
 
-TEST(ResamplingTaps, OfABoxAreWhatItCovers) {
-  // 7 texels to 3: the middle one covers [7/3, 14/3].
+TEST(ResamplingTaps, BoxTapsAreItsCoverage) {
+  // From 7 texels to 3: the middle one covers [7/3, 14/3].
   const Taps taps = resampling_taps(box_kernel(), 7.0 / 3.0, 1);
   EXPECT_EQ(taps.first, 2);
   ASSERT_EQ(taps.weights.size(), 3U);

@@ -29,8 +29,8 @@ TEST(FillHoles, KeepsTexelsWithWeightAndFillsTheRest) {
   }
 }
 
-// One texel of every two by two is known, so it is what the next coarser layer has there. A hole's
-// center is a quarter of a coarse texel from that of the one above it, along both axes.
+// One texel of every 2 x 2 is known, and defines the next coarser layer. The center of a hole is a
+// quarter of a coarse texel away from its parent's center, along both axes.
 TEST(FillHoles, InterpolatesTheCoarserLayer) {
   Image image(4, 4, 1);
   std::vector<float> weights(16, 0.0F);
@@ -71,16 +71,16 @@ TEST(FillHoles, StaysBetweenTheValuesAround) {
   }
 }
 
-TEST(FillHoles, CountsAQuarterThatIsFullLikeOneOfASingleTexel) {
+TEST(FillHoles, FullQuartersCountLikeSingleTexels) {
   Image image(4, 4, 1);
   std::vector<float> weights(16, 0.0F);
-  weights[0] = 1.0F;  // of value 0
+  weights[0] = 1.0F;  // its value is 0
   for (const int at : {2, 3, 6, 7}) {
     image.data[static_cast<std::size_t>(at)] = 1.0F;
     weights[static_cast<std::size_t>(at)] = 1.0F;
   }
   fill_holes(weights, {}, 1, Progress(), 1, &image);
-  // The last quarter has no texel: it gets the mean of the quarters that have.
+  // The last quarter has no texel: it gets the mean of the other quarters.
   EXPECT_NEAR(image.texel(3, 3)[0], 0.5F, 1e-6);
 }
 
@@ -89,7 +89,7 @@ TEST(FillHoles, ReadsAcrossTheEdgesOfARepeatedImage) {
     Image image(4, 1, 1);
     image.texel(3, 0)[0] = 1.0F;
     fill_holes({0.0F, 1.0F, 0.0F, 1.0F}, {mode, mode}, 1, Progress(), 1, &image);
-    // The first texel is a quarter of a coarse one from the edge, beyond which the last one is.
+    // The first texel is a quarter of a coarse one from the edge, beyond which is the last one.
     EXPECT_EQ(image.texel(0, 0)[0], mode == Wrap::kRepeat ? 0.25F : 0.0F);
   }
 }

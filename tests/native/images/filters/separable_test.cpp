@@ -20,7 +20,7 @@ Image random_image(int width, int height, int channels) {
   return image;
 }
 
-// How much texel x counts for target texel t, by the definition.
+// The weight of texel x for target texel t, by the definition.
 double weight(const Kernel& kernel, double ratio, int t, int x) {
   if (ratio == 1.0) return x == t ? 1.0 : 0.0;
   const double center = (t + 0.5) * ratio;
@@ -31,7 +31,7 @@ double weight(const Kernel& kernel, double ratio, int t, int x) {
   return kernel.value((x + 0.5 - center) / std::max(1.0, ratio));
 }
 
-// Straight from the definition: a sum over the whole plane.
+// Directly from the definition: a sum over the whole plane.
 float expected(const Image& source, int width, int height, const Kernel& kernel, WrapModes wrap,
                int tx, int ty, int channel) {
   const double ratio_x = static_cast<double>(source.width) / width;
@@ -80,7 +80,7 @@ TEST(FilterSeparably, MatchesItsDefinition) {
   }
 }
 
-// Blocks of columns and groups of rows that are not full, and more taps than a block has terms.
+// Incomplete blocks of columns and groups of rows, and more taps than a block has terms.
 TEST(FilterSeparably, IsTheSameForAnyNumberOfThreads) {
   const Kernel& kernel = *find_kernel("lanczos3");
   for (int channels = 1; channels <= kMaxChannels; ++channels) {

@@ -13,8 +13,8 @@ namespace {
 
 using std::numbers::pi;
 
-// (1 / pi) times the integral over [0, pi] of cos(t - x sin t): Bessel's own, and the trapezoid
-// rule converges fast for what repeats.
+// Bessel's integral: (1 / pi) times the integral over [0, pi] of cos(t - x sin t). The trapezoidal
+// rule converges fast for periodic functions.
 double bessel_integral(double x) {
   constexpr int kSteps = 1024;
   double sum = 0.5 * (std::cos(0.0) + std::cos(pi));
@@ -35,7 +35,7 @@ TEST(BesselJ1, IsBesselsIntegral) {
   }
 }
 
-// By scipy.special.j1 and scipy.integrate.quad.
+// Values from scipy.special.j1 and scipy.integrate.quad.
 TEST(WindowedJinc, HasTheValuesOfItsDefinition) {
   struct Expected {
     double radius;

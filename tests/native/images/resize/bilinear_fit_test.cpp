@@ -8,12 +8,12 @@
 #include <cmath>
 #include <limits>
 
-#include "textures/texels/scenes.h"
+#include "geometry/texels/scenes.h"
 
 namespace prefilter {
 namespace {
 
-// The tents that are not 0 at a place of an axis: which texels, and how much.
+// The nonzero tents at a position on an axis: their texels and values.
 struct Tents {
   int texels[2];
   double shares[2];
@@ -27,9 +27,9 @@ Tents tents_at(double u, int size, Wrap wrap) {
   return tents;
 }
 
-// Of what least squares leave, the part along each tent is 0: here the integral of the difference
-// between the fit and the boxes of the source, times the tent.
-TEST(BilinearFit, LeavesNothingAlongAnyTent) {
+// The residual of least squares is orthogonal to each tent: the integral of the difference between
+// the fit and the boxes of the source, times the tent, is 0.
+TEST(BilinearFit, ResidualIsOrthogonalToTheTents) {
   for (const Wrap wrap : {Wrap::kClamp, Wrap::kRepeat, Wrap::kBorder}) {
     for (const auto& [width, height] : {std::pair(3, 2), std::pair(5, 4), std::pair(12, 9)}) {
       const Image source = testing::random_image(3, 11, 7, 1);
@@ -41,7 +41,7 @@ TEST(BilinearFit, LeavesNothingAlongAnyTent) {
       const Image fit =
           fit_bilinearly(source.view(), width, height, {wrap, wrap}, solve, nullptr, Progress());
       std::vector<double> left(static_cast<std::size_t>(width) * height);
-      // Middles between all lines of both grids: 11 * 12 * 5 * 2 and 7 * 9 * 4 * 2 steps.
+      // Centers between all lines of both grids: 11 * 12 * 5 * 2 and 7 * 9 * 4 * 2 steps.
       constexpr int kColumns = 1320;
       constexpr int kRows = 504;
       for (int row = 0; row < kRows; ++row) {

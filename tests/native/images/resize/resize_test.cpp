@@ -51,9 +51,9 @@ TEST(Resize, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
-// So many taps that they are summed up in parts. They are so dense that their sum is the filter's
-// integral, 1.
-TEST(Resize, OneTexelCountsByItsDistance) {
+// So many taps that they are summed in parts, and so dense that their sum is the filter's integral,
+// 1.
+TEST(Resize, OneTexelSpreadsLikeTheFilter) {
   constexpr int kSize = 400;
   ResizeOptions options;
   options.filter = RadialFilter{3};
