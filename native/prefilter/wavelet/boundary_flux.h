@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What a cell has to know of the pieces of a boundary in it, to give the Haar coefficients of the
-// shape that it bounds: six numbers, which nest.
+// Boundary integrals of a cell, from which the Haar coefficients of the enclosed shape are
+// computed: six numbers, which nest.
 //
-// By the divergence theorem a coefficient is the flux of a field F with divergence psi^e (section
-// 3.2.3). On each octant the F of compact support are linear in one coordinate, so the coefficients
-// of a cell follow from the vector areas and first moments of the boundary in its octants, and
-// those of the parent from the same numbers of its octants. So the surface is cut along the finest
-// cells only, once, and all coarser coefficients are sums.
+// A coefficient is, by the divergence theorem, the flux of a field F with divergence psi^e (section
+// 3.2.3). On each octant the compactly supported F are linear in one coordinate. So the
+// coefficients of a cell follow from the vector areas and first moments of the boundary in its
+// octants, and the numbers of the parent cell from those of its octants. The surface is cut only
+// once, along the finest cells; all coarser coefficients are sums.
 //
-// The printed F for wavelets along several axes take everything from x. The mean of the choices for
-// each axis of the wavelet has the same compact support, and treats the axes alike: c^e is the mean
-// over the axes a in e of the flux of Psi(p_a) times the psi of e's other axes along a. Where parts
-// of the surface are missing this lowers the largest error that they can cause.
+// The F printed for wavelets along several axes integrate along x only. The mean over the wavelet's
+// axes has the same compact support and is symmetric: c^e is the mean over the axes a in e of the
+// flux of Psi(p_a) times the psi of e's other axes along a. This reduces the maximum error due to
+// missing parts of the surface.
 #pragma once
 
 #include <array>
@@ -22,10 +22,10 @@
 
 namespace prefilter {
 
-/// Integrals over the boundary within a cell, in coordinates that make it the unit cube.
+/// Integrals over the boundary within a cell, in coordinates of the unit cube.
 struct BoundaryFlux {
-  Vector3 area{};    // of the normal n, outward
-  Vector3 moment{};  // of p_x n_x, p_y n_y, p_z n_z
+  Vector3 area{};    // integral of the outward normal n
+  Vector3 moment{};  // integral of p_x n_x, p_y n_y, p_z n_z
 
   void add(const BoundaryFlux& other) {
     for (int a = 0; a < 3; ++a) {
@@ -35,7 +35,7 @@ struct BoundaryFlux {
   }
 };
 
-/// The flux of a piece of boundary, in the coordinates of the unit cell with this low corner.
+/// Flux of a boundary polygon, in coordinates of the unit cell with this low corner.
 inline BoundaryFlux polygon_flux(const CellPolygon& polygon, const Vector3& cell) {
   const Vector3& origin = polygon.corners[0];
   Vector3 previous;
@@ -62,7 +62,7 @@ inline BoundaryFlux polygon_flux(const CellPolygon& polygon, const Vector3& cell
   return flux;
 }
 
-/// The flux of a cell whose octants have these.
+/// Flux of a cell from the fluxes of its octants.
 inline BoundaryFlux flux_of_octants(const std::array<BoundaryFlux, 8>& octants) {
   BoundaryFlux sum;
   for (int o = 0; o < 8; ++o) {
@@ -75,15 +75,15 @@ inline BoundaryFlux flux_of_octants(const std::array<BoundaryFlux, 8>& octants) 
   return sum;
 }
 
-/// The seven coefficients [1] to [7] of a cell whose octants have these; [0] is 0.
+/// The seven coefficients [1] to [7] of a cell from the fluxes of its octants; [0] is 0.
 inline OctantValues details_of_octants(const std::array<BoundaryFlux, 8>& octants) {
   std::array<double, 8> details{};
   for (int axis = 0; axis < 3; ++axis) {
     const int b = 1 << ((axis + 1) % 3);
     const int c = 1 << ((axis + 2) % 3);
     const int bit = 1 << axis;
-    // The flux of Psi, which is p on the lower half and 1 - p on the upper one, in the four columns
-    // of octants along the axis.
+    // Flux of Psi, which is p on the lower half and 1 - p on the upper half, in the four columns of
+    // octants along the axis.
     const auto column = [&](int o) {
       const BoundaryFlux& low = octants[o];
       const BoundaryFlux& high = octants[o | bit];

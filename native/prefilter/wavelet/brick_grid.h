@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Functions on the points of a grid that are zero but near a surface.
+// Sparse grids for functions that are nonzero only near a surface.
 #pragma once
 
 #include <algorithm>
@@ -13,11 +13,11 @@
 
 namespace prefilter {
 
-/// Coordinates of a brick: of 4 x 4 x 4 points, 4 b to 4 b + 3 along each axis.
+/// Coordinates b of a brick, which contains the 4 x 4 x 4 points 4 b to 4 b + 3 along each axis.
 using BrickPosition = std::array<std::int32_t, 3>;
 
-/// kChannels values at each point. Bricks are kept in shards, by z: shards may be changed by
-/// different threads.
+/// kChannels values per point. Bricks are divided into shards by z; different threads may modify
+/// different shards.
 template <std::size_t kChannels>
 class BrickGrid {
  public:
@@ -61,7 +61,7 @@ class BrickGrid {
     return shard.bricks[found->second];
   }
 
-  /// The positions of all bricks, in an order that depends on which there are alone.
+  /// The positions of all bricks, in an order independent of insertion.
   std::vector<BrickPosition> positions() const {
     std::vector<std::uint64_t> keys;
     for (const Shard& shard : shards_) {
@@ -74,8 +74,8 @@ class BrickGrid {
     return result;
   }
 
-  /// Copies the points from `low` on, kSide along each axis, of all channels; zero where there is
-  /// no brick.
+  /// Copies a cube of kSide points along each axis, starting at `low`, for all channels; zero where
+  /// no brick is.
   template <std::size_t kSide>
   void window(const BrickPosition& low,
               std::array<float, kChannels * kSide * kSide * kSide>* values) const {
@@ -95,11 +95,11 @@ class BrickGrid {
  private:
   struct Shard {
     std::unordered_map<std::uint64_t, std::uint32_t> places;
-    std::deque<Brick> bricks;  // never moved
+    std::deque<Brick> bricks;  // references remain valid
     std::vector<std::uint64_t> keys;
   };
 
-  // What lies outside of the root goes to the outermost shards.
+  // Bricks outside the root belong to the outermost shards.
   std::size_t shard_of_z(std::int32_t z) const {
     const std::int32_t last = static_cast<std::int32_t>(shards_.size()) - 1;
     return static_cast<std::size_t>(std::clamp((z >> shard_bits_) + 1, 0, last));

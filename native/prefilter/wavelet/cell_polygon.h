@@ -12,10 +12,9 @@
 
 namespace prefilter {
 
-/// What is left of a triangle between planes across the axes. Corners in order; they lie in one
-/// plane but for rounding.
+/// A triangle clipped by axis-aligned planes: consecutive corners that are coplanar up to rounding.
 struct CellPolygon {
-  // A triangle cut by the six sides of a box has at most nine.
+  // A triangle clipped by the six sides of a box has at most nine.
   static constexpr int kMaxCorners = 10;
   std::array<Vector3, kMaxCorners> corners;
   int count = 0;
@@ -36,7 +35,7 @@ struct CellPolygon {
   }
 };
 
-/// The parts below and above a plane across an axis. Corners on the plane belong to both.
+/// Splits a polygon at a plane across an axis. Corners on the plane belong to both parts.
 inline void split_polygon(const CellPolygon& polygon, int axis, double value, CellPolygon* low,
                           CellPolygon* high) {
   low->count = 0;
@@ -67,8 +66,7 @@ struct CellBox {
   std::array<int, 3> high;
 };
 
-/// The part of a polygon between the planes of a box along an axis; empty where there is none with
-/// an area.
+/// Clips a polygon to [low, high] along an axis; empty if no area is left.
 inline void clip_to_slab(int axis, double low, double high, CellPolygon* polygon) {
   CellPolygon inside;
   CellPolygon outside;
@@ -121,8 +119,8 @@ void cut(const CellPolygon& polygon, const CellBox& box, std::array<int, 3>* cel
 
 }  // namespace cut_detail
 
-/// Calls visit(cell, polygon) for every cell that the polygon, which lies within the box, meets.
-/// What lies exactly between two cells goes to one of them.
+/// Calls visit(cell, polygon) for every cell that the polygon intersects. The polygon must lie
+/// within the box. Parts exactly between two cells belong to one of them.
 template <typename Visit>
 void cut_polygon(const CellPolygon& polygon, const CellBox& box, const Visit& visit) {
   std::array<int, 3> cell{};

@@ -8,7 +8,7 @@ namespace prefilter {
 namespace {
 constexpr std::int64_t kBlocksPerTask = 1 << 12;
 
-// Means of cells that are split, from their octants as they are after clamping.
+// Sets the means of split cells from the clamped values of their octants.
 void pass_up(const TreeLevel& next, std::size_t begin, std::size_t end, TreeLevel* level) {
   for (std::size_t b = begin; b < end; ++b) {
     std::size_t child = level->first[b];

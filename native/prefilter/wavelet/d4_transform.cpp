@@ -18,11 +18,11 @@ namespace {
 // [1] to [7]: the wavelet coefficients of one depth; [0] is unused.
 using Details = BrickGrid<8>;
 
-// A filter that makes one of two points, from those at 2 k - 2 to 2 k + 4.
+// A filter that computes every second point k from the points 2 k - 2 to 2 k + 4.
 using Halving = std::array<float, 7>;
-// Along the axis of a difference, and across it: of the coarser difference, and of the wavelet.
+// Filters along the axis of a difference and across it, for coarser differences and for wavelets.
 constexpr std::size_t kWindow = 13;
-constexpr std::size_t kBricksAtOnce = 1U << 14U;
+constexpr std::size_t kBricksPerBatch = 1U << 14U;
 
 struct Filters {
   Halving low{};
@@ -47,7 +47,7 @@ Filters make_filters() {
   return f;
 }
 
-// kOut values at each of kBefore places, from kIn, all kAfter apart.
+// Filters and halves the middle axis: [kBefore][kWindow][kAfter] to [kBefore][4][kAfter].
 template <std::size_t kBefore, std::size_t kAfter>
 void halve(const float* from, const Halving& filter, float* to) {
   for (std::size_t b = 0; b < kBefore; ++b) {
@@ -112,7 +112,7 @@ void sort_unique(std::vector<BrickPosition>* bricks) {
   bricks->erase(std::unique(bricks->begin(), bricks->end()), bricks->end());
 }
 
-// The bricks of the next smaller depth that hold points 2 b - 2 to 2 b + 2 for a brick b: those
+// The bricks of the next coarser depth that contain points 2 b - 2 to 2 b + 2 of a brick b: those
 // that depend on it, and those that it depends on.
 std::vector<BrickPosition> coarser_bricks(const std::vector<BrickPosition>& bricks) {
   std::vector<BrickPosition> result;
@@ -129,17 +129,17 @@ std::vector<BrickPosition> coarser_bricks(const std::vector<BrickPosition>& bric
   return result;
 }
 
-// Calls make(i) for all bricks, on several threads, and then keep(i, made), in order.
+// Calls make(i) for all bricks in parallel, then keep(i, made) in order.
 template <typename Brick, typename Make, typename Keep>
 void for_bricks(std::size_t count, const Progress& progress, int threads, const Make& make,
                 const Keep& keep) {
-  constexpr std::size_t kAtOnce = 1024;
-  constexpr std::int64_t kPerTask = 32;
-  std::vector<Brick> made(std::min(count, kAtOnce));
-  for (std::size_t first = 0; first < count; first += kAtOnce) {
-    const std::size_t size = std::min(kAtOnce, count - first);
+  constexpr std::size_t kBricksPerRound = 1024;
+  constexpr std::int64_t kBricksPerTask = 32;
+  std::vector<Brick> made(std::min(count, kBricksPerRound));
+  for (std::size_t first = 0; first < count; first += kBricksPerRound) {
+    const std::size_t size = std::min(kBricksPerRound, count - first);
     progress.report(static_cast<double>(first) / static_cast<double>(count));
-    parallel_ranges(static_cast<std::int64_t>(size), kPerTask, threads, Progress(),
+    parallel_ranges(static_cast<std::int64_t>(size), kBricksPerTask, threads, Progress(),
                     [&](std::int64_t begin, std::int64_t end) {
                       for (auto i = static_cast<std::size_t>(begin);
                            i < static_cast<std::size_t>(end); ++i) {
@@ -150,7 +150,7 @@ void for_bricks(std::size_t count, const Progress& progress, int threads, const 
   }
 }
 
-// The differences around a brick of the depth before.
+// The differences around a brick of the next coarser depth.
 std::unique_ptr<DifferenceWindow> window_around(const Differences& finer, const BrickPosition& b) {
   auto window = std::make_unique<DifferenceWindow>();
   finer.window<kWindow>({8 * b[0] - 2, 8 * b[1] - 2, 8 * b[2] - 2}, window.get());
@@ -170,7 +170,7 @@ void restrict_to(const Differences& finer, const Progress& progress, int threads
       });
 }
 
-// The details in some bricks.
+// The details in the given bricks.
 Details details_in(const std::vector<BrickPosition>& bricks, const Differences& finer, int depth,
                    const Progress& progress, int threads) {
   const Filters filters = make_filters();
@@ -182,8 +182,8 @@ Details details_in(const std::vector<BrickPosition>& bricks, const Differences& 
   return details;
 }
 
-// The means of depth 0, sums of differences from where the function is 0. Six ways lead there;
-// where the surface is closed they agree. The median takes no notice of the worst.
+// The means of depth 0, as sums of differences starting outside the function's support. There are
+// six paths, which agree for closed surfaces; the median ignores the worst.
 Means first_means(const Differences& differences) {
   constexpr std::int32_t kLow0 = -4;
   constexpr std::size_t kSide = 8;
@@ -213,10 +213,10 @@ Means first_means(const Differences& differences) {
   return means;
 }
 
-// Doubles the points along one axis: [kBefore][5][kAfter] to [kBefore][4][kAfter].
+// Doubles the resolution along one axis: [kBefore][5][kAfter] to [kBefore][4][kAfter].
 template <std::size_t kBefore, std::size_t kAfter>
 void add_doubled(const float* from, bool is_high, float* to) {
-  // Of point 4 b + r by point 2 b - 2 + i, at [r + 12 - 2 i].
+  // The weight of point 2 b - 2 + i for point 4 b + r is at [r + 12 - 2 i].
   std::array<float, 16> weights{};
   for (std::size_t l = 0; l < 4; ++l) {
     weights[l + (is_high ? 6 : 8)] = static_cast<float>(is_high ? kHigh[l] : kLow[l]);
@@ -234,7 +234,7 @@ void add_doubled(const float* from, bool is_high, float* to) {
   }
 }
 
-// The means in a brick, from those and the details of the next smaller depth.
+// The means in a brick, from the means and details of the next coarser depth.
 Means::Brick means_in(const BrickPosition& b, const Means& coarser, const Details& details) {
   constexpr std::size_t kPoints = 125;
   std::array<float, kPoints> mean;
@@ -243,7 +243,7 @@ Means::Brick means_in(const BrickPosition& b, const Means& coarser, const Detail
   coarser.window<5>(low, &mean);
   details.window<5>(low, &all);
   std::copy(mean.begin(), mean.end(), all.begin());
-  std::array<float, 4 * 4 * 25> along_x{};  // of the four kinds along y and z: [z][y][x]
+  std::array<float, 4 * 4 * 25> along_x{};  // for the four combinations along y and z: [z][y][x]
   for (std::size_t e = 0; e < 8; ++e) {
     add_doubled<25, 1>(all.data() + e * kPoints, (e & 1) != 0, along_x.data() + (e >> 1) * 100);
   }
@@ -268,7 +268,7 @@ void add_sample(const Vector3& point, const std::array<float, 3>& area, Differen
     const double cell = std::floor(point[a]);
     last[a] = static_cast<std::int32_t>(cell);
     const Values values = values_at(static_cast<float>(point[a] - cell));
-    // In the order of the points, from last - 3.
+    // In the order of the points, starting at last - 3.
     for (std::size_t i = 0; i < 3; ++i) phi[a][3 - i] = values.phi[i];
     for (std::size_t i = 0; i < 4; ++i) lambda[a][3 - i] = values.lambda[i] * area[a];
   }
@@ -305,12 +305,12 @@ std::vector<Means> transform(std::vector<Differences> differences,
                              std::vector<std::vector<BrickPosition>> needed,
                              const Progress& progress, int threads) {
   const std::size_t depth = differences.size() - 1;
-  // The finest depth takes most of the time, and its details the most of that.
-  constexpr double kRestricted = 0.2;
+  // Most of the time is spent in the finest depth, and there on the details.
+  constexpr double kRestrictShare = 0.2;
   for (std::size_t k = depth; k > 0; --k) {
     const bool is_finest = k == depth;
     restrict_to(differences[k],
-                progress.part(is_finest ? 0.0 : 0.15, is_finest ? 0.15 : kRestricted), threads,
+                progress.part(is_finest ? 0.0 : 0.15, is_finest ? 0.15 : kRestrictShare), threads,
                 &differences[k - 1]);
     sort_unique(&needed[k]);
     const std::vector<BrickPosition> more = coarser_bricks(needed[k]);
@@ -321,16 +321,16 @@ std::vector<Means> transform(std::vector<Differences> differences,
   for (std::size_t k = 1; k <= depth; ++k) {
     const Means& coarser = means.back();
     Means finer(static_cast<int>(k), kShardBits);
-    // By z, some at a time: details take more memory than all else.
+    // In batches sorted by z, as details need the most memory.
     std::vector<BrickPosition>& bricks = needed[k];
     std::sort(bricks.begin(), bricks.end(), [](const BrickPosition& a, const BrickPosition& b) {
       return std::array{a[2], a[1], a[0]} < std::array{b[2], b[1], b[0]};
     });
     std::vector<BrickPosition> all = coarser_bricks(differences[k].positions());
-    const Progress part = progress.part(k < depth ? kRestricted : 0.4, k < depth ? 0.4 : 1.0);
+    const Progress part = progress.part(k < depth ? kRestrictShare : 0.4, k < depth ? 0.4 : 1.0);
     const auto count = static_cast<double>(bricks.size());
     for (std::size_t begin = 0; begin < bricks.size();) {
-      std::size_t end = std::min(begin + kBricksAtOnce, bricks.size());
+      std::size_t end = std::min(begin + kBricksPerBatch, bricks.size());
       while (end < bricks.size() && bricks[end][2] == bricks[end - 1][2]) ++end;
       const std::int32_t low = (2 * bricks[begin][2] - 2) >> 2;
       const std::int32_t high = (2 * bricks[end - 1][2] + 2) >> 2;
@@ -359,7 +359,7 @@ std::array<float, 64> function_at(const Means& means, const BrickPosition& b) {
   static const Values kHalf = values_at(0.5F);
   std::array<float, 216> window;
   means.window<6>({4 * b[0] - 2, 4 * b[1] - 2, 4 * b[2] - 2}, &window);
-  // From the point two before: phi(5/2), phi(3/2), phi(1/2).
+  // Weights of the points from two before on: phi(5/2), phi(3/2), phi(1/2).
   const std::array<float, 3> weights = {kHalf.phi[2], kHalf.phi[1], kHalf.phi[0]};
   std::array<float, 64> result{};
   std::array<float, 144> along_x{};

@@ -9,21 +9,21 @@
 
 namespace prefilter::d4 {
 
-/// The refinement of phi: l from 0 to 3.
+/// Refinement coefficients of phi, for l from 0 to 3.
 inline constexpr double kSqrt3 = 1.7320508075688772;
 inline constexpr std::array<double, 4> kLow = {(1.0 + kSqrt3) / 4.0, (3.0 + kSqrt3) / 4.0,
                                                (3.0 - kSqrt3) / 4.0, (1.0 - kSqrt3) / 4.0};
-/// That of psi, (-1)^l kLow[1 - l]: l from -2 to 1.
+/// Refinement coefficients of psi, (-1)^l kLow[1 - l], for l from -2 to 1.
 inline constexpr std::array<double, 4> kHigh = {kLow[3], -kLow[2], kLow[1], -kLow[0]};
 
-/// Values of phi and of lambda(t), the integral of phi from t - 1 to t, at the places f, f + 1, ...
-/// of one fraction f.
+/// Values of phi and of lambda(t), the integral of phi from t - 1 to t, at f, f + 1, ... for a
+/// fraction f.
 struct Values {
   std::array<float, 3> phi;
   std::array<float, 4> lambda;
 };
 
-/// The values at f, from 0 to 1: exact at multiples of 1/64, linear between.
+/// The values for f from 0 to 1: exact at multiples of 1/64, linearly interpolated in between.
 Values values_at(float f);
 
 }  // namespace prefilter::d4

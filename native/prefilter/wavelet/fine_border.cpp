@@ -8,7 +8,7 @@ namespace prefilter {
 namespace {
 
 // A cell of a tree, or within a leaf of it, and the faces of the root that it touches: bit 2 a for
-// the low one across axis a, 2 a + 1 for the high one.
+// the low face across axis a, bit 2 a + 1 for the high one.
 struct Cell {
   bool is_split;
   std::size_t block;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Octrees that are fine where their shape is cut off.
+// Refines octrees at the faces of the root.
 #pragma once
 
 #include "prefilter/base/progress.h"
@@ -8,8 +8,8 @@
 
 namespace prefilter {
 
-/// A tree in which leaves above 0 that touch a face of the root are of its finest depth. Throws
-/// Error(kCancelled).
+/// A refined tree in which nonzero leaves that touch a face of the root have the finest depth.
+/// Throws Error(kCancelled).
 CellTree with_fine_border(const CellTree& tree, const Progress& progress, int threads);
 
 }  // namespace prefilter

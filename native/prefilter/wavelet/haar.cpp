@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Synthesis: equation 3.4 evaluated cell by cell, from the root down, in the memory of the
-// coefficients.
+// Synthesis: evaluates equation 3.4 cell by cell from the root down, in place of the coefficients.
 #include "prefilter/wavelet/haar.h"
 
 #include <algorithm>
@@ -11,15 +10,16 @@
 
 namespace prefilter {
 namespace {
-constexpr float kRounding = 1e-5F;
+constexpr float kHaarRounding = 1e-5F;
 
-// Values of cells that no boundary passes through are whole numbers but for rounding.
+// Snaps values to integers within rounding errors: cells away from the boundary have integer
+// values.
 float without_rounding(float value) {
   const float whole = std::rint(value);
-  return std::abs(value - whole) <= kRounding ? whole : value;
+  return std::abs(value - whole) <= kHaarRounding ? whole : value;
 }
 
-// Of a last level all cells are clamped, and none split any more.
+// Converts coefficients to values. On the last level all cells are leaves, and clamped.
 void to_values(bool is_last, std::size_t begin, std::size_t end, TreeLevel* level) {
   for (std::size_t b = begin; b < end; ++b) {
     OctantValues& values = level->blocks[b];
@@ -54,7 +54,7 @@ CellTree synthesise(HaarTree coefficients, int depth, const Progress& progress, 
     tree.root = std::clamp(tree.root, 0.0F, 1.0F);
     return tree;
   }
-  // The means take one step more.
+  // One more step is for the means.
   const auto count = static_cast<double>(tree.levels.size() + 1);
   tree.levels.front().blocks.front()[0] = tree.root;
   for (std::size_t k = 0; k < tree.levels.size(); ++k) {

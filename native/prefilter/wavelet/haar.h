@@ -2,11 +2,11 @@
 
 // The Haar basis on an octree (sections 3.2 and 3.2.3).
 //
-// On a cell, in coordinates that make it the unit cube, the wavelet e = ex + 2 ey + 4 ez is the
-// product over the axes in e of psi (1 on the lower half, -1 on the upper one). Without the factor
-// 2^(3j/2) of equation 3.4 the coefficient of f is the mean of f times the wavelet over the cell,
-// and an octant's mean is the cell's plus the sum of the seven coefficients, each with the sign of
-// its wavelet there: a Walsh-Hadamard transform of eight numbers.
+// On a cell, in coordinates of the unit cube, the wavelet e = ex + 2 ey + 4 ez is the product over
+// the axes in e of psi (1 on the lower half, -1 on the upper one). Without the factor 2^(3j/2) of
+// equation 3.4, the coefficient of f is the mean of f times the wavelet over the cell. The mean of
+// an octant is the cell's plus the sum of the seven coefficients with the signs of their wavelets
+// there: a Walsh-Hadamard transform of eight numbers.
 #pragma once
 
 #include "prefilter/base/progress.h"
@@ -14,8 +14,8 @@
 
 namespace prefilter {
 
-/// In place: v[o] becomes the sum over e of v[e], negated where e and o share an odd number of
-/// bits. Twice in a row multiplies by eight.
+/// In-place Walsh-Hadamard transform: v[o] becomes the sum over e of v[e], negated if e and o share
+/// an odd number of bits. Applying it twice multiplies by eight.
 inline void hadamard(OctantValues* values) {
   OctantValues& v = *values;
   for (const int step : {1, 2, 4}) {
@@ -29,18 +29,18 @@ inline void hadamard(OctantValues* values) {
   }
 }
 
-/// Haar coefficients of an indicator function, where its boundary is.
+/// Haar coefficients of an indicator function, near its boundary.
 struct HaarTree {
   double mean = 0.0;  // over the root
-  // Blocks hold the coefficients of the cell that they split: [e] that of wavelet e; [0] is unused.
-  // On the last level the bits of `split` tell the cells that the boundary passes through.
+  // A block contains the coefficients of the cell that it divides: [e] for wavelet e; [0] is
+  // unused. On the last level the bits of `split` mark cells with some boundary.
   std::vector<TreeLevel> levels;
 };
 
-/// The cell means of an indicator function, from its coefficients down to `depth` (-1: all of
-/// them). Cells that the boundary does not pass through hold 0 or 1 for closed surfaces; there,
-/// rounding within 1e-5 is taken back. Where surfaces overlap or are inside out, the sum of their
-/// winding numbers is not 0 or 1: values are clamped to [0, 1], so that overlaps count once.
+/// Computes the cell means of an indicator function from its coefficients, down to `depth` (-1:
+/// all). For closed surfaces, cells without boundary have the exact value 0 or 1, as rounding
+/// errors up to 1e-5 are removed. Where surfaces overlap or are inverted, the winding number
+/// differs from 0 and 1; values are clamped to [0, 1], so that overlaps count once.
 CellTree synthesise(HaarTree coefficients, int depth, const Progress& progress, int threads);
 
 }  // namespace prefilter

@@ -11,23 +11,23 @@
 namespace prefilter {
 namespace {
 
-// The gradient of a half-space is about 1/2; this is no surface.
-constexpr double kLeastGradient = 0.2;
-// What is nearer to full or empty than this is.
-constexpr double kNearlyWhole = 1e-5;
-// Rises below this are none: what they change is as small.
-constexpr double kFlat = 1e-6;
-constexpr int kMostSteps = 40;
-constexpr double kPrecision = 1e-9;
+// Below this gradient there is no surface; at a half-space it is about 1/2.
+constexpr double kMinGradient = 0.2;
+// Occupancies this close to 0 or 1 are empty or full.
+constexpr double kWholeTolerance = 1e-5;
+// Rises below this are ignored; their effect is as small.
+constexpr double kMinRise = 1e-6;
+constexpr int kMaxHeightSteps = 40;
+constexpr double kHeightTolerance = 1e-9;
 
-// The mean, over the unit square, of what of a plane is above 0, and its derivative with respect to
-// the height: the share of the square over which the plane is above 0.
+// Mean over the unit square of a plane's positive part, and its derivative by the height: the
+// fraction of the square where the plane is positive.
 struct Above {
   double mean;
   double share;
 };
 
-// A plane of this height in the middle, which rises by `a` and `b` from side to side.
+// For a plane with this height at the center, which rises by `a` and `b` from side to side.
 Above above(double height, double a, double b) {
   a = std::abs(a);
   b = std::abs(b);
@@ -35,8 +35,8 @@ Above above(double height, double a, double b) {
   const double top = (a + b) / 2.0;
   if (height >= top) return {height, 1.0};
   if (height <= -top) return {0.0, 0.0};
-  if (a < kFlat) return {std::max(height, 0.0), height > 0.0 ? 1.0 : 0.0};
-  if (b < kFlat) {
+  if (a < kMinRise) return {std::max(height, 0.0), height > 0.0 ? 1.0 : 0.0};
+  if (b < kMinRise) {
     const double reach = height + a / 2.0;
     return {std::max(reach, 0.0) * reach / (2.0 * a), std::clamp(reach / a, 0.0, 1.0)};
   }
@@ -174,7 +174,7 @@ void LeafSurface::fit_height(double occupancy, int parts) {
     }
   }
   double at = std::clamp(height_, low, high);
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxHeightSteps; ++step) {
     Above sum{0.0, 0.0};
     for (const Patch& over : patches) {
       const double height = over.height - height_ + at;
@@ -184,7 +184,7 @@ void LeafSurface::fit_height(double occupancy, int parts) {
       sum.share += of_bottom.share - of_top.share;
     }
     const double excess = sum.mean * unit * unit - occupancy;
-    if (std::abs(excess) < kPrecision) break;
+    if (std::abs(excess) < kHeightTolerance) break;
     (excess > 0.0 ? high : low) = at;
     const double next = at - excess / (sum.share * unit * unit);
     at = next > low && next < high ? next : (low + high) / 2.0;
@@ -205,8 +205,8 @@ std::optional<LeafSurface> LeafSurface::find(const CellTree& tree, int depth, co
         const auto value =
             static_cast<double>(occupancy_at(tree, depth, {at[0] + x, at[1] + y, at[2] + z}));
         const double weight = std::ldexp(1.0, 1 - steps) / 8.0 * value;
-        touches_full = touches_full || value >= 1.0 - kNearlyWhole;
-        touches_empty = touches_empty || value <= kNearlyWhole;
+        touches_full = touches_full || value >= 1.0 - kWholeTolerance;
+        touches_empty = touches_empty || value <= kWholeTolerance;
         gradient = gradient + Vector3{x * weight, y * weight, z * weight};
       }
     }
@@ -216,9 +216,9 @@ std::optional<LeafSurface> LeafSurface::find(const CellTree& tree, int depth, co
     if (std::abs(gradient[a]) > std::abs(gradient[surface.axis_])) surface.axis_ = a;
   }
   const double steepest = gradient[surface.axis_];
-  if (std::sqrt(dot(gradient, gradient)) < kLeastGradient) return std::nullopt;
-  // A plane through a cell leaves the neighbors on its two sides full and empty. Where none is,
-  // the occupancy fades over many cells, as winding numbers do across the holes of a mesh.
+  if (std::sqrt(dot(gradient, gradient)) < kMinGradient) return std::nullopt;
+  // A plane through a cell leaves neighbors on both sides full and empty. If not, the occupancy
+  // fades over many cells, as winding numbers do across holes of a mesh.
   if (!touches_full || !touches_empty) return std::nullopt;
   surface.is_up_ = steepest < 0.0;
   if (!surface.has_heights(tree, depth, at)) {

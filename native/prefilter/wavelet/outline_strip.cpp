@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Section 3.2.2, with every curve cut once, along the finest cells.
+// Section 3.2.2; every curve is cut only once, along the finest cells.
 #include "prefilter/wavelet/outline_strip.h"
 
 #include <algorithm>
@@ -13,12 +13,12 @@
 namespace prefilter {
 namespace {
 
-constexpr int kCells = kPlaneBrickSide * kPlaneBrickSide;
+constexpr int kBrickCells = kPlaneBrickSide * kPlaneBrickSide;
 
-// The bits of a number below 8, with a gap after each.
-constexpr std::array<std::uint8_t, kPlaneBrickSide> kSpread = {0, 1, 4, 5, 16, 17, 20, 21};
+// Inserts a zero after each bit of a number below 8.
+constexpr std::array<std::uint8_t, kPlaneBrickSide> kSpreadBits = {0, 1, 4, 5, 16, 17, 20, 21};
 
-// To the nearest multiple of 2^-26; magnitudes are below 2^25.
+// Rounds to the nearest multiple of 2^-26; magnitudes must be below 2^25.
 double rounded(double value) {
   constexpr double kMagic = 1.5 * (1 << 26);
   return (value + kMagic) - kMagic;
@@ -26,7 +26,7 @@ double rounded(double value) {
 
 Point2 rounded(const Point2& point) { return {rounded(point.x), rounded(point.y)}; }
 
-// The cell that is entered at a coordinate, and the one in which it is reached.
+// The cell that a curve enters at a coordinate, in its direction.
 int first_cell(double value, bool rises) {
   return static_cast<int>(rises ? std::floor(value) : std::ceil(value) - 1.0);
 }
@@ -41,23 +41,23 @@ double three_point_integral(const ParametricCurve& curve, double t_begin, double
                  5.0 / 9.0 * (at(middle - kOutermost * half) + at(middle + kOutermost * half)));
 }
 
-// By halves, until these no longer differ from the whole.
+// Bisects adaptively, until the halves agree with the whole.
 double halved_integral(const ParametricCurve& curve, double t_begin, double t_end, double column,
                        double whole, int halvings) {
-  constexpr double kMostDifference = 1e-9;
+  constexpr double kMaxHalvingDifference = 1e-9;
   const double middle = 0.5 * (t_begin + t_end);
   const double low = three_point_integral(curve, t_begin, middle, column);
   const double high = three_point_integral(curve, middle, t_end, column);
-  if (halvings == 0 || std::abs(low + high - whole) < kMostDifference) return low + high;
+  if (halvings == 0 || std::abs(low + high - whole) < kMaxHalvingDifference) return low + high;
   return halved_integral(curve, t_begin, middle, column, low, halvings - 1) +
          halved_integral(curve, middle, t_end, column, high, halvings - 1);
 }
 
 // The integral of (x - column) dy.
 double integral_along(const ParametricCurve& curve, double t_begin, double t_end, double column) {
-  constexpr int kMostHalvings = 12;
+  constexpr int kMaxHalvings = 12;
   const double whole = three_point_integral(curve, t_begin, t_end, column);
-  return halved_integral(curve, t_begin, t_end, column, whole, kMostHalvings);
+  return halved_integral(curve, t_begin, t_end, column, whole, kMaxHalvings);
 }
 
 template <bool kIsCubic>
@@ -73,13 +73,13 @@ DoublePair value_of(const std::array<double, 6>& area, DoublePair s) {
   return s * (area[0] + s * (area[1] + s * (area[2] + s * sum)));
 }
 
-// Whether polynomials over parts of a curve are exact enough: its points are not so far away that
-// what is near is a small difference of theirs.
+// Whether polynomials over pieces of a curve are exact enough: distant control points would cause
+// cancellation.
 bool has_near_polynomials(const ParametricCurve& curve) {
-  constexpr double kFarthest = 1 << 20;
+  constexpr double kMaxNearCoefficient = 1 << 20;
   if (curve.kind != CurveKind::kQuadratic && curve.kind != CurveKind::kCubic) return false;
   return std::all_of(curve.powers.begin(), curve.powers.end(), [](const Point2& power) {
-    return std::abs(power.x) < kFarthest && std::abs(power.y) < kFarthest;
+    return std::abs(power.x) < kMaxNearCoefficient && std::abs(power.y) < kMaxNearCoefficient;
   });
 }
 
@@ -87,10 +87,10 @@ double between(double value, double a, double b) {
   return std::clamp(value, std::min(a, b), std::max(a, b));
 }
 
-// Adds the flux of an arc between points in the coordinates of its cell, by its integral of x dy.
+// Adds the flux of an arc between points in cell coordinates, given its integral of x dy.
 void add_arc(const Point2& a, const Point2& b, double integral, double sign, PlaneFlux* flux) {
   const auto [moment_x, b_product] = rounded(Point2{integral, b.x * b.y});
-  // That of y dx is what is left of the change of x y.
+  // The integral of y dx is the change of x y minus that of x dy.
   const double moment_y = moment_x - (b_product - rounded(a.x * a.y));
   flux->area_x += sign * (b.y - a.y);
   flux->area_y += sign * (a.x - b.x);
@@ -98,7 +98,7 @@ void add_arc(const Point2& a, const Point2& b, double integral, double sign, Pla
   flux->moment_y += sign * moment_y;
 }
 
-// `touched`: bit i of the i-th of the finer ones.
+// Bit i of `touched` marks the i-th finer flux.
 template <std::size_t N>
 void nest(const PlaneFlux* finer, std::uint64_t touched, std::array<PlaneFlux, N>* fluxes,
           QuadrantSteps<float>* steps) {
@@ -144,7 +144,7 @@ inline PlaneFlux& OutlineStrip::cell(int column, int row) {
       slots_[static_cast<std::size_t>(y - (first_row_ >> kPlaneBrickDepth)) * bricks_across_ + x];
   if (slot < 0) slot = new_brick(x, y);
   constexpr int kMask = kPlaneBrickSide - 1;
-  return pool_[slot].cells[kSpread[column & kMask] | (kSpread[row & kMask] << 1)];
+  return pool_[slot].cells[kSpreadBits[column & kMask] | (kSpreadBits[row & kMask] << 1)];
 }
 
 inline void OutlineStrip::add_chord(int column, int row, Point2 begin, Point2 end, double sign) {
@@ -160,7 +160,7 @@ StripBricks OutlineStrip::take() {
   for (std::size_t i = 0; i < places_.size(); ++i) {
     const auto& cells = pool_[i].cells;
     std::uint64_t touched = 0;
-    for (int c = 0; c < kCells; ++c) {
+    for (int c = 0; c < kBrickCells; ++c) {
       touched |= static_cast<std::uint64_t>(!cells[c].is_zero()) << c;
     }
     const std::size_t slot =
@@ -194,23 +194,24 @@ bool OutlineStrip::is_inside(const Point2& a, const Point2& b) const {
          (y_low < y_high || y_low > first_row_ || first_row_ == 0);
 }
 
-// Cuts a piece where it passes the grid's sides and the strip's. pass(axis, value) is the parameter
-// and the other coordinate of where it does; inside(begin, t_begin, end, t_end) takes what is left.
+// Cuts a piece at the sides of the grid and of the strip. pass(axis, value) returns the parameter
+// and the other coordinate of a crossing; inside(begin, t_begin, end, t_end) receives the parts
+// inside.
 template <typename Pass, typename Inside>
 void OutlineStrip::clip(const MonotoneCurve& piece, double sign, const Pass& pass,
                         const Inside& inside) {
-  struct Place {
+  struct Crossing {
     double t;
     Point2 point;
   };
-  std::array<Place, 6> places;
+  std::array<Crossing, 6> places;
   int count = 0;
-  const auto add_place = [&](double t, const Point2& point) {
+  const auto add_crossing = [&](double t, const Point2& point) {
     int i = count++;
     for (; i > 0 && places[i - 1].t > t; --i) places[i] = places[i - 1];
     places[i] = {t, point};
   };
-  add_place(piece.t_begin, piece.begin);
+  add_crossing(piece.t_begin, piece.begin);
   const auto passes = [](double a, double b, double value) {
     return (a < value && value < b) || (b < value && value < a);
   };
@@ -219,17 +220,17 @@ void OutlineStrip::clip(const MonotoneCurve& piece, double sign, const Pass& pas
   for (const double x : sides_x) {
     if (!passes(piece.begin.x, piece.end.x, x)) continue;
     const auto [t, y] = pass(0, x);
-    add_place(t, {x, y});
+    add_crossing(t, {x, y});
   }
   for (const double y : sides_y) {
     if (!passes(piece.begin.y, piece.end.y, y)) continue;
     const auto [t, x] = pass(1, y);
-    add_place(t, {x, y});
+    add_crossing(t, {x, y});
   }
   places[count++] = {piece.t_end, piece.end};
   for (int i = 0; i + 1 < count; ++i) {
-    const Place& a = places[i];
-    const Place& b = places[i + 1];
+    const Crossing& a = places[i];
+    const Crossing& b = places[i + 1];
     if (is_inside(a.point, b.point)) {
       inside(a.point, a.t, b.point, b.t);
     } else {
@@ -238,8 +239,8 @@ void OutlineStrip::clip(const MonotoneCurve& piece, double sign, const Pass& pas
   }
 }
 
-// A part that is outside, moved to the sides of the grid. On those of the root it has no part in
-// any cell's coefficients, only in the root's mean.
+// Adds a part outside the grid, moved to its sides. On the root's sides it affects no coefficient
+// except the root's mean.
 void OutlineStrip::add_at_sides(const Point2& a, const Point2& b, double sign) {
   const bool is_lowest = first_row_ == 0;
   const bool is_highest = end_row_ == grid_.height;
@@ -322,7 +323,7 @@ void OutlineStrip::add_inner_line(const Point2& begin_, const Point2& end_, doub
   const Point2 end = rounded(end_);
   const bool x_rises = end.x > begin.x;
   const bool y_rises = end.y > begin.y;
-  // Where a line begins or ends on a side of the grid, it is in the cell within.
+  // End points on a side of the grid belong to the cell inside.
   const auto column_of = [&](int column) { return std::clamp(column, 0, grid_.width - 1); };
   const auto row_of = [&](int row) { return std::clamp(row, first_row_, end_row_ - 1); };
   int column = column_of(first_cell(begin.x, x_rises));
@@ -370,7 +371,7 @@ template <bool kIsCubic>
 void OutlineStrip::Passes::find(const MonotonePolynomials& piece, int axis, int first, int step,
                                 int count_) {
   count = count_;
-  const auto room = static_cast<std::size_t>(count + 1);  // two at a time
+  const auto room = static_cast<std::size_t>(count + 1);  // evaluated in pairs
   if (s.size() < room) {
     s.resize(room);
     other.resize(room);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Outlines cut along the finest cells of a strip of rows, and their fluxes summed up to bricks.
+// Cuts outlines along the finest cells of a strip of rows, and sums their fluxes per brick.
 #pragma once
 
 #include <array>
@@ -16,68 +16,68 @@ namespace prefilter {
 inline constexpr int kPlaneBrickDepth = 3;
 inline constexpr int kPlaneBrickSide = 1 << kPlaneBrickDepth;
 
-/// The cells that count: [0, width) x [0, height) of the root, a square of 2^depth cells a side.
+/// The cells of interest, [0, width) x [0, height) of the root, a square of 2^depth cells per side.
 struct PlaneGrid {
   static constexpr int kMostDepth = 24;
 
   PlaneGrid() = default;
-  /// Width and height from 1 to 2^kMostDepth.
+  /// Width and height are from 1 to 2^kMostDepth.
   PlaneGrid(int width_, int height_);
 
   int width = 1;
   int height = 1;
-  int depth = kPlaneBrickDepth;  // at least that
+  int depth = kPlaneBrickDepth;  // at least
 };
 
-/// The coefficients within a brick of cells that curves pass through.
+/// The coefficients in a brick of cells that curves pass through.
 struct PlaneBrick {
-  /// Of which the brick's low corner is (x, y) times the side of a brick.
+  /// The brick's low corner, in bricks.
   int x = 0;
   int y = 0;
-  /// Bit i: curves leave something in the i-th cell along the Morton curve.
+  /// Bit i: curves affect the i-th cell in Morton order.
   std::uint64_t touched = 0;
-  /// Of the brick, of its 4 quadrants, and of their 16, along the Morton curve.
+  /// Coefficients of the brick, its 4 quadrants, and their 16 quadrants, in Morton order.
   std::array<QuadrantSteps<float>, 21> steps;
 };
 
-/// What the curves in a strip leave: bricks in no set order, with their fluxes.
+/// The result for a strip: bricks in unspecified order, and their fluxes.
 struct StripBricks {
   std::vector<PlaneBrick> bricks;
   std::vector<PlaneFlux> fluxes;
-  /// Of what is outside of the grid and was moved to the root's sides, in coordinates of cells.
+  /// Flux of the parts outside the grid, moved to the root's sides, in cell coordinates.
   PlaneFlux at_sides;
 };
 
-/// Takes curves that lie where they may; those parts that are outside of the grid are moved to its
-/// nearest points, by which no winding number in it changes.
+/// Accumulates curves at arbitrary positions. Parts outside the grid are moved to its nearest
+/// points, which does not change winding numbers inside.
 ///
-/// Coordinates are rounded to 2^-26 of a cell, and the integrals of an arc too, so that sums are
-/// exact whatever their order, and closed contours leave exactly nothing where they do not pass.
+/// Coordinates, and the integrals of arcs, are rounded to 2^-26 of a cell. So sums are exact in any
+/// order, and closed contours contribute exactly 0 to cells that they do not pass.
 class OutlineStrip {
  public:
-  /// For the rows [first_row, end_row) of the grid, both multiples of a brick's side unless the
-  /// grid ends there.
+  /// Starts rows [first_row, end_row) of the grid, both multiples of a brick's side unless the grid
+  /// ends there.
   void begin(const PlaneGrid& grid, int first_row, int end_row);
 
-  /// Adds a curve in coordinates of cells; the region on its left counts `sign` times.
+  /// Adds a curve in cell coordinates; the region on its left counts `sign` times.
   void add(const MonotoneCurve& piece, double sign);
   void add_line(const Point2& begin, const Point2& end, double sign);
 
-  /// What has been added since it began or was last asked.
+  /// Returns the result since the beginning or the last call.
   StripBricks take();
 
  private:
   struct CellBrick {
-    std::array<PlaneFlux, kPlaneBrickSide * kPlaneBrickSide> cells;  // along the Morton curve
+    std::array<PlaneFlux, kPlaneBrickSide * kPlaneBrickSide> cells;  // in Morton order
   };
   struct BrickPlace {
     int x = 0;
     int y = 0;
   };
-  // Where a piece passes lines of the grid along one axis, in its order.
-  struct Passes {
+  // The crossings of a piece with grid lines along one axis, in order.
+  struct Crossings {
     std::vector<double> s;
-    std::vector<double> other;  // the coordinate along the other axis
+    std::vector<double> other;  // coordinate along the other axis
     std::vector<double> area;
     int count = 0;
 
@@ -101,12 +101,12 @@ class OutlineStrip {
   int first_row_ = 0;
   int end_row_ = 0;
   int bricks_across_ = 0;
-  std::vector<std::int32_t> slots_;  // of each brick of the strip: its place in pool_, or -1
+  std::vector<std::int32_t> slots_;  // per brick of the strip: its index in pool_, or -1
   std::vector<CellBrick> pool_;
   std::vector<BrickPlace> places_;
   PlaneFlux at_sides_;
-  Passes columns_;
-  Passes rows_;
+  Crossings columns_;
+  Crossings rows_;
 };
 
 }  // namespace prefilter

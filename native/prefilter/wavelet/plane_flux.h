@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What a cell of the plane has to know of the curves in it, to give the Haar coefficients of the
-// shape that they bound: four numbers, which nest as those of a surface do (boundary_flux.h).
+// Curve integrals of a cell in the plane, from which the Haar coefficients of the enclosed shape
+// are computed: four numbers, which nest like those of a surface (boundary_flux.h).
 //
-// As there, the wavelet along both axes takes the mean of the two choices of F that have compact
-// support: alpha = 1/2 in section 3.2.2.
+// As there, the wavelet along both axes uses the mean of the two compactly supported F: alpha = 1/2
+// in section 3.2.2.
 #pragma once
 
 #include <array>
@@ -12,13 +12,13 @@
 
 namespace prefilter {
 
-/// Integrals along the curves within a cell, in coordinates that make it the unit square. Outward
-/// normals lie to the right, so ds n is (dy, -dx).
+/// Integrals along the curves within a cell, in coordinates of the unit square. The outward normal
+/// is on the right, so ds n is (dy, -dx).
 struct alignas(32) PlaneFlux {
-  double area_x = 0.0;    // of dy
-  double area_y = 0.0;    // of -dx
-  double moment_x = 0.0;  // of x dy
-  double moment_y = 0.0;  // of -y dx
+  double area_x = 0.0;    // integral of dy
+  double area_y = 0.0;    // integral of -dx
+  double moment_x = 0.0;  // integral of x dy
+  double moment_y = 0.0;  // integral of -y dx
 
   PlaneFlux& operator+=(const PlaneFlux& other) {
     area_x += other.area_x;
@@ -32,10 +32,10 @@ struct alignas(32) PlaneFlux {
   }
 };
 
-/// The quadrants of a cell: bit 0 of a number is the half along x, bit 1 along y.
+/// Fluxes of the quadrants of a cell: bit 0 of the index is the half along x, bit 1 along y.
 using QuadrantFluxes = std::array<PlaneFlux, 4>;
 
-/// The flux of a cell whose quadrants have these.
+/// Flux of a cell from the fluxes of its quadrants.
 inline PlaneFlux flux_of_quadrants(const QuadrantFluxes& q) {
   PlaneFlux sum;
   sum.area_x = (q[0].area_x + q[1].area_x + q[2].area_x + q[3].area_x) * 0.5;
@@ -49,12 +49,12 @@ inline PlaneFlux flux_of_quadrants(const QuadrantFluxes& q) {
   return sum;
 }
 
-/// What the means of the quadrants differ by from that of their cell.
+/// Haar coefficients of a cell: differences of its quadrants' means from its own.
 template <typename T>
 struct QuadrantSteps {
-  T along_x{};  // c^(1,0): added on the lower half along x, taken away on the upper one
+  T along_x{};  // c^(1,0): added on the lower half along x, subtracted on the upper
   T along_y{};  // c^(0,1)
-  T across{};   // c^(1,1): added where both halves are lower or both upper
+  T across{};   // c^(1,1): added if both halves are lower or both upper, else subtracted
 
   std::array<T, 4> values(T mean) const {
     const T low = mean + along_y;
@@ -64,10 +64,10 @@ struct QuadrantSteps {
   }
 };
 
-/// The coefficients of a cell whose quadrants have these.
+/// The coefficients of a cell from the fluxes of its quadrants.
 template <typename T>
 QuadrantSteps<T> steps_of_quadrants(const QuadrantFluxes& q) {
-  // The flux of Psi, which is p on the lower half and 1 - p on the upper one.
+  // Flux of Psi, which is p on the lower half and 1 - p on the upper half.
   const double low_row = q[0].moment_x + (q[1].area_x - q[1].moment_x);
   const double high_row = q[2].moment_x + (q[3].area_x - q[3].moment_x);
   const double low_column = q[0].moment_y + (q[2].area_y - q[2].moment_y);

@@ -8,9 +8,9 @@
 namespace prefilter {
 namespace {
 
-// The mean over the root from what the curves in it have and from what is at its sides: as the
-// field of a mean has no compact support, along either axis and from either side, of which the
-// middle two count. For closed outlines all are the same.
+// The mean over the root, from the curves in it and at its sides. The field of a mean has no
+// compact support, so there are four estimates: along either axis, from either side. The mean of
+// the middle two is used; for closed outlines all agree.
 double root_mean(const PlaneFlux& root, const PlaneFlux& at_sides, double side) {
   const double area_x = root.area_x + at_sides.area_x / side;
   const double area_y = root.area_y + at_sides.area_y / side;
@@ -21,7 +21,7 @@ double root_mean(const PlaneFlux& root, const PlaneFlux& at_sides, double side) 
   return 0.5 * (estimates[1] + estimates[2]);
 }
 
-// Places in a level by their coordinates, within the box that some cells have.
+// Maps coordinates in the bounding box of some cells to their index.
 class PlaceTable {
  public:
   PlaceTable(int low_x, int low_y, int end_x, int end_y)
@@ -39,7 +39,7 @@ class PlaceTable {
   std::vector<std::int32_t> places_;
 };
 
-// The bricks of all strips, one after the other; the strips are emptied.
+// Concatenates the bricks of all strips, which are emptied.
 StripBricks joined(std::span<StripBricks> strips) {
   if (strips.size() == 1) return std::move(strips[0]);
   StripBricks all;
@@ -56,8 +56,8 @@ StripBricks joined(std::span<StripBricks> strips) {
   return all;
 }
 
-// The parents of cells, in the order in which their first children come. Each of `children` has a
-// place x, y; flux_of(i) tells its flux.
+// The parents of cells, in the order of their first children. Elements of `children` have
+// coordinates x, y; flux_of(i) is the flux of child i.
 template <typename Node, typename Child, typename FluxOf>
 std::vector<Node> parents_of(const std::vector<Child>& children, const FluxOf& flux_of) {
   int low_x = children[0].x;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The Haar basis on a quadtree (sections 3.2 and 3.2.2), and what outlines have in it.
+// The Haar basis on a quadtree (sections 3.2 and 3.2.2), and the coefficients of outlines.
 //
-// As on the octree (haar.h), without the factor 2^j: the coefficient of a cell is the mean of the
-// function times the wavelet over it.
+// As on the octree (haar.h), the factor 2^j is omitted: the coefficient of a cell is the mean of
+// the function times the wavelet over it.
 #pragma once
 
 #include <algorithm>
@@ -18,23 +18,23 @@
 
 namespace prefilter {
 
-/// The coefficients of the winding number of outlines, where these pass. A gap of length L in them
-/// changes the mean of a cell by at most 1.07 L / s for each of the cells of side s that hold both,
-/// and that of the root, of side S, by at most L / S.
+/// The coefficients of the winding number of outlines. A gap of length L changes the mean of a cell
+/// by at most 1.07 L / s for each of the cells of side s that contain both, and the mean of the
+/// root, of side S, by at most L / S.
 class PlaneHaar {
  public:
   PlaneHaar() = default;
-  /// Of all strips of a grid; they are taken.
+  /// Takes the results of all strips of a grid.
   PlaneHaar(const PlaneGrid& grid, std::span<StripBricks> strips);
 
-  /// Synthesis (equation 3.3) down to cells of side 2^cell_depth, of the rows [first_row, end_row):
-  /// multiples of a brick's side, unless the grid ends there. Calls run(row, begin, end, value) for
-  /// cells of a row of one value, and block(x, y, values) for bricks, with 8 values a row; x, y
-  /// are multiples of 8, and what is not within the grid's columns and the rows is to be left out.
-  /// Each cell is in just one of these.
+  /// Synthesis (equation 3.3) down to cells of side 2^cell_depth, for rows [first_row, end_row),
+  /// which are multiples of a brick's side unless the grid ends there. Calls run(row, begin, end,
+  /// value) for cells of a row with the same value, and block(x, y, values) for bricks, with 8
+  /// values per row; x and y are multiples of 8, and the block may extend beyond the grid's columns
+  /// and the rows. Each cell is in exactly one of these.
   ///
-  /// Where no curve passes values are whole for closed outlines; rounding within 1e-5 is taken
-  /// back.
+  /// For closed outlines values away from the curves are integers; rounding errors up to 1e-5 are
+  /// removed.
   template <typename Run, typename Block>
   void synthesise(int cell_depth, int first_row, int end_row, const Run& run,
                   const Block& block) const;
@@ -48,7 +48,7 @@ class PlaneHaar {
     int x = 0;
     int y = 0;
     QuadrantFluxes fluxes{};
-    // Of each quadrant, the place on the next level, or in bricks_; -1 where no curve passes.
+    // For each quadrant, its index on the next level or in bricks_; -1 without curves.
     std::array<std::int32_t, 4> next{-1, -1, -1, -1};
   };
 
@@ -74,7 +74,7 @@ class PlaneHaar {
 
   PlaneGrid grid_;
   double mean_ = 0.0;  // over the root
-  // levels_[k]: of 2^k along an axis; the children of the last are bricks.
+  // levels_[k]: cells of depth k; the children of the last level are bricks.
   std::vector<std::vector<Node>> levels_;
   std::vector<PlaneBrick> bricks_;
 };
@@ -91,7 +91,7 @@ void PlaneHaar::Walk<Run, Block>::fill(int level, int x, int y, double mean) con
   }
 }
 
-// A cell of a level, within the rows that are wanted.
+// Visits a cell of a level within the requested rows.
 template <typename Run, typename Block>
 void PlaneHaar::Walk<Run, Block>::visit(int level, int x, int y, int place, double mean) const {
   const int depth = tree.grid_.depth - level;

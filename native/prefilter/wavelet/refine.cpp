@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// In two passes: leaves that are neither full nor empty are split along their surfaces; then those
-// that touch what is on the other side of a surface, as full ones beside empty ones do.
+// Two passes: the first splits partly full leaves along their surfaces; the second splits leaves
+// adjacent to the other side of a surface, such as full leaves beside empty ones.
 #include "prefilter/wavelet/refine.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 namespace prefilter {
 namespace {
 
-// Of a cell within a leaf that the surface meets.
+// Value of a cell within a leaf that the surface intersects.
 constexpr float kMixed = 0.5F;
 
 // A cell of a tree, or within a leaf.
@@ -43,7 +43,8 @@ class SurfaceRule {
  public:
   struct Part {
     Cell cell;
-    // Within a leaf with a surface: that, and the place among the leaf's cells of this depth.
+    // Within a leaf with a surface: the surface, and the position among the leaf's cells of this
+    // depth.
     std::optional<LeafSurface> surface;
     int leaf_depth;
     LeafPlace within;
@@ -92,7 +93,7 @@ class SurfaceRule {
   int depth_;
 };
 
-// What leaves above the finest depth hold, as bits.
+// Bits for the contents of leaves above the finest depth.
 constexpr std::uint8_t kEmpty = 1;
 constexpr std::uint8_t kFull = 2;
 constexpr std::uint8_t kPartlyFull = 4;
@@ -102,7 +103,7 @@ std::uint8_t content_of(float value) {
   return value >= 1.0F ? kFull : kPartlyFull;
 }
 
-// Of all blocks: the contents of leaves coarser than a depth in them.
+// For each block: the contents of its leaves coarser than a depth.
 std::vector<std::vector<std::uint8_t>> coarse_contents(const CellTree& tree, int depth) {
   std::vector<std::vector<std::uint8_t>> contents(tree.levels.size());
   for (std::size_t k = tree.levels.size(); k-- > 0;) {
@@ -123,7 +124,7 @@ std::vector<std::vector<std::uint8_t>> coarse_contents(const CellTree& tree, int
   return contents;
 }
 
-// Splits leaves coarser than a depth where they touch, across a face, what is on the other side.
+// Splits leaves coarser than a depth that share a face with the other side of a surface.
 class SideRule {
  public:
   struct Node {
@@ -135,7 +136,7 @@ class SideRule {
   };
   struct Part {
     Node node;
-    std::array<Node, 6> neighbors;  // 2 a is that across axis a at its low side
+    std::array<Node, 6> neighbors;  // 2 a: across axis a at its low side; 2 a + 1: at its high side
   };
 
   SideRule(const CellTree& tree, int depth)
@@ -178,7 +179,7 @@ class SideRule {
     return node.depth < depth_ ? content_of(node.value) : std::uint8_t{0};
   }
 
-  // A leaf is its own octants.
+  // The octants of a leaf are copies of the leaf.
   Node octant_of(const Node& node, int o) const {
     if (!node.is_split) return node;
     const auto k = static_cast<std::size_t>(node.depth);
@@ -196,8 +197,8 @@ class SideRule {
     return result;
   }
 
-  // Between full and empty leaves the surface is between cells of the finer one, if that is as fine
-  // as it has to be.
+  // Between a full and an empty leaf the surface is exactly at the face of the finer one, which
+  // suffices if that has the required depth.
   bool is_beside_other(const Node& leaf, const Node& neighbor, int face) const {
     const bool is_uniform = !is_fraction(leaf.value);
     if (neighbor.is_split) {
@@ -206,7 +207,7 @@ class SideRule {
       }
       const int axis = face / 2;
       for (int o = 0; o < 8; ++o) {
-        // Those at the face.
+        // Octants at the face only.
         if (((o >> axis) & 1) == (face & 1)) continue;
         if (is_beside_other(leaf, octant_of(neighbor, o), face)) return true;
       }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The one coefficient whose field has no compact support: the mean over the root.
+// The mean over the root, the only coefficient whose field has no compact support.
 #pragma once
 
 #include <array>
@@ -10,18 +10,19 @@
 
 namespace prefilter {
 
-/// The mean of an indicator function over the root, the unit cube, from its boundary.
+/// Computes the mean of an indicator function over the root, the unit cube, from its boundary.
 ///
-/// The printed c^(0,0,0) is the volume of the whole shape, and it is off by a hole's area times its
-/// distance from the origin. Here the field is clamped instead: the flux of (p_a clamped to [0,
-/// 1]), or of that less 1, along the axis a through the boundary in the column of the root. These
-/// are six estimates, all the same for a closed surface. A hole harms those along which it is seen;
-/// the median takes no notice of the worst of them.
+/// The printed c^(0,0,0) is the volume of the whole shape. Its error for a hole is the hole's area
+/// times its distance from the origin. Here the field is clamped instead: the flux of p_a clamped
+/// to [0, 1], or of that minus 1, along axis a through the boundary in the root's column. These are
+/// six estimates, which agree for a closed surface. A hole only affects the directions in which it
+/// is visible; the median ignores the worst estimates.
 class RootMean {
  public:
-  /// All of the boundary within the root.
+  /// Adds the boundary inside the root.
   void add_inside(const BoundaryFlux& flux) { inside_.add(flux); }
-  /// A triangle that is not all within the root: its parts above and below it along the axes count.
+  /// Adds a triangle not entirely inside the root; its parts above and below the root along the
+  /// axes count.
   void add_outside(const CellPolygon& triangle);
   double median() const;
 

@@ -11,10 +11,10 @@
 namespace prefilter {
 namespace {
 
-// A cell of some depth, or the larger leaf that holds it.
+// A cell of some depth, or the larger leaf that contains it.
 struct SmoothCell {
   float value = 0.0F;
-  std::uint32_t block = 0;  // its own, where it is split
+  std::uint32_t block = 0;  // its octants, if it is split
   bool is_split = false;
 };
 
@@ -61,7 +61,7 @@ class Smoother {
   std::vector<std::vector<OctantValues>> take() { return std::move(smoothed_); }
 
  private:
-  // Around the octants of one of the cells; along an axis, cell i has the octants 2 i and 2 i + 1.
+  // The neighborhood of one cell's octants; along an axis, cell i has the octants 2 i and 2 i + 1.
   Around octants_around(std::size_t level, const Around& around, std::size_t x, std::size_t y,
                         std::size_t z) const {
     Around result;

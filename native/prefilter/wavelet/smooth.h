@@ -7,9 +7,9 @@
 
 namespace prefilter {
 
-/// Convolves with (1/4, 1/2, 1/4) along each axis: every leaf with its 26 neighbors of the same
-/// depth. Where there is none, the larger leaf that holds it stands for it; outside of the root the
-/// function is 0. Cells that are split keep their values.
+/// Convolves every leaf with (1/4, 1/2, 1/4) along each axis, using its 26 neighbors of the same
+/// depth. A missing neighbor has the value of the larger leaf that contains it, and 0 outside the
+/// root. Split cells do not change.
 void smooth_leaves(CellTree* tree);
 
 }  // namespace prefilter

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Trees made cell by cell, by several threads.
+// Builds trees cell by cell, in parallel.
 #pragma once
 
 #include <algorithm>
@@ -13,16 +13,15 @@
 
 namespace prefilter {
 
-/// What became of a cell.
+/// The result for a cell.
 struct BuiltCell {
   float value = 0.0F;
-  bool is_split = false;  // its block is the last one that was appended to the level of its depth
+  bool is_split = false;  // its block was appended last to the level of its depth
 };
 
 using TreeLevels = std::vector<TreeLevel>;
 
-/// Appends the block of a cell of a depth, and then those of its octants, as build_octant(o) makes
-/// them.
+/// Appends the block of a cell, then the blocks of its octants, which build_octant(o) builds.
 template <typename BuildOctant>
 BuiltCell build_block(int depth, TreeLevels* levels, const BuildOctant& build_octant) {
   TreeLevel& level = (*levels)[static_cast<std::size_t>(depth)];
@@ -37,12 +36,12 @@ BuiltCell build_block(int depth, TreeLevels* levels, const BuildOctant& build_oc
   return {block_mean(level.blocks[block]), true};
 }
 
-/// Builds a tree from a root of any kind of cell: `is_split(cell, depth)`, `value(cell, depth)`
-/// of those that are not, and `octant(cell, depth, o)` of those that are. Throws Error(kCancelled).
+/// Builds a tree from any kind of root cell, using `is_split(cell, depth)`, `value(cell, depth)`
+/// for leaves, and `octant(cell, depth, o)` for split cells. Throws Error(kCancelled).
 template <typename Cell, typename Rule>
 CellTree build_tree(const Cell& root, int most_depth, const Rule& rule, const Progress& progress,
                     int threads) {
-  constexpr int kDepthOfTasks = 3;
+  constexpr int kTaskDepth = 3;
   struct Task {
     Cell cell;
     BuiltCell built;
@@ -55,11 +54,11 @@ CellTree build_tree(const Cell& root, int most_depth, const Rule& rule, const Pr
       return self(self, rule.octant(cell, depth, o), depth + 1, levels);
     });
   };
-  // Twice over the cells above the tasks': to find the tasks, and to put together what they made.
+  // Visits the cells above the tasks twice: to create the tasks, and to collect their results.
   std::vector<Task> tasks;
   const auto find = [&](const auto& self, const Cell& cell, int depth) -> void {
     if (!rule.is_split(cell, depth)) return;
-    if (depth == kDepthOfTasks) {
+    if (depth == kTaskDepth) {
       tasks.push_back({cell, {}, {}});
       return;
     }
@@ -70,14 +69,14 @@ CellTree build_tree(const Cell& root, int most_depth, const Rule& rule, const Pr
                [&](std::int64_t i) {
                  Task& task = tasks[static_cast<std::size_t>(i)];
                  task.levels.resize(static_cast<std::size_t>(most_depth));
-                 task.built = build(build, task.cell, kDepthOfTasks, &task.levels);
+                 task.built = build(build, task.cell, kTaskDepth, &task.levels);
                });
   TreeLevels levels(static_cast<std::size_t>(most_depth));
   const Progress gathering = progress.part(0.8, 0.95);
   std::size_t next_task = 0;
   const auto gather = [&](const auto& self, const Cell& cell, int depth) -> BuiltCell {
     if (!rule.is_split(cell, depth)) return {rule.value(cell, depth), false};
-    if (depth == kDepthOfTasks) {
+    if (depth == kTaskDepth) {
       Task& task = tasks[next_task++];
       for (std::size_t k = 0; k < levels.size(); ++k) {
         TreeLevel& from = task.levels[k];

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Every brick of 16^3 cells gets the triangles that meet it. A brick is cut into its cells, and its
-// fluxes are summed up to one; so is what the bricks left, level by level. Bricks are visited along
-// the Morton curve, and a brick adds its triangles in their order, so that no sum depends on the
-// number of threads.
+// Triangles are sorted into bricks of 16^3 cells. Within a brick they are cut into cells, whose
+// fluxes are summed up level by level; the bricks' own fluxes are summed in the same way. Bricks
+// are processed in Morton order, and triangles within a brick in mesh order, so that no sum depends
+// on the number of threads.
 #include "prefilter/wavelet/triangle_analysis.h"
 
 #include <algorithm>
@@ -26,9 +26,9 @@ constexpr std::size_t kPairsPerTask = 1U << 11;
 constexpr double kScatterShare = 0.2;  // of the time
 constexpr double kAnalyzedShare = 0.95;
 
-// A triangle, and a brick that it meets.
+// A triangle, and a brick that it intersects.
 struct BrickTriangle {
-  std::uint32_t brick;  // along the Morton curve
+  std::uint32_t brick;  // Morton index
   std::uint32_t triangle;
 };
 
@@ -44,7 +44,7 @@ bool is_within(const CellPolygon& polygon, int axis, double low, double high) {
   return polygon.lowest(axis) >= low && polygon.highest(axis) <= high;
 }
 
-// The bricks that some triangles meet, and those of the triangles that leave the root.
+// Pairs of triangles and bricks, and the triangles that extend beyond the root.
 struct Scattered {
   std::vector<BrickTriangle> pairs;
   std::vector<std::uint32_t> leaving;
@@ -71,14 +71,14 @@ void scatter(const RootTriangles& mesh, std::size_t begin, std::size_t end, int 
   }
 }
 
-// One pass of a radix sort: stable, by some bits of the brick, from chunks to `sorted`.
+// One pass of a stable radix sort by some bits of the brick, from chunks to `sorted`.
 void sort_by_digit(std::span<const std::span<const BrickTriangle>> chunks, int shift, int bits,
                    const Progress& progress, int threads, std::span<BrickTriangle> sorted) {
   const std::size_t digits = std::size_t{1} << bits;
   const auto digit_of = [&](const BrickTriangle& pair) {
     return (pair.brick >> shift) & (digits - 1);
   };
-  // Where the next pair of a chunk and a digit goes; first, how many there are.
+  // Counts per chunk and digit, then the position of the next pair of each.
   std::vector<std::size_t> places(chunks.size() * digits);
   const auto count = static_cast<std::int64_t>(chunks.size());
   parallel_for(count, threads, progress.part(0.0, 0.3), [&](std::int64_t i) {
@@ -99,13 +99,13 @@ void sort_by_digit(std::span<const std::span<const BrickTriangle>> chunks, int s
   });
 }
 
-// The pairs of all parts, by brick; each brick keeps its triangles in order. Least significant
-// digit first.
+// Sorts the pairs of all parts by brick, stably, so that each brick's triangles remain in order.
+// Least significant digit first.
 std::vector<BrickTriangle> sorted_by_brick(const std::vector<Scattered>& parts, int key_bits,
                                            const Progress& progress, int threads) {
-  constexpr int kMostDigitBits = 9;
+  constexpr int kMaxDigitBits = 9;
   constexpr std::size_t kPairsPerChunk = 1U << 15;
-  const int passes = std::max(1, (key_bits + kMostDigitBits - 1) / kMostDigitBits);
+  const int passes = std::max(1, (key_bits + kMaxDigitBits - 1) / kMaxDigitBits);
   const int bits = (key_bits + passes - 1) / passes;
   std::size_t count = 0;
   std::vector<std::span<const BrickTriangle>> chunks;
@@ -128,13 +128,13 @@ std::vector<BrickTriangle> sorted_by_brick(const std::vector<Scattered>& parts, 
   return sorted;
 }
 
-// A brick that some boundary passes through.
+// Flux of a brick with some boundary.
 struct BrickFlux {
   std::uint32_t brick;
   BoundaryFlux flux;
 };
 
-// The blocks of some bricks, the coarsest level first, and what they leave to their parents.
+// The blocks of several bricks, coarsest level first, and the fluxes for their parents.
 struct BrickBlocks {
   std::array<TreeLevel, kBrickDepth> levels;
   std::vector<BrickFlux> bricks;
@@ -150,7 +150,7 @@ class Brick {
     }
   }
 
-  // Adds what a triangle, in units of cells, has within the brick with this low corner.
+  // Adds the part of a triangle, in units of cells, within the brick with this low corner.
   void add(CellPolygon triangle, const std::array<int, 3>& low) {
     for (int axis = 0; axis < 3; ++axis) {
       clip_to_slab(axis, low[axis], low[axis] + side_, &triangle);
@@ -170,7 +170,7 @@ class Brick {
 
   bool is_empty() const { return is_empty_; }
 
-  // Appends the brick's blocks to the levels, and is empty again. Returns its flux.
+  // Appends the brick's blocks to the levels, and clears it. Returns its flux.
   BoundaryFlux take(std::array<TreeLevel, kBrickDepth>* levels) {
     BoundaryFlux root;
     for (int k = depth_ - 1; k >= 0; --k) {
@@ -203,13 +203,13 @@ class Brick {
   int depth_;
   int side_;
   bool is_empty_ = true;
-  // Of the cells of depth k within the brick, along the Morton curve.
+  // For the cells of depth k within the brick, in Morton order.
   std::array<std::vector<BoundaryFlux>, kBrickDepth + 1> fluxes_;
-  // Bit o of a cell of depth k: a boundary passes through its octant o.
+  // Bit o of a cell of depth k: its octant o contains boundary.
   std::array<std::vector<std::uint8_t>, kBrickDepth> met_;
 };
 
-// All triangles' bricks, sorted by brick and then by triangle.
+// Pairs for all triangles, sorted by brick and then by triangle.
 Scattered scatter_all(const RootTriangles& mesh, int bricks_per_axis, const Progress& progress,
                       int threads) {
   const auto count = static_cast<std::int64_t>(mesh.mesh.triangles.size());
@@ -229,7 +229,7 @@ Scattered scatter_all(const RootTriangles& mesh, int bricks_per_axis, const Prog
   return all;
 }
 
-// Where the tasks begin: at bricks, some kPairsPerTask apart. The last entry is the end.
+// Start indices of the tasks: at bricks, about kPairsPerTask apart. The last entry is the end.
 std::vector<std::size_t> task_starts(const std::vector<BrickTriangle>& pairs) {
   std::vector<std::size_t> starts = {0};
   for (std::size_t i = 1; i < pairs.size(); ++i) {
@@ -257,7 +257,7 @@ BrickBlocks analyze_bricks(const RootTriangles& mesh, std::span<const BrickTrian
   return blocks;
 }
 
-// Moves the tasks' blocks together, one level after the other.
+// Concatenates the tasks' blocks, level by level.
 void join(const Progress& progress, std::vector<BrickBlocks>* parts, int brick_depth,
           std::span<TreeLevel> levels) {
   for (int k = 0; k < brick_depth; ++k) {
@@ -278,7 +278,7 @@ void join(const Progress& progress, std::vector<BrickBlocks>* parts, int brick_d
   }
 }
 
-// The blocks of the cells of which some of `cells` are octants; returns these parents.
+// Appends the blocks of the parents of `cells`; returns these parents.
 std::vector<BrickFlux> add_parents(const std::vector<BrickFlux>& cells, TreeLevel* level) {
   std::vector<BrickFlux> parents;
   for (std::size_t i = 0; i < cells.size();) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// From triangles to Haar coefficients (section 3.2.3).
+// Haar coefficients of triangle meshes (section 3.2.3).
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace prefilter {
 
-/// Triangles in coordinates in which the root is the unit cube, carried there as they are read.
+/// A mesh in coordinates in which the root is the unit cube; positions are transformed when read.
 struct RootTriangles {
   InputMesh mesh;
   Box root = {{0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}};  // in the mesh's own coordinates
@@ -25,12 +25,12 @@ struct RootTriangles {
   }
 };
 
-/// The Haar coefficients of the shape that the triangles bound, down to cells of `depth` (1 to
-/// kMaxTreeDepth). What lies outside of the root does not count. The surface need not be closed: a
-/// missing triangle of area A (the root's side being 1) changes the mean of a cell by at most
-/// 2.03 A / s^2 for each of the cells of side s that hold both, and that of the root by what
-/// `root_mean` leaves. Preconditions: finite positions within 1e6 of the root, valid indices.
-/// Throws Error(kCancelled), and std::bad_alloc.
+/// The Haar coefficients of the shape bounded by the triangles, down to cells of `depth` (1 to
+/// kMaxTreeDepth). Parts outside the root do not count. The surface may have holes: a missing
+/// triangle of area A (relative to a root side of 1) changes the mean of a cell by at most 2.03 A /
+/// s^2 for each of the cells of side s that contain both, and the mean of the root by the error of
+/// `root_mean`. Preconditions: finite positions within 1e6 of the root, valid indices. Throws
+/// Error(kCancelled), and std::bad_alloc.
 HaarTree analyze_triangles(const RootTriangles& mesh, int depth, const Progress& progress,
                            int threads);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// D4 against its definition: the refinement relation, and equation 4.2 summed sample by sample.
+// Compares D4 with its definition: the refinement relation, and equation 4.2 summed over all
+// samples.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -15,7 +16,7 @@
 namespace prefilter::d4 {
 namespace {
 
-// By the refinement relation itself, exact for dyadic t.
+// Evaluates the refinement relation itself, exact for dyadic t.
 double phi(double t) {
   if (t <= 0.0 || t >= 3.0) return 0.0;
   if (t == 1.0) return (1.0 + kSqrt3) / 2.0;
@@ -59,7 +60,7 @@ TEST(Daubechies, TablesAreExactAtTheirNodes) {
   }
 }
 
-// lambda' (t) = phi(t) - phi(t - 1), so lambda is the integral of phi over [t - 1, t]: the mean of
+// lambda'(t) = phi(t) - phi(t - 1), so lambda is the integral of phi over [t - 1, t], computed from
 // its refinement.
 double lambda(double t, int steps) {
   if (t <= 0.0 || t >= 4.0) return 0.0;
@@ -83,7 +84,7 @@ struct Sample {
   std::array<float, 3> area;
 };
 
-// Samples at nodes of the tables of depth `depth`, so that these are exact.
+// Samples at table nodes of depth `depth`, where the tables are exact.
 std::vector<Sample> random_samples(int depth, int count) {
   std::mt19937 random(7);
   std::uniform_int_distribution<int> place(8, (64 << depth) - 8);
@@ -104,13 +105,13 @@ double high(double t) {  // psi
   return sum;
 }
 
-// The integral of psi, from those of phi.
+// The integral of psi, from integrals of phi.
 double high_integral(double t) {
   const auto integral = [](double x) {
     double sum = 0.0;
     for (; x > 0.0; x -= 1.0) {
       if (x < 4.0) {
-        // Of phi below x: lambda at x, x - 1, ...
+        // The integral of phi below x: lambda at x, x - 1, ...
         double y = x;
         double total = 0.0;
         for (; y > 0.0; y -= 1.0) total += lambda(y, 0);
@@ -147,8 +148,8 @@ double coefficient(const std::vector<Sample>& samples, int j, std::size_t e,
   return sum;
 }
 
-// The means of the next depth are the means of one and the details between: so the details can be
-// read off them. <s, psi> for psi of equation 3.2.
+// The means of the next depth are determined by the means and the details, so the details can be
+// computed from them, as <s, psi> with psi of equation 3.2.
 TEST(D4Transform, DetailsAreThePrintedSums) {
   constexpr int kDepth = 3;
   const std::vector<Sample> samples = random_samples(kDepth, 40);

@@ -38,7 +38,7 @@ TEST(Haar, SynthesisClampsAndTakesRoundingBack) {
   EXPECT_EQ(cells.root, 0.5F);
 }
 
-TEST(Morton, GoesThereAndBack) {
+TEST(Morton, RoundTrips) {
   std::mt19937 random(3);
   std::uniform_int_distribution<int> coordinate(0, 1023);
   for (int i = 0; i < 1000; ++i) {

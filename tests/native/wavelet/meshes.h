@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Small closed meshes, and what they fill of a cell, in closed form.
+// Small closed meshes, and their occupancies in closed form.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +30,7 @@ struct Mesh {
   }
 };
 
-/// Corner i is high along x where bit 0 is set, along y for bit 1, along z for bit 2.
+/// Corner i is high along x if bit 0 is set, along y for bit 1, along z for bit 2.
 inline Mesh box_mesh(const Vector3& low, const Vector3& high) {
   Mesh mesh;
   for (int i = 0; i < 8; ++i) {
@@ -81,7 +81,7 @@ inline Mesh sphere_mesh(const Vector3& center, double radius, int rings) {
   return mesh;
 }
 
-/// The share of the interval [cell, cell + 1) / n that lies in [low, high).
+/// The share of the interval [cell, cell + 1) / n inside [low, high).
 inline double covered(double low, double high, int cell, int n) {
   return std::clamp(std::min(high * n, cell + 1.0) - std::max(low * n, double(cell)), 0.0, 1.0);
 }

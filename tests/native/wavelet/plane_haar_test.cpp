@@ -29,7 +29,7 @@ PlaneHaar analyze(const Outline& outline, const PlaneGrid& grid, int strip_rows)
   return PlaneHaar(grid, strips);
 }
 
-// Row by row, at the places of the finest cells.
+// Row by row, at the positions of the finest cells.
 std::vector<float> values_of(const PlaneHaar& tree, const PlaneGrid& grid, int cell_depth) {
   std::vector<float> values(static_cast<std::size_t>(grid.width) * grid.height, NAN);
   const auto at = [&](int x, int y) -> float& {
@@ -63,7 +63,7 @@ std::vector<Point2> clipped(const std::vector<Point2>& polygon, int axis, double
   return kept;
 }
 
-// The mean winding number over a square, by clipping all of the polygon to it.
+// The mean winding number over a square, by clipping the whole polygon to it.
 double clipped_mean(std::vector<Point2> polygon, double x, double y, double side) {
   for (int axis = 0; axis < 2; ++axis) {
     const double low = axis == 0 ? x : y;
@@ -188,7 +188,7 @@ TEST(PlaneHaar, HalvesOfCurvesAreTheCurves) {
   for (std::size_t i = 0; i < one.size(); ++i) EXPECT_NEAR(one[i], two[i], 3e-7);
 }
 
-// Along the lines of the grid, and over corners of cells.
+// Along grid lines, and through corners of cells.
 TEST(PlaneHaar, WholeCellsAreWhole) {
   const PlaneGrid grid(64, 40);
   const std::vector<Point2> square = {{8, 8}, {24, 8}, {24, 24}, {8, 24}};
@@ -214,7 +214,7 @@ TEST(PlaneHaar, WholeCellsAreWhole) {
   }
 }
 
-TEST(PlaneHaar, WhatIsNoAreaLeavesNothing) {
+TEST(PlaneHaar, DegenerateContoursContributeNothing) {
   const PlaneGrid grid(30, 30);
   for (const std::vector<Point2>& flat : {std::vector<Point2>{{3, 4}},
                                           {{3, 4}, {3, 4}, {3, 4}},
@@ -229,7 +229,7 @@ TEST(PlaneHaar, WhatIsNoAreaLeavesNothing) {
   for (const float value : values_of(analyze({}, grid, 8), grid, 0)) EXPECT_EQ(value, 0.0F);
 }
 
-TEST(PlaneHaar, StripsChangeNothing) {
+TEST(PlaneHaar, StripsDoNotMatter) {
   Random random(5);
   const Outline outline = curves(&random, -10.0, 110.0);
   const PlaneGrid grid(100, 90);
@@ -240,9 +240,9 @@ TEST(PlaneHaar, StripsChangeNothing) {
   }
 }
 
-// A cell of side s that holds a gap of length L and a point is off by 3/4 (|n_x| + |n_y|) L / s.
-// Such cells have sides from r / sqrt(2) on, each twice the one before.
-TEST(PlaneHaar, GapsHarmWhatIsNear) {
+// The error of a cell of side s that contains a point and a gap of length L is 3/4 (|n_x| + |n_y|)
+// L / s. The sides of such cells start at r / sqrt(2), and double.
+TEST(PlaneHaar, GapErrorsFallWithDistance) {
   const int side = 128;
   const PlaneGrid grid(side, side);
   std::vector<Point2> circle;

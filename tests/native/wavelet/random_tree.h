@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Leaves of any depth with any value, the nastiest of trees.
+// Random trees with leaves of all depths and arbitrary values.
 #pragma once
 
 #include <bit>

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kSamples = 16;
 
-// A tree of this depth of a function's occupancies, by samples; cells of one value are leaves.
+// A tree of this depth with the occupancies of a function, by sampling; uniform cells are leaves.
 CellTree sampled_tree(int depth, const std::function<double(const Vector3&)>& occupancy) {
   CellTree tree;
   tree.levels.resize(static_cast<std::size_t>(depth));
@@ -41,7 +41,7 @@ CellTree sampled_tree(int depth, const std::function<double(const Vector3&)>& oc
   return tree;
 }
 
-// The share of a cell that is inside, by samples in it.
+// The share of a cell that is inside, by sampling.
 template <typename Inside>
 std::function<double(const Vector3&)> share_of(double side, const Inside& inside) {
   return [=](const Vector3& middle) {
@@ -98,7 +98,7 @@ TEST(Refined, ThreadsChangeNothing) {
   }
 }
 
-// The share of a cube that is below a plane, from the tetrahedra that it cuts off at the corners.
+// The share of a cube below a plane, from the tetrahedra that it cuts off at the corners.
 double share_below(const Vector3& middle, double side, const Vector3& normal, double offset) {
   double sum = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
@@ -124,7 +124,7 @@ TEST(Refined, APlaneStaysAPlane) {
   int count = 0;
   for_leaves(fine, [&](int depth, const LeafPlace& at, float value) {
     for (const int x : at) {
-      // The root's border cuts the half-space off.
+      // The half-space is cut off at the root's border.
       const int margin = 1 << (depth - 2);
       if (x < margin || x >= (1 << depth) - margin) return;
     }
@@ -164,7 +164,7 @@ TEST(Refined, ABallIsAsRoundAsItsCellsLet) {
 }
 
 TEST(Refined, FullBesideEmptyIsSplit) {
-  // Half of the root, in cells of depth 2: none is between full and empty.
+  // Half of the root, in cells of depth 2: all are full or empty.
   const CellTree tree = sampled_tree(2, [](const Vector3& p) { return p[0] < 0.5 ? 1.0 : 0.0; });
   EXPECT_FALSE(has_coarse_surface(tree));
   const CellTree fine = refined(tree, 5, Progress(), 1);
@@ -175,7 +175,7 @@ TEST(Refined, FullBesideEmptyIsSplit) {
   });
 }
 
-TEST(Refined, WhatIsFineStaysAsItIs) {
+TEST(Refined, FineLeavesDoNotChange) {
   const CellTree tree = sampled_tree(
       4, share_of(1.0 / 16.0, [](const Vector3& p) { return p[0] + p[1] + 0.3 * p[2] < 1.1; }));
   const CellTree same = refined(tree, 4, Progress(), 1);

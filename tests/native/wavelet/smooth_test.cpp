@@ -15,7 +15,7 @@ namespace {
 
 using Place = std::array<int, 3>;
 
-// Of a cell of some depth, or of the larger leaf that holds it; 0 outside of the root.
+// The value of a cell of some depth, or of the larger leaf that contains it; 0 outside the root.
 float value_at(const CellTree& tree, int depth, const Place& cell) {
   for (const int x : cell) {
     if (x < 0 || x >= 1 << depth) return 0.0F;
@@ -48,7 +48,7 @@ double convolved(const CellTree& tree, int depth, const Place& cell) {
   return sum;
 }
 
-// Calls visit(depth, cell, is_leaf) for all cells but the root.
+// Calls visit(depth, cell, is_leaf) for all cells except the root.
 template <typename Visit>
 void for_cells(const CellTree& tree, std::size_t level, std::size_t block, const Place& cell,
                const Visit& visit) {

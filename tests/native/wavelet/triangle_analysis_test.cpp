@@ -74,7 +74,7 @@ TEST(TriangleAnalysis, FacesOnTheGridAreExact) {
   EXPECT_LT(box_error(occupancies(box_mesh(low, high), 5), low, high, 32), 1e-6);
 }
 
-TEST(TriangleAnalysis, WhatLeavesTheRootIsCutOff) {
+TEST(TriangleAnalysis, TrianglesAreClippedToTheRoot) {
   const Vector3 low = {-0.4, 0.3, -3.0};
   const Vector3 high = {0.6, 7.0, 0.4};
   EXPECT_LT(box_error(occupancies(box_mesh(low, high), 5), low, high, 32), 1e-6);
@@ -164,8 +164,8 @@ TEST(TriangleAnalysis, FarFromAHoleLittleChanges) {
   for (int x = 0; x < n; ++x) {
     for (int y = 0; y < n; ++y) {
       for (int z = 0; z < n; ++z, ++index) {
-        // Over all cells that hold this one and a part of the hole's box.
-        double bound = area;  // of the root's mean
+        // Over all cells that contain both this one and a part of the hole's box.
+        double bound = area;  // for the root's mean
         for (int k = 0; k < depth; ++k) {
           const double side = std::ldexp(1.0, -k);
           bool holds = true;
