@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // McCormack, Perry, Farkas and Jouppi, "Feline: Fast Elliptical Lines for Anisotropic Texture
-// Mapping", 1999, with other probes.
+// Mapping", 1999, with a different spacing of the probes.
 //
-// The ellipse's Gaussian is that of a probe convolved with a Gaussian along the major axis, of
-// width sqrt(major^2 - probe^2). Probes sample the latter: their weights are its values. Their
-// distance makes the squared error of the sum least: closer together they do not reach far enough,
-// farther apart they can be told from each other. The error, as a share of the elliptical
-// Gaussian's norm, is 0.086 at the most and 0.055 on average over ratios up to 32. As printed, the
-// distance lets the outermost probes end where the ellipse does, and the number is round(2 ratio) -
-// 1: 0.56 and 0.17.
+// An elliptical Gaussian is a circular one, the probe, convolved with a Gaussian along the major
+// axis of width sqrt(major^2 - probe^2). Probes sample the latter; their weights are its values.
+// Their spacing minimizes the squared error of the sum: closer ones do not reach far enough, and
+// wider ones become visible individually. The error relative to the elliptical Gaussian's norm is
+// at most 0.086, on average 0.055, for ratios up to 32. In the paper the outermost probes end with
+// the ellipse, and there are round(2 ratio) - 1 of them: errors of 0.56 and 0.17.
 #include "prefilter/sampling/anisotropic.h"
 
 #include <algorithm>
@@ -26,21 +25,21 @@
 namespace prefilter {
 namespace {
 
-// A single probe, of the mean width, is off by 0.046 at this ratio of the axes; two are by less
-// beyond it.
-constexpr double kNearlyRound = 1.1;
+// Ratio of the axes up to which a single probe of the mean width is used. Its error there is 0.046;
+// beyond it two probes have less.
+constexpr double kMaxSingleProbeRatio = 1.1;
 
-// Fitted to the distances of least error for 2 to 63 probes; theirs is at most 5 % less.
-double best_spacing(double ratio, int count) {
+// Fitted to the optimal spacings for 2 to 63 probes; the error exceeds theirs by at most 5 %.
+double optimal_spacing(double ratio, int count) {
   return std::sqrt(2.0 * (ratio * ratio - 1.0) / (ratio * count)) * (0.92 - 0.22 / count);
 }
 
-// Probes of some samples, and how much each counts.
+// The probes of several samples.
 struct Probes {
   std::vector<TexturePlace> coordinates;
   std::vector<double> scales;
   std::vector<double> weights;
-  std::vector<std::size_t> ends;  // of each sample's
+  std::vector<std::size_t> ends;  // of each sample's probes
 
   void clear() {
     coordinates.clear();
@@ -73,20 +72,21 @@ ProbeRow probe_row(const Footprint& footprint, int max_probes) {
   const double widest_ratio = 0.5 * (max_probes + 1);
   const double width = std::max(footprint.minor, footprint.major / widest_ratio);
   const double ratio = std::max(1.0, footprint.major / width);
-  if (max_probes == 1 || ratio <= kNearlyRound) return {1, width * std::sqrt(ratio), 0.0, 0.0};
+  if (max_probes == 1 || ratio <= kMaxSingleProbeRatio)
+    return {1, width * std::sqrt(ratio), 0.0, 0.0};
   constexpr double kRounding = 1e-9;
   ProbeRow row;
   row.count = std::clamp(static_cast<int>(std::ceil(2.0 * ratio - kRounding)) - 1, 2, max_probes);
   row.width = width;
-  row.spacing = width * best_spacing(ratio, row.count);
+  row.spacing = width * optimal_spacing(ratio, row.count);
   row.falloff = std::numbers::pi / (width * width * (ratio * ratio - 1.0));
   return row;
 }
 
 void check_probe_count(int max_probes) {
-  if (max_probes >= 1 && max_probes <= kMostProbes) return;
+  if (max_probes >= 1 && max_probes <= kMaxProbes) return;
   throw_invalid("max_probes: " + std::to_string(max_probes) + "; a whole number from 1 to " +
-                std::to_string(kMostProbes) + " is needed");
+                std::to_string(kMaxProbes) + " is needed");
 }
 
 void ProbedPyramid::sample(std::span<const TexturePlace> coordinates,

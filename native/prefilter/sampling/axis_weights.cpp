@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The exact filter that section 6.2 approximates, over images that end or repeat.
+// The exact filter that section 6.2 approximates, for images that end or repeat.
 #include "prefilter/sampling/axis_weights.h"
 
 #include <algorithm>
@@ -12,12 +12,11 @@
 namespace prefilter {
 namespace {
 
-// Wider kernels are the same to the last bit: 2^20 texels are nothing to them.
-constexpr double kLargestWidth = 0x1p60;
+// Wider kernels give identical results: the image has at most 2^20 texels.
+constexpr double kMaxKernelWidth = 0x1p60;
 
-// A kernel's sum over points a constant step apart. For the polynomial p of each piece there is one
-// of which p is the difference over a step; so the sum over a piece is the difference of two
-// values.
+// Sums a kernel over points at constant steps. Each piece's polynomial p has a polynomial P with
+// P(t + step) - P(t) = p(t), so the sum over a piece is the difference of two values of P.
 class ProgressionSum {
  public:
   ProgressionSum(const Kernel& kernel, double width, double step)
@@ -28,7 +27,7 @@ class ProgressionSum {
     }
   }
 
-  // Over x, x - step, x - 2 step and so on, of the kernel times its width.
+  // Sum over x, x - step, x - 2 step, ... of the kernel times its width.
   double up_to(double x) const {
     double sum = 0.0;
     double begin = first_from(low_, x);
@@ -41,13 +40,13 @@ class ProgressionSum {
     return sum;
   }
 
-  // Over all points that are some steps from x.
+  // Sum over all points at multiples of the step from x.
   double everywhere(double x) const { return up_to(x + std::ceil((-low_ - x) / step_) * step_); }
 
  private:
   using Polynomial = std::array<double, Kernel::kMostDegree + 2>;
 
-  // P with P(t + step) - P(t) = p(t), power by power from the highest.
+  // P with P(t + step) - P(t) = p(t), computed from the highest power down.
   static Polynomial summed(const Kernel::Piece& piece, int degree, double step) {
     Polynomial sum{};
     for (int n = degree; n >= 0; --n) {
@@ -64,7 +63,7 @@ class ProgressionSum {
     return sum;
   }
 
-  // The first point at `limit` or behind it; behind x, that after x.
+  // The first point at or above `limit`; if there is none up to x, the one after x.
   double first_from(double limit, double x) const {
     return x - std::max(std::floor((x - limit) / step_), -1.0) * step_;
   }
@@ -83,13 +82,13 @@ class ProgressionSum {
   std::vector<Polynomial> sums_;
 };
 
-// How much of the line up to x is covered by a texel and its repetitions, `size` apart.
+// Length of the line up to x that is covered by a texel and its repetitions at distance `size`.
 double repeated_cover(double x, int texel, int size) {
   const double periods = std::floor(x / size);
   return periods + std::clamp(x - periods * size - texel, 0.0, 1.0);
 }
 
-// Of all texels of the axis, and of what is before and behind them, not scaled.
+// Unnormalized weights of all texels of an axis, and of everything before and behind them.
 struct DenseWeights {
   std::vector<double> weights;
   double before = 0.0;
@@ -165,7 +164,8 @@ AxisWeights wrapped(const Taps& taps, int size, Wrap mode) {
   return axis;
 }
 
-// The same place near the axis: a period further, or where only the end is read.
+// An equivalent position near the axis: modulo the period, or just so far that only the edge is
+// read.
 double near_axis(double center, double reach, int size, Wrap mode) {
   if (mode == Wrap::kRepeat) return center - std::floor(center / size) * size;
   return std::clamp(center, -reach - 2.0, size + reach + 2.0);
@@ -175,13 +175,13 @@ double near_axis(double center, double reach, int size, Wrap mode) {
 
 AxisWeights axis_weights(const Kernel& kernel, double center, double width, int size, Wrap mode) {
   assert(width >= 1.0 && std::isfinite(center));
-  width = std::min(width, kLargestWidth);
+  width = std::min(width, kMaxKernelWidth);
   const double reach = kernel.radius() * width;
   const double near = near_axis(center, reach, size, mode);
-  // Taps take less time one by one where they are hardly more than the texels.
-  constexpr double kFewTaps = 64.0;
-  constexpr double kFewPerTexel = 8.0;
-  if (2.0 * reach <= std::max(kFewTaps, kFewPerTexel * size)) {
+  // Taps one by one are faster if they are not much more numerous than the texels.
+  constexpr double kMaxDirectTaps = 64.0;
+  constexpr double kMaxDirectTapsPerTexel = 8.0;
+  if (2.0 * reach <= std::max(kMaxDirectTaps, kMaxDirectTapsPerTexel * size)) {
     return wrapped(kernel_taps(kernel, near, width), size, mode);
   }
   const bool repeats = mode == Wrap::kRepeat;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What a kernel of any width weighs the texels of an axis with, once it is wrapped.
+// Weights of the texels along an axis for a kernel of any width, after wrapping.
 #pragma once
 
 #include <vector>
@@ -10,16 +10,16 @@
 
 namespace prefilter {
 
-/// Texels of an axis, all different, and their weights. With the wrap mode border those of texels
-/// outside are lost; else they sum to 1.
+/// Distinct texels of an axis, and their weights. They sum to 1, except that in the border mode the
+/// weights of texels outside are missing.
 struct AxisWeights {
   std::vector<int> texels;
   std::vector<double> weights;
 };
 
-/// The taps of the kernel at `center`, in texels from the axis' low end, its unit `width` texels
-/// wide, 1 or more: kernel_taps, those that read the same texel added up. As many as the axis has
-/// texels at the most, and found in time that is proportional to them, whatever the width.
+/// The kernel_taps at `center`, in texels from the low end of the axis, for a unit of `width`
+/// texels, at least 1. Taps of the same texel are merged. There are at most as many as the axis has
+/// texels, and the time is proportional to their number for any width.
 AxisWeights axis_weights(const Kernel& kernel, double center, double width, int size, Wrap mode);
 
 }  // namespace prefilter

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // Greene and Heckbert, "Creating Raster Omnimax Images from Multiple Perspective Views Using the
-// Elliptical Weighted Average Filter", 1986, over level 0 alone.
+// Elliptical Weighted Average Filter", 1986, applied to level 0 only.
 #include "prefilter/sampling/elliptical.h"
 
 #include <algorithm>
@@ -18,9 +18,9 @@ namespace prefilter {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kRadius = 2.0 * std::numbers::sqrt2;
+constexpr double kGaussianRadius = 2.0 * std::numbers::sqrt2;
 
-// Where a coordinate is read, near the image; the same texels lie around it, as far from it.
+// An equivalent position near the image, in texels: it has the same texels at the same distances.
 double near_image(double place, double reach, int size, Wrap mode) {
   if (mode == Wrap::kRepeat) return (place - std::floor(place)) * size;
   const double x = std::clamp(place, -kLargestCoordinate, kLargestCoordinate) * size;
@@ -33,7 +33,7 @@ double near_image(double place, double reach, int size, Wrap mode) {
 struct Gaussian {
   double x, y;
   double a, b, c;
-  double height;  // of the ellipse up to the radius, above and below y
+  double height;  // half the height of the truncated ellipse
 
   Gaussian(const ImageView& image, const TexturePlace& place, const Footprint& shape,
            WrapModes wrap) {
@@ -44,8 +44,8 @@ struct Gaussian {
     a = along * dx * dx + across * dy * dy;
     b = (along - across) * dx * dy;
     c = along * dy * dy + across * dx * dx;
-    height = kRadius * elementary::hypot(shape.major * dy, shape.minor * dx);
-    const double width = kRadius * elementary::hypot(shape.major * dx, shape.minor * dy);
+    height = kGaussianRadius * elementary::hypot(shape.major * dy, shape.minor * dx);
+    const double width = kGaussianRadius * elementary::hypot(shape.major * dx, shape.minor * dy);
     x = near_image(place[0], width, image.width, wrap.u);
     y = near_image(place[1], height, image.height, wrap.v);
   }
@@ -54,14 +54,14 @@ struct Gaussian {
   int end_row() const { return static_cast<int>(std::floor(y + height - 0.5)) + 1; }
 };
 
-// A row's texels. Sums of channels, and behind them that of all weights.
+// Adds the texels of a row: the weighted sums of channels, followed by the sum of weights.
 void add_row(const ImageView& image, const Gaussian& gaussian, WrapModes wrap, int row,
              double* sums) {
   const double dy = row + 0.5 - gaussian.y;
   // a x^2 + 2 b x y + c y^2 = radius^2
   const double middle = -gaussian.b / gaussian.a * dy;
-  const double rest =
-      kRadius * kRadius - (gaussian.c - gaussian.b * gaussian.b / gaussian.a) * dy * dy;
+  const double rest = kGaussianRadius * kGaussianRadius -
+                      (gaussian.c - gaussian.b * gaussian.b / gaussian.a) * dy * dy;
   if (rest < 0.0) return;
   const double half = std::sqrt(rest / gaussian.a);
   const int first = static_cast<int>(std::ceil(gaussian.x + middle - half - 0.5));
@@ -70,15 +70,15 @@ void add_row(const ImageView& image, const Gaussian& gaussian, WrapModes wrap, i
   const auto exponent = [&](double dx) {
     return -kPi * (gaussian.a * dx * dx + 2.0 * gaussian.b * dx * dy + gaussian.c * dy * dy);
   };
-  // A quotient of neighbors changes by a constant factor from one texel to the next; rounding adds
-  // up, so it starts anew every some texels.
-  constexpr int kRun = 256;
+  // The ratio of neighboring weights changes by a constant factor from texel to texel. The
+  // recurrence restarts after each run, as rounding errors accumulate.
+  constexpr int kTexelsPerRun = 256;
   const double change = elementary::exp(-2.0 * kPi * gaussian.a);
-  for (int begin = first; begin <= last; begin += kRun) {
+  for (int begin = first; begin <= last; begin += kTexelsPerRun) {
     const double dx = begin + 0.5 - gaussian.x;
     double weight = elementary::exp(exponent(dx));
     double quotient = elementary::exp(exponent(dx + 1.0) - exponent(dx));
-    for (int i = begin; i <= std::min(last, begin + kRun - 1); ++i) {
+    for (int i = begin; i <= std::min(last, begin + kTexelsPerRun - 1); ++i) {
       sums[image.channels] += weight;
       const int column = wrap_index(i, image.width, wrap.u);
       if (column >= 0 && read_row >= 0) {
@@ -91,20 +91,20 @@ void add_row(const ImageView& image, const Gaussian& gaussian, WrapModes wrap, i
   }
 }
 
-// Some samples, into `values`. Where the image is large one may take long: its rows are shared
-// among several indices, and what they sum up is added in order.
+// Computes a few samples. In large images a single one may take long, so its rows are divided among
+// tasks whose sums are added in order.
 void add_samples(const ImageView& image, std::span<const TexturePlace> coordinates,
                  std::span<const TextureJacobian> jacobians, const EllipticalOptions& options,
                  const Progress& progress, float* values) {
-  constexpr std::size_t kTexelsOfBand = 1 << 17;
-  constexpr std::size_t kTexelsAtOnce = 1 << 16;
+  constexpr std::size_t kTexelsPerBand = 1 << 17;
+  constexpr std::size_t kTexelsPerTask = 1 << 16;
   const auto longest = static_cast<unsigned>(std::max(image.width, image.height));
   const int last_level = static_cast<int>(std::bit_width(longest - 1));  // of sampling_levels
   const auto channels = static_cast<std::size_t>(image.channels);
-  const auto bands = static_cast<std::int64_t>(1 + image.texel_count() / kTexelsOfBand);
+  const auto bands = static_cast<std::int64_t>(1 + image.texel_count() / kTexelsPerBand);
   const auto items = static_cast<std::int64_t>(coordinates.size()) * bands;
   const auto at_once = static_cast<std::int64_t>(
-      std::clamp<std::size_t>(kTexelsAtOnce / image.texel_count(), 1, 64));
+      std::clamp<std::size_t>(kTexelsPerTask / image.texel_count(), 1, 64));
   std::vector<double> sums(static_cast<std::size_t>(items) * (channels + 1));
   parallel_ranges(
       items, at_once, options.threads, progress, [&](std::int64_t begin, std::int64_t end) {
@@ -147,11 +147,11 @@ std::vector<float> sample_elliptically(const ImageView& image,
   constexpr std::size_t kSamplesAtOnce = 1 << 12;
   for (std::size_t begin = 0; begin < count; begin += kSamplesAtOnce) {
     const std::size_t size = std::min(kSamplesAtOnce, count - begin);
-    const auto done = [&](std::size_t samples) {
+    const auto fraction_of = [&](std::size_t samples) {
       return static_cast<double>(samples) / static_cast<double>(count);
     };
     add_samples(image, coordinates.subspan(begin, size), jacobians.subspan(begin, size), options,
-                options.progress.part(done(begin), done(begin + size)),
+                options.progress.part(fraction_of(begin), fraction_of(begin + size)),
                 values.data() + begin * channels);
   }
   options.progress.report(1.0);

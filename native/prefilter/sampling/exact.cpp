@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Equation 6.1, with texels for the image.
+// Equation 6.1, as a sum over texels.
 #include "prefilter/sampling/exact.h"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace prefilter {
 namespace {
 
-// Texels are added row by row, in doubles: constants stay what they are.
+// Adds texels row by row in double precision, so that constant images stay constant.
 template <int C>
 void add_texels(const ImageView& image, const AxisWeights& along_x, const AxisWeights& along_y,
                 double* sums) {
@@ -79,10 +79,10 @@ std::vector<float> sample_exactly(const ImageView& image, const SamplePlaces& pl
   const std::size_t count = places.coordinates.size();
   const auto channels = static_cast<std::size_t>(image.channels);
   std::vector<float> values(count * channels);
-  // Each may read the whole image.
-  constexpr std::size_t kTexelsAtOnce = 1 << 22;
+  // Each sample may read the whole image.
+  constexpr std::size_t kExactTexelsPerTask = 1 << 22;
   const auto at_once = static_cast<std::int64_t>(
-      std::clamp<std::size_t>(kTexelsAtOnce / image.texel_count(), 1, 64));
+      std::clamp<std::size_t>(kExactTexelsPerTask / image.texel_count(), 1, 64));
   parallel_ranges(static_cast<std::int64_t>(count), at_once, options.threads, options.progress,
                   [&](std::int64_t begin, std::int64_t end) {
                     for (auto i = static_cast<std::size_t>(begin); std::cmp_less(i, end); ++i) {

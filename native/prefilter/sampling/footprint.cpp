@@ -8,8 +8,8 @@
 namespace prefilter {
 namespace {
 
-// Where a width is a power of two, as rotations have it all over an image, tables change from some
-// texels to others. It is not left to rounding which of them a sample takes.
+// Snaps a width to a power of two if they differ by rounding only. Rotations have such widths in
+// the whole image, and tables switch texels there, which must not depend on rounding.
 double steady(double width) {
   if (width == 0.0) return width;
   constexpr double kRounding = 1e-9;
@@ -20,8 +20,8 @@ double steady(double width) {
   return width;
 }
 
-// J, and J J^T, in units of the largest of J's values: half the sum and half the difference of its
-// diagonal, and what is beside it.
+// J and J J^T, scaled by the largest element of J: half the sum and half the difference of the
+// diagonal of J J^T, and its off-diagonal element.
 struct Squares {
   double largest = 0.0;
   double determinant = 0.0;  // of J
@@ -52,9 +52,9 @@ Footprint singular_values(const TextureJacobian& jacobian) {
   const Squares squares(jacobian);
   if (squares.largest == 0.0) return {0.0, 0.0, 1.0, 0.0};
   const double major = squares.larger();
-  // By the determinant: no difference of near equals.
+  // From the determinant, to avoid cancellation.
   const double minor = std::min(major, std::abs(squares.determinant) / major);
-  // Of the two forms of the eigenvector the one that is no difference of near equals.
+  // Uses the one of two forms of the eigenvector that does not suffer from cancellation.
   const double root = squares.root();
   double x = squares.half >= 0.0 ? root + squares.half : squares.beside;
   double y = squares.half >= 0.0 ? squares.beside : root - squares.half;

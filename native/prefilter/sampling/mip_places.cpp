@@ -17,8 +17,8 @@ constexpr int kLanes = 4;
 
 using Four = Vector<std::int32_t, kLanes>;
 
-/// The logarithm to base 2 of values in (1, 2]. As an odd function of t = (m - 1) / (m + 1) it
-/// needs five terms, which minimize the largest relative error: 4e-9, before rounding.
+/// Base-2 logarithm of values in (1, 2]: an odd polynomial of t = (m - 1) / (m + 1) with five terms
+/// that minimize the largest relative error, 4e-9 before rounding.
 inline Lanes log2_of_mantissas(Lanes m) {
   const Lanes t = (m - 1.0F) / (m + 1.0F);
   const Lanes square = t * t;
@@ -34,14 +34,14 @@ inline void place_four(const double* scales, std::int32_t coarsest, int* cell_le
   for (int i = 0; i < kLanes; ++i) scale[i] = static_cast<float>(scales[i]);
   scale = lane_max(scale, Lanes{} + 1.0F);
   const Four bits = std::bit_cast<Four>(scale);
-  // Powers of 2 count to the interval below them.
+  // Powers of 2 belong to the interval below them.
   const Four exponent = ((bits - 1) >> 23) - 127;
   const Lanes mantissa = std::bit_cast<Lanes>(bits - (exponent << 23));
   const Lanes fraction = lane_min(log2_of_mantissas(mantissa), Lanes{} + 1.0F);
   const Four magnifies = exponent < 0;
-  const Four beyond = exponent > coarsest;
-  const Four level = select(magnifies, Four{}, select(beyond, Four{} + coarsest, exponent) + 1);
-  const Lanes share = select(magnifies, Lanes{}, select(beyond, Lanes{} + 1.0F, fraction));
+  const Four is_coarser = exponent > coarsest;
+  const Four level = select(magnifies, Four{}, select(is_coarser, Four{} + coarsest, exponent) + 1);
+  const Lanes share = select(magnifies, Lanes{}, select(is_coarser, Lanes{} + 1.0F, fraction));
   std::memcpy(cell_levels, &level, sizeof level);
   std::memcpy(f, &share, sizeof share);
 }

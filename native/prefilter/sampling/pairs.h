@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Coordinates along x and y, worked out together by the processor.
+// SIMD pairs of x and y coordinates.
 #pragma once
 
 #include <cmath>
@@ -14,15 +14,15 @@ using Pair = Vector<double, 2>;
 
 inline Pair floor_pair(Pair values) { return Pair{std::floor(values[0]), std::floor(values[1])}; }
 
-/// Whether both numbers lie from `low` to `high`.
+/// Whether both values are from `low` to `high`.
 inline bool is_between(Pair low, Pair values, Pair high) {
-  const auto found = (values >= low) & (values <= high);
-  return (found[0] & found[1]) != 0;
+  const auto mask = (values >= low) & (values <= high);
+  return (mask[0] & mask[1]) != 0;
 }
 
-/// How far a texel lies from the first one of its level, where texels and rows are as far apart as
-/// `pitches` says. Modulo 2^64, as addresses are added.
-inline std::uintptr_t distance(Pair texel, Pair pitches) {
+/// Offset of a texel from the first one of its level, with `pitches` as the strides of texels and
+/// rows. Modulo 2^64, like address arithmetic.
+inline std::uintptr_t texel_offset(Pair texel, Pair pitches) {
   const Pair parts = texel * pitches;
   return static_cast<std::uintptr_t>(static_cast<std::int64_t>(parts[0] + parts[1]));
 }

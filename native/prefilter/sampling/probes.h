@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Ellipses as isotropic probes in a row (figure 6.12).
+// Rows of isotropic probes that approximate elliptical filters (figure 6.12).
 #pragma once
 
 #include <span>
@@ -12,9 +12,9 @@
 
 namespace prefilter {
 
-/// Isotropic Gaussians along the major axis of an ellipse, centered on it, whose weighted sum comes
-/// close to the elliptical one. Probe k lies (k - (count - 1) / 2) * spacing from the center and
-/// has the weight exp(-falloff * that distance squared), but for a common factor.
+/// Isotropic Gaussians along the major axis of an ellipse, centered on it, whose weighted sum
+/// approximates the elliptical Gaussian. Probe k is (k - (count - 1) / 2) * spacing from the
+/// center, and has the weight exp(-falloff * distance^2) up to a common factor.
 struct ProbeRow {
   int count = 1;
   double width = 1.0;    // the scale of each [texels of level 0]
@@ -22,15 +22,15 @@ struct ProbeRow {
   double falloff = 0.0;  // [1 / texels^2]
 };
 
-/// At most `max_probes`, 1 to kMostProbes. They are as wide as the ellipse's minor axis; wider,
-/// where it is so narrow that as many do not reach along it: at least 2 / (max_probes + 1) of the
-/// major axis. So one probe is as wide as that.
+/// At most `max_probes`, from 1 to kMaxProbes. The probes are as wide as the ellipse's minor axis,
+/// but at least 2 / (max_probes + 1) of the major axis, to cover it with the allowed number. A
+/// single probe thus has the width of the major axis.
 ProbeRow probe_row(const Footprint& footprint, int max_probes);
 
 /// Throws Error unless max_probes is in range.
 void check_probe_count(int max_probes);
 
-/// A pyramid that is sampled by probes, in any number of threads at once.
+/// A pyramid to be sampled with probes, by any number of threads concurrently.
 struct ProbedPyramid {
   const PyramidSampler& sampler;
   int width;  // texels of level 0
@@ -39,7 +39,7 @@ struct ProbedPyramid {
   int channels;
   int max_probes;
 
-  /// Writes samples at finite coordinates, with finite Jacobians, channel by channel.
+  /// Writes samples at finite coordinates with finite Jacobians, with interleaved channels.
   void sample(std::span<const TexturePlace> coordinates, std::span<const TextureJacobian> jacobians,
               float* result) const;
 };

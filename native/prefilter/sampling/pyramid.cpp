@@ -13,7 +13,7 @@
 namespace prefilter {
 namespace {
 
-constexpr int kLongestSide = 1 << 20;
+constexpr int kMaxPyramidSide = 1 << 20;
 
 bool is_half(int side, int finer) {
   return side == std::max(1, finer / 2) || side == finer / 2 + finer % 2;
@@ -27,7 +27,7 @@ std::string size_of(const PyramidLevel& level) {
   throw_invalid("levels: level " + std::to_string(number) + " has " + size_of(level) + what);
 }
 
-// Of all levels along an axis, the number of texels that the image takes.
+// For each level, the extent of the image along an axis in texels of the level.
 std::vector<double> extents(const std::vector<PyramidLevel>& levels, int PyramidLevel::*side) {
   const int finest = levels[0].*side;
   bool nest = true;
@@ -59,9 +59,9 @@ Pyramid::Pyramid(std::vector<PyramidLevel> levels_of_image, int channel_count, b
   if (channels < 1) throw_invalid("levels: no channels; at least one is needed");
   for (std::size_t i = 0; i < levels.size(); ++i) {
     const PyramidLevel& level = levels[i];
-    if (level.width < 1 || level.height < 1 || level.width > kLongestSide ||
-        level.height > kLongestSide) {
-      refuse(i, level, "; sides from 1 to " + std::to_string(kLongestSide) + " are needed");
+    if (level.width < 1 || level.height < 1 || level.width > kMaxPyramidSide ||
+        level.height > kMaxPyramidSide) {
+      refuse(i, level, "; sides from 1 to " + std::to_string(kMaxPyramidSide) + " are needed");
     }
     if (i == 0) continue;
     const PyramidLevel& finer = levels[i - 1];

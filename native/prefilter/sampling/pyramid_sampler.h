@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Samples of a pyramid, many at a time (section 6.2).
+// Samples a pyramid at many positions (section 6.2).
 #pragma once
 
 #include <array>
@@ -16,27 +16,26 @@ namespace prefilter {
 
 class TexelPlan;
 
-/// What weigh_texels says of a pyramid, a table and wrap modes, worked out ahead for all places.
-/// Samples are the sums of its texels but for the rounding of floats, which may also move one
-/// across the border of a subdomain.
+/// weigh_texels with everything precomputed that depends only on the pyramid, the table and the
+/// wrap modes. Samples equal the sums over its texels up to float rounding, which may also move a
+/// sample across the border of a subdomain.
 class PyramidSampler {
  public:
-  /// `table` may be nullptr: trilinear interpolation. The pyramid's texels must outlive the
-  /// sampler. Throws Error for a pyramid or a table that is none.
+  /// If `table` is nullptr, interpolates trilinearly. The pyramid's texels must outlive the
+  /// sampler. Throws Error for an invalid pyramid or table.
   PyramidSampler(const Pyramid& pyramid, const SamplingTable* table, const WrapModes& wrap);
   ~PyramidSampler();
   PyramidSampler(const PyramidSampler&) = delete;
   PyramidSampler& operator=(const PyramidSampler&) = delete;
 
-  /// Writes samples at finite coordinates into `result`, channel by channel of one after another.
-  /// Scales are in [0, inf): one for each, or one for all. May be called by several threads at
-  /// once.
+  /// Writes samples at finite coordinates to `result`, with interleaved channels. Scales are in [0,
+  /// inf): one per sample, or one for all. Thread-safe.
   void sample(std::span<const std::array<double, 2>> coordinates, std::span<const double> scales,
               float* result) const;
 
  private:
   WrappedPyramid pyramid_;
-  std::unique_ptr<const TexelPlan> plan_;  // where there is a table
+  std::unique_ptr<const TexelPlan> plan_;  // only with a table
 };
 
 }  // namespace prefilter

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Section 6.3: the filter at the place and the scale that each pixel has in the image.
+// Section 6.3: evaluates the filter at the position and scale of each pixel in the image.
 #include "prefilter/sampling/resample.h"
 
 #include <algorithm>
@@ -28,12 +28,12 @@ namespace {
 
 using Method = ResampleOptions::Method;
 
-constexpr int kMostPixels = 1 << 20;  // along a side
+constexpr int kMaxResultSide = 1 << 20;  // along a side
 
 void check_size(const char* name, int size) {
-  if (size >= 1 && size <= kMostPixels) return;
+  if (size >= 1 && size <= kMaxResultSide) return;
   throw_invalid(std::string(name) + ": " + std::to_string(size) + "; a whole number from 1 to " +
-                std::to_string(kMostPixels) + " is needed");
+                std::to_string(kMaxResultSide) + " is needed");
 }
 
 void check_arguments(const ImageView& image, const Homography& transform, int width, int height,
@@ -53,14 +53,14 @@ void check_arguments(const ImageView& image, const Homography& transform, int wi
                   "'; 1 is needed, because only 'gaussian' has exact filters that are not square");
   }
   const double pixels = static_cast<double>(width) * height;
-  constexpr double kCopies = 3.0;  // of the image, with its levels
+  constexpr double kImageCopies = 3.0;  // of the image, including its levels
   check_memory(
       "width, height: an image of " + std::to_string(width) + " x " + std::to_string(height) +
           " pixels",
-      4.0 * image.channels * (pixels + kCopies * static_cast<double>(image.texel_count())));
+      4.0 * image.channels * (pixels + kImageCopies * static_cast<double>(image.texel_count())));
 }
 
-// Samples of an image, of any places and shapes, one batch after another.
+// Samples an image at arbitrary positions and shapes, in batches.
 class ImageSampler {
  public:
   ImageSampler(const ImageView& image, const ResampleOptions& options, const Progress& progress)
@@ -82,21 +82,21 @@ class ImageSampler {
                      options.wrap);
   }
 
-  // Whether one pixel may take so long that its own work is shared among threads.
+  // Whether a single pixel may take so long that its own work is divided among threads.
   bool is_elliptical() const {
     return options_.method == Method::kExact && options_.max_probes > 1;
   }
 
-  // How many pixels are sampled at once.
+  // Number of pixels to sample per batch.
   std::int64_t batch() const {
-    constexpr std::int64_t kManyPixels = 1 << 12;
-    constexpr std::int64_t kTexelsAtOnce = 1 << 22;
-    if (options_.method != Method::kExact || is_elliptical()) return kManyPixels;
-    return std::clamp<std::int64_t>(kTexelsAtOnce / static_cast<std::int64_t>(image_.texel_count()),
-                                    1, 64);
+    constexpr std::int64_t kPixelsPerBatch = 1 << 12;
+    constexpr std::int64_t kTexelsPerBatch = 1 << 22;
+    if (options_.method != Method::kExact || is_elliptical()) return kPixelsPerBatch;
+    return std::clamp<std::int64_t>(
+        kTexelsPerBatch / static_cast<std::int64_t>(image_.texel_count()), 1, 64);
   }
 
-  // Tells its progress where is_elliptical().
+  // Reports progress only if is_elliptical().
   void operator()(std::span<const TexturePlace> coordinates,
                   std::span<const TextureJacobian> jacobians, const Progress& progress,
                   float* values) const {
@@ -121,7 +121,7 @@ class ImageSampler {
   }
 
  private:
-  // Those of affine maps are all the same.
+  // Affine maps have the same scale everywhere.
   static std::vector<double> scales_of(std::span<const TextureJacobian> jacobians) {
     std::vector<double> scales;
     scales.reserve(jacobians.size());
@@ -136,10 +136,10 @@ class ImageSampler {
   const ImageView image_;
   const ResampleOptions& options_;
   std::vector<Image> levels_;
-  std::optional<PyramidSampler> sampler_;  // none where samples are exact
+  std::optional<PyramidSampler> sampler_;  // not for exact samples
 };
 
-// Pixels from `begin` to `end`, row by row; what is beyond the horizon stays as it is.
+// Resamples pixels [begin, end), in row-major order. Pixels beyond the horizon are left unchanged.
 void resample_pixels(const ImageSampler& sampler, const ImageView& image,
                      const Homography& transform, std::int64_t begin, std::int64_t end,
                      const Progress& progress, Image* result) {
@@ -217,12 +217,12 @@ Image resample(const ImageView& image, const Homography& transform, int width, i
     resample_pixels(sampler, filtered.floats(), transform, begin, end, progress, &result);
   };
   if (sampler.is_elliptical()) {
-    const auto done = [&](std::int64_t pixel) {
+    const auto fraction_of = [&](std::int64_t pixel) {
       return static_cast<double>(pixel) / static_cast<double>(pixels);
     };
     for (std::int64_t begin = 0; begin < pixels; begin += sampler.batch()) {
       const std::int64_t end = std::min(begin + sampler.batch(), pixels);
-      resample_range(begin, end, sampling.part(done(begin), done(end)));
+      resample_range(begin, end, sampling.part(fraction_of(begin), fraction_of(end)));
     }
   } else {
     parallel_ranges(

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Section 6.2. Each step goes through all samples of a block, so that the processor has several of
-// them at hand: where they lie in memory, four samples' subdomains at a time, then the weights of
-// four texels at a time and the sum of the texels. Nothing in between depends on what a sample is
-// like but for whether it reads beyond an edge, so there is hardly a branch to be guessed wrong.
+// Section 6.2. Each step processes all samples of a block, so that the processor overlaps their
+// latencies: first their locations in memory, then the subdomains of four samples at a time, then
+// the weights of four texels at a time and the sum of the texels. The only data-dependent branch is
+// whether a sample reads beyond an edge, so hardly any branch is mispredicted.
 #include "prefilter/sampling/sample_block.h"
 
 #include <algorithm>
@@ -18,21 +18,22 @@ namespace {
 
 using Four = Vector<std::int32_t, 4>;
 
-// How many samples ahead of their sums texels are asked for, where caches do not hold them all.
-constexpr int kSamplesAhead = 8;
+// Number of samples to prefetch texels ahead, for images that exceed the caches.
+constexpr int kPrefetchedSamples = 8;
 constexpr std::size_t kCachedBytes = std::size_t{8} << 20;
 
-/// Where samples are in their cells and where those are in memory, for all of a block.
+/// For each sample of a block: its position in the cell, and the cell's location in memory.
 struct CellPlaces {
   alignas(16) std::array<float, kBlockSamples> x;  // folded
   alignas(16) std::array<float, kBlockSamples> y;
   alignas(16) std::array<float, kBlockSamples> f;
   alignas(16) std::array<int, kBlockSamples> subdomains;
-  alignas(16) std::array<int, kBlockSamples> tiles;                  // subdomain and symmetry
-  std::array<std::array<std::uintptr_t, 4>, kBlockSamples> corners;  // by level below the cells'
+  alignas(16) std::array<int, kBlockSamples> tiles;  // subdomain and symmetry
+  std::array<std::array<std::uintptr_t, 4>, kBlockSamples>
+      corners;  // by level relative to the cell's
 };
 
-/// Samples of a block whose texels are all inside of their levels, and the others.
+/// The samples of a block whose texels all lie inside their levels, and the others.
 struct Sides {
   SampleList inside;
   SampleList outside;
@@ -57,7 +58,7 @@ void find_cells(const TexelPlan& plan, const SampleBlock& block, CellPlaces& pla
   }
 }
 
-/// Folds x and y in place, and finds what the table has for them.
+/// Folds x and y in place, and determines the subdomains.
 void find_subdomains(const TexelPlan& plan, const SampleBlock& block, CellPlaces& places) {
   const TableShape& shape = plan.shape();
   const Lanes grid = all_lanes(static_cast<float>(shape.grid));
@@ -66,9 +67,9 @@ void find_subdomains(const TexelPlan& plan, const SampleBlock& block, CellPlaces
   const std::int32_t last_slice = shape.slices - 1;
   const std::int32_t per_slice = shape.subdomains_of_slice();
   const auto index = [](Lanes value, std::int32_t last) {
-    const Four found = convert<Four>(value);
+    const Four indices = convert<Four>(value);
     const Four limit = {last, last, last, last};
-    return select(found < limit, found, limit);
+    return select(indices < limit, indices, limit);
   };
   for (int begin = 0; begin < block.count; begin += 4) {
     const Lanes x = load_lanes(&places.x[begin]);
@@ -108,7 +109,7 @@ inline Lanes weights_of_four(const float* c, int padded, Lanes x, Lanes y, Lanes
   return sum;
 }
 
-/// The texels of a sample that are all inside of their levels.
+/// The texels of a sample, all inside their levels.
 struct TexelSet {
   const std::uintptr_t* corners;
   const std::uint8_t* finer;
@@ -126,9 +127,9 @@ struct TexelSet {
   }
 };
 
-/// Any texels.
+/// Texels at arbitrary addresses.
 struct TexelList {
-  std::array<const void*, kMostTexels> texels;
+  std::array<const void*, kMaxTexels> texels;
 
   template <typename Value>
   const Value* texel(int i) const {
@@ -136,7 +137,7 @@ struct TexelList {
   }
 };
 
-/// Sums of as many channels as Sum has, from `channel` on.
+/// Sums the channels from `channel` on, as many as Sum holds.
 template <typename Value, int kTexels, typename Sum, typename Set>
 inline void sum_channels(const Set& set, const Lanes* weights, int texels, int channel,
                          float* result) {
@@ -153,7 +154,7 @@ inline void sum_channels(const Set& set, const Lanes* weights, int texels, int c
   sum.store(result + channel);
 }
 
-/// A block, and what is known of it. kTexels is 0 where the number is not known ahead.
+/// Weighted sums over a block. kTexels is 0 if the number of texels is not known at compile time.
 template <typename Value, int kTexels, int kDegree>
 struct BlockSums {
   const TexelPlan& plan;
@@ -171,7 +172,7 @@ struct BlockSums {
     constexpr int kTerms = kDegree == 1 ? 4 : 10;
     const float* coefficients =
         cells(sample).weights + places.subdomains[sample] * (kTerms * padded());
-    std::array<Lanes, kMostTexels / 4> weights;
+    std::array<Lanes, kMaxTexels / 4> weights;
     const Lanes x = all_lanes(places.x[sample]);
     const Lanes y = all_lanes(places.y[sample]);
     const Lanes f = all_lanes(places.f[sample]);
@@ -187,8 +188,8 @@ struct BlockSums {
   template <bool kPrefetches>
   void sum_inside(const SampleList& samples) const {
     for (int k = 0; k < samples.count; ++k) {
-      if (kPrefetches && k + kSamplesAhead < samples.count) {
-        const int ahead = samples.numbers[k + kSamplesAhead];
+      if (kPrefetches && k + kPrefetchedSamples < samples.count) {
+        const int ahead = samples.numbers[k + kPrefetchedSamples];
         const TexelSet set(cells(ahead), places, padded(), ahead);
         for (int i = 0; i < texels(); ++i) __builtin_prefetch(set.texel<Value>(i));
       }
@@ -198,7 +199,7 @@ struct BlockSums {
   }
 };
 
-/// The texels of a sample, read as the wrap modes say.
+/// The texels of a sample, read according to the wrap modes.
 TexelList wrapped_texels(const TexelPlan& plan, const WrappedPyramid& pyramid,
                          const SampleBlock& block, int tile, int sample) {
   const int cell_level = block.cell_levels[sample];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Samples that are worked out together, step by step.
+// Blocks of samples that are processed together, step by step.
 #pragma once
 
 #include <array>
@@ -21,23 +21,23 @@ struct SampleBlock {
   std::array<float, kBlockSamples> f;
 };
 
-/// Numbers of samples of a block.
+/// Indices of samples in a block.
 struct SampleList {
   int count = 0;
   std::array<std::int16_t, kBlockSamples> numbers;
 
-  /// Adds a number, or leaves the list as it is, in the same time.
+  /// Adds an index if `is_member`, without a branch.
   void add(int number, bool is_member) {
     numbers[count] = static_cast<std::int16_t>(number);
     count += static_cast<int>(is_member);
   }
 };
 
-/// Writes the samples of a block, by the table that the plan was made of.
+/// Writes the samples of a block, using the table of the plan.
 void sample_block(const TexelPlan& plan, const WrappedPyramid& pyramid, const SampleBlock& block,
                   float* result);
 
-/// The same by trilinear interpolation.
+/// The same with trilinear interpolation.
 void sample_block_trilinearly(const WrappedPyramid& pyramid, const SampleBlock& block,
                               float* result);
 

@@ -10,14 +10,15 @@
 namespace prefilter {
 namespace {
 
-/// The four texels of a level that a sample lies between, and how far it is to the others.
+/// The four texels of a level around a sample, and its position between them.
 struct Square {
   std::array<std::array<const void*, 2>, 2> texels;  // [y][x]
   float x;
   float y;
 };
 
-/// Those of a sample, the coarser level's first. Where it magnifies both are those of level 0.
+/// The squares of a sample in both levels, the coarser first. For magnification both are in level
+/// 0.
 using Squares = std::array<Square, 2>;
 
 inline void find_square(const WrappedPyramid& pyramid, int level, Pair uv, Square& square) {
@@ -46,7 +47,7 @@ inline void find_square(const WrappedPyramid& pyramid, int level, Pair uv, Squar
   }
 }
 
-/// Between four texels, from a channel on.
+/// Interpolates bilinearly, from a channel on.
 template <typename Channels, typename Value>
 inline Channels mix_square(const Square& square, int channel) {
   const auto load = [channel](const void* texel) {

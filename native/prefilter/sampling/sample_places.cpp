@@ -13,8 +13,8 @@
 namespace prefilter {
 namespace {
 
-/// Whether all values are from `low` up, and finite. The loop has no exit, so that the processor
-/// compares several at a time.
+/// Whether all values are finite and at least `low`. The loop has no early exit, so that it can be
+/// vectorized.
 bool are_finite(const double* values, std::size_t count, double low) {
   std::int64_t others = 0;
   for (std::size_t i = 0; i < count; ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Section 6.2: texels that are the filter itself, at whole mip values and texel centers.
+// Section 6.2: texels are samples of the filter itself at whole mip values and texel centers.
 #include "prefilter/sampling/sampling_levels.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 namespace prefilter {
 namespace {
 
-// Of a level, along an axis: whole texels of the level that reach over all of the image.
+// Size of a level along an axis: as many whole texels as cover the image.
 int nested_size(int size, int level) { return (size - 1) / (1 << level) + 1; }
 
 int nested_level_count(const ImageView& image) {
@@ -39,7 +39,7 @@ void check_arguments(const ImageView& image, const SamplingLevelsOptions& option
                4.0 * 3.0 * static_cast<double>(image.value_count()));
 }
 
-// Whether the image is what the kernel makes of it at its own size.
+// Whether filtering with the kernel at the image's own resolution changes nothing.
 bool interpolates(const Kernel& kernel) {
   const Taps taps = kernel_taps(kernel, 0.5, 1.0);
   for (std::size_t i = 0; i < taps.weights.size(); ++i) {
@@ -49,7 +49,7 @@ bool interpolates(const Kernel& kernel) {
   return true;
 }
 
-// None where the texels stay what they are.
+// Empty if the texels do not change.
 AxisTaps level_taps(const Kernel& kernel, int size, int level) {
   if (level == 0 && interpolates(kernel)) return {};
   const double width = std::ldexp(1.0, level);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // Pharr, Wronski, Salvi and Fajardo, "Filtering After Shading With Stochastic Texture Filtering",
-// 2024: one texel of the filter's, also where weights are negative.
+// 2024: picks a single texel of the filter, also with negative weights.
 #include "prefilter/sampling/stochastic.h"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ void check_numbers(std::span<const double> numbers, std::size_t samples) {
   }
 }
 
-// Level `level` alone, spread over the image as it is in the pyramid.
+// Level `level` as the only one, stretched over the image as in the pyramid.
 Pyramid one_level(const Pyramid& pyramid, int level) {
   const PyramidLevel& found = pyramid.levels[static_cast<std::size_t>(level)];
   Pyramid alone({found}, pyramid.channels, pyramid.bytes);
@@ -40,14 +40,14 @@ Pyramid one_level(const Pyramid& pyramid, int level) {
 WeightedTexel pick(const WeightedTexels& found, double number) {
   double sum = 0.0;
   for (int i = 0; i < found.count; ++i) sum += std::abs(found.texels[i].weight);
-  double rest = number * sum;
+  double remaining = number * sum;
   const WeightedTexel* picked = nullptr;
   for (int i = 0; i < found.count; ++i) {
     const WeightedTexel& texel = found.texels[i];
     if (texel.weight == 0.0) continue;
     picked = &texel;
-    rest -= std::abs(texel.weight);
-    if (rest < 0.0) break;
+    remaining -= std::abs(texel.weight);
+    if (remaining < 0.0) break;
   }
   WeightedTexel result = *picked;
   result.weight = std::copysign(sum, picked->weight);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Section 6.2: the symmetries of a cell, unfolded; each texel as a distance from the cell's corner.
+// Section 6.2: unfolds the symmetries of a cell, and converts texels to offsets from the cell's
+// corner.
 #include "prefilter/sampling/texel_plan.h"
 
 #include <algorithm>
@@ -14,13 +15,13 @@ FoldedPlace place_of_symmetry(int symmetry) {
   return {0.0, 0.0, (symmetry & 1) != 0, (symmetry & 2) != 0, (symmetry & 4) != 0};
 }
 
-/// The cells along an axis between which no offset from `least` to `most` leaves a level of `size`
-/// texels, of which the image takes `extent` where it takes `cells` cells.
+/// Narrows [low, high] to the cells along an axis whose offsets from `least` to `most` stay inside
+/// a level of `size` texels. The image has an extent of `extent` texels and `cells` cells.
 void narrow(int size, double extent, double cells, int texels_of_cell, int least, int most,
             double& low, double& high) {
   const double ratio = extent / cells;
-  // A cell's low corner is rounded from somewhere within a texel of cell * ratio; where levels nest
-  // it is that.
+  // The low corner of a cell is rounded from within a texel of cell * ratio, and exact if levels
+  // nest.
   const double slack = ratio == texels_of_cell ? 0.0 : std::abs(ratio - texels_of_cell) + 0.5;
   low = std::max(low, std::ceil((slack - least) / ratio));
   high = std::min(high, std::floor((size - 1 - most - slack) / ratio));
@@ -78,7 +79,7 @@ void TexelPlan::plan_distances(PlannedCells& cells, const Section& section) {
     const Pair pitch = cells.pitches[texel.finer];
     const double distance = pitch[0] * texel.x + pitch[1] * texel.y;
     const bool fits = std::abs(distance) < 0x1p31;
-    // Then no cell is given out as one that may read it.
+    // Marks all cells as reading outside.
     if (!fits) cells.high = Pair{-1.0, -1.0};
     distances.push_back(fits ? static_cast<std::int32_t>(distance) : 0);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A table's texels as places in memory, for all cells of a pyramid.
+// The texels of a table as memory offsets, for all cells of a pyramid.
 #pragma once
 
 #include <array>
@@ -15,26 +15,27 @@
 
 namespace prefilter {
 
-/// The symmetries of a cell: mirrored along x (1), along y (2), and before that swapped (4).
+/// Number of symmetries of a cell: bits for mirrored along x (1), along y (2), and swapped before
+/// (4).
 inline constexpr int kSymmetries = 8;
 
-/// What samples in cells of one level are made of.
+/// Precomputed data for samples in the cells of one level.
 struct PlannedCells {
-  int available = 0;   // levels, see TableSection
-  bool nests = false;  // whether a cell is 2 x 2 and 4 x 4 texels of the levels below it
-  // Of the cells' level and of the ones below it, as far as there are any, else of the last one:
+  int available = 0;   // number of levels, see TableSection
+  bool nests = false;  // whether a cell is 2 x 2 and 4 x 4 texels of the levels below
+  // For the cells' level and the levels below; missing ones repeat the last:
   std::array<Pair, 3> extents{};  // of the image, in texels
-  std::array<Pair, 3> pitches{};  // from one texel to the next, and from row to row [bytes]
+  std::array<Pair, 3> pitches{};  // byte strides between texels and between rows
   std::array<std::uintptr_t, 3> texels{};
-  // Cells from `low` to `high`, both included, read no texel outside of its level.
+  // Cells from `low` to `high`, inclusive, read no texel outside its level.
   Pair low{};
   Pair high{};
-  const float* weights = nullptr;           // [subdomain][term][texel]; bytes' are of their value
+  const float* weights = nullptr;           // [subdomain][term][texel]; scaled by 1/255 for bytes
   const std::uint8_t* finer = nullptr;      // [subdomain][texel]
   const TexelOffset* unfolded = nullptr;    // [subdomain][symmetry][texel]
-  const std::int32_t* distances = nullptr;  // likewise: from the cell's low corner [bytes]
+  const std::int32_t* distances = nullptr;  // same: byte offset from the cell's low corner
 
-  /// The texel in the cell's low corner, in the level so much finer than the cell's.
+  /// The texel at the cell's low corner, in the level `level` below the cell's.
   Pair corner(int level, Pair uv, Pair cell, Pair in_cell) const {
     const double texels_of_cell = 1 << level;
     if (nests || level == 0) return cell * texels_of_cell;
@@ -42,8 +43,8 @@ struct PlannedCells {
   }
 };
 
-/// All that a sampler looks up in a table, in the order in which it is needed. There are so many
-/// texels that vectors of four hold them; those beyond the table's weigh nothing.
+/// A table rearranged in the order of access. The number of texels is padded to a multiple of four
+/// with zero weights.
 class TexelPlan {
  public:
   /// The pyramid's texels must outlive the plan.
@@ -53,7 +54,7 @@ class TexelPlan {
 
   const TableShape& shape() const { return shape_; }
   int padded_texels() const { return padded_; }
-  std::size_t bytes() const { return bytes_; }                 // of all texels
+  std::size_t bytes() const { return bytes_; }                 // size of all texels
   const PlannedCells* cells() const { return cells_.data(); }  // by level
 
  private:
@@ -61,7 +62,7 @@ class TexelPlan {
     std::vector<Lanes> weights;
     std::vector<std::uint8_t> finer;
     std::vector<TexelOffset> unfolded;
-    // Of the unfolded texels of each level, along x and y.
+    // Extents of the unfolded texels of each level, along x and y.
     std::array<std::array<int, 2>, 3> least{};
     std::array<std::array<int, 2>, 3> most{};
   };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Weighted sums of texels, of a few channels at a time.
+// Weighted sums of texels, for groups of up to four channels.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ inline Lanes load_lanes(const float* values) {
   return lanes;
 }
 
-/// The four bytes of a word, the lowest first.
+/// Converts the four bytes of a word, the lowest first.
 inline Lanes lanes_of_bytes(std::uint32_t word) {
   using Bytes = Vector<std::uint8_t, 16>;
   using Words = Vector<std::int32_t, 4>;
@@ -38,7 +38,7 @@ inline Lanes load_lanes(const std::uint8_t* values) {
   return lanes_of_bytes(word);
 }
 
-/// Values of one or two channels.
+/// One or two channels.
 template <int kCount>
 struct FewChannels {
   std::array<float, kCount> values{};
@@ -66,7 +66,7 @@ struct FewChannels {
   }
 };
 
-/// Three values, and 0.
+/// Three values, padded with 0.
 inline Lanes load_three(const float* values) {
   return Lanes{values[0], values[1], values[2], 0.0F};
 }
@@ -76,7 +76,7 @@ inline Lanes load_three(const std::uint8_t* values) {
                         std::uint32_t{values[2]} << 16U);
 }
 
-/// Values of three or four channels.
+/// Three or four channels.
 template <int kCount>
 struct ManyChannels {
   Lanes values{};
@@ -107,7 +107,8 @@ inline Channels mix(const Channels& a, const Channels& b, float share) {
   return mixed;
 }
 
-/// Calls body<ManyChannels<4>>(channel) for each four channels, and once for the rest.
+/// Calls body<ManyChannels<4>>(channel) for each group of four channels, and once for the remaining
+/// ones.
 template <typename Body>
 inline void for_channels(int channels, const Body& body) {
   int channel = 0;

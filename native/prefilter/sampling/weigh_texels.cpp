@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Section 6.2: the texels and weights of the subdomain that a sample lies in.
+// Section 6.2: looks up the texels and weights of a sample's subdomain.
 #include "prefilter/sampling/weigh_texels.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace prefilter {
 namespace {
 
-// Beyond the reach of any texel of any table, in texels of any level.
+// Beyond the reach of every texel of every table, in texels of any level.
 constexpr double kFarOutside = 1024.0;
 
 void add(WeightedTexels& found, const Pyramid& pyramid, const WrapModes& wrap, int level, int x,
@@ -53,7 +53,7 @@ WeightedTexels weigh_by_table(const Pyramid& pyramid, const SamplingTable& table
     const TexelOffset offset = unfold(section.texels[index], folded);
     const int level = mip.cell_level - offset.finer;
     const int texels_of_cell = 1 << offset.finer;
-    // Where levels nest this is the cell's low corner, exactly.
+    // Exactly the cell's low corner if levels nest.
     const double base_x = std::floor(u * pyramid.levels[level].columns - texels_of_cell * x + 0.5);
     const double base_y = std::floor(v * pyramid.levels[level].rows - texels_of_cell * y + 0.5);
     add(found, pyramid, wrap, level, static_cast<int>(base_x) + offset.x,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Levels that go on beyond their edges.
+// A pyramid extended beyond its edges by the wrap modes.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ struct WrappedPyramid {
   WrappedPyramid(Pyramid pyramid_, const WrapModes& wrap_)
       : pyramid(std::move(pyramid_)), wrap(wrap_), border(pyramid.texel_size()) {}
 
-  /// What texel (x, y) of a level reads, which may lie outside of it.
+  /// Address of the texel that (x, y) of a level reads, possibly outside of it.
   const void* texel(int level, int x, int y) const {
     const PyramidLevel& texels = pyramid.levels[level];
     const int column = texels.column_of(x, wrap.u);

@@ -22,16 +22,17 @@ struct Probe {
   double weight;
 };
 
-// Of integral 1.
+// A Gaussian with integral 1.
 double gaussian(double x, double width) { return std::exp(-kPi * x * x / (width * width)) / width; }
 
-// Integral of the product of two Gaussians so far apart.
+// Integral of the product of two Gaussians at this distance.
 double product(double distance, double a, double b) {
   return gaussian(distance, std::sqrt(a * a + b * b));
 }
 
-// Of the difference of round Gaussians in a row and the elliptical one of widths `ratio` and 1: its
-// norm, as a share of the latter's. The Gaussians are separable: across, all are alike.
+// Norm of the difference between a row of circular Gaussians and the elliptical one with widths
+// `ratio` and 1, relative to the norm of the latter. Gaussians are separable, and across the row
+// all are equal.
 double error(std::vector<Probe> probes, double width, double ratio) {
   double sum = 0.0;
   for (const Probe& probe : probes) sum += probe.weight;
@@ -58,7 +59,7 @@ std::vector<Probe> probes_of(const ProbeRow& row) {
   return probes;
 }
 
-// Section 3.2 of the article, with the widths of this library's Gaussians for its radii.
+// Section 3.2 of the article, with this library's Gaussian widths as radii.
 std::vector<Probe> probes_as_printed(double ratio) {
   const int count = std::max(1, static_cast<int>(std::floor(2.0 * ratio + 0.5)) - 1);
   std::vector<Probe> probes;
@@ -81,7 +82,7 @@ TEST(ProbeRow, SumsUpToTheEllipse) {
   double printed_probes = 0.0;
   int count = 0;
   for (double ratio = 1.0; ratio <= kLargestRatio; ratio += 1.0 / 64.0, ++count) {
-    const ProbeRow row = probe_row(ellipse(ratio, 1.0), kMostProbes);
+    const ProbeRow row = probe_row(ellipse(ratio, 1.0), kMaxProbes);
     const double own = error(probes_of(row), row.width, ratio);
     mean += own;
     largest = std::max(largest, own);
@@ -98,10 +99,10 @@ TEST(ProbeRow, SumsUpToTheEllipse) {
   EXPECT_LT(probes, 1.04 * printed_probes);
 }
 
-// No other distance between as many probes would be better by much.
+// No other spacing of as many probes is much better.
 TEST(ProbeRow, DistancesAreNearlyTheBest) {
   for (double ratio = 1.15; ratio <= kLargestRatio; ratio *= 1.07) {
-    const ProbeRow row = probe_row(ellipse(ratio, 1.0), kMostProbes);
+    const ProbeRow row = probe_row(ellipse(ratio, 1.0), kMaxProbes);
     ASSERT_GT(row.count, 1);
     const double own = error(probes_of(row), row.width, ratio);
     for (double factor = 0.8; factor < 1.2; factor += 0.01) {
@@ -154,7 +155,7 @@ TEST(Footprint, HasTheSingularValues) {
         EXPECT_NEAR(std::abs(found.direction_x * c + found.direction_y * s), 1, 1e-12);
       }
       EXPECT_NEAR(std::hypot(found.direction_x, found.direction_y), 1.0, 1e-15);
-      // The same of the image in a mirror.
+      // The same for the mirrored image.
       const Footprint mirrored =
           singular_values({-c * a + s * d, c * b - s * e, -s * a - c * d, s * b + c * e});
       EXPECT_NEAR(mirrored.major, 8.0, 1e-12);

@@ -33,18 +33,18 @@ std::vector<double> of_all_taps(const Kernel& kernel, double center, double widt
   return weights;
 }
 
-// Wide kernels are not summed up tap by tap, and give the same.
+// Wide kernels are not summed tap by tap, but give the same result.
 TEST(AxisWeights, AreAllTapsWrapped) {
   for (const Kernel& kernel : kernels()) {
     for (const Wrap mode : kWraps) {
       for (const int size : {1, 2, 7, 60}) {
         for (const double width : {1.0, 1.5, 13.25, 40.0, 177.7, 2048.0}) {
-          // The last ones put taps exactly where pieces of kernels meet.
+          // The last centers put taps exactly at borders between pieces of kernels.
           for (const double center : {0.5, 0.3 * size, -2.0 * size - 0.1, 5.0 * size, 0.0, 3.5}) {
             const AxisWeights found = axis_weights(kernel, center, width, size, mode);
             EXPECT_LE(found.texels.size(), static_cast<std::size_t>(size));
             const std::vector<double> weights = dense(found, size);
-            // A tap just where a kernel ends, with a step, may count or not.
+            // A tap exactly at a discontinuous end of a kernel may count or not.
             const double step = kernel.degree() == 0 ? 0.0 : kernel.value(kernel.radius());
             const std::vector<double> expected = of_all_taps(kernel, center, width, size, mode);
             for (int i = 0; i < size; ++i) {

@@ -44,7 +44,7 @@ TEST(PixelPlace, FollowsTheTransform) {
   }
 }
 
-// Also to the sanitizers: no index and no conversion goes out of range.
+// Also for the sanitizers: no index or conversion is out of range.
 TEST(Resample, IsFiniteForAnyTransform) {
   const std::vector<Homography> transforms = {
       {1e300, 1e300, 1e300, 1e300, 1e300, 1e300, 1e300, 1e300, 1e300},

@@ -24,7 +24,7 @@ using Coordinates = std::vector<std::array<double, 2>>;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Levels of random values.
+/// Levels with random values.
 struct Levels {
   std::vector<Image> floats;
   std::vector<std::vector<std::uint8_t>> bytes;
@@ -53,7 +53,7 @@ struct Levels {
   }
 };
 
-/// A table of any texels and weights, which sum to 1.
+/// A table with arbitrary texels, and weights that sum to 1.
 SamplingTable random_table(int texels, int grid, int slices, int degree) {
   std::mt19937 random(static_cast<unsigned>(texels));
   std::uniform_real_distribution<double> coefficient(-1.0, 1.0);
@@ -68,10 +68,11 @@ SamplingTable random_table(int texels, int grid, int slices, int degree) {
     section.errors.resize(static_cast<std::size_t>(subdomains));
     section.trilinear_errors.resize(section.errors.size());
     for (int k = 0; k < subdomains; ++k) {
-      std::array<double, kMostTerms> rest{1.0};
+      std::array<double, kMaxTerms> rest{1.0};
       for (int i = 0; i < texels; ++i) {
         const int finer = static_cast<int>(random() % static_cast<unsigned>(levels));
-        // As far from the cell in all levels, so that each of them is the first to reach an edge.
+        // Equally far from the cell in all levels, so that each of them is the first to reach an
+        // edge.
         const auto offset = [&] {
           return static_cast<int>(random() % (7U << finer)) - (3 << finer);
         };
@@ -129,7 +130,7 @@ TEST(Sample, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
-/// The sum of what weigh_texels gives.
+/// The sums defined by weigh_texels.
 std::vector<double> weighed(const Levels& levels, const SamplingTable* table, WrapModes wrap,
                             const std::array<double, 2>& place, double scale) {
   const WeightedTexels found = weigh_texels(levels.view(), table, wrap, place[0], place[1], scale);
@@ -144,13 +145,13 @@ std::vector<double> weighed(const Levels& levels, const SamplingTable* table, Wr
   return sums;
 }
 
-TEST(Sample, IsTheSumOfWhatItsTexelsWeigh) {
+TEST(Sample, IsTheWeightedSumOfItsTexels) {
   const std::array<SamplingTable, 4> tables{random_table(8, 4, 2, 1), random_table(6, 1, 1, 1),
                                             random_table(4, 2, 3, 2), random_table(13, 3, 1, 1)};
   std::vector<const SamplingTable*> all{nullptr};
   for (const SamplingTable& table : tables) all.push_back(&table);
   Coordinates coordinates = random_coordinates(1000);
-  // Half of them where texels begin to lie beyond an edge, also of levels that do not nest.
+  // Half of the samples where texels begin to lie beyond an edge, also in levels that do not nest.
   for (std::size_t i = 0; i < coordinates.size(); i += 2) {
     for (double& one : coordinates[i]) one = (one > 0.5 ? 0.8 : 0.2) + 0.3 * (one - 0.5);
   }
@@ -194,7 +195,7 @@ TEST(Sample, LiesBetweenTheLevelsAroundItsScale) {
   }
 }
 
-TEST(Sample, OfBytesIsThatOfFloats) {
+TEST(Sample, BytesMatchFloats) {
   const SamplingTable table = random_table(6, 4, 2, 1);
   const Coordinates coordinates = random_coordinates(3000);
   const std::vector<double> scales = random_scales(3000);
@@ -208,7 +209,7 @@ TEST(Sample, OfBytesIsThatOfFloats) {
   }
 }
 
-TEST(Sample, OneScaleIsThatScaleForEach) {
+TEST(Sample, OneScaleAppliesToAll) {
   const Levels levels(32, 16, 2);
   const SamplingTable table = random_table(4, 2, 1, 1);
   const Coordinates coordinates = random_coordinates(500);
@@ -218,7 +219,7 @@ TEST(Sample, OneScaleIsThatScaleForEach) {
   }
 }
 
-TEST(Sample, RefusesWhatItCannotTake) {
+TEST(Sample, RefusesInvalidArguments) {
   const Levels levels(8, 8, 1);
   const Coordinates one{{0.5, 0.5}};
   for (const double bad : {kNan, kInfinity, -kInfinity}) {

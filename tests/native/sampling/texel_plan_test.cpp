@@ -10,8 +10,8 @@
 namespace prefilter {
 namespace {
 
-/// A table whose samples read texels so far below a cell's low corner, and as far above, of a level
-/// that is so much finer, and the cell itself.
+/// A table whose samples read texels at this offset below and above the cell's low corner, in a
+/// level that is `finer` levels finer, and the cell itself.
 SamplingTable reaching_table(int finer, int offset) {
   SamplingTable table;
   table.shape = {"tent", 2, 1, 1, 1};
@@ -26,7 +26,8 @@ SamplingTable reaching_table(int finer, int offset) {
   return table;
 }
 
-/// Sides of levels that are half of the ones before, rounded down or up by turns that `turns` says.
+/// Sides of levels, each half of the one before, rounded down or up according to the bits of
+/// `turns`.
 std::vector<int> sides(int side, unsigned turns) {
   std::vector<int> found{side};
   for (; side > 1; turns >>= 1U) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Anisotropic samples of a pyramid: isotropic ones in a row (section 6.3, figure 6.12).
+// Anisotropic samples of a pyramid, as rows of isotropic probes (section 6.3, figure 6.12).
 #pragma once
 
 #include <span>
@@ -12,16 +12,16 @@
 
 namespace prefilter {
 
-inline constexpr int kMostProbes = 256;
+inline constexpr int kMaxProbes = 256;
 
 struct AnisotropicOptions : SampleOptions {
-  int max_probes = 16;  // 1 to kMostProbes
+  int max_probes = 16;  // 1 to kMaxProbes
 };
 
-/// As `sample`, with the Jacobian of each sample in the place of its scale.
+/// Like `sample`, with a Jacobian instead of a scale for each sample.
 ///
-/// Throws Error as `sample` does, for Jacobians that check_jacobians refuses, and for max_probes
-/// out of range.
+/// Throws Error like `sample`, for Jacobians that check_jacobians rejects, and if max_probes is out
+/// of range.
 void sample_anisotropically(const Pyramid& pyramid, const SamplingTable* table,
                             std::span<const TexturePlace> coordinates,
                             std::span<const TextureJacobian> jacobians,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Samples by elliptical Gaussians, the exact anisotropic filter.
+// Samples with elliptical Gaussians, the exact anisotropic filter.
 #pragma once
 
 #include <span>
@@ -19,13 +19,14 @@ struct EllipticalOptions {
   Progress progress;
 };
 
-/// The mean of the texels of the image, of any number of channels, weighted by the Gaussian
-/// exp(-pi |p|^2) of a pixel p carried into it by the Jacobian: exp(-pi d^T (J J^T)^-1 d) at a
-/// distance of d texels, the singular values of J clamped as footprint_of does. It ends where |p|
-/// is 2 sqrt(2), and the Gaussian 1e-11: as far off as the corners of the separable one.
+/// Means of the texels of an image, with any number of channels, weighted by the Gaussian exp(-pi
+/// |p|^2) in pixel coordinates p. In texels the Jacobian J maps it to exp(-pi d^T (J J^T)^-1 d) at
+/// the distance vector d, with the singular values of J clamped as in footprint_of. The Gaussian is
+/// truncated at |p| = 2 sqrt(2), where it is 1e-11; the corners of the separable filter are as far
+/// away.
 ///
-/// Throws Error where places are not what check_coordinates and check_jacobians ask for; and, from
-/// the progress callback, when cancelled.
+/// Throws Error for places that check_coordinates or check_jacobians rejects; and, from the
+/// progress callback, when cancelled.
 std::vector<float> sample_elliptically(const ImageView& image,
                                        std::span<const TexturePlace> coordinates,
                                        std::span<const TextureJacobian> jacobians,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Samples by the filter itself: what tables approximate.
+// Samples with the exact filter, which tables approximate.
 #pragma once
 
 #include <vector>
@@ -20,17 +20,17 @@ struct ExactOptions {
   Progress progress;
 };
 
-/// The kernel-weighted mean of the image around a place: kernel_taps along x and y, of a width of
-/// `scale`, or 1 where that is less. `values` gets one for each channel, of which the image may
-/// have any number.
+/// Writes the kernel-weighted mean of the image around a place, one value per channel, to `values`:
+/// kernel_taps along x and y, of a width of `scale`, or 1 if that is less. The image may have any
+/// number of channels.
 void sample_exactly(const ImageView& image, const Kernel& kernel, WrapModes wrap,
                     const TexturePlace& place, double scale, float* values);
 
-/// The same at many places: the channels of each, one after another. No texel is read twice for a
-/// sample, however wide it is.
+/// The same at many places, with interleaved channels. Each sample reads a texel at most once,
+/// however wide the filter is.
 ///
-/// Throws Error where places are not what check_places asks for; and, from the progress callback,
-/// when cancelled.
+/// Throws Error for places that check_places rejects; and, from the progress callback, when
+/// cancelled.
 std::vector<float> sample_exactly(const ImageView& image, const SamplePlaces& places,
                                   const ExactOptions& options);
 

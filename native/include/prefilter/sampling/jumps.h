@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Steps of samples where they pass from one subdomain of a table to another.
+// Discontinuities of samples between the subdomains of a table.
 #pragma once
 
 #include "prefilter/sampling/sampling_table.h"
 
 namespace prefilter {
 
-/// The largest step of a sample of an image whose values are from 0 to 1, over all such images and
-/// all borders of the section's subdomains: between two of them, between cells, and where the next
-/// coarser level, of a section with a level more as far as there is one, becomes the cell's. For
-/// weights of degree 2 over points of the borders, otherwise over all of them. Where the section
-/// has three levels, integrals over the image are taken by the midpoint rule.
+/// Largest discontinuity of a sample, over all images with values from 0 to 1 and all borders of
+/// the section's subdomains: between subdomains, between cells, and to the next coarser level
+/// (whose section has one more level, if there is one). For weights of degree 2 the borders are
+/// sampled at points, otherwise the result covers them completely. If there are three levels,
+/// integrals over the image use the midpoint rule.
 double largest_jump(const SamplingTable& table, int levels);
 
 }  // namespace prefilter

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Images moved by affine and projective maps.
+// Resampling of images under affine and projective maps.
 #pragma once
 
 #include <array>
@@ -14,11 +14,11 @@
 
 namespace prefilter {
 
-/// Row by row; carries (x, y, 1) of the result, in its pixels, to (x w, y w, w) of the image, in
-/// its texels. Pixel i spans [i, i + 1).
+/// A row-major matrix that maps (x, y, 1) in pixels of the result to (x w, y w, w) in texels of the
+/// image. Pixel i spans [i, i + 1).
 using Homography = std::array<double, 9>;
 
-/// Where the center of a pixel lies in an image, and how it is spread there.
+/// The position of a pixel's center in an image, and the Jacobian there.
 struct PixelPlace {
   bool is_visible = false;  // w > 0, and everything finite
   TexturePlace coordinates{};
@@ -31,28 +31,28 @@ struct ResampleOptions {
   enum class Method {
     kTable,
     kTrilinear,  // interpolation of the kernel's levels
-    kExact,      // sample_exactly; with more than one probe sample_elliptically
+    kExact,      // sample_exactly, or sample_elliptically with more than one probe
   };
   Method method = Method::kTrilinear;
-  const SamplingTable* table = nullptr;  // for kTable; its kernel is `kernel`
+  const SamplingTable* table = nullptr;  // for kTable; its kernel must be `kernel`
   const Kernel* kernel = find_kernel("lanczos2");
-  // 1: the filter is round, and as wide as the larger singular value of the Jacobian. More: see
-  // sample_anisotropically.
+  // 1: the filter is circular, with the larger singular value of the Jacobian as its width. Above
+  // 1: see sample_anisotropically.
   int max_probes = 1;
   WrapModes wrap;
-  // As for ResizeOptions. What the border leaves of an opaque image is less than opaque.
+  // See ResizeOptions. The border wrap mode makes opaque images transparent at their edges.
   bool premultiplied = false;
   int threads = 0;  // 0 = all processors
   Progress progress;
 };
 
-/// The image as it is seen through the transform, with width x height pixels of 1 to 2^20 along
-/// each side. Pixels whose w is not above 0 are zero: they look beyond the horizon.
+/// The image transformed to width x height pixels, 1 to 2^20 along each side. Pixels beyond the
+/// horizon, where w is not positive, are zero.
 ///
-/// Throws Error where channels are not 1 to 4, the transform is not finite, a size or max_probes is
-/// out of range, probes are to be exact and the kernel is not the Gaussian, memory does not hold
-/// the result, or a texel is not finite or beyond 1e30; and, from the progress callback, when
-/// cancelled.
+/// Throws Error if the channel count is not 1 to 4, the transform is not finite, a size or
+/// max_probes is out of range, exact probes are requested for a kernel other than the Gaussian, the
+/// result exceeds the memory, or a texel is not finite or beyond 1e30; and, from the progress
+/// callback, when cancelled.
 Image resample(const ImageView& image, const Homography& transform, int width, int height,
                const ResampleOptions& options);
 

@@ -19,16 +19,16 @@ struct SampleOptions {
   Progress progress;
 };
 
-/// Samples at coordinates (u, v), with the image from 0 to 1 along both, into `result`: the
-/// channels of one sample after those of another. `table` may be nullptr: trilinear interpolation.
-/// Otherwise the levels must have been filtered by the table's kernel.
+/// Writes samples at coordinates (u, v), which span the image from 0 to 1, to `result`, with
+/// interleaved channels. If `table` is nullptr, interpolates trilinearly; otherwise the levels must
+/// have been filtered with the table's kernel.
 ///
-/// A scale is the width of the filter's unit in texels of level 0, in [0, inf); below 1 it counts
-/// as 1. There is one for each sample, or one for all.
+/// A scale is the width of the filter's unit in texels of level 0, in [0, inf); scales below 1
+/// count as 1. There is one per sample, or one for all.
 ///
-/// Throws Error for a pyramid or a table that is none, a coordinate that is not finite, a scale
-/// that is negative or not finite, or numbers of coordinates, scales and results that disagree;
-/// and, from the progress callback, when cancelled.
+/// Throws Error for an invalid pyramid or table, a coordinate that is not finite, a scale that is
+/// negative or not finite, or if the numbers of coordinates, scales and results do not match; and,
+/// from the progress callback, when cancelled.
 void sample(const Pyramid& pyramid, const SamplingTable* table,
             std::span<const TexturePlace> coordinates, std::span<const double> scales,
             const SampleOptions& options, std::span<float> result);

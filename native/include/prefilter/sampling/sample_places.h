@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Where and how wide samples of an image are.
+// Positions and widths of samples in an image.
 #pragma once
 
 #include <array>
@@ -8,35 +8,36 @@
 
 namespace prefilter {
 
-/// A place in an image: u, v, which span it from 0 to 1.
+/// A position in an image: (u, v), from 0 to 1 over its sides.
 using TexturePlace = std::array<double, 2>;
 
-/// [[dx/di, dx/dj], [dy/di, dy/dj]]: how texels x, y of level 0 change with pixels i, j.
+/// [[dx/di, dx/dj], [dy/di, dy/dj]]: derivatives of the position (x, y), in texels of level 0, by
+/// the pixel coordinates i, j.
 using TextureJacobian = std::array<double, 4>;
 
 struct SamplePlaces {
   std::span<const TexturePlace> coordinates;
-  // The width of the filter's unit in texels of level 0: one for all samples, or one each.
+  // Widths of the filter's unit in texels of level 0: one for all samples, or one each.
   std::span<const double> scales;
 
   double scale(std::size_t sample) const { return scales[scales.size() == 1 ? 0 : sample]; }
 };
 
-// These throw Error. `first` is the number of the first sample, which messages count from.
+// These throw Error. `first` is the index of the first sample, for error messages.
 
-/// Unless all coordinates are finite.
+/// Throws Error unless all coordinates are finite.
 void check_coordinates(std::span<const TexturePlace> coordinates, std::size_t first = 0);
 
-/// Unless all scales are finite, and none is negative.
+/// Throws Error unless all scales are finite and nonnegative.
 void check_scales(std::span<const double> scales, std::size_t first = 0);
 
-/// Unless there is one scale, or one for each sample.
+/// Throws Error unless there is one scale, or one for each sample.
 void check_scale_count(const SamplePlaces& places);
 
-/// All of these.
+/// Performs all of the checks above.
 void check_places(const SamplePlaces& places);
 
-/// Unless there is a Jacobian for each sample, and all are finite.
+/// Throws Error unless there is a finite Jacobian for each sample.
 void check_jacobians(std::span<const TextureJacobian> jacobians, std::size_t samples);
 
 }  // namespace prefilter

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Samples of a single texel, right on average.
+// Samples that read a single texel each, with the right expected value.
 #pragma once
 
 #include <cstdint>
@@ -14,31 +14,29 @@
 
 namespace prefilter {
 
-/// What texels are picked from.
+/// The filter whose texels are picked from.
 struct TexelChoice {
   enum class Kind {
     kTable,
     kTrilinear,
-    kBilinear,  // interpolation in the level next to the mip value
+    kBilinear,  // bilinear interpolation in the level nearest to the mip value
   };
   Kind kind = Kind::kTrilinear;
   const SamplingTable* table = nullptr;  // for kTable
 };
 
-/// One of the texels of each sample: for a number in [0, 1) the one at which the sum of the
-/// magnitudes of the weights, from the first texel on, passes that share of them all. Its weight is
-/// that sum with the sign of its own: texels are picked with a probability proportional to their
-/// magnitude, and the mean of weight times texel over all numbers is the weighted sum.
+/// Picks one texel per sample. A number in [0, 1) selects the texel at which the running sum of the
+/// weights' magnitudes passes that share of their total. Its weight is the total with its own sign.
+/// So texels are picked with probabilities proportional to their magnitudes, and the mean of weight
+/// times texel over all numbers is the weighted sum.
 ///
-/// Throws Error for a pyramid or a table that is none, places that check_places refuses, and where
-/// there is not one number in [0, 1) for each sample; and, from the progress callback, when
-/// cancelled.
+/// Throws Error for an invalid pyramid or table, places that check_places rejects, and unless there
+/// is one number in [0, 1) per sample; and, from the progress callback, when cancelled.
 std::vector<WeightedTexel> pick_texels(const Pyramid& pyramid, const TexelChoice& choice,
                                        const SamplePlaces& places, std::span<const double> numbers,
                                        const SampleOptions& options);
 
-/// The texels so picked times their weights, as `sample` gives its results; zero for those outside
-/// of the border.
+/// The picked texels times their weights, in the layout of `sample`; zero for texels in the border.
 void sample_stochastically(const Pyramid& pyramid, const TexelChoice& choice,
                            const SamplePlaces& places, std::span<const double> numbers,
                            const SampleOptions& options, std::span<float> result);

@@ -20,14 +20,13 @@
 namespace prefilter {
 namespace {
 
-// Coefficients are whole numbers divided by this. A texel's weight, about 1, is a float in the end,
-// and files are shorter.
+// Coefficients are rounded to multiples of its inverse: weights, about 1, are used as floats, and
+// files become shorter.
 constexpr double kCoefficientSteps = 1e9;
 
-// A proof may take so many nodes, times candidates, for each subdomain: about two minutes on two
-// threads.
-constexpr std::int64_t kWorkToCertify = 6'500'000'000;
-constexpr double kShareOfSearch = 0.1;  // of the progress, before proofs
+// Limit of a proof, in nodes times candidates per subdomain: about two minutes on two threads.
+constexpr std::int64_t kMaxCertifyWork = 6'500'000'000;
+constexpr double kSearchProgress = 0.1;  // share of the progress before proofs
 
 TableSection empty_section(const TableShape& shape, int levels) {
   TableSection section;
@@ -42,7 +41,7 @@ TableSection empty_section(const TableShape& shape, int levels) {
   return section;
 }
 
-// Texels that the set has none for stay at the cell's own, with weights of 0.
+// Missing texels of a small set remain the cell's own, with weights of 0.
 void store(const SubdomainSystem& system, const FittedSet& set, const TableShape& shape, int index,
            TableSection* section) {
   section->errors[index] = std::max(system.filter_error(set), 0.0);
@@ -82,7 +81,7 @@ SamplingTable build_sampling_table(const BuildTableOptions& options) {
   }
   std::vector<FittedSet> sets(subdomains.size());
   parallel_for(static_cast<std::int64_t>(subdomains.size()), options.threads,
-               options.progress.part(0.0, options.certify ? kShareOfSearch : 1.0),
+               options.progress.part(0.0, options.certify ? kSearchProgress : 1.0),
                [&](std::int64_t i) {
                  const auto [number, index] = subdomains[i];
                  TableSection& section = table.sections[number];
@@ -103,9 +102,9 @@ SamplingTable build_sampling_table(const BuildTableOptions& options) {
     const SubdomainSystem system(shape, section, index);
     const auto done = static_cast<double>(i);
     const Progress progress =
-        options.progress.part(kShareOfSearch, 1.0).part(done / count, (done + 1.0) / count);
+        options.progress.part(kSearchProgress, 1.0).part(done / count, (done + 1.0) / count);
     const CertifiedSet certified = certify_set(
-        system, sets[i], {kWorkToCertify / system.candidates(), progress, options.threads});
+        system, sets[i], {kMaxCertifyWork / system.candidates(), progress, options.threads});
     store(system, certified.set, shape, index, &section);
     section.gaps.push_back(certified.gap);
   }
@@ -116,7 +115,7 @@ double error_ratio(const TableSection& section) {
   const auto sum = [](const std::vector<double>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0);
   };
-  // Of the domain's volume, which is an eighth at the most; filters are about 1.
+  // Relative to the domain's volume, at most 1/8, and filters of about 1.
   constexpr double kNoError = 1e-12;
   const double error = sum(section.errors);
   const double trilinear = sum(section.trilinear_errors);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Leaps and bounds (Furnival and Wilson, "Regressions by Leaps and Bounds", 1974): sets without
-// some texels have an error of at least that of all other texels together.
+// Leaps and bounds (Furnival and Wilson, "Regressions by Leaps and Bounds", 1974): sets that
+// exclude some texels have at least the error of all other texels together.
 //
-// With all candidates in, let c be their weights and A the inverse of their products, bordered for
-// the weights' sum. Without the texels X the error is higher by c_X A_XX^-1 c_X. So a bound takes
-// the elimination of few texels, however many candidates there are. Of those that may still be in
-// or out, the one that raises the bound the most if it is out is next: with it in, and with it out.
+// Let c be the weights with all candidates in the set, and A the inverse of their products,
+// bordered for the weights' sum. Excluding the texels X raises the error by c_X A_XX^-1 c_X. So a
+// bound only requires eliminating a few texels, however many candidates there are. Branches on the
+// undecided texel whose exclusion raises the bound the most: first included, then excluded.
 #include "prefilter/sampling/tables/certify.h"
 
 #include <algorithm>
@@ -23,23 +23,22 @@
 namespace prefilter {
 namespace {
 
-constexpr double kEqual = 1e-9;     // of an error
-constexpr double kNoError = 1e-12;  // of the filter's square
-// Candidates that make up each other have no inverse. This share of a texel's square, the mean of
-// all, is added to each: that raises an error by no more than this times the sum of the squares of
-// its weights.
+constexpr double kEqualErrors = 1e-9;  // relative
+constexpr double kNoError = 1e-12;     // relative to the filter's square
+// Linearly dependent candidates have no inverse. So this share of the mean squared texel is added
+// to each square. It raises an error by at most this share times the sum of the squared weights.
 constexpr double kRidge = 1e-10;
-constexpr double kMostWeight = 10.0;        // root mean square
-constexpr std::int64_t kNodesOfTask = 256;  // nodes that are visited depth first
-constexpr std::int64_t kTasksOfRound = 64;  // that are worked on side by side
+constexpr double kMaxRmsWeight = 10.0;
+constexpr std::int64_t kNodesPerTask = 256;  // visited depth first
+constexpr std::int64_t kTasksPerRound = 64;  // processed in parallel
 
-// The elimination of some texels from equations with one matrix and several right sides: what is
-// left for all other texels.
+// Result of eliminating some texels from equations with one matrix and several right sides: the
+// reduced equations of all other texels.
 struct Elimination {
   std::size_t count = 0;
   std::vector<double> sides;    // [polynomial][texel]
   std::vector<double> squares;  // the diagonal
-  double error = 0.0;           // of what the right sides are products of
+  double error = 0.0;           // remaining error
 
   double side_square(int texel) const {
     double sum = 0.0;
@@ -48,13 +47,13 @@ struct Elimination {
   }
 };
 
-// Rows that were eliminated, one above another, each scaled by the root of its pivot.
+// Eliminated rows, each divided by the square root of its pivot.
 class Rows {
  public:
   std::size_t size() const { return rows_.size(); }
   void resize(std::size_t size) { rows_.resize(size); }
 
-  // What is left of the row of a texel.
+  // Reduces the row of a texel by all eliminated rows.
   void reduce(int texel, std::vector<double>* row) const {
     for (const std::vector<double>& above : rows_) {
       const double factor = above[texel];
@@ -62,13 +61,13 @@ class Rows {
     }
   }
 
-  // The element of it in the column of another one.
+  // Reduces a single element of a texel's row.
   double reduced(int texel, int column, double value) const {
     for (const std::vector<double>& above : rows_) value -= above[texel] * above[column];
     return value;
   }
 
-  // Eliminates a texel. `sign` is that with which its part counts as an error.
+  // Eliminates a texel. `sign` is the sign of its contribution to the error.
   void eliminate(int texel, std::vector<double> row, double sign, Elimination* left) {
     reduce(texel, &row);
     const double scale = 1.0 / std::sqrt(left->squares[texel]);
@@ -87,8 +86,8 @@ class Rows {
   std::vector<std::vector<double>> rows_;
 };
 
-// Cholesky's factor of the candidates' products, with `ridge` on their diagonal: by rows, below the
-// diagonal.
+// Cholesky factor of the candidates' products plus `ridge` on the diagonal: the lower triangle, by
+// rows.
 std::vector<double> cholesky_factor(const SubdomainSystem& system, double ridge,
                                     const Progress& progress) {
   const auto count = static_cast<std::size_t>(system.candidates());
@@ -116,7 +115,7 @@ std::vector<double> cholesky_factor(const SubdomainSystem& system, double ridge,
   return factor;
 }
 
-// The inverse of what has this factor: that of the factor, and the products of its columns.
+// Inverts a matrix from its Cholesky factor: inverts the factor, then multiplies its columns.
 std::vector<double> inverse_of_factor(const std::vector<double>& factor, std::size_t count,
                                       const Progress& progress) {
   std::vector<double> factor_inverse(count * count);
@@ -144,7 +143,8 @@ std::vector<double> inverse_of_factor(const std::vector<double>& factor, std::si
   return inverse;
 }
 
-// The inverse of all candidates' products with the weights' sum fixed, and their weights.
+// Inverse of all candidates' products, with the sum of the weights fixed, and the weights of all
+// candidates.
 struct AllTexels {
   AllTexels(const SubdomainSystem& system, const Progress& progress);
 
@@ -152,11 +152,11 @@ struct AllTexels {
 
   std::vector<double> inverse;
   Elimination weights;
-  double slack = 0.0;  // for each texel of a set: how much the ridge raises errors at the most
+  double slack = 0.0;  // per texel of a set: bound on the error added by the ridge
 
  private:
-  // Of one polynomial, by the inverse as it is without the weights' sum. `of_ones` are its rows'
-  // sums, and `sum_of_ones` the sum of these.
+  // Adds the weights for one polynomial, from the inverse without the constraint on their sum.
+  // `of_ones` are its row sums, and `sum_of_ones` their total.
   void add_weights(const SubdomainSystem& system, std::size_t polynomial,
                    const std::vector<double>& of_ones, double sum_of_ones);
 };
@@ -167,7 +167,7 @@ AllTexels::AllTexels(const SubdomainSystem& system, const Progress& progress) {
   double trace = 0.0;
   for (std::size_t i = 0; i < count; ++i) trace += system.products_of(static_cast<int>(i))[i];
   const double ridge = kRidge * trace / static_cast<double>(count);
-  slack = ridge * system.unit * system.unit * kMostWeight * kMostWeight;
+  slack = ridge * system.unit * system.unit * kMaxRmsWeight * kMaxRmsWeight;
   inverse = inverse_of_factor(cholesky_factor(system, ridge, progress), count, progress);
 
   std::vector<double> of_ones(count);
@@ -206,7 +206,7 @@ void AllTexels::add_weights(const SubdomainSystem& system, std::size_t polynomia
   for (std::size_t i = 0; i < count; ++i) of_polynomial[i] += missing / sum_of_ones * of_ones[i];
 }
 
-// The sets that have some texels, and others that are not excluded.
+// The sets that contain the chosen texels and none of the excluded ones.
 struct Task {
   std::vector<int> chosen;
   std::vector<int> excluded;
@@ -214,13 +214,13 @@ struct Task {
 };
 
 struct Outcome {
-  std::vector<int> best;  // empty: none is better
+  std::vector<int> best;  // empty if no better set was found
   double best_error = 0.0;
-  std::vector<Task> open;  // what was left where the nodes were used up
+  std::vector<Task> open;  // unfinished when the nodes ran out
   std::int64_t nodes = 0;
 };
 
-// One task, depth first.
+// Processes a task, depth first.
 class Search {
  public:
   Search(const SubdomainSystem& system, const AllTexels& all, std::size_t size, double best_error)
@@ -238,10 +238,10 @@ class Search {
   }
 
  private:
-  // What no error of a better set is above.
+  // Error that a better set must stay below.
   double needed() const {
     const double error = outcome_.best_error;
-    return error - std::max(kEqual * error, kNoError * system_.filter_square);
+    return error - std::max(kEqualErrors * error, kNoError * system_.filter_square);
   }
   bool is_hopeless(double bound) const {
     return bound - all_.slack * static_cast<double>(size_) >= needed();
@@ -253,7 +253,7 @@ class Search {
     return system_.products_of(i)[j] - base[i] - base[j] + base[chosen_[0]];
   }
   bool can_join(int texel, double square) const {
-    return square > kDependent * system_.products_of(texel)[texel];
+    return square > kDependentTolerance * system_.products_of(texel)[texel];
   }
 
   void exclude(int texel, Elimination* without) {
@@ -263,7 +263,8 @@ class Search {
     is_free_[texel] = 0;
   }
 
-  // The first one sees to the weights' sum: of all others, what differs from it counts.
+  // The first chosen texel enforces the sum of the weights: all others count by their difference
+  // from it.
   void choose(int texel, Elimination* with) {
     const std::size_t count = all_.weights.count;
     is_free_[texel] = 0;
@@ -307,7 +308,7 @@ class Search {
     outcome_.best.push_back(last);
   }
 
-  // All sets with one texel more than the chosen ones.
+  // Tries all sets with one more texel.
   void try_last(const Elimination& with) {
     gains_.assign(with.count, 0.0);
     for (std::size_t first = 0; first < with.sides.size(); first += with.count) {
@@ -323,7 +324,7 @@ class Search {
     }
   }
 
-  // A set that lacks two of the texels.
+  // Tries a set with two more texels.
   void try_pair(const Elimination& with, int i, int j) {
     if (!can_join(i, with.squares[i])) return;
     const double share = chosen_rows_.reduced(i, j, product(i, j)) / with.squares[i];
@@ -339,8 +340,8 @@ class Search {
     chosen_.pop_back();
   }
 
-  // Of the free texels the `count` ones that raise the bound the most where they are excluded, in
-  // this order, into next_; by how much, into rises_.
+  // Finds the `count` free texels whose exclusion raises the bound the most, in this order, for
+  // next_; the increases go to rises_.
   void rank(const Elimination& without, std::size_t count) {
     rises_.assign(without.count, 0.0);
     for (std::size_t first = 0; first < without.sides.size(); first += without.count) {
@@ -362,13 +363,13 @@ class Search {
   void visit(Elimination without, const Elimination& with) {
     const std::size_t excluded_before = excluded_.size();
     while (true) {
-      // Of so many texels one at the least is out.
+      // Pigeonhole: among this many texels at least one is not selected.
       rank(without, missing() + 1);
       if (next_.size() < missing()) break;
       const double bound =
           without.error + (next_.size() > missing() ? rises_[next_[missing()]] : 0.0);
       if (is_hopeless(bound)) break;
-      if (outcome_.nodes++ >= kNodesOfTask) {
+      if (outcome_.nodes++ >= kNodesPerTask) {
         outcome_.open.push_back({chosen_, excluded_, bound});
         break;
       }
@@ -403,7 +404,7 @@ class Search {
   Rows chosen_rows_;  // of all but the first
   Rows excluded_rows_;
   Outcome outcome_;
-  std::vector<double> rises_;  // these are for use within a function
+  std::vector<double> rises_;  // scratch, like next_
   std::vector<int> next_;
   std::vector<double> gains_;
 };
@@ -421,13 +422,14 @@ CertifiedSet certify_set(const SubdomainSystem& system, const FittedSet& start,
   std::vector<int> best = start.members;
   double best_error = start.error;
   const auto order = [](const Task& a, const Task& b) { return a.bound < b.bound; };
-  std::multiset<Task, decltype(order)> open(order);  // equal ones in the order of insertion
+  std::multiset<Task, decltype(order)> open(order);  // equal bounds keep the order of insertion
   open.insert({{}, {}, all.weights.error});
   std::int64_t nodes = 0;
   while (!open.empty() && nodes < options.nodes) {
-    // What is worked on together, and with which best error, is the same on any number of threads.
+    // The tasks of a round, and the best error they start with, do not depend on the number of
+    // threads.
     std::vector<Task> tasks;
-    while (!open.empty() && tasks.size() < kTasksOfRound) {
+    while (!open.empty() && tasks.size() < kTasksPerRound) {
       tasks.push_back(std::move(open.extract(open.begin()).value()));
     }
     std::vector<Outcome> outcomes(tasks.size());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Proofs that sets of texels are the best, by branch and bound.
+// Proves the optimality of sets of texels by branch and bound.
 #pragma once
 
 #include <cstdint>
@@ -11,20 +11,19 @@
 namespace prefilter {
 
 struct CertifyOptions {
-  std::int64_t nodes = 0;  // of the search tree: where it ends if there is no proof by then
+  std::int64_t nodes = 0;  // limit of nodes in the search tree, after which the proof is abandoned
   Progress progress;
   int threads = 0;
 };
 
 struct CertifiedSet {
   FittedSet set;
-  double gap = 0.0;  // how much lower the error of another set may still be, as a share of it; 0
-                     // is a proof
+  double gap = 0.0;  // bound on the relative improvement by any other set; 0 if proven optimal
 };
 
-/// The best set of as many candidates as `start` has, or the best that was found: `start`, unless
-/// another one has an error lower by more than a billionth. Of sets whose weights have a root mean
-/// square above 10, and of those that have a texel that others make up, nothing is said.
+/// Searches for the best set with as many candidates as `start`. Returns `start` unless another set
+/// with an error lower by more than 1e-9 of it is found. Sets whose weights have a root mean square
+/// above 10, and sets with linearly dependent texels, are not considered.
 CertifiedSet certify_set(const SubdomainSystem& system, const FittedSet& start,
                          const CertifyOptions& options);
 

@@ -18,18 +18,19 @@ namespace prefilter {
 namespace {
 
 constexpr int kRandomStarts = 99;
-// Texels that random sets are drawn from, for each of theirs: in turns, as some of the best sets
-// have only texels that are good by themselves, and others some from far down the list.
-constexpr std::array<std::size_t, 3> kPoolsOfTexel = {3, 8, 24};
-constexpr double kLeastGain = 1e-12;  // of the filter's square
+// Pool sizes of random sets, per texel, used in turns: some of the best sets consist of
+// individually good texels only, others include texels from far down the list.
+constexpr std::array<std::size_t, 3> kPoolSizesPerTexel = {3, 8, 24};
+constexpr double kMinErrorGain = 1e-12;  // relative to the filter's square
 
-// A set, and what every candidate would change about it.
+// A set, and the effect of every possible exchange on its error.
 //
-// With the multiplier of the weights' sum the equations of a set have the matrix K of products of
-// its texels, bordered by ones. One texel more is a row and a column more: the error falls by the
-// sum over the polynomials of residual^2 / remainder, where the residual is what is left of the
-// candidate's right side, and the remainder of its square, once the set has explained what it can.
-// Taking texel i out of the set changes the inverse of K by its i-th row and column only. So all
+// With a Lagrange multiplier for the sum of the weights, the equations have the matrix K of
+// products of the set's texels, bordered by ones. Adding a texel adds a row and a column: the error
+// falls by the sum over the polynomials of residual^2 / remainder. The residual is what remains of
+// the candidate's right side after the set, the remainder what remains of its square. Removing
+// texel i changes the inverse of K by its i-th row and column only. So one pass over the candidates
+// evaluates all exchanges.
 // exchanges are evaluated with one pass over the candidates.
 class Exchanges {
  public:
@@ -72,7 +73,7 @@ class Exchanges {
     int best = -1;
     double best_gain = -1.0;
     for (std::size_t j = 0; j < candidates_; ++j) {
-      if (is_member_[j] != 0 || remainders_[j] < kDependent * squares_[j]) continue;
+      if (is_member_[j] != 0 || remainders_[j] < kDependentTolerance * squares_[j]) continue;
       const double gain = gains_[j] / remainders_[j];
       if (gain > best_gain) {
         best_gain = gain;
@@ -91,7 +92,7 @@ class Exchanges {
   // Makes the exchange that lowers the error the most. Returns whether there is one.
   bool exchange() {
     const std::size_t size = members_.size() + 1;
-    double best_change = kLeastGain * system_.filter_square;
+    double best_change = kMinErrorGain * system_.filter_square;
     int out = -1;
     int in = -1;
     for (std::size_t i = 0; i < members_.size(); ++i) {
@@ -112,7 +113,7 @@ class Exchanges {
       const double scale = 1.0 / diagonal;
       for (std::size_t j = 0; j < candidates_; ++j) {
         const double remainder = remainders_[j] + scale * row[j] * row[j];
-        const bool is_allowed = is_member_[j] == 0 && remainder > kDependent * squares_[j];
+        const bool is_allowed = is_member_[j] == 0 && remainder > kDependentTolerance * squares_[j];
         if (is_allowed && gains_[j] > (loss + best_change) * remainder) {
           best_change = gains_[j] / remainder - loss;
           out = static_cast<int>(i);
@@ -126,7 +127,7 @@ class Exchanges {
     std::vector<int> members = members_;
     members[out] = in;
     if (set_members(std::move(members)) && error_ < before) return true;
-    set_members(old_members);  // what rounding promised
+    set_members(old_members);  // the predicted gain was a rounding error
     return false;
   }
 
@@ -135,7 +136,7 @@ class Exchanges {
     const std::size_t size = members_.size() + 1;
     BorderedRows rows(system_, members_, size);
     for (std::size_t i = 0; i < size; ++i) rows.side(i, i) = 1.0;
-    if (!rows.eliminate(kDependent)) return false;
+    if (!rows.eliminate(kDependentTolerance)) return false;
     inverse_.resize(size * size);
     for (std::size_t i = 0; i < size; ++i) {
       for (std::size_t j = 0; j < size; ++j) inverse_[i * size + j] = rows.side(i, j);
@@ -143,7 +144,7 @@ class Exchanges {
     return true;
   }
 
-  // The weights and the error of the set, and the residuals and remainders of all candidates.
+  // Computes weights and error of the set, and residuals and remainders of all candidates.
   bool evaluate() {
     const std::size_t count = members_.size();
     const std::size_t size = count + 1;
@@ -206,10 +207,10 @@ class Exchanges {
   std::vector<double> explained_;  // the inverse times each candidate's column: [row][candidate]
   std::vector<double> residuals_;  // [polynomial][candidate]
   std::vector<double> remainders_;
-  std::vector<double> gains_;  // for use within a function
+  std::vector<double> gains_;  // scratch
 };
 
-// Candidates, those first whose error by themselves is the lowest.
+// Candidates by increasing error of their best single-texel fit.
 std::vector<int> by_own_error(const SubdomainSystem& system) {
   std::vector<double> errors;
   for (int i = 0; i < system.candidates(); ++i) {
@@ -223,10 +224,10 @@ std::vector<int> by_own_error(const SubdomainSystem& system) {
   return order;
 }
 
-// The first `count` of a random order of the pool.
+// Draws `count` elements of the pool at random.
 std::vector<int> drawn(std::vector<int> pool, std::size_t count, std::mt19937& random) {
   for (std::size_t i = 0; i < count; ++i) {
-    // A library's distribution may differ from another's.
+    // Distributions of the standard library differ between implementations.
     const std::size_t pick = i + random() % (pool.size() - i);
     std::swap(pool[i], pool[pick]);
   }
@@ -246,7 +247,8 @@ FittedSet find_set(const SubdomainSystem& system, int texels, const Progress& pr
   for (int start = 0; start <= kRandomStarts; ++start) {
     progress.report(static_cast<double>(start) / (kRandomStarts + 1));
     std::vector<int> pool = order;
-    pool.resize(std::min(pool.size(), count * kPoolsOfTexel[start % kPoolsOfTexel.size()]));
+    pool.resize(
+        std::min(pool.size(), count * kPoolSizesPerTexel[start % kPoolSizesPerTexel.size()]));
     if (!exchanges.set_members(start == 0 ? std::vector<int>{order[0]}
                                           : drawn(std::move(pool), count, random))) {
       continue;
@@ -255,8 +257,8 @@ FittedSet find_set(const SubdomainSystem& system, int texels, const Progress& pr
     }
     while (exchanges.exchange()) {
     }
-    // Of sets that mirror each other the first one is taken, however their errors are rounded.
-    if (exchanges.error() < best_error - kLeastGain * system.filter_square) {
+    // Among mirrored sets, takes the first, regardless of rounding.
+    if (exchanges.error() < best_error - kMinErrorGain * system.filter_square) {
       best_error = exchanges.error();
       best = exchanges.members();
     }

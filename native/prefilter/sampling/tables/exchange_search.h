@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Sets of few texels with low errors, by exchanging one texel at a time.
+// Searches for small sets of texels with a low error by exchanging single texels.
 #pragma once
 
 #include "prefilter/base/progress.h"
@@ -8,10 +8,10 @@
 
 namespace prefilter {
 
-/// The best set of `texels` candidates that exchanges lead to, from a greedy start and from random
-/// ones that are the same in every run: no exchange of one of its texels for another lowers its
-/// error. The system has at least that many candidates; the set has fewer where all others are sums
-/// of its own.
+/// The best set of `texels` candidates reached by exchanges from a greedy start and from random
+/// starts, which are the same in every run. It is a local minimum: no single exchange lowers its
+/// error. The system must have at least that many candidates; the set is smaller if all others are
+/// linear combinations of it.
 FittedSet find_set(const SubdomainSystem& system, int texels, const Progress& progress);
 
 }  // namespace prefilter

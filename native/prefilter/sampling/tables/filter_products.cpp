@@ -12,9 +12,9 @@
 namespace prefilter {
 namespace {
 
-constexpr double kFirstDeviation = 1.0 / 16.0;  // of a scale's Gaussian, in cells
-// A Gaussian and its transform are taken to be nothing beyond so many deviations.
-constexpr double kReach = 7.0;
+constexpr double kFirstDeviation = 1.0 / 16.0;  // of the finest scale's Gaussian, in cells
+// Gaussians and their transforms are truncated at this many standard deviations.
+constexpr double kTruncation = 7.0;
 
 double deviation_of(int scale) { return std::ldexp(kFirstDeviation, scale); }
 
@@ -27,11 +27,11 @@ FilterProducts::FilterProducts(const Kernel& texels, const Kernel& sample, int l
     of_texels_apart_ = {{1.0}};
     return;
   }
-  // Filters that are asked for are no farther from each other, and no wider, all in all.
+  // Upper bound of the distances and widths of all filters in use.
   const double widest = 2.0 * (texels.radius() + sample.radius()) +
                         2.0 * std::max(texels.radius(), sample.radius()) + 2.0;
   of_texels_apart_.resize(static_cast<std::size_t>(widest * levels) + 1);
-  for (int scale = 0; scale < kMostScales; ++scale) {
+  for (int scale = 0; scale < kMaxScales; ++scale) {
     const double deviation = deviation_of(scale);
     frequencies_[scale] = frequencies_of(deviation, widest);
     for (std::size_t i = 0; i < of_texels_apart_.size(); ++i) {
@@ -66,7 +66,7 @@ FilterProducts::Texels FilterProducts::overlapping(int finer, double low, double
                                                    double width) const {
   const double texel_width = std::ldexp(1.0, -finer);
   const double reach = sample_->radius() * width + texels_->radius() * texel_width;
-  // Those that only touch do not overlap.
+  // Excludes texels that only touch.
   constexpr double kTouching = 1e-9;
   return {static_cast<int>(std::floor((low - reach) / texel_width - 0.5 + kTouching)) + 1,
           static_cast<int>(std::ceil((high + reach) / texel_width - 0.5 - kTouching)) - 1};
@@ -109,16 +109,16 @@ double FilterProducts::integral(const Filter& a, const Filter& b) const {
   return sum / (a.width * b.width);
 }
 
-// The double integral of a(x) b(y) exp(-(x - y)^2 / 2 s^2) is that of the transforms of all three
-// over the frequencies: sqrt(2 pi) s A(v) B(v) exp(-2 (pi s v)^2) cos(2 pi v d), where d is the
-// distance of the centers. The trapezoidal rule adds only what filters an inverse step apart have
-// in common.
+// The double integral of a(x) b(y) exp(-(x - y)^2 / 2 s^2) equals the integral over frequencies v
+// of the three transforms: sqrt(2 pi) s A(v) B(v) exp(-2 (pi s v)^2) cos(2 pi v d), with d the
+// distance of the centers. The trapezoidal rule adds only the overlap of filters that are an
+// inverse step apart.
 FilterProducts::Products FilterProducts::correlations(const Filter& a, const Filter& b) {
   const Transform& of_a = transform_of(a);
   const Transform& of_b = transform_of(b);
   const double distance = a.center - b.center;
   Products products{};
-  for (int scale = 0; scale < kMostScales; ++scale) {
+  for (int scale = 0; scale < kMaxScales; ++scale) {
     const Frequencies& frequencies = frequencies_[scale];
     const double angle = 2.0 * std::numbers::pi * frequencies.step * distance;
     const double step_x = elementary::cos(angle);
@@ -136,9 +136,9 @@ FilterProducts::Products FilterProducts::correlations(const Filter& a, const Fil
 }
 
 FilterProducts::Frequencies FilterProducts::frequencies_of(double deviation, double widest) {
-  Frequencies frequencies{1.0 / (widest + kReach * deviation), {}};
+  Frequencies frequencies{1.0 / (widest + kTruncation * deviation), {}};
   const double two_pi_deviation = 2.0 * std::numbers::pi * deviation;
-  for (int i = 0; i * frequencies.step * two_pi_deviation <= kReach; ++i) {
+  for (int i = 0; i * frequencies.step * two_pi_deviation <= kTruncation; ++i) {
     const double x = i * frequencies.step * two_pi_deviation;
     const double both_signs = i == 0 ? 1.0 : 2.0;
     frequencies.weights.push_back(both_signs * frequencies.step * deviation *
@@ -148,19 +148,19 @@ FilterProducts::Frequencies FilterProducts::frequencies_of(double deviation, dou
   return frequencies;
 }
 
-// Of a filter around 0, which is even: twice the integral of h(x) cos(2 pi v x) over x > 0, by
-// Gauss's rule in parts of its pieces that are no longer than half a wave.
+// Transform of an even filter around 0: twice the integral of h(x) cos(2 pi v x) over x > 0, by
+// Gauss quadrature on parts of its pieces of at most half a wave.
 const FilterProducts::Transform& FilterProducts::transform_of(const Filter& filter) {
   const auto [found, is_new] = transforms_.try_emplace({filter.kernel, filter.width});
   Transform& transform = found->second;
   if (!is_new) return transform;
   const Kernel& kernel = *filter.kernel;
   const auto& rule = gauss_rule<8>();
-  for (int scale = 0; scale < kMostScales; ++scale) {
+  for (int scale = 0; scale < kMaxScales; ++scale) {
     const Frequencies& frequencies = frequencies_[scale];
     const std::size_t count = frequencies.weights.size();
     const double highest = static_cast<double>(count) * frequencies.step * filter.width;
-    const double piece = kernel.piece_width() / 2.0;  // from 0 on they lie on halves
+    const double piece = kernel.piece_width() / 2.0;  // pieces start at multiples of a half
     const int parts_of_piece = static_cast<int>(std::ceil(2.0 * highest * piece));
     const int parts = parts_of_piece * static_cast<int>(std::lround(kernel.radius() / piece));
     const double part = piece / parts_of_piece;
@@ -185,10 +185,10 @@ const FilterProducts::Transform& FilterProducts::transform_of(const Filter& filt
 }
 
 FilterProducts::Products FilterProducts::sums(const Filter& a, const Filter& b) const {
-  const double texels = levels_;  // of level 0 along a cell
+  const double texels = levels_;  // texels of level 0 along a cell
   const Taps left = kernel_taps(*a.kernel, a.center * texels, a.width * texels);
   const Taps right = kernel_taps(*b.kernel, b.center * texels, b.width * texels);
-  // The sums of products of texels that are so far apart, from `first` on.
+  // Sums of the products of texels at each distance, starting at `first`.
   const int first = left.first - right.first - static_cast<int>(right.weights.size()) + 1;
   std::vector<double> common(left.weights.size() + right.weights.size() - 1);
   for (std::size_t i = 0; i < left.weights.size(); ++i) {

@@ -18,15 +18,15 @@
 namespace prefilter {
 namespace {
 
-constexpr double kBeyond = 1e-6;  // of a cell: past a border
-// Of the midpoint rule, along a cell. The edges of boxes are between them.
-constexpr int kPointsOfCell = 32;
+constexpr double kBorderOffset = 1e-6;  // of a cell: distance of the points tested on both sides
+// Midpoint rule: points per cell along an axis. The edges of boxes lie between them.
+constexpr int kPointsPerCell = 32;
 
 struct Point {
   double x;
   double y;
 };
-using Quad = std::array<Point, 4>;  // counter-clockwise; the last two are one of a triangle
+using Quad = std::array<Point, 4>;  // counterclockwise; the last two are equal for a triangle
 
 Point between(const Point& a, const Point& b, double t) {
   return {a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t};
@@ -35,14 +35,14 @@ Point inside(const Quad& quad, double u, double v) {
   return between(between(quad[0], quad[1], u), between(quad[3], quad[2], u), v);
 }
 
-// A subdomain where it lies, in a plane whose unit is the base cell.
+// A subdomain, placed in a plane whose unit is the base cell.
 struct Piece {
   const TableSection* section;
   int index;
-  int finer;   // levels below the base cell's that its cell is: 0 or 1
+  int finer;   // level of its cell below the base cell's: 0 or 1
   int cell_x;  // in units of cells
   int cell_y;
-  FoldedPlace fold;  // what is done to all of its places
+  FoldedPlace fold;  // the symmetry from the plane to the subdomain
 };
 
 using Weights = std::map<std::tuple<int, int, int>, double>;  // by finer, x, y of a texel
@@ -50,13 +50,15 @@ using Weights = std::map<std::tuple<int, int, int>, double>;  // by finer, x, y 
 class Borders {
  public:
   // `samples` is how many of the image there are along the base cell, or 0 for the plane.
+  // `samples` is the number of image texels along the base cell, or 0 for the continuous plane.
   Borders(const SamplingTable& table, int samples)
       : shape_(table.shape), kernel_(*find_kernel(table.shape.filter)), samples_(samples) {}
 
-  // Along the sides of a section's subdomains, and from slice to slice.
+  // Largest jump across the sides of a section's subdomains and between slices.
   double within(const TableSection& section);
 
-  // Where the cell's level changes from that of `fine` to that of `coarse`, the base cell's.
+  // Largest jump where the cell's level changes from that of `fine` to that of `coarse`, the base
+  // cell's.
   double between_levels(const TableSection& fine, const TableSection& coarse);
 
  private:
@@ -65,8 +67,8 @@ class Borders {
   void add(const Piece& piece, const Point& point, double f, double sign, Weights* weights) const;
   double step(const Weights& difference);
   const std::vector<double>& profile(int finer, int i, int* first);
-  // How many points of a border are looked at along each of its dimensions. A norm of what is
-  // linear is the largest at a corner.
+  // Number of test points of a border along each of its dimensions. Norms of linear functions are
+  // largest at corners, so these suffice for degree 1.
   int points_along(const TableSection& section) const {
     return shape_.degree == 1 && section.levels > 1 ? 2 : 5;
   }
@@ -100,7 +102,7 @@ Quad Borders::quad_of(const TableSection& section, int index) const {
   return {{{left, low}, {right, low}, {right, high}, last}};
 }
 
-// The weights of a piece's texels for a sample, texels of levels below the base cell's.
+// Adds the weights of a piece's texels for a sample; levels are relative to the base cell's.
 void Borders::add(const Piece& piece, const Point& point, double f, double sign,
                   Weights* weights) const {
   double x = std::ldexp(point.x, piece.finer) - piece.cell_x;
@@ -119,7 +121,7 @@ void Borders::add(const Piece& piece, const Point& point, double f, double sign,
   }
 }
 
-// What a texel's filter weighs the samples along an axis with, the first of which is number *first.
+// The weights of a texel's filter at the samples along an axis, from sample *first on.
 const std::vector<double>& Borders::profile(int finer, int i, int* first) {
   const auto [place, is_new] = profiles_.try_emplace({finer, i});
   auto& [begin, values] = place->second;
@@ -132,11 +134,11 @@ const std::vector<double>& Borders::profile(int finer, int i, int* first) {
       values = std::move(taps.weights);
     } else {
       const double reach = kernel_.radius() * width;
-      begin = static_cast<int>(std::floor((center - reach) * kPointsOfCell));
-      const int end = static_cast<int>(std::ceil((center + reach) * kPointsOfCell));
+      begin = static_cast<int>(std::floor((center - reach) * kPointsPerCell));
+      const int end = static_cast<int>(std::ceil((center + reach) * kPointsPerCell));
       for (int k = begin; k < end; ++k) {
-        const double x = (k + 0.5) / kPointsOfCell;
-        values.push_back(kernel_.value((x - center) / width) / (width * kPointsOfCell));
+        const double x = (k + 0.5) / kPointsPerCell;
+        values.push_back(kernel_.value((x - center) / width) / (width * kPointsPerCell));
       }
     }
   }
@@ -144,8 +146,8 @@ const std::vector<double>& Borders::profile(int finer, int i, int* first) {
   return values;
 }
 
-// Weights with the sum 0: the image is 1 where the sum of their filters is above 0, and 0
-// elsewhere.
+// The jump for weights that sum to 0: largest for the image that is 1 where the sum of their
+// filters is positive, and 0 elsewhere.
 double Borders::step(const Weights& difference) {
   struct Term {
     const std::vector<double>* along_x;
@@ -193,7 +195,8 @@ double Borders::within(const TableSection& section) {
   for (int index = 0; index < subdomains; ++index) {
     const Subdomain subdomain(shape_, section, index);
     const Quad quad = quad_of(section, index);
-    const Piece own = piece_at(section, 0, inside(quad, 0.5, 0.25), subdomain.f_low() + kBeyond);
+    const Piece own =
+        piece_at(section, 0, inside(quad, 0.5, 0.25), subdomain.f_low() + kBorderOffset);
     const auto look = [&](const Piece& other, const Point& point, double f) {
       Weights difference;
       add(own, point, f, 1.0, &difference);
@@ -206,9 +209,9 @@ double Borders::within(const TableSection& section) {
       const double length = elementary::hypot(b.x - a.x, b.y - a.y);
       if (length == 0.0) continue;
       const Point middle = between(a, b, 0.5);
-      const Point beyond{middle.x + (b.y - a.y) / length * kBeyond,
-                         middle.y - (b.x - a.x) / length * kBeyond};
-      const Piece other = piece_at(section, 0, beyond, subdomain.f_low() + kBeyond);
+      const Point beyond{middle.x + (b.y - a.y) / length * kBorderOffset,
+                         middle.y - (b.x - a.x) / length * kBorderOffset};
+      const Piece other = piece_at(section, 0, beyond, subdomain.f_low() + kBorderOffset);
       for (int k = 0; k < points; ++k) {
         for (int l = 0; l < (section.levels == 1 ? 1 : points); ++l) {
           look(other, between(a, b, at(k)),
@@ -233,7 +236,7 @@ double Borders::between_levels(const TableSection& fine, const TableSection& coa
   for (int number = 0; number < of_slice; ++number) {
     const Quad folded = quad_of(fine, (fine.slices - 1) * of_slice + number);
     for (int symmetry = 0; symmetry < 8; ++symmetry) {
-      Quad quad = folded;  // in the base cell, of which the fine cell is the first quarter
+      Quad quad = folded;  // in the base cell, whose first quarter is the fine cell
       for (Point& point : quad) {
         if ((symmetry & 1) != 0) std::swap(point.x, point.y);
         if ((symmetry & 2) != 0) point.x = 1.0 - point.x;
@@ -263,7 +266,7 @@ double Borders::between_levels(const TableSection& fine, const TableSection& coa
 double largest_jump(const SamplingTable& table, int levels) {
   const TableSection& section = table.section(levels);
   const TableSection& coarser = table.section(std::min(levels + 1, 3));
-  // A cell of a section with few levels is as many texels of the image wide as it has levels.
+  // If there are few levels, a cell is as many image texels wide as there are levels.
   const bool has_image = levels < 3;
   Borders within(table, has_image ? levels : 0);
   Borders between(table, has_image ? 2 * levels : 0);

@@ -16,7 +16,7 @@
 namespace prefilter {
 namespace {
 
-constexpr int kFarthestOffset = 64;
+constexpr int kMaxTexelOffset = 64;
 constexpr double kSumTolerance = 1e-6;
 
 [[noreturn]] void refuse(const TableSection& section, const std::string& what) {
@@ -46,8 +46,8 @@ void check_section(const TableShape& shape, const TableSection& section, int lev
                         std::to_string(subdomains) + " subdomains");
   }
   for (const TexelOffset& texel : section.texels) {
-    if (texel.finer < 0 || texel.finer >= levels || std::abs(texel.x) > kFarthestOffset ||
-        std::abs(texel.y) > kFarthestOffset) {
+    if (texel.finer < 0 || texel.finer >= levels || std::abs(texel.x) > kMaxTexelOffset ||
+        std::abs(texel.y) > kMaxTexelOffset) {
       refuse(section, "a texel at " + std::to_string(texel.x) + ", " + std::to_string(texel.y) +
                           " of level " + std::to_string(texel.finer) + " is out of reach");
     }
@@ -114,11 +114,11 @@ void check_shape(const TableShape& shape) {
   };
   kernel_named(shape.filter);
   if (!shape.target.empty()) element_named("target", shape.target, kernels(), &Kernel::name);
-  check("texels", shape.texels, kFewestTexels, kMostTexels);
-  check("subdomains", shape.grid, 1, kMostParts);
-  check("subdomains", shape.slices, 1, kMostParts);
+  check("texels", shape.texels, kMinTexels, kMaxTexels);
+  check("subdomains", shape.grid, 1, kMaxParts);
+  check("subdomains", shape.slices, 1, kMaxParts);
   check("degree", shape.degree, 1, 2);
-  if (!(shape.ramp_weight >= 0.0 && shape.ramp_weight <= kMostRampWeight)) {
+  if (!(shape.ramp_weight >= 0.0 && shape.ramp_weight <= kMaxRampWeight)) {
     throw_invalid("ramp_weight: found " + to_text(shape.ramp_weight) +
                   "; a number from 0 to 1000000 is needed");
   }

@@ -10,7 +10,7 @@
 namespace prefilter {
 namespace {
 
-constexpr int kNodes = 8;  // a panel
+constexpr int kNodesPerPanel = 8;  // per panel
 
 struct LineNode {
   double x;
@@ -18,11 +18,11 @@ struct LineNode {
 };
 
 std::vector<LineNode> line_quadrature(double low, double high, int panels) {
-  const auto& rule = gauss_rule<kNodes>();
+  const auto& rule = gauss_rule<kNodesPerPanel>();
   const double width = (high - low) / panels;
   std::vector<LineNode> nodes;
   for (int panel = 0; panel < panels; ++panel) {
-    for (int k = 0; k < kNodes; ++k) {
+    for (int k = 0; k < kNodesPerPanel; ++k) {
       nodes.push_back({low + (panel + rule.nodes[k]) * width, rule.weights[k] * width});
     }
   }
@@ -66,9 +66,9 @@ std::vector<Subdomain::Node> Subdomain::quadrature(int panels) const {
   for (std::size_t i = 0; i < along_x.size(); ++i) {
     const LineNode& x = along_x[i];
     std::vector<LineNode> below = along_y;
-    if (is_triangle_) {  // panels below the diagonal, and the part below it of the one on it
-      const std::size_t panel = i / kNodes;
-      below.resize(panel * kNodes);
+    if (is_triangle_) {  // the panels below the diagonal, and the lower part of the one on it
+      const std::size_t panel = i / kNodesPerPanel;
+      below.resize(panel * kNodesPerPanel);
       const double begin = y_low_ + static_cast<double>(panel) * panel_width;
       const std::vector<LineNode> last = line_quadrature(begin, x.x, 1);
       below.insert(below.end(), last.begin(), last.end());
@@ -83,14 +83,14 @@ std::vector<Subdomain::Node> Subdomain::quadrature(int panels) const {
 }
 
 OrthonormalBasis orthonormal_basis(const Subdomain& subdomain, int degree) {
-  // Powers about the middle, so that Gram and Schmidt's steps lose nothing.
+  // Powers about the center, so that Gram-Schmidt does not lose precision.
   const std::array<double, 3> middle = {
       (subdomain.x_low() + subdomain.x_high()) / 2.0,
       (subdomain.y_low() + subdomain.y_high()) / 2.0,
       subdomain.has_f() ? (subdomain.f_low() + subdomain.f_high()) / 2.0 : 0.0};
   const auto [a, b, c] = middle;
-  // Row p: the p-th power about the middle in terms of the powers about 0.
-  const std::array<Terms, kMostTerms> centered = {{
+  // Row p: the p-th power about the center as a combination of the powers about 0.
+  const std::array<Terms, kMaxTerms> centered = {{
       {1.0},
       {-a, 1.0},
       {-b, 0.0, 1.0},
@@ -105,20 +105,20 @@ OrthonormalBasis orthonormal_basis(const Subdomain& subdomain, int degree) {
   const std::vector<Subdomain::Node> nodes = subdomain.quadrature(1);
   OrthonormalBasis basis;
   std::vector<std::vector<double>> values;  // of the polynomials so far, at the nodes
-  for (int power = 0; power < (degree == 1 ? 4 : kMostTerms); ++power) {
+  for (int power = 0; power < (degree == 1 ? 4 : kMaxTerms); ++power) {
     constexpr int kXy = 7;
-    if (power == kXy && !subdomain.has_f()) continue;  // f is that
+    if (power == kXy && !subdomain.has_f()) continue;  // f stands for xy
     Terms row = centered[power];
     std::vector<double> at_nodes;
     const auto value = [&](const Subdomain::Node& node) {
       const Terms terms = terms_at(node.x, node.y, node.f);
       double sum = 0.0;
-      for (int q = 0; q < kMostTerms; ++q) sum += row[q] * terms[q];
+      for (int q = 0; q < kMaxTerms; ++q) sum += row[q] * terms[q];
       return sum;
     };
     for (const Subdomain::Node& node : nodes) at_nodes.push_back(value(node));
     const auto subtract = [&](int p, double factor) {
-      for (int q = 0; q < kMostTerms; ++q) row[q] -= factor * basis.coefficients[p][q];
+      for (int q = 0; q < kMaxTerms; ++q) row[q] -= factor * basis.coefficients[p][q];
       for (std::size_t k = 0; k < nodes.size(); ++k) at_nodes[k] -= factor * values[p][k];
     };
     const auto product = [&](const std::vector<double>& with) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The part of the samples' domain that a subdomain of a table covers: its quadrature, and the
-// polynomials that are orthonormal over it.
+// The part of the domain of samples covered by a subdomain of a table: quadrature, and orthonormal
+// polynomials on it.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace prefilter {
 
-/// The powers of x, y and f that coefficients are of, in the order of TableShape::terms.
-using Terms = std::array<double, kMostTerms>;
+/// The powers of x, y and f that coefficients multiply, in the order of TableShape::terms.
+using Terms = std::array<double, kMaxTerms>;
 Terms terms_at(double x, double y, double f);
 
 class Subdomain {
@@ -28,8 +28,8 @@ class Subdomain {
   bool has_f() const { return has_f_; }
   double volume() const;
 
-  /// Gauss's rule in each of `panels` equal parts of an axis. Where the subdomain is a triangle,
-  /// y <= x, the nodes along y depend on the one along x.
+  /// Gauss quadrature with `panels` equal panels per axis. In a triangular subdomain, y <= x, the
+  /// nodes along y depend on the one along x.
   struct Node {
     double x;
     double y;
@@ -45,15 +45,15 @@ class Subdomain {
   double y_high_;
   double f_low_;
   double f_high_;
-  bool has_f_;  // whether there are two levels, and f is not xy
+  bool has_f_;  // whether there are at least two levels, so that f is not xy
   bool is_triangle_;
 };
 
-/// Polynomial number p is the sum over the terms q of coefficients[p][q]: of degree 1 or 2, and
-/// orthonormal over a subdomain. The first one is constant.
+/// Polynomials of degree 1 or 2, orthonormal on a subdomain. Polynomial p has the coefficients
+/// coefficients[p]; the first one is constant.
 struct OrthonormalBasis {
   int count = 0;
-  std::array<Terms, kMostTerms> coefficients{};
+  std::array<Terms, kMaxTerms> coefficients{};
 };
 OrthonormalBasis orthonormal_basis(const Subdomain& subdomain, int degree);
 

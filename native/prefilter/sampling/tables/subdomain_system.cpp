@@ -18,17 +18,17 @@ namespace {
 
 using Products = FilterProducts::Products;
 
-// Of the plane, by those along x and along y.
+// Product in the plane from the products along x and y.
 double over_plane(const double* x, const double* y, int scales) {
   double sum = 0.0;
   for (int scale = 0; scale < scales; ++scale) sum += x[scale] * y[scale];
   return sum;
 }
 double over_plane(const Products& x, const Products& y) {
-  return over_plane(x.data(), y.data(), FilterProducts::kMostScales);
+  return over_plane(x.data(), y.data(), FilterProducts::kMaxScales);
 }
 
-// Products along an axis of the texels that matter, level by level, with the filter of a sample.
+// Products along an axis of the relevant texels, level by level, with the filter of a sample.
 class AxisProducts {
  public:
   AxisProducts(FilterProducts* filters, const Subdomain& subdomain) : filters_(filters) {
@@ -46,7 +46,7 @@ class AxisProducts {
 
   int count() const { return static_cast<int>(texels_.size()); }
   int scales() const { return filters_->scales(); }
-  // The number of texel i of a level, of those that this object knows.
+  // Index of texel i of a level among the relevant ones.
   int number(int finer, int i) const { return begins_[finer] + i - ranges_[finer].first; }
 
   // [texel][texel]
@@ -80,7 +80,7 @@ class AxisProducts {
   std::map<std::pair<double, double>, std::vector<double>> with_samples_;
 };
 
-// Between two texels of a level along an axis.
+// Interpolation weights of two texels of a level along an axis.
 struct LinearWeights {
   int first;
   std::array<double, 2> weights;
@@ -93,12 +93,12 @@ LinearWeights linear_weights(int finer, double x) {
 }
 
 void add(const Products& products, double factor, Products* sum) {
-  for (int scale = 0; scale < FilterProducts::kMostScales; ++scale) {
+  for (int scale = 0; scale < FilterProducts::kMaxScales; ++scale) {
     (*sum)[scale] += factor * products[scale];
   }
 }
 
-// Products along an axis of linear interpolation in the cell's level and the finer one.
+// Products along an axis of linear interpolation in the cell's level and the next finer level.
 class InterpolationProducts {
  public:
   explicit InterpolationProducts(FilterProducts* filters)
@@ -171,14 +171,14 @@ double trilinear_error(FilterProducts* filters, const Subdomain& subdomain, int 
   return error;
 }
 
-// A texel, and its numbers among those along x and along y.
+// A texel, and its indices among those along x and along y.
 struct Candidate {
   TexelOffset texel;
   int along_x;
   int along_y;
 };
 
-// All that the filter overlaps somewhere in the subdomain, by their supports.
+// All texels whose support overlaps the filter's somewhere in the subdomain.
 std::vector<Candidate> candidates_of(const FilterProducts& filters, const Subdomain& subdomain,
                                      const AxisProducts& axis) {
   std::vector<Candidate> candidates;
@@ -195,26 +195,26 @@ std::vector<Candidate> candidates_of(const FilterProducts& filters, const Subdom
   return candidates;
 }
 
-// The polynomials of a basis at a place.
-std::array<double, kMostTerms> polynomials_at(const OrthonormalBasis& basis,
-                                              const Subdomain::Node& node) {
+// The polynomials of a basis at a node.
+std::array<double, kMaxTerms> polynomials_at(const OrthonormalBasis& basis,
+                                             const Subdomain::Node& node) {
   const Terms terms = terms_at(node.x, node.y, node.f);
-  std::array<double, kMostTerms> polynomials{};
+  std::array<double, kMaxTerms> polynomials{};
   for (int p = 0; p < basis.count; ++p) {
-    for (int q = 0; q < kMostTerms; ++q) polynomials[p] += basis.coefficients[p][q] * terms[q];
+    for (int q = 0; q < kMaxTerms; ++q) polynomials[p] += basis.coefficients[p][q] * terms[q];
   }
   return polynomials;
 }
 
-// [candidate][polynomial]: of a texel and the filter of a sample, times the polynomial, integrated
-// over the subdomain.
+// [candidate][polynomial]: the product of a texel with the filter of a sample, times the
+// polynomial, integrated over the subdomain.
 std::vector<double> right_sides_of(const std::vector<Candidate>& candidates,
                                    const OrthonormalBasis& basis,
                                    const std::vector<Subdomain::Node>& nodes, AxisProducts* axis) {
   std::vector<double> sides(candidates.size() * basis.count);
   const int scales = axis->scales();
   for (const Subdomain::Node& node : nodes) {
-    std::array<double, kMostTerms> polynomials = polynomials_at(basis, node);
+    std::array<double, kMaxTerms> polynomials = polynomials_at(basis, node);
     for (int p = 0; p < basis.count; ++p) polynomials[p] *= node.weight;
     const double* const along_x = axis->with_sample(node.x, node.f).data();
     const double* const along_y = axis->with_sample(node.y, node.f).data();
@@ -227,7 +227,7 @@ std::vector<double> right_sides_of(const std::vector<Candidate>& candidates,
   return sides;
 }
 
-// [i][j]: of two texels over the plane.
+// [i][j]: the products of two texels in the plane.
 std::vector<double> products_between(const std::vector<Candidate>& candidates,
                                      const AxisProducts& axis) {
   const std::vector<Products> of_texels = axis.of_texels();
@@ -245,9 +245,9 @@ std::vector<double> products_between(const std::vector<Candidate>& candidates,
   return products;
 }
 
-// Of Gauss's rule along an axis of a subdomain. Boxes meet at edges, where their product has a
-// kink, or a bend if images are natural; sums have one where a texel of level 0 comes into a
-// filter's reach, and bilinear interpolation between texels.
+// Gauss panels along an axis of a subdomain. Products of boxes have a kink where they meet, or a
+// discontinuous second derivative for natural images. Sums have a kink where a texel of level 0
+// enters a filter's support, and bilinear interpolation has one between texels.
 int panels_of(const TableShape& shape, int levels, bool has_box) {
   if (has_box) return levels == 3 && shape.spectrum == ImageSpectrum::kNatural ? 2 : 4;
   return levels == 3 ? 1 : 3;
@@ -278,7 +278,7 @@ SubdomainSystem::SubdomainSystem(const TableShape& shape, const TableSection& se
   for (const Subdomain::Node& node : nodes) {
     filter_square += node.weight * over_plane(of_sample(node.x, node.f), of_sample(node.y, node.f));
   }
-  // Sums over texels of level 0 can be zero where supports overlap.
+  // Sums over texels of level 0 can be zero although supports overlap.
   std::vector<Candidate> kept;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const double* side = sides.data() + i * basis.count;
@@ -288,7 +288,8 @@ SubdomainSystem::SubdomainSystem(const TableShape& shape, const TableSection& se
     right_sides.insert(right_sides.end(), side, side + basis.count);
   }
   products = products_between(kept, axis);
-  // Sums over texels of level 0 of white images are integrals times the number of those in a cell.
+  // For white images, sums over texels of level 0 are integrals times the number of texels per
+  // cell.
   const bool are_counts = section.levels < 3 && shape.spectrum == ImageSpectrum::kWhite;
   add_ramps(subdomain,
             are_counts ? shape.ramp_weight / (section.levels * section.levels) : shape.ramp_weight);
@@ -303,7 +304,7 @@ void SubdomainSystem::add_ramps(const Subdomain& subdomain, double weight) {
     centers_.push_back({(texel.x + 0.5) * width - middle_x, (texel.y + 0.5) * width - middle_y});
   }
   for (const Subdomain::Node& node : subdomain.quadrature(1)) {
-    const std::array<double, kMostTerms> polynomials = polynomials_at(basis, node);
+    const std::array<double, kMaxTerms> polynomials = polynomials_at(basis, node);
     for (int p = 0; p < basis.count; ++p) {
       ramps_[p].x += node.weight * polynomials[p] * (node.x - middle_x);
       ramps_[p].y += node.weight * polynomials[p] * (node.y - middle_y);
@@ -320,7 +321,7 @@ void SubdomainSystem::add_ramps(const Subdomain& subdomain, double weight) {
           weight * (centers_[i].x * ramps_[p].x + centers_[i].y * ramps_[p].y);
     }
   }
-  // The places are polynomials of the first degree, which the basis spans.
+  // The position of a sample is a polynomial of degree 1, which the basis represents exactly.
   for (int p = 0; p < basis.count; ++p) {
     filter_square += weight * (ramps_[p].x * ramps_[p].x + ramps_[p].y * ramps_[p].y);
   }
@@ -356,7 +357,7 @@ FittedSet fit_set(const SubdomainSystem& system, std::span<const int> members) {
   }
   if (!rows.eliminate(0.0)) return set;
 
-  // Where the gradient vanishes, up to the multiplier, what is left of the square of the filter.
+  // At the minimum, up to the multiplier: the remaining part of the square of the filter.
   set.error = system.filter_square;
   set.weights.resize(count * sides);
   for (std::size_t i = 0; i <= count; ++i) {

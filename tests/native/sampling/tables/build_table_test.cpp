@@ -28,7 +28,7 @@ TEST(FilterProducts, AreIntegralsForThreeLevels) {
   for (const Kernel& kernel : kernels()) {
     FilterProducts products(kernel, kernel, 3, ImageSpectrum::kWhite);
     const double width = products.width(0.3);
-    // By the midpoint rule, fine enough for the box.
+    // The midpoint rule, fine enough for the box.
     constexpr int kParts = 200000;
     const double low = -8.0;
     const double step = 16.0 / kParts;
@@ -43,7 +43,7 @@ TEST(FilterProducts, AreIntegralsForThreeLevels) {
 }
 
 TEST(FilterProducts, AreSumsOverTheImageForFewerLevels) {
-  // The tent at the middle of four texels of the image, two texels wide, and a texel of it.
+  // The tent centered between four texels of the image, two texels wide, and a texel of it.
   const Kernel& tent = *find_kernel("tent");
   FilterProducts products(tent, tent, 2, ImageSpectrum::kWhite);
   EXPECT_NEAR(products.with_sample(1, 0, 0.5, 1.0)[0], 0.375, 1e-15);
@@ -67,7 +67,7 @@ TEST(OrthonormalBasis, IsOrthonormal) {
         const Terms terms = terms_at(node.x, node.y, node.f);
         std::vector<double> values(basis.count);
         for (int p = 0; p < basis.count; ++p) {
-          for (int q = 0; q < kMostTerms; ++q) values[p] += basis.coefficients[p][q] * terms[q];
+          for (int q = 0; q < kMaxTerms; ++q) values[p] += basis.coefficients[p][q] * terms[q];
         }
         for (int p = 0; p < basis.count; ++p) {
           for (int q = 0; q < basis.count; ++q) {

@@ -24,7 +24,7 @@ SubdomainSystem system_of(const TableShape& shape, int levels, int index) {
   return {shape, section, index};
 }
 
-// The candidates that are listed first: nothing that a search would settle for.
+// The first candidates, a set that no search would accept.
 FittedSet poor_set(const SubdomainSystem& system, int texels) {
   std::vector<int> members(texels);
   std::iota(members.begin(), members.end(), 0);
@@ -67,8 +67,8 @@ TEST(CertifySet, FindsTheLeastErrorOfAllTriples) {
   expect_least_of_all(system_of({"tent", 3, 4, 2, 1}, 3, 2), 3);
 }
 
-// Random products and right sides. As the filter's own square is large, all errors are about the
-// same, and so are bounds.
+// Random products and right sides. The filter's own square is large, so that all errors and bounds
+// are about the same.
 SubdomainSystem random_system(unsigned seed, int candidates) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -106,10 +106,10 @@ TEST(CertifySet, FindsTheLeastErrorWhereAllAreClose) {
       const CertifiedSet certified = certify_set(system, start, enough());
       EXPECT_EQ(certified.gap, 0.0);
       EXPECT_NEAR(certified.set.error, least, 1e-9 * least);
-      // A gap that is left is one, however few sets were looked at.
+      // The remaining gap is valid, however few sets were visited.
       const CertifiedSet first = certify_set(system, start, {1, Progress(), 1});
       EXPECT_LE(first.set.error * (1.0 - first.gap), least * (1.0 + 1e-9));
-      // From the best set one task proves it, as bounds are tight.
+      // Starting from the best set, one task completes the proof, as the bounds are tight.
       EXPECT_EQ(certify_set(system, certified.set, {1, Progress(), 1}).gap, 0.0);
     }
   }
@@ -123,7 +123,7 @@ TEST(CertifySet, FindsTheLeastErrorOfAllSetsOfFewCandidates) {
     const SubdomainSystem system = system_of(shape, 2, 1);
     expect_least_of_all(system, system.candidates() < 25 ? 4 : 2);
   }
-  // A texel of the cell's level is the sum of four of the next one.
+  // A texel of the cell's level is the sum of four texels of the next finer level.
   expect_least_of_all(system_of({"box", 4, 4, 2, 1}, 3, 5), 4);
   expect_least_of_all(system_of({"box", 4, 1, 1, 2}, 3, 0), 3);
 }

@@ -20,7 +20,7 @@ struct Masses {
   std::vector<double> masses;
 };
 
-// The integrals of a filter over small parts of the line.
+// The integrals of a filter over small intervals.
 Masses of_line(const Kernel& kernel, double center, double width) {
   constexpr int kPartsOfUnit = 120;
   Masses filter;
@@ -54,14 +54,14 @@ double correlation(const Masses& a, const Masses& b, double deviation) {
   return sum;
 }
 
-TEST(FilterProducts, OfNaturalImagesAreDoubleIntegralsOverGaussians) {
+TEST(FilterProducts, NaturalImagesUseDoubleIntegralsOfGaussians) {
   for (const Kernel& texels : kernels()) {
     for (const char* name : {"box", "lanczos3"}) {
       const Kernel& sample = *find_kernel(name);
       FilterProducts products(texels, sample, 3, ImageSpectrum::kNatural);
       ASSERT_EQ(products.scales(), 9);
       const double width = products.width(0.3);
-      // Next to each other, and as far apart as a filter of a sample still overlaps both.
+      // From adjacent to the largest distance at which a sample's filter overlaps both.
       const int farthest = static_cast<int>(texels.radius() + sample.radius());
       const auto with_sample = products.with_sample(1, 1, 0.2, 0.3);
       const auto apart = products.of_texels(0, -farthest, 2, 4 * farthest);
@@ -83,7 +83,7 @@ TEST(FilterProducts, OfNaturalImagesAreDoubleIntegralsOverGaussians) {
   }
 }
 
-TEST(FilterProducts, OfNaturalImagesAreDoubleSumsForFewerLevels) {
+TEST(FilterProducts, NaturalImagesUseDoubleSumsForFewerLevels) {
   const Kernel& sample = *find_kernel("box");
   for (const Kernel& texels : kernels()) {
     for (const int levels : {1, 2}) {

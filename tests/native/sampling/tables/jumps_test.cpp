@@ -25,14 +25,14 @@ SamplingTable nearest_texel(const TableShape& shape) {
   return table;
 }
 
-TEST(LargestJump, OfTheNearestTexelIsThatFromOneToTheNext) {
+TEST(LargestJump, NearestTexelJumpsToItsNeighbor) {
   for (const int grid : {1, 2, 3, 4}) {
     for (const int degree : {1, 2}) {
-      // Boxes side by side have nothing in common.
+      // Adjacent boxes do not overlap.
       const SamplingTable box = nearest_texel({"box", 2, grid, 2, degree});
       for (int levels = 1; levels <= 3; ++levels) EXPECT_NEAR(largest_jump(box, levels), 1, 1e-12);
-      // The larger of two tents side by side is larger by 3/4 in all, and that of tents of a level
-      // and the next one by less. In the image the latter are single texels.
+      // The positive part of the difference between adjacent tents integrates to 3/4, and to less
+      // between tents of adjacent levels. In the image the latter are single texels.
       const SamplingTable tent = nearest_texel({"tent", 2, grid, 2, degree});
       EXPECT_NEAR(largest_jump(tent, 3), 0.75, 1e-3);
       EXPECT_NEAR(largest_jump(tent, 1), 1.0, 1e-12);

@@ -17,7 +17,7 @@
 namespace prefilter {
 namespace {
 
-// Calls visit(x, y, f, weight) for the middles of small cells of a subdomain that is a box.
+// Calls visit(x, y, f, weight) for the centers of small cells of a box-shaped subdomain.
 template <typename Visit>
 void for_middles(const Subdomain& subdomain, int steps, const Visit& visit) {
   const auto at = [steps](double low, double high, int i) {
@@ -38,7 +38,7 @@ void for_middles(const Subdomain& subdomain, int steps, const Visit& visit) {
 double polynomial(const OrthonormalBasis& basis, int p, double x, double y, double f) {
   const Terms terms = terms_at(x, y, f);
   double value = 0.0;
-  for (int q = 0; q < kMostTerms; ++q) value += basis.coefficients[p][q] * terms[q];
+  for (int q = 0; q < kMaxTerms; ++q) value += basis.coefficients[p][q] * terms[q];
   return value;
 }
 
@@ -46,7 +46,7 @@ double over_plane(const FilterProducts::Products& x, const FilterProducts::Produ
   return std::inner_product(x.begin(), x.end(), y.begin(), 0.0);
 }
 
-// Index 1 is off the diagonal of the folded square, so it is a box.
+// Subdomain 1 is off the diagonal of the folded square, so it is a box.
 void expect_equation_six_four(const TableShape& shape) {
   TableSection section;
   section.levels = 3;
@@ -100,8 +100,7 @@ TEST(SubdomainSystem, IsEquationSixFourByTheMiddlesOfSmallCells) {
   expect_equation_six_four({"tent", 4, 4, 2, 2, 0.0, ImageSpectrum::kNatural, "mitchell"});
 }
 
-// What the ramps add is the squared distance between a sample and the weighted center of its
-// texels.
+// The ramp term is the squared distance between a sample and the weighted center of its texels.
 TEST(SubdomainSystem, RampsAddTheDistanceFromTheWeightedCenter) {
   TableShape shape{"tent", 3, 4, 2, 2, 0.0};
   TableSection section;
@@ -128,13 +127,13 @@ TEST(SubdomainSystem, RampsAddTheDistanceFromTheWeightedCenter) {
     distance += weight * (off_x * off_x + off_y * off_y);
   });
   EXPECT_NEAR(set.error - ramped.filter_error(set), 3.0 * distance, 2e-2 * 3.0 * distance + 1e-9);
-  // Without ramps equation 6.4 is all there is, and no other weights are better by it.
+  // Without ramps the objective is equation 6.4 alone, and no other weights are better.
   const FittedSet best = fit_set(plain, members);
   EXPECT_NEAR(plain.filter_error(best), best.error, 1e-12);
   EXPECT_LE(best.error, ramped.filter_error(set) + 1e-12);
 }
 
-// Whatever their signs: without, all digits of this one are lost.
+// Pivoting ignores signs; without it, this matrix would lose all digits.
 TEST(BorderedRows, ArePivotedByTheLargest) {
   TableSection section;
   section.levels = 3;
