@@ -23,8 +23,8 @@ FLOORS = (
     {"base"},
     {"geometry", "images"},
     {"wavelet"},
-    {"textures", "sampling", "shapes", "voxels"},
-    {"points"},
+    {"sampling", "shapes", "voxels"},
+    {"textures", "points"},
 )
 FLOOR_OF = {wing: floor for floor, wings in enumerate(FLOORS) for wing in wings}
 SOURCES = sorted(

@@ -9,7 +9,7 @@ namespace prefilter {
 
 enum class BlockEffort { kFast, kNormal, kBest };
 
-/// "fast", "normal" or "best". Throws Error where it is none of them.
+/// "fast", "normal" or "best". Throws Error for any other name.
 BlockEffort block_effort_named(const std::string& name);
 
 }  // namespace prefilter

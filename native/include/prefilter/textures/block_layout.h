@@ -9,28 +9,28 @@
 namespace prefilter {
 
 enum class BlockFormat {
-  kBc1,       // red, green, blue, and an alpha that is 0 or 1
+  kBc1,       // RGB and an alpha that is 0 or 1
   kBc1Rgb,    // the same blocks, opaque
-  kBc3,       // red, green, blue and alpha
-  kBc4,       // red
-  kBc5,       // red and green
-  kBc6h,      // red, green and blue, of floats that are not negative
-  kBc7,       // red, green, blue and alpha
-  kEtc2Rgb,   // red, green and blue
-  kEtc2Rgba,  // red, green, blue and alpha
-  kEacR11,    // red
-  kEacRg11,   // red and green
-  kAstc4x4,   // red, green, blue and alpha, as are the following
+  kBc3,       // RGBA
+  kBc4,       // R
+  kBc5,       // RG
+  kBc6h,      // RGB, nonnegative half floats
+  kBc7,       // RGBA
+  kEtc2Rgb,   // RGB
+  kEtc2Rgba,  // RGBA
+  kEacR11,    // R
+  kEacRg11,   // RG
+  kAstc4x4,   // RGBA, as all formats below
   kAstc6x6,
   kAstc8x8,
-  kAstc4x4Hdr,  // with an alpha from 0 to 1
+  kAstc4x4Hdr,  // HDR RGB; alpha from 0 to 1
   kAstc6x6Hdr,
   kUastc,
 };
 
 struct BlockLayout {
   BlockFormat format;
-  const char* name;  // as Python knows it, such as "bc1"
+  const char* name;  // its name in Python, such as "bc1"
   int columns;       // texels along a block's sides
   int rows;
   int bytes;
@@ -41,9 +41,7 @@ std::span<const BlockLayout> block_layouts();
 
 const BlockLayout& layout_of(BlockFormat format);
 
-/// The format of that name.
-///
-/// Throws Error where there is none.
+/// The format with that name. Throws Error if there is none.
 const BlockLayout& layout_named(const std::string& name);
 
 }  // namespace prefilter

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Texels compressed in blocks, as graphics cards decode them.
+// Compresses images to the block formats that graphics cards decode.
 #pragma once
 
 #include <cstdint>
@@ -12,32 +12,31 @@
 
 namespace prefilter {
 
-/// Images with no more texels get the effort above the one that is asked for.
-constexpr int kMostCoarseTexels = 64 * 64;
+/// Images with at most this many texels are compressed one effort higher than asked for.
+constexpr int kMaxCoarseTexels = 64 * 64;
 
 struct BlockOptions {
   BlockFormat format = BlockFormat::kBc1;
-  /// Whether colors of texels with little alpha count little, for kBc3 and ASTC.
+  /// For kBc3 and ASTC: weight the color error of a texel by its alpha.
   bool weigh_by_alpha = false;
-  /// Whether red, green and blue are sRGB-encoded, for ASTC, whose decoders then round otherwise.
+  /// For ASTC: red, green and blue are sRGB-encoded. Decoders of such blocks round differently.
   bool is_srgb = false;
   BlockEffort effort = BlockEffort::kNormal;
   int threads = 0;  // 0 = one per processor
 };
 
-/// A half float as IEEE 754 stores it.
+/// The bits of an IEEE 754 half float.
 using HalfBits = std::uint16_t;
 
-/// The blocks, row by row from the first one, of interleaved RGBA bytes. Blocks that reach over the
-/// edge are fitted to the texels inside. For kBc1 texels with an alpha below 128 become transparent
-/// black, and all others opaque; kBc1Rgb ignores alpha.
+/// Compresses interleaved RGBA bytes to blocks in row-major order. Blocks that cross the right or
+/// last edge are fitted to the texels inside the image. kBc1 turns texels with an alpha below 128
+/// into transparent black and makes all others opaque; kBc1Rgb ignores alpha.
 ///
-/// Throws Error where a side is less than 1, where the format is one of floats, and where
-/// `progress` cancels.
+/// Throws Error if a side is less than 1, if the format stores floats, or if `progress` cancels.
 std::vector<std::uint8_t> compress_blocks(const std::uint8_t* rgba, int width, int height,
                                           const BlockOptions& options, const Progress& progress);
 
-/// The same for formats of floats, of finite half floats. Negative values become 0.
+/// The same for the float formats, from finite half floats. Negative values become 0.
 std::vector<std::uint8_t> compress_blocks(const HalfBits* rgba, int width, int height,
                                           const BlockOptions& options, const Progress& progress);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Levels compressed together as ETC1S, which loaders turn into what a device has.
+// Compresses all levels of a texture together as ETC1S, which loaders transcode to the device's
+// format.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +13,16 @@
 
 namespace prefilter {
 
-constexpr int kWorstEtc1s = 1;
-constexpr int kBestEtc1s = 255;
+constexpr int kMinEtc1sQuality = 1;
+constexpr int kMaxEtc1sQuality = 255;
 
 struct Etc1sOptions {
-  /// How many colors and patterns of blocks the codebooks hold, from kWorstEtc1s to kBestEtc1s.
+  /// Size of the codebooks of block colors and block patterns, from kMinEtc1sQuality to
+  /// kMaxEtc1sQuality.
   int quality = 192;
-  /// Whether alpha is kept.
+  /// Whether to store alpha.
   bool has_alpha = false;
-  /// Whether errors are weighed as eyes see colors; otherwise all channels count the same.
+  /// Whether to weight errors perceptually; otherwise all channels count equally.
   bool is_color = true;
   BlockEffort effort = BlockEffort::kNormal;
   int threads = 0;  // 0 = one per processor
@@ -37,7 +39,7 @@ struct Etc1sImage {
 struct Etc1sTexture {
   struct Level {
     std::vector<std::uint8_t> color;
-    std::vector<std::uint8_t> alpha;  // empty where there is none
+    std::vector<std::uint8_t> alpha;  // empty without alpha
   };
 
   int endpoint_count = 0;
@@ -48,13 +50,13 @@ struct Etc1sTexture {
   std::vector<Level> levels;
 };
 
-/// The levels with codebooks of their own, by Basis Universal. Blocks that reach over an edge
-/// repeat the texels there. The result does not depend on the number of threads, but may on the C++
-/// standard library.
+/// Compresses the levels with Basis Universal, with codebooks for this texture alone. Blocks that
+/// cross an edge repeat the texels there. The result is independent of the number of threads, but
+/// may depend on the C++ standard library.
 ///
-/// Throws Error where there is no level, where a side is less than 1, where they have more than
-/// 2^30 texels, where `quality` is out of range, and where `progress` cancels: between the two
-/// stages, which are not interrupted.
+/// Throws Error if there is no level, a side is less than 1, the levels have more than 2^30 texels
+/// together, `quality` is out of range, or `progress` cancels. Cancellation is only checked between
+/// the two stages.
 Etc1sTexture compress_etc1s(std::span<const Etc1sImage> levels, const Etc1sOptions& options,
                             const Progress& progress);
 

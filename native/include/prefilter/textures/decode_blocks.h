@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The texels that compressed blocks stand for.
+// Decodes compressed blocks to texels.
 #pragma once
 
 #include <cstdint>
@@ -15,25 +15,25 @@ namespace prefilter {
 
 struct DecodeOptions {
   BlockFormat format = BlockFormat::kBc1;
-  /// Whether red, green and blue are sRGB-encoded, for ASTC, whose decoders then round otherwise.
+  /// For ASTC: red, green and blue are sRGB-encoded. Decoders of such blocks round differently.
   bool is_srgb = false;
   int threads = 0;  // 0 = one per processor
 };
 
-/// The texels of blocks as compress_blocks has them: interleaved RGBA bytes, width x height of
-/// them. Channels that the format lacks are 0, and an alpha 255.
+/// Decodes blocks in the order of compress_blocks to width x height interleaved RGBA bytes. Color
+/// channels missing in the format become 0, a missing alpha 255.
 ///
-/// Throws Error where a side is less than 1, where the number of bytes is not that of the blocks,
-/// where the format is one of floats or a block of kUastc is damaged, and where `progress` cancels.
+/// Throws Error if a side is less than 1, if the number of bytes does not match the size, if the
+/// format stores floats, if a kUastc block is damaged, or if `progress` cancels.
 std::vector<std::uint8_t> decode_blocks(std::span<const std::uint8_t> blocks, int width, int height,
                                         const DecodeOptions& options, const Progress& progress);
 
-/// The same for formats of floats; an alpha that the format lacks is 1.
+/// The same for the float formats; a missing alpha becomes 1.
 std::vector<HalfBits> decode_half_blocks(std::span<const std::uint8_t> blocks, int width,
                                          int height, const DecodeOptions& options,
                                          const Progress& progress);
 
-/// What all levels of a texture in ETC1S share (KTX 2.0, section 4.1, BasisLZ).
+/// The codebooks shared by all levels of an ETC1S texture (KTX 2.0, section 4.1, BasisLZ).
 struct Etc1sCodebooks {
   int endpoint_count = 0;
   int selector_count = 0;
@@ -42,18 +42,17 @@ struct Etc1sCodebooks {
   std::span<const std::uint8_t> tables;
 };
 
-/// A level in ETC1S, compressed by BasisLZ.
+/// An ETC1S level, compressed with BasisLZ.
 struct Etc1sLevel {
   int width = 0;
   int height = 0;
   std::span<const std::uint8_t> color;
-  std::span<const std::uint8_t> alpha;  // empty where there is none
+  std::span<const std::uint8_t> alpha;  // empty without alpha
 };
 
-/// The texels of levels in ETC1S: interleaved RGBA bytes.
+/// Decodes ETC1S levels to interleaved RGBA bytes.
 ///
-/// Throws Error where a side is less than 1, where anything is damaged, and where `progress`
-/// cancels.
+/// Throws Error if a side is less than 1, if any of the data is damaged, or if `progress` cancels.
 std::vector<std::vector<std::uint8_t>> decode_etc1s(const Etc1sCodebooks& codebooks,
                                                     std::span<const Etc1sLevel> levels,
                                                     const Progress& progress);

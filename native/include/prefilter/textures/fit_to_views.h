@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Levels fitted to what pixels show of a model from all around.
+// Fits mipmap levels to renderings of a model from views all around it.
 #pragma once
 
 #include <vector>
@@ -14,11 +14,12 @@
 
 namespace prefilter {
 
-/// How pixels look levels up.
+/// The texture lookups of a rendered pixel.
 enum class Lookups {
-  kTrilinear,    // one trilinear lookup, by the longer axis of the pixel's footprint
-  kAnisotropic,  // a row of up to 16 along that axis, as Vulkan and OpenGL describe it
-  kBoth,         // half of the time each: players choose
+  kTrilinear,    // one trilinear lookup; the mip level follows from the longer axis of the pixel's
+                 // footprint
+  kAnisotropic,  // up to 16 trilinear lookups along that axis, as Vulkan and OpenGL describe
+  kBoth,         // equal weights for both, for players who can choose
 };
 
 inline constexpr Named<Lookups> kLookups[] = {{"trilinear", Lookups::kTrilinear},
@@ -28,29 +29,31 @@ inline constexpr Named<Lookups> kLookups[] = {{"trilinear", Lookups::kTrilinear}
 struct ViewFitOptions {
   WrapModes wrap;
   Bounds bounds;
-  // As MipmapOptions::premultiplied.
+  // See MipmapOptions::premultiplied.
   bool premultiplied = false;
   Lookups lookups = Lookups::kBoth;
-  // How much changes from one frame to the next count that the image itself does not show, beside
-  // the errors of single frames; 0 and up.
+  // Weight of flicker beside the error of single frames, 0 and up. Flicker is a change from one
+  // frame to the next that the image itself does not show.
   double steadiness = 0.5;
-  // How many more views there are, and how much longer it takes; above 0, up to 100.
+  // Factor on the number of views, and so on the time; above 0, up to 100.
   double effort = 1.0;
   int threads = 0;  // 0 = all processors
   Progress progress;
 };
 
-/// Levels that come nearest to what pixels should show, on average over views from all around and
-/// over distances: the mean of level 0, looked up bilinearly, over what is visible in each pixel;
-/// of a finer level than the pixel's in place of level 0 where pixels are large. Edges of the model
-/// and borders between charts are part of it, as pixels there show several places of the texture
-/// and lookups only one. `levels` are where the search starts, level 0 first and each half as wide
-/// and high as the one before; texels that hardly any view reads stay near them.
+/// Fits levels 1 and up to the colors that pixels should show, on average over views from all
+/// directions and at all distances. The target of a pixel is the mean, over its visible surface, of
+/// bilinear lookups of level 0, or of a level two octaves finer than the pixel where pixels are
+/// large. Pixels on silhouettes and chart borders count too: they show several parts of the
+/// texture, but their lookup reads only one.
 ///
-/// Each surface is seen by itself, from outside and inside, with pixels that it covers fully.
-/// Returns levels 1 and up. Throws Error where there are no levels or no surface, sizes are not
-/// those of a mipmap, channels differ or are not 1 to 4, an option is out of range, or a texel is
-/// not finite or beyond 1e30; and, from the progress callback, when cancelled.
+/// `levels` is the starting point of the search: level 0 first, each level half as wide and high as
+/// the one before. Texels that hardly any view reads stay near their starting values. Each surface
+/// is rendered alone, from outside and inside, and only pixels that it covers fully count.
+///
+/// Returns levels 1 and up. Throws Error if there are no levels or no surfaces, if sizes do not
+/// match a mipmap, if channel counts differ or are not 1 to 4, if an option is out of range, if a
+/// texel is not finite or beyond 1e30, or if the progress callback cancels.
 std::vector<Image> fit_to_views(const std::vector<ImageView>& levels,
                                 const std::vector<const Surface*>& surfaces,
                                 const ViewFitOptions& options);

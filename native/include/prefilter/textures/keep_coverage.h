@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Levels of alpha-tested cut-outs that show as much of the surface as the image does.
+// Adjusts the alpha of mipmap levels so that alpha-tested cut-outs keep their coverage.
 #pragma once
 
 #include <vector>
@@ -13,25 +13,26 @@
 namespace prefilter {
 
 struct CoverageOptions {
-  double threshold = 0.5;  // the alpha that is still shown; above 0, at most 1
+  double threshold = 0.5;  // texels with at least this alpha are visible; above 0, at most 1
   WrapModes wrap;
-  bool premultiplied = false;  // whether colors are multiplied by alpha, and change along with it
+  bool premultiplied = false;  // whether colors are multiplied by alpha, and must change with it
   int threads = 0;             // 0 = all processors
   Progress progress;
 };
 
-/// Levels 1 and up of those given, with an alpha test that keeps the share of the surfaces that the
-/// one of level 0 keeps: the share where a bilinear lookup's alpha, the last of 4 channels or the
-/// only one, is at least the threshold. Without a surface it is the share of the image.
+/// Returns levels 1 and up with their alpha adjusted to keep the coverage of level 0. Coverage is
+/// the share of the surfaces where a bilinear lookup of alpha (the last of 4 channels, or the only
+/// one) is at least the threshold. Without surfaces it is the share of the image.
 ///
-/// A level that has it within 0.001 stays as it is. Else its alpha is mapped by a curve that rises,
-/// of two straight pieces: from (0, 0) to (b, threshold) to (1, 1), with the b that gives the
-/// share. Where even the smallest b shows too little, 0 rises as well, though not to the threshold.
-/// Levels of few texels may have to show all or nothing; they get as close as they can.
+/// Levels within 0.001 of the coverage stay as they are. In all others alpha is mapped by an
+/// increasing, piecewise linear curve through (0, 0), (b, threshold) and (1, 1), with b chosen for
+/// the coverage. If even the smallest b gives too little coverage, the value at 0 rises as well,
+/// though not up to the threshold. Levels with few texels may only have a choice between none and
+/// all; they get the closer one.
 ///
-/// Throws Error where there is no level, their channels are not all 4 or all 1, the threshold is
-/// out of range, alpha is not finite in a level above 0, or surfaces are given that have no area or
-/// lie outside of the image; and, from the progress callback, when cancelled.
+/// Throws Error if there is no level, if the levels do not all have 4 channels or all 1, if the
+/// threshold is out of range, if an alpha above level 0 is not finite, if the surfaces have no area
+/// or lie outside the image, or if the progress callback cancels.
 std::vector<Image> keep_coverage(const std::vector<ImageView>& levels,
                                  const std::vector<const Surface*>& surfaces,
                                  const CoverageOptions& options);

@@ -11,10 +11,10 @@
 
 namespace prefilter {
 
-/// Which texels a filter in texture space weighs by its kernel.
+/// The texels that a filter in texture space uses.
 enum class Weighting {
-  kAll,      // every one; the surface is not looked at
-  kCovered,  // those that some triangle touches
+  kAll,      // all texels; the surface is ignored
+  kCovered,  // texels that a triangle touches
 };
 
 /// A filter in texture space, "tent" or "tent-covered".
@@ -24,30 +24,29 @@ struct TextureSpaceFilter {
   bool operator==(const TextureSpaceFilter&) const = default;
 };
 
-/// A filter over the surface: texels count by its area.
+/// Filters over the surface: texels are weighted by the surface area in them.
 enum class SurfaceFilter {
-  kBox,         // "pam-box", means over the surface: equation 7.1 with a box
-  kBilinear,    // "pam-bilinear", least squares for bilinear lookups, each level by itself:
-                // section 7.3
-  kUnitSquare,  // "ls-bilinear", the same over the unit square in place of a surface
-  kTrilinear,   // "pam-trilinear", least squares for trilinear lookups, all levels together
+  kBox,         // "pam-box": means over the surface, equation 7.1 with a box
+  kBilinear,    // "pam-bilinear": least squares for bilinear lookups, level by level (section 7.3)
+  kUnitSquare,  // "ls-bilinear": the same over the unit square instead of a surface
+  kTrilinear,   // "pam-trilinear": least squares for trilinear lookups, all levels together
 };
 
 using MipmapFilter = std::variant<TextureSpaceFilter, SurfaceFilter>;
 
-/// The filters there are: every kernel with every weighting, and those over the surface.
+/// All filters: every kernel with every weighting, and the surface filters.
 std::vector<MipmapFilter> mipmap_filters();
 
 /// The public name, such as "lanczos3-covered".
 std::string name_of(const MipmapFilter& filter);
 
-/// The filter of a public name. Throws Error for any other, naming all.
+/// The filter with a public name. Throws Error for any other name and lists the valid ones.
 MipmapFilter mipmap_filter(const std::string& name);
 
-/// Whether it is over the surface, or over the texels that the surface touches.
+/// Whether the filter depends on the surface.
 bool needs_surface(const MipmapFilter& filter);
 
-/// Whether it is a fit to what is looked up, which can count seams too.
+/// Whether the filter is a least-squares fit to lookups. Such fits can include seams.
 bool is_fit(const MipmapFilter& filter);
 
 }  // namespace prefilter

@@ -15,7 +15,7 @@
 
 namespace prefilter {
 
-/// Lowest and highest value of a texel; either may be open.
+/// Lowest and highest texel value; an empty one means no limit.
 struct Bounds {
   std::optional<float> low = 0.0F;
   std::optional<float> high = 1.0F;
@@ -25,48 +25,45 @@ struct MipmapOptions {
   MipmapFilter filter = SurfaceFilter::kBilinear;
   WrapModes wrap;
   Bounds bounds;
-  // How many levels to return, with level 0; 0 = down to 1 x 1.
+  // Number of levels to return, including level 0; 0 = down to 1 x 1.
   int levels = 0;
-  // False: the fourth of four channels is coverage, in [0, 1], and the others are not multiplied by
-  // it yet. They are multiplied, filtered and divided again. True: every channel is filtered as it
-  // stands.
+  // False: the fourth of four channels is coverage in [0, 1]. Colors are multiplied by it, filtered
+  // and divided again. True: every channel is filtered independently.
   bool premultiplied = false;
-  // Fitted to by SurfaceFilter::kBilinear; the levels of the other filters are the same for all
-  // readers.
+  // The reader that SurfaceFilter::kBilinear fits to. Levels of the other filters are the same for
+  // all readers.
   Reader reader = Reader::kLinear;
-  // By how much, as a share, the error over the surface of each level may rise for a lower contrast
-  // across UV seams; 0 leaves seams alone. For the fitted filters.
+  // For the fitted filters: the relative increase of each level's error that may be spent on a
+  // lower contrast across UV seams; 0 ignores seams.
   double seam_budget = 0.0;
-  // Texels of a level that a pixel of the reader covers, 0 to 2, for the fitted filters and the
-  // linear reader. 0: a level is fitted to the image itself, right where pixels are means of many
-  // lookups. Else to the image averaged over that footprint, which is what a pixel of one lookup
-  // ought to show.
+  // For the fitted filters and the linear reader: side of a pixel's footprint in texels of the
+  // level, 0 to 2. 0 fits each level to the image itself, which is right if pixels average many
+  // lookups. Otherwise levels are fitted to the image averaged over the footprint, the ideal color
+  // of a pixel with one lookup.
   double footprint = 0.0;
   int threads = 0;  // 0 = all processors
   Progress progress;
-  const char* image_name = "image";  // what errors call it
+  const char* image_name = "image";  // its name in error messages
 };
 
-/// Levels of an image: 0 is the image itself, each other half as wide and high, rounded down, and
-/// never less than 1.
+/// The levels of an image: level 0 is the image itself, each other level is half as wide and high
+/// as the one before, rounded down, and at least 1.
 ///
-/// A level of SurfaceFilter::kBilinear minimizes the integral over the surface of the squared
-/// difference between the bilinear lookups of the level and of the image, subject to the bounds;
-/// those of SurfaceFilter::kTrilinear the integral over all mip values too, of trilinear lookups,
-/// with the mean over the surface as the last level. SurfaceFilter::kUnitSquare takes the unit
-/// square in place of the surfaces. Levels of the other filters are clipped to the
-/// bounds. Texels that the surface does not read have no influence; in the levels they are filled
-/// by push-pull.
+/// A level of SurfaceFilter::kBilinear minimizes, within the bounds, the integral over the surface
+/// of the squared difference between bilinear lookups of the level and of the image.
+/// SurfaceFilter::kTrilinear minimizes the integral over all mip values too, for trilinear lookups;
+/// its last level is the mean over the surface. SurfaceFilter::kUnitSquare replaces the surfaces by
+/// the unit square. Levels of the other filters are clipped to the bounds. Texels that the surface
+/// does not read have no influence; in the results they are filled by push-pull.
 ///
-/// Throws Error where channels are not 1 to 4, levels or bounds are out of range, a filter that
-/// needs a surface gets none or none that lies inside of the image, no triangle has an area, or a
-/// texel that counts is not finite or beyond 1e30; and, from the progress callback, when cancelled.
+/// Throws Error if the channel count is not 1 to 4, if levels or bounds are out of range, if a
+/// filter that needs a surface has none inside the image, if no triangle has an area, if a texel
+/// that counts is not finite or beyond 1e30, or if the progress callback cancels.
 std::vector<Image> mipmaps(const ImageView& image, const std::vector<const Surface*>& surfaces,
                            const MipmapOptions& options);
 
-/// The same without level 0. Texels that are bytes are read as they are by the fits that can do so,
-/// those for the linear reader where alpha plays no part; the other filters make floats of them
-/// first.
+/// The same without level 0. Fits for the linear reader that do not involve alpha read byte texels
+/// directly; all other filters convert them to floats first.
 std::vector<Image> coarser_levels(const TexelSource& image,
                                   const std::vector<const Surface*>& surfaces,
                                   const MipmapOptions& options);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// How a renderer gets from stored texels to a color.
+// The order in which a renderer decodes and filters texels.
 #pragma once
 
 #include "prefilter/base/names.h"
@@ -15,7 +15,7 @@ enum class Reader {
 inline constexpr Named<Reader> kReaders[] = {{"linear", Reader::kLinear},
                                              {"srgb-after", Reader::kSrgbAfter}};
 
-/// Channels of an image that are stored sRGB-encoded: its colors. A fourth channel is alpha.
+/// Number of channels that are stored sRGB-encoded: the colors. A fourth channel is alpha.
 inline int encoded_channels(int channels) { return channels < 3 ? channels : 3; }
 
 }  // namespace prefilter

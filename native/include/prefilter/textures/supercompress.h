@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Levels of a texture file compressed once more, without loss, as KTX 2 files may hold them;
-// and back.
+// Lossless compression of the levels of a texture file with zstd, as in KTX 2 files.
 #pragma once
 
 #include <cstddef>
@@ -13,15 +12,13 @@
 
 namespace prefilter {
 
-/// The bytes as one frame of zstd (RFC 8878) that tells their number. The same for all processors.
-///
-/// Throws Error where `progress` cancels.
+/// Compresses bytes to one zstd frame (RFC 8878) that records their number. The result is the same
+/// on all processors. Throws Error if `progress` cancels.
 std::vector<std::uint8_t> supercompress(const std::uint8_t* bytes, std::size_t count,
                                         const Progress& progress);
 
-/// What frames of zstd hold, which is `count` bytes.
-///
-/// Throws Error where they hold anything else or are damaged.
+/// Decompresses zstd frames to exactly `count` bytes. Throws Error if they are damaged or hold a
+/// different number of bytes.
 std::vector<std::uint8_t> decompress(std::span<const std::uint8_t> frames, std::size_t count);
 
 }  // namespace prefilter

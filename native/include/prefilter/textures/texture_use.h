@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What a surface uses of its texture, texel by texel.
+// Texels of a texture that a surface uses.
 #pragma once
 
 #include <vector>
@@ -12,20 +12,21 @@
 
 namespace prefilter {
 
-/// The share of the surfaces' area that lies in each texel of a width x height image, one channel,
-/// scaled so that an even use of the whole image gives 1. Exactly 0 where no area is. Throws Error
-/// where a side is less than 1, there is no surface, or none of it has an area or lies inside of
-/// the image.
+/// For each texel of a width x height image: the share of the surfaces' area in it, in one channel,
+/// scaled so that a uniform use of the whole image gives 1. Exactly 0 in texels without surface.
+/// Throws Error if a side is less than 1, if there is no surface, or if none has an area inside the
+/// image.
 Image texel_weights(const std::vector<const Surface*>& surfaces, int width, int height,
                     WrapModes wrap, const Progress& progress, int threads);
 
-/// The image with the colors of texels whose alpha, the last of 2 to 4 channels, is 0 or less
-/// filled from what is around (push-pull), weighted by alpha. Throws Error for other channels.
+/// Fills the colors of texels with an alpha of 0 or less (alpha is the last of 2 to 4 channels)
+/// from their surroundings, by push-pull weighted with alpha. Throws Error for other channel
+/// counts.
 Image fill_transparent(const ImageView& image, WrapModes wrap, const Progress& progress,
                        int threads);
 
-/// The image with the texels that no bilinear lookup on the surfaces reads filled from what is
-/// around those that some does (push-pull), out to the image's edge. Throws Error as texel_weights.
+/// Fills texels that no bilinear lookup on the surfaces reads from the read ones around them, by
+/// push-pull, out to the edges of the image. Throws Error like texel_weights.
 Image fill_unused(const ImageView& image, const std::vector<const Surface*>& surfaces,
                   WrapModes wrap, const Progress& progress, int threads);
 

@@ -16,8 +16,8 @@
 #include "prefilter/base/solve/nine_point_system.h"
 #include "prefilter/base/text.h"
 #include "prefilter/geometry/nearest.h"
+#include "prefilter/geometry/texels/coverage.h"
 #include "prefilter/images/filters/push_pull.h"
-#include "prefilter/textures/texels/coverage.h"
 
 namespace prefilter {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What encoding and decoding by Arm's astcenc have in common.
+// Contexts and images of Arm's astcenc, shared by the encoder and the decoder.
 #pragma once
 
 #include <astcenc.h>
@@ -27,14 +27,15 @@ struct FreeAstcContext {
 };
 using AstcContext = std::unique_ptr<astcenc_context, FreeAstcContext>;
 
-/// A context of its own: of those that share another's tables astcenc 5 takes the error that is
-/// small enough for a limit in decibels, and spends two to three times as long on a block.
-/// Throws std::invalid_argument if astcenc has no blocks of that size.
+/// Each worker gets a context of its own. If a context shares another's tables, astcenc 5
+/// interprets its error limit, already converted from decibels, as decibels again, and takes two to
+/// three times as long per block. Throws std::invalid_argument if astcenc has no blocks of that
+/// size.
 inline AstcContext make_astc_context(const BlockLayout& layout, bool is_srgb, float effort,
                                      unsigned flags) {
   astcenc_profile profile = is_srgb ? ASTCENC_PRF_LDR_SRGB : ASTCENC_PRF_LDR;
   if (layout.is_float) profile = ASTCENC_PRF_HDR_RGB_LDR_A;
-  // astcenc 5 keeps the presets for a size of blocks in a static variable while it reads them.
+  // astcenc 5 caches the presets for a block size in a static variable without a lock.
   static std::mutex presets;
   astcenc_config config{};
   {
@@ -52,7 +53,7 @@ inline AstcContext make_astc_context(const BlockLayout& layout, bool is_srgb, fl
   return AstcContext(context);
 }
 
-/// The image of the texels that `slice` points to.
+/// The image whose texels `slice` points to.
 template <class Channel>
 astcenc_image astc_image(int width, int height, void** slice) {
   const auto type = std::is_same_v<Channel, HalfBits> ? ASTCENC_TYPE_F16 : ASTCENC_TYPE_U8;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The fitting is that of Arm's encoder, astcenc.
+// Encodes ASTC with Arm's astcenc.
 #include <cstddef>
 #include <memory>
 #include <new>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What Basis Universal calls transcoding, to texels.
+// Decodes UASTC and ETC1S with Basis Universal, whose term for it is transcoding to RGBA.
 #include <transcoder/basisu_transcoder.h>
 
 #include <algorithm>
@@ -52,13 +52,13 @@ std::uint32_t size_of(std::span<const std::uint8_t> bytes) {
   return static_cast<std::uint32_t>(bytes.size());
 }
 
-// Where a table has one symbol only, the library takes codes of any length for it, and from those
-// that its first look-up is too short for, it walks out of its tree.
+// The library accepts codes of any length from a table with a single symbol, and reads past its
+// tree for those longer than its first lookup. Returns false for such tables.
 bool has_safe_tables(std::span<const std::uint8_t> bytes, int flag_count, int table_count) {
   basist::bitwise_decoder bits;
   if (!bits.init(bytes.data(), size_of(bytes))) return false;
   for (int i = 0; i < flag_count; ++i) {
-    if (bits.get_bits(1) != 0) return true;  // without tables, or not read by the library
+    if (bits.get_bits(1) != 0) return true;  // no tables follow, or the library does not read them
   }
   for (int i = 0; i < table_count; ++i) {
     basist::huffman_decoding_table table;
@@ -87,7 +87,7 @@ std::vector<std::uint8_t> decoded(basist::basisu_lowlevel_etc1s_transcoder* tran
     throw_invalid("image: " + std::to_string(level.width) + " x " + std::to_string(level.height) +
                   " texels; both sides must be at least 1");
   }
-  // The library takes one array with both; it keeps what it found of a level for the next one of
+  // The library takes one array with color and alpha. The state that it keeps between levels is for
   // videos only.
   std::vector<std::uint8_t> both(level.color.begin(), level.color.end());
   both.insert(both.end(), level.alpha.begin(), level.alpha.end());

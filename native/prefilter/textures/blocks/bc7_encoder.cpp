@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// BC7 by effort: BC7F alone, which estimates which modes to try; or its slowest settings, and where
-// these are not close, bc7enc if it comes closer; or the closest block of both and of Convection
-// Texture Tools, which search everything. None of them is the closest in all blocks.
+// BC7 by effort: BC7F alone, which predicts the modes to try; or BC7F at its slowest settings,
+// improved by bc7enc in blocks that are not close; or the closest block of both and of Convection
+// Texture Tools, which search exhaustively. None of them is the closest in all blocks.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -18,16 +18,15 @@ namespace {
 
 constexpr std::ptrdiff_t kTexelBytes = 4 * 4 * 4;
 constexpr std::ptrdiff_t kBlockBytes = 16;
-/// An opaque texel that becomes less is worse than any error of colors.
+/// Makes a texel that is no longer opaque worse than any error of colors.
 constexpr std::int64_t kOpaqueWeight = std::int64_t{1} << 32;
-/// Of BC7F's blocks that are not searched further but for the best: half of the values of red,
-/// green and blue are off by a 255th at most. Photographs lose up to 0.2 dB by that, and half of
-/// the time.
+/// Squared error per block up to which normal effort keeps BC7F's result: half of the color values
+/// are off by at most 1/255. On photographs this costs up to 0.2 dB and halves the time.
 constexpr std::int64_t kCloseEnough = 32;
 
 class ClosestBc7Encoder final : public ByteEncoder {
  public:
-  /// Blocks with a squared error of up to `close_enough` are left as the encoders before made them.
+  /// Later encoders skip blocks whose squared error is at most `close_enough`.
   ClosestBc7Encoder(std::vector<std::unique_ptr<ByteEncoder>> encoders, std::int64_t close_enough)
       : encoders_(std::move(encoders)),
         close_enough_(close_enough),
@@ -36,13 +35,13 @@ class ClosestBc7Encoder final : public ByteEncoder {
   void encode(const BlockRow<std::uint8_t>& row, std::uint8_t* blocks) override {
     encoders_.front()->encode(row, blocks);
     std::vector<std::int64_t> least = errors(row, blocks);
-    for (std::size_t i = 1; i < encoders_.size(); ++i) improve(row, i, &least, blocks);
+    for (std::size_t i = 1; i < encoders_.size(); ++i) try_encoder(row, i, &least, blocks);
   }
 
  private:
   /// Tries another encoder on the blocks that are not close enough yet.
-  void improve(const BlockRow<std::uint8_t>& row, std::size_t number,
-               std::vector<std::int64_t>* least, std::uint8_t* blocks) {
+  void try_encoder(const BlockRow<std::uint8_t>& row, std::size_t number,
+                   std::vector<std::int64_t>* least, std::uint8_t* blocks) {
     std::vector<int> far_off;
     std::vector<std::uint8_t> texels;
     for (int i = 0; i < row.count; ++i) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// bc7enc searches modes 1 and 6 for opaque blocks, 5, 6 and 7 for others: partitions by estimates,
-// endpoints along the principal axis, then by least squares.
+// bc7enc searches modes 1 and 6 for opaque blocks, and 5, 6 and 7 for others: partitions by
+// estimates, endpoints first along the principal axis and then by least squares.
 #include <bc7enc.h>
 
 #include "prefilter/textures/blocks/encoders.h"
@@ -13,21 +13,21 @@ constexpr std::ptrdiff_t kTexelBytes = 4 * 4 * 4;
 constexpr std::uint32_t kOpaqueWeight = 1024;
 
 bc7enc_compress_block_params parameters(BlockEffort effort) {
-  bc7enc_compress_block_params chosen{};
-  bc7enc_compress_block_params_init(&chosen);
-  // Red, green, blue and alpha count the same: what they mean is not known.
-  bc7enc_compress_block_params_init_linear_weights(&chosen);
-  // More than one adds 2 % to what is closest with BC7F, and half of the time; more than the first
-  // 16 partitions 0.1 dB, and a quarter.
+  bc7enc_compress_block_params params{};
+  bc7enc_compress_block_params_init(&params);
+  // Equal weights for red, green, blue and alpha, as their meaning is unknown.
+  bc7enc_compress_block_params_init_linear_weights(&params);
+  // A higher level gains 2 % in combination with BC7F and takes half as much time again; more than
+  // 16 partitions gain 0.1 dB and take a quarter more.
   const bool is_best = effort == BlockEffort::kBest;
-  chosen.m_uber_level = is_best ? BC7ENC_MAX_UBER_LEVEL : 1;
-  chosen.m_max_partitions = is_best ? BC7ENC_MAX_PARTITIONS : 16;
-  chosen.m_mode17_partition_estimation_filterbank = false;
-  return chosen;
+  params.m_uber_level = is_best ? BC7ENC_MAX_UBER_LEVEL : 1;
+  params.m_max_partitions = is_best ? BC7ENC_MAX_PARTITIONS : 16;
+  params.m_mode17_partition_estimation_filterbank = false;
+  return params;
 }
 
-/// Whether a block of mode 6 for opaque texels has ends of alpha 254: the bits that both ends share
-/// between their channels are free then, and follow the colors.
+/// Whether a block of mode 6 for opaque texels has an endpoint alpha of 254: the bit shared by the
+/// channels of an endpoint then followed the colors.
 bool has_alpha_254(const std::uint8_t* block) {
   const bool is_mode_6 = (block[0] & 0x7f) == 0x40;
   return is_mode_6 && ((block[7] & 0x80) == 0 || (block[8] & 1) == 0);
@@ -57,7 +57,7 @@ class Bc7encEncoder final : public ByteEncoder {
 
  private:
   bc7enc_compress_block_params parameters_;
-  /// For blocks whose alpha must be 255.
+  /// For blocks whose alpha must stay 255.
   bc7enc_compress_block_params opaque_;
 };
 

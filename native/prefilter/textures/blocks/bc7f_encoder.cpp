@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// BC7F is Basis Universal's: modes are chosen by what covariances say of their errors, and, with
-// more effort, by their errors.
+// BC7F of Basis Universal chooses modes by errors predicted from covariances and, with more effort,
+// by actual errors.
 #include <basisu_transcoder.h>
 
 #include <array>
@@ -18,7 +18,7 @@ constexpr std::size_t kTexels = 16;
 constexpr std::ptrdiff_t kTexelBytes = 4 * kTexels;
 constexpr std::ptrdiff_t kBlockBytes = 16;
 
-// Without what may make opaque texels of mode 6 less than opaque.
+// Without the option that may make opaque texels of mode 6 transparent.
 constexpr std::uint32_t kFast =
     basist::bc7f::cPackBC7FlagDefault & ~std::uint32_t{basist::bc7f::cPackBC7FlagPBitOptMode6};
 constexpr std::uint32_t kThorough = basist::bc7f::cPackBC7FlagDefaultNonAnalytical &
@@ -30,7 +30,7 @@ class Bc7fEncoder final : public ByteEncoder {
       : flags_(effort == BlockEffort::kFast ? kFast : kThorough) {
     static std::once_flag once;
     std::call_once(once, [] {
-      // Makes, among others, the table of blocks of one color.
+      // Initializes, among others, the table of single-color blocks.
       basist::uastc_init();
       basist::bc7f::init();
     });

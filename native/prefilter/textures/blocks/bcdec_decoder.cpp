@@ -14,9 +14,9 @@ namespace {
 constexpr int kSide = 4;
 constexpr std::ptrdiff_t kChannels = 4;
 
-/// Writes the first channels of texels of a block into a row of blocks.
+/// Copies the channels of a decoded block into a row of blocks.
 template <class Channel>
-void spread(const Channel* from, int channels, Channel* texels, std::ptrdiff_t row_channels) {
+void copy_block(const Channel* from, int channels, Channel* texels, std::ptrdiff_t row_channels) {
   for (int y = 0; y < kSide; ++y) {
     for (int x = 0; x < kSide; ++x) {
       std::copy_n(from, channels, texels + y * row_channels + x * kChannels);
@@ -46,10 +46,10 @@ class BcdecDecoder final : public ByteDecoder {
         return bcdec_bc3(block, texels, pitch);
       case BlockFormat::kBc4:
         bcdec_bc4(block, few.data(), kSide);
-        return spread(few.data(), 1, texels, row_channels);
+        return copy_block(few.data(), 1, texels, row_channels);
       case BlockFormat::kBc5:
         bcdec_bc5(block, few.data(), 2 * kSide);
-        return spread(few.data(), 2, texels, row_channels);
+        return copy_block(few.data(), 2, texels, row_channels);
       case BlockFormat::kBc7:
         return bcdec_bc7(block, texels, pitch);
       default:
@@ -69,7 +69,7 @@ class BcdecHalfDecoder final : public HalfDecoder {
       std::array<HalfBits, std::size_t{kColors} * kSide * kSide> colors{};
       bcdec_bc6h_half(blocks + std::ptrdiff_t{BCDEC_BC6H_BLOCK_SIZE} * i, colors.data(),
                       kColors * kSide, 0);
-      spread(colors.data(), kColors, texels + kChannels * kSide * i, kChannels * kSide * count);
+      copy_block(colors.data(), kColors, texels + kChannels * kSide * i, kChannels * kSide * count);
     }
   }
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What decode_blocks needs of a library that decodes blocks; decoders.h lists those there are.
+// The interface of block decoders; decoders.h lists them.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,13 @@
 
 namespace prefilter {
 
-/// Decodes blocks of one format. Several threads use one each.
+/// Decodes blocks of one format. Each thread uses its own decoder.
 template <class Channel>
 class BlockDecoder {
  public:
   virtual ~BlockDecoder() = default;
-  /// Writes interleaved RGBA of a row of `count` blocks, one image of all of them: as many texels
-  /// wide as they have columns. Alpha is whole, and channels that lack are 0, before it is called.
+  /// Decodes `count` blocks to interleaved RGBA, as one image as wide as all of them. Before the
+  /// call, alpha is opaque and the colors are 0, for channels missing in the format.
   virtual void decode(const std::uint8_t* blocks, int count, Channel* texels) = 0;
 };
 

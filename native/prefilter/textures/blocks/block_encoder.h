@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What compress_blocks needs of a library that encodes blocks; encoders.h lists those there are.
+// The interface of block encoders; encoders.h lists them.
 #pragma once
 
 #include <cstdint>
@@ -10,24 +10,23 @@
 
 namespace prefilter {
 
-/// Blocks of one row of blocks. Texels beyond the image's edge repeat the last ones inside.
+/// A row of blocks. Texels beyond the edges of the image repeat the last ones inside.
 template <class Channel>
 struct BlockRow {
-  /// Interleaved RGBA, a block after the other, its rows one after the other: an image that is one
-  /// block wide.
+  /// Interleaved RGBA, block by block and row by row in each: an image one block wide.
   const Channel* texels;
-  int count;         // of blocks, 1 or more
-  int rows_inside;   // of each block's rows, those inside of the image
-  int last_columns;  // of the last block's columns, those inside of the image
+  int count;         // number of blocks, at least 1
+  int rows_inside;   // rows of each block inside the image
+  int last_columns;  // columns of the last block inside the image
 };
 
-/// Encodes blocks of one format. Several threads use one each; a block must not depend on what an
-/// encoder encoded before.
+/// Encodes blocks of one format. Each thread uses its own encoder. Blocks must not depend on
+/// earlier ones.
 template <class Channel>
 class BlockEncoder {
  public:
   virtual ~BlockEncoder() = default;
-  /// Writes row.count blocks, one after the other.
+  /// Writes row.count consecutive blocks.
   virtual void encode(const BlockRow<Channel>& row, std::uint8_t* blocks) = 0;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// How far blocks are from the texels that they stand for.
+// Errors of encoded blocks.
 #pragma once
 
 #include <cstddef>
@@ -12,15 +12,15 @@
 
 namespace prefilter {
 
-/// Channels that are compared: where the first is in a texel, where in what a decoder writes, and
-/// how many there are.
+/// The channels to compare: the first one in a source texel and in a decoded texel, and their
+/// number.
 struct ComparedChannels {
   std::ptrdiff_t of_texel;
   std::ptrdiff_t of_decoded;
   int count;
 };
 
-/// Blocks of 4 x 4, decoded one beside the other.
+/// Decodes 4 x 4 blocks, side by side.
 inline std::vector<std::uint8_t> decoded_row(ByteDecoder* decoder, const std::uint8_t* blocks,
                                              int count) {
   std::vector<std::uint8_t> texels(static_cast<std::size_t>(4 * 16 * count));
@@ -28,7 +28,8 @@ inline std::vector<std::uint8_t> decoded_row(ByteDecoder* decoder, const std::ui
   return texels;
 }
 
-/// The sum of squares over the texels inside of the image, by block, of what `decoded_row` returns.
+/// Squared error of each block over the texels inside the image. `decoded` is the result of
+/// `decoded_row`.
 inline std::vector<std::int64_t> squared_errors(const BlockRow<std::uint8_t>& row,
                                                 const std::vector<std::uint8_t>& decoded,
                                                 const ComparedChannels& channels) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Channels that have eight bytes of their own: two ends, and three bits a texel. libsquish and
-// Convection Texture Tools search them in different ways, and either is closer in some blocks: so
-// each block gets the closer one of both. Convection Texture Tools alone are up to 8 dB behind in
-// channels of few values, and libsquish up to 4 dB in others.
+// Single-channel blocks of eight bytes: two endpoints and three bits per texel. libsquish and
+// Convection Texture Tools search them differently, so each block gets the closer result of both.
+// Alone, Convection Texture Tools are up to 8 dB behind in channels with few values, and libsquish
+// up to 4 dB in others.
 #include <ConvectionKernels.h>
 
 #include <algorithm>
@@ -19,21 +19,21 @@
 namespace prefilter {
 namespace {
 
-constexpr int kAtOnce = cvtt::NumParallelBlocks;
+constexpr int kParallelChannelBlocks = cvtt::NumParallelBlocks;
 constexpr int kSide = 4;
 constexpr int kTexels = kSide * kSide;
 constexpr std::ptrdiff_t kChannels = 4;
 constexpr std::ptrdiff_t kBytes = 8;
 
-using Blocks = std::array<std::uint8_t, kBytes * kAtOnce>;
+using Blocks = std::array<std::uint8_t, kBytes * kParallelChannelBlocks>;
 
-/// Where a channel of RGBA is in a block.
-struct Place {
+/// Index of a channel in RGBA, and byte offset of its half in a block.
+struct ChannelHalf {
   std::ptrdiff_t channel;
   std::ptrdiff_t byte;
 };
 
-std::vector<Place> places_in(BlockFormat format) {
+std::vector<ChannelHalf> channel_halves(BlockFormat format) {
   if (format == BlockFormat::kBc3) return {{3, 0}};
   if (format == BlockFormat::kBc5) return {{0, 0}, {1, kBytes}};
   return {{0, 0}};
@@ -41,7 +41,7 @@ std::vector<Place> places_in(BlockFormat format) {
 
 cvtt::Options cvtt_options(BlockEffort effort) {
   cvtt::Options options;
-  // All that there is takes five times as long, and takes 2 to 4 % off the error.
+  // The maximum takes five times as long and reduces the error by 2 to 4 %.
   options.seedPoints = effort == BlockEffort::kBest ? 4 : 1;
   options.refineRoundsIIC = effort == BlockEffort::kBest ? 8 : 4;
   return options;
@@ -53,24 +53,25 @@ class ChannelEncoder final : public ByteEncoder {
       : first_(std::move(first)),
         decoder_(make_bcdec_decoder({BlockFormat::kBc4})),
         options_(cvtt_options(options.effort)),
-        places_(places_in(options.format)),
+        places_(channel_halves(options.format)),
         block_bytes_(layout_of(options.format).bytes) {}
 
   void encode(const BlockRow<std::uint8_t>& row, std::uint8_t* blocks) override {
     first_->encode(row, blocks);
-    for (int i = 0; i < row.count; i += kAtOnce) {
-      const int count = std::min(kAtOnce, row.count - i);
+    for (int i = 0; i < row.count; i += kParallelChannelBlocks) {
+      const int count = std::min(kParallelChannelBlocks, row.count - i);
       const bool is_last = i + count == row.count;
       const BlockRow<std::uint8_t> part{row.texels + kChannels * kTexels * i, count,
                                         row.rows_inside, is_last ? row.last_columns : kSide};
-      for (const Place& place : places_) {
-        improve(part, place, blocks + block_bytes_ * i);
+      for (const ChannelHalf& place : places_) {
+        improve_channel(part, place, blocks + block_bytes_ * i);
       }
     }
   }
 
  private:
-  void improve(const BlockRow<std::uint8_t>& row, const Place& place, std::uint8_t* blocks) {
+  void improve_channel(const BlockRow<std::uint8_t>& row, const ChannelHalf& place,
+                       std::uint8_t* blocks) {
     Blocks before{};
     Blocks other{};
     for (std::ptrdiff_t i = 0; i < row.count; ++i) {
@@ -78,9 +79,9 @@ class ChannelEncoder final : public ByteEncoder {
     }
     const auto now = errors(row, place, before);
     if (*std::max_element(now.begin(), now.end()) == 0) return;
-    std::array<cvtt::PixelBlockU8, kAtOnce> texels{};
+    std::array<cvtt::PixelBlockU8, kParallelChannelBlocks> texels{};
     for (std::ptrdiff_t i = 0; i < row.count; ++i) {
-      // Instead of those beyond the image's edge, those inside again, each as often if it can be.
+      // Texels beyond the image's edge are replaced by inside ones, repeated as evenly as possible.
       const int columns = i == row.count - 1 ? row.last_columns : kSide;
       for (int t = 0; t < kTexels; ++t) {
         const int inside = kSide * (t / kSide % row.rows_inside) + t % kSide % columns;
@@ -97,7 +98,7 @@ class ChannelEncoder final : public ByteEncoder {
     }
   }
 
-  std::vector<std::int64_t> errors(const BlockRow<std::uint8_t>& row, const Place& place,
+  std::vector<std::int64_t> errors(const BlockRow<std::uint8_t>& row, const ChannelHalf& place,
                                    const Blocks& blocks) {
     return squared_errors(row, decoded_row(decoder_.get(), blocks.data(), row.count),
                           {place.channel, 0, 1});
@@ -106,7 +107,7 @@ class ChannelEncoder final : public ByteEncoder {
   std::unique_ptr<ByteEncoder> first_;
   std::unique_ptr<ByteDecoder> decoder_;
   cvtt::Options options_;
-  std::vector<Place> places_;
+  std::vector<ChannelHalf> places_;
   std::ptrdiff_t block_bytes_;
 };
 

@@ -16,8 +16,8 @@
 namespace prefilter {
 namespace {
 
-// A share of a row of blocks, so that canceling takes effect soon whatever the width.
-constexpr int kBlocksAtOnce = 64;
+// Blocks per task: part of a row, so that cancelling takes effect soon for any width.
+constexpr int kBlocksPerTask = 64;
 
 template <class Channel>
 std::unique_ptr<BlockEncoder<Channel>> make_encoder(const BlockOptions& options);
@@ -54,14 +54,14 @@ std::unique_ptr<HalfEncoder> make_encoder<HalfBits>(const BlockOptions& options)
   return make_astc_hdr_encoder(options);
 }
 
-/// Coarse levels lose most, and take little time whatever is done.
+/// Coarse levels lose the most, and take little time at any effort.
 BlockOptions options_for(const BlockOptions& options, int width, int height) {
-  BlockOptions chosen = options;
-  if (std::int64_t{width} * height <= kMostCoarseTexels) {
+  BlockOptions level_options = options;
+  if (std::int64_t{width} * height <= kMaxCoarseTexels) {
     const bool is_fast = options.effort == BlockEffort::kFast;
-    chosen.effort = is_fast ? BlockEffort::kNormal : BlockEffort::kBest;
+    level_options.effort = is_fast ? BlockEffort::kNormal : BlockEffort::kBest;
   }
-  return chosen;
+  return level_options;
 }
 
 template <class Channel>
@@ -78,15 +78,15 @@ std::vector<std::uint8_t> compress(const Channel* rgba, int width, int height,
   }
   const std::int64_t columns = range_count(width, layout.columns);
   const std::int64_t rows = range_count(height, layout.rows);
-  const std::int64_t parts = range_count(columns, kBlocksAtOnce);
+  const std::int64_t parts = range_count(columns, kBlocksPerTask);
   const std::int64_t block_texels = std::int64_t{layout.columns} * layout.rows;
   std::vector<std::uint8_t> blocks(static_cast<std::size_t>(rows * columns * layout.bytes));
-  const BlockOptions chosen = options_for(options, width, height);
-  WorkerPool<BlockEncoder<Channel>> encoders([&] { return make_encoder<Channel>(chosen); });
+  const BlockOptions level_options = options_for(options, width, height);
+  WorkerPool<BlockEncoder<Channel>> encoders([&] { return make_encoder<Channel>(level_options); });
   parallel_for(rows * parts, options.threads, progress, [&](std::int64_t index) {
     const std::int64_t row = index / parts;
-    const std::int64_t first = index % parts * kBlocksAtOnce;
-    const std::int64_t end = std::min(first + kBlocksAtOnce, columns);
+    const std::int64_t first = index % parts * kBlocksPerTask;
+    const std::int64_t end = std::min(first + kBlocksPerTask, columns);
     std::vector<Channel> texels(static_cast<std::size_t>(4 * block_texels * (end - first)));
     auto texel = texels.begin();
     for (std::int64_t column = first; column < end; ++column) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The decoders, a library each.
+// The decoders, one library each.
 #pragma once
 
 #include <memory>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The codebooks and what refers to them are Basis Universal's.
+// Encodes ETC1S with the frontend (codebooks) and backend (bit streams) of Basis Universal.
 #include <encoder/basisu_backend.h>
 #include <encoder/basisu_etc.h>
 #include <encoder/basisu_frontend.h>
@@ -22,17 +22,18 @@ namespace {
 
 constexpr int kSide = 4;
 constexpr std::ptrdiff_t kChannels = 4;
-constexpr std::int64_t kMostTexels = std::int64_t{1} << 30;
-// Of Basis Universal's seven: from codebooks in two steps on, more refinement each.
+constexpr std::int64_t kMaxEtc1sTexels = std::int64_t{1} << 30;
+// Basis Universal's compression levels 0 to 6: from 1 on codebooks are built hierarchically, and
+// higher levels refine more.
 constexpr std::uint32_t kFastLevel = 1, kNormalLevel = basisu::BASISU_DEFAULT_COMPRESSION_LEVEL,
                         kBestLevel = 4;
-// What a block may lose to be the same as one before it, in Basis Universal's measure; its
-// defaults.
+// Errors accepted for repeating an earlier block's endpoints or selectors, relative to the block's
+// own; the defaults of Basis Universal.
 constexpr float kEndpointLoss = 1.5F;
 constexpr float kSelectorLoss = 1.25F;
-// Sizes of codebooks grow by a power of the quality, so that bytes grow about evenly.
-constexpr double kFewestEndpoints = 32.0, kMostEndpoints = 8192.0, kEndpointPower = 1.6;
-constexpr double kFewestSelectors = 96.0, kMostSelectors = 16128.0, kSelectorPower = 2.6;
+// Codebook sizes grow with a power of the quality, so that file sizes grow about linearly.
+constexpr double kMinEndpoints = 32.0, kMaxEndpoints = 8192.0, kEndpointPower = 1.6;
+constexpr double kMinSelectors = 96.0, kMaxSelectors = 16128.0, kSelectorPower = 2.6;
 
 void make_etc1s_tables() {
   static std::once_flag once;
@@ -45,9 +46,9 @@ void make_etc1s_tables() {
 
 void check(std::span<const Etc1sImage> levels, const Etc1sOptions& options) {
   if (levels.empty()) throw_invalid("levels: none; 1 or more are needed");
-  if (options.quality < kWorstEtc1s || options.quality > kBestEtc1s) {
+  if (options.quality < kMinEtc1sQuality || options.quality > kMaxEtc1sQuality) {
     throw_invalid("quality: " + std::to_string(options.quality) + "; " +
-                  std::to_string(kWorstEtc1s) + " to " + std::to_string(kBestEtc1s) +
+                  std::to_string(kMinEtc1sQuality) + " to " + std::to_string(kMaxEtc1sQuality) +
                   " are allowed");
   }
   std::int64_t texels = 0;
@@ -57,14 +58,14 @@ void check(std::span<const Etc1sImage> levels, const Etc1sOptions& options) {
                     " texels; both sides must be at least 1");
     }
     texels += std::int64_t{level.width} * level.height;
-    if (texels > kMostTexels) {
-      throw_invalid("levels: more than " + std::to_string(kMostTexels) +
+    if (texels > kMaxEtc1sTexels) {
+      throw_invalid("levels: more than " + std::to_string(kMaxEtc1sTexels) +
                     " texels, which are the most in ETC1S");
     }
   }
 }
 
-/// The levels as the library takes them: a slice of blocks for color, and one for alpha.
+/// The levels as slices of blocks for the library: one for color, and one for alpha.
 class Slices {
  public:
   Slices(std::span<const Etc1sImage> levels, bool has_alpha) {
@@ -124,7 +125,7 @@ std::uint32_t level_for(BlockEffort effort) {
 
 std::uint32_t codebook_size(double fewest, double most, double power, const Etc1sOptions& options,
                             std::size_t blocks) {
-  const double share = elementary::pow(options.quality / double{kBestEtc1s}, power);
+  const double share = elementary::pow(options.quality / double{kMaxEtc1sQuality}, power);
   const double size = fewest + (most - fewest) * share;
   return static_cast<std::uint32_t>(std::min(size, std::max(fewest, static_cast<double>(blocks))));
 }
@@ -135,14 +136,14 @@ basisu::basisu_frontend::params codebook_params(basisu::pixel_block_vec& blocks,
   params.m_num_source_blocks = static_cast<std::uint32_t>(blocks.size());
   params.m_pSource_blocks = blocks.data();
   params.m_max_endpoint_clusters =
-      codebook_size(kFewestEndpoints, kMostEndpoints, kEndpointPower, options, blocks.size());
+      codebook_size(kMinEndpoints, kMaxEndpoints, kEndpointPower, options, blocks.size());
   params.m_max_selector_clusters =
-      codebook_size(kFewestSelectors, kMostSelectors, kSelectorPower, options, blocks.size());
+      codebook_size(kMinSelectors, kMaxSelectors, kSelectorPower, options, blocks.size());
   params.m_compression_level = level_for(options.effort);
   params.m_perceptual = options.is_color;
   params.m_dump_endpoint_clusterization = false;
   params.m_pGlobal_codebooks = nullptr;
-  // Otherwise clusters depend on the number of threads; the pool's jobs do not.
+  // If this were set, clusters would depend on the number of threads; the jobs of the pool do not.
   params.m_multithreaded = false;
   return params;
 }
@@ -187,8 +188,8 @@ Etc1sTexture compress_etc1s(std::span<const Etc1sImage> levels, const Etc1sOptio
   how.m_etc1s = true;
   how.m_compression_level = level_for(options.effort);
   how.m_validate = false;
-  // Good quality is not to be lost again; from the middle of the range on, losses become smaller.
-  const float share = static_cast<float>(options.quality) / static_cast<float>(kBestEtc1s);
+  // Allowed losses shrink from the middle of the quality range on, to preserve high quality.
+  const float share = static_cast<float>(options.quality) / static_cast<float>(kMaxEtc1sQuality);
   const float loss = std::clamp(2.0F - 2.0F * share, 0.25F, 1.0F);
   how.m_endpoint_rdo_quality_thresh = kEndpointLoss * loss;
   how.m_selector_rdo_quality_thresh = kSelectorLoss * loss;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Blocks of etcpak, whose heuristics suit large images, and where a search of all modes finds
-// closer colors, its own. Neighbors in coarse levels have little in common, and lose most.
+// etcpak, whose heuristics suit large images, combined with an exhaustive mode search: the closer
+// result is used. Neighboring texels in coarse levels have little in common, so these gain the
+// most.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -48,12 +49,12 @@ class Etc2Encoder final : public ByteEncoder {
       if (error == 0) continue;
       const int columns = i == row.count - 1 ? row.last_columns : static_cast<int>(kSide);
       const EtcTexels texels = texels_of(row.texels + kRgbaBytes * i, row.rows_inside, columns);
-      const EtcBlock found = closer(closer(search_etc_plane(texels), search_etc_halves(texels)),
-                                    search_etc_paints(texels));
-      if (found.error >= error) continue;
+      const EtcBlock closest = closer(closer(search_etc_plane(texels), search_etc_halves(texels)),
+                                      search_etc_paints(texels));
+      if (closest.error >= error) continue;
       std::uint8_t* color = blocks + block_bytes_ * (i + 1) - kColorBytes;
       for (int byte = 0; byte < kColorBytes; ++byte) {
-        color[byte] = static_cast<std::uint8_t>(found.bits >> (56 - 8 * byte));
+        color[byte] = static_cast<std::uint8_t>(closest.bits >> (56 - 8 * byte));
       }
     }
   }

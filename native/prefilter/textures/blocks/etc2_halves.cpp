@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Individual and differential mode (Khronos Data Format 1.3, section 21.1): for each table, from
-// several colors on, texels take the closest of four, and the color becomes the best one for what
-// they took, until it stays.
+// Individual and differential mode (Khronos Data Format 1.3, section 21.1). For each table and
+// several initial colors: assign each texel the closest of four modifiers, fit the base color to
+// the assignment, and repeat until it is stable.
 #include <algorithm>
 #include <limits>
 
@@ -16,7 +16,7 @@ constexpr int kModifiers[kTables][4] = {
     {2, 8, -2, -8},     {5, 17, -5, -17},   {9, 29, -9, -29},     {13, 42, -13, -42},
     {18, 60, -18, -60}, {24, 80, -24, -80}, {33, 106, -33, -106}, {47, 183, -47, -183}};
 constexpr int kHalf = EtcTexels::kCount / 2;
-constexpr int kMostHalfRounds = 4;
+constexpr int kMaxHalfRounds = 4;
 constexpr int kIndividualBits = 4, kDifferentialBits = 5;
 constexpr int kLeastStep = -4, kGreatestStep = 3;
 
@@ -61,11 +61,11 @@ class Half {
         start.table = table;
         start.indices.fill(-1);
         start.base = base_for(start, shift, bits, bounds);
-        settle(&start, bits, bounds, hopeless(best.error));
+        refine_fit(&start, bits, bounds, max_initial_error(best.error));
         if (start.error < best.error) best = start;
       }
     }
-    polish(&best, bits, bounds);
+    descend(&best, bits, bounds);
     return best;
   }
 
@@ -75,8 +75,8 @@ class Half {
   }
 
  private:
-  /// Gives each texel the closest of the four colors, until the error is over the limit.
-  void take(HalfFit* fit, int bits, int limit) const {
+  /// Assigns each texel the closest of the four colors, until the error exceeds the limit.
+  void assign_texels(HalfFit* fit, int bits, int limit) const {
     fit->error = 0;
     for (std::size_t t = 0; t < kHalf && fit->error <= limit; ++t) {
       int least = std::numeric_limits<int>::max();
@@ -94,7 +94,8 @@ class Half {
     }
   }
 
-  /// The mean of what the texels are without their modifiers; with `shift` where they have none.
+  /// Mean of the texels minus their modifiers. `shift` is used as the modifier without an
+  /// assignment.
   EtcColor base_for(const HalfFit& fit, int shift, int bits, const Bounds& bounds) const {
     EtcColor base{};
     const int most = (1 << bits) - 1;
@@ -112,21 +113,21 @@ class Half {
     return base;
   }
 
-  void settle(HalfFit* fit, int bits, const Bounds& bounds, int limit) const {
-    take(fit, bits, limit);
+  void refine_fit(HalfFit* fit, int bits, const Bounds& bounds, int limit) const {
+    assign_texels(fit, bits, limit);
     if (fit->error > limit) return;
-    for (int round = 1; round < kMostHalfRounds; ++round) {
+    for (int round = 1; round < kMaxHalfRounds; ++round) {
       HalfFit next = *fit;
       next.base = base_for(*fit, 0, bits, bounds);
       if (next.base == fit->base) return;
-      take(&next, bits, fit->error);
+      assign_texels(&next, bits, fit->error);
       if (next.error >= fit->error) return;
       *fit = next;
     }
   }
 
-  /// Tries the neighbors of the color until none is better.
-  void polish(HalfFit* fit, int bits, const Bounds& bounds) const {
+  /// Tries the neighbors of the base color until none is better.
+  void descend(HalfFit* fit, int bits, const Bounds& bounds) const {
     for (bool is_better = true; is_better;) {
       is_better = false;
       const EtcColor middle = fit->base;
@@ -139,7 +140,7 @@ class Half {
           is_allowed &= next.base[c] >= bounds.low[c] && next.base[c] <= bounds.high[c];
         }
         if (!is_allowed) continue;
-        take(&next, bits, fit->error);
+        assign_texels(&next, bits, fit->error);
         if (next.error >= fit->error) continue;
         *fit = next;
         is_better = true;
@@ -153,18 +154,18 @@ class Half {
   int total_ = 0;
 };
 
-/// The bases that are within reach of another one's.
+/// The base colors that differential mode can combine with another one.
 Bounds bounds_around(const EtcColor& base, int least, int greatest) {
-  constexpr int kMost = (1 << kDifferentialBits) - 1;
+  constexpr int kMaxBase = (1 << kDifferentialBits) - 1;
   Bounds bounds{};
   for (std::size_t c = 0; c < 3; ++c) {
     bounds.low[c] = std::max(base[c] + least, 0);
-    bounds.high[c] = std::min(base[c] + greatest, kMost);
+    bounds.high[c] = std::min(base[c] + greatest, kMaxBase);
   }
   return bounds;
 }
 
-bool are_in_reach(const HalfFit& first, const HalfFit& second) {
+bool fit_differential_range(const HalfFit& first, const HalfFit& second) {
   for (std::size_t c = 0; c < 3; ++c) {
     const int step = second.base[c] - first.base[c];
     if (step < kLeastStep || step > kGreatestStep) return false;
@@ -179,7 +180,7 @@ struct Pair {
 
 Pair differential(const Half& one, const Half& other) {
   const Pair free{one.fit(kDifferentialBits), other.fit(kDifferentialBits)};
-  if (are_in_reach(free.first, free.second)) return free;
+  if (fit_differential_range(free.first, free.second)) return free;
   Pair by_first = free;
   by_first.second =
       other.fit(kDifferentialBits, bounds_around(free.first.base, kLeastStep, kGreatestStep));

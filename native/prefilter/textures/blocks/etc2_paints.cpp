@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Modes T and H (Khronos Data Format 1.3, sections 21.1.3 and 21.1.4): texels in the order of their
-// places along the line between the two that are farthest apart, all ways to split them there, and
-// for each distance the colors that suit what the texels then take.
+// Modes T and H (Khronos Data Format 1.3, sections 21.1.3 and 21.1.4): orders the texels along the
+// line between the two farthest apart, tries all splits into two groups, and for each distance
+// refines the two colors to fit the assignment of texels.
 #include <algorithm>
 #include <limits>
 #include <numeric>
@@ -16,11 +16,11 @@ namespace prefilter {
 namespace {
 
 constexpr int kDistances[] = {3, 6, 11, 16, 23, 32, 41, 64};
-constexpr int kMost = 15;
-constexpr int kMostPaintRounds = 3;
+constexpr int kMaxChannel4Bits = 15;
+constexpr int kMaxPaintRounds = 3;
 constexpr std::size_t kTexels = EtcTexels::kCount;
 
-/// What a texel takes: which of the two colors, and how many distances lighter.
+/// The color of a texel: one of the two base colors, plus some distances.
 struct Paint {
   std::size_t color;
   int steps;
@@ -38,8 +38,8 @@ struct Painting {
   const Paint& paint(int index) const { return (is_h ? kOfH : kOfT)[index]; }
 };
 
-/// Gives each texel the closest of the four colors, until the error is over the limit.
-void take(const EtcTexels& texels, int limit, Painting* painting) {
+/// Assigns each texel the closest of the four colors, until the error exceeds the limit.
+void assign_texels(const EtcTexels& texels, int limit, Painting* painting) {
   std::array<EtcColor, 4> paints{};
   for (int i = 0; i < 4; ++i) {
     const Paint& paint = painting->paint(i);
@@ -64,7 +64,7 @@ void take(const EtcTexels& texels, int limit, Painting* painting) {
   }
 }
 
-/// The colors that suit what the texels take; one that none takes stays.
+/// The colors that fit the assignment; a color without texels does not change.
 std::array<EtcColor, 2> colors_for(const EtcTexels& texels, const Painting& painting) {
   std::array<EtcColor, 2> sums{};
   std::array<int, 2> counts{};
@@ -81,27 +81,28 @@ std::array<EtcColor, 2> colors_for(const EtcTexels& texels, const Painting& pain
     if (counts[i] == 0) continue;
     for (std::size_t c = 0; c < 3; ++c) {
       const int whole = 255 * counts[i];
-      colors[i][c] = (2 * std::clamp(sums[i][c], 0, whole) * kMost + whole) / (2 * whole);
+      colors[i][c] =
+          (2 * std::clamp(sums[i][c], 0, whole) * kMaxChannel4Bits + whole) / (2 * whole);
     }
   }
   return colors;
 }
 
-void settle(const EtcTexels& texels, int limit, Painting* painting) {
-  take(texels, limit, painting);
+void refine_fit(const EtcTexels& texels, int limit, Painting* painting) {
+  assign_texels(texels, limit, painting);
   if (painting->error > limit) return;
-  for (int round = 1; round < kMostPaintRounds; ++round) {
+  for (int round = 1; round < kMaxPaintRounds; ++round) {
     Painting next = *painting;
     next.colors = colors_for(texels, *painting);
     if (next.colors == painting->colors) return;
-    take(texels, painting->error, &next);
+    assign_texels(texels, painting->error, &next);
     if (next.error >= painting->error) return;
     *painting = next;
   }
 }
 
-/// The texels inside of the image, in the order of their places along the line.
-std::vector<std::size_t> in_order(const EtcTexels& texels) {
+/// The texels inside the image, ordered by their positions along the line.
+std::vector<std::size_t> texels_along_line(const EtcTexels& texels) {
   std::vector<std::size_t> inside;
   for (std::size_t t = 0; t < kTexels; ++t) {
     if (texels.weights[t] != 0) inside.push_back(t);
@@ -118,12 +119,13 @@ std::vector<std::size_t> in_order(const EtcTexels& texels) {
       along = way;
     }
   }
-  const auto place = [&](std::size_t texel) {
+  const auto position = [&](std::size_t texel) {
     const EtcColor& color = texels.colors[texel];
     return std::inner_product(color.begin(), color.end(), along.begin(), 0);
   };
-  std::stable_sort(inside.begin(), inside.end(),
-                   [&](std::size_t one, std::size_t other) { return place(one) < place(other); });
+  std::stable_sort(inside.begin(), inside.end(), [&](std::size_t one, std::size_t other) {
+    return position(one) < position(other);
+  });
   return inside;
 }
 
@@ -133,15 +135,17 @@ EtcColor mean_of(const EtcTexels& texels, std::span<const std::size_t> some) {
     int sum = 0;
     for (const std::size_t texel : some) sum += texels.colors[texel][c];
     const int whole = 255 * static_cast<int>(some.size());
-    mean[c] = (2 * sum * kMost + whole) / (2 * whole);
+    mean[c] = (2 * sum * kMaxChannel4Bits + whole) / (2 * whole);
   }
   return mean;
 }
 
 std::uint64_t packed_t(const Painting& painting) {
-  const auto at = [](int value, int place) { return static_cast<std::uint64_t>(value) << place; };
+  const auto at = [](int value, int position) {
+    return static_cast<std::uint64_t>(value) << position;
+  };
   const auto& [first, second] = painting.colors;
-  const LeavingBits leaving = bits_beyond(first[0] >> 2, first[0] & 3);
+  const OverflowBits leaving = overflow_bits(first[0] >> 2, first[0] & 3);
   std::uint64_t bits = leaving.upper << 61 | at(first[0] >> 2, 59) | leaving.sign << 58;
   bits |= at(first[0] & 3, 56) | at(first[1], 52) | at(first[2], 48);
   bits |= at(second[0], 44) | at(second[1], 40) | at(second[2], 36);
@@ -150,11 +154,14 @@ std::uint64_t packed_t(const Painting& painting) {
 
 int number_of(const EtcColor& color) { return color[0] << 8 | color[1] << 4 | color[2]; }
 
-/// The lowest bit of the distance is the order of the colors.
+/// The lowest bit of the distance is encoded as the order of the colors.
 std::uint64_t packed_h(const Painting& painting) {
-  const auto at = [](int value, int place) { return static_cast<std::uint64_t>(value) << place; };
+  const auto at = [](int value, int position) {
+    return static_cast<std::uint64_t>(value) << position;
+  };
   const auto& [first, second] = painting.colors;
-  const LeavingBits leaving = bits_beyond((first[1] & 1) << 1 | first[2] >> 3, first[2] >> 1 & 3);
+  const OverflowBits leaving =
+      overflow_bits((first[1] & 1) << 1 | first[2] >> 3, first[2] >> 1 & 3);
   std::uint64_t bits = bit_within(first[0], first[1] >> 1) << 63 | at(first[0], 59);
   bits |= at(first[1] >> 1, 56) | leaving.upper << 53 | at(first[1] & 1, 52);
   bits |= at(first[2] >> 3, 51) | leaving.sign << 50 | at(first[2] & 7, 47);
@@ -162,9 +169,9 @@ std::uint64_t packed_h(const Painting& painting) {
   return bits | at(painting.distance >> 2, 34) | at(1, 33) | at(painting.distance >> 1 & 1, 32);
 }
 
-/// Brings the colors of H into the order that their distance needs; false where they are the same
-/// and it needs another one.
-bool put_in_order(Painting* painting) {
+/// Orders the colors of H as their distance requires; false if that is impossible because they are
+/// equal.
+bool order_colors(Painting* painting) {
   const bool is_descending = number_of(painting->colors[0]) >= number_of(painting->colors[1]);
   if (is_descending == ((painting->distance & 1) != 0)) return true;
   if (painting->colors[0] == painting->colors[1]) return false;
@@ -175,7 +182,7 @@ bool put_in_order(Painting* painting) {
 
 EtcBlock packed(Painting painting) {
   constexpr EtcBlock kNone{0, kLargestError + 1};
-  if (painting.is_h && !put_in_order(&painting)) return kNone;
+  if (painting.is_h && !order_colors(&painting)) return kNone;
   std::uint64_t bits = painting.is_h ? packed_h(painting) : packed_t(painting);
   for (std::size_t t = 0; t < kTexels; ++t) {
     const auto index = static_cast<std::uint64_t>(painting.indices[t]);
@@ -188,7 +195,7 @@ EtcBlock packed(Painting painting) {
 
 EtcBlock search_etc_paints(const EtcTexels& texels) {
   EtcBlock best{0, kLargestError + 1};
-  const std::vector<std::size_t> order = in_order(texels);
+  const std::vector<std::size_t> order = texels_along_line(texels);
   const std::span<const std::size_t> all(order);
   for (std::size_t split = 1; split < order.size(); ++split) {
     const EtcColor low = mean_of(texels, all.first(split));
@@ -199,7 +206,7 @@ EtcBlock search_etc_paints(const EtcTexels& texels) {
         painting.is_h = kind == 2;
         painting.colors = {kind == 1 ? high : low, kind == 1 ? low : high};
         painting.distance = distance;
-        settle(texels, hopeless(best.error), &painting);
+        refine_fit(texels, max_initial_error(best.error), &painting);
         if (painting.error < best.error) best = closer(best, packed(painting));
       }
     }

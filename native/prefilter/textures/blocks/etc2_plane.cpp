@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Planar mode (Khronos Data Format 1.3, section 21.1.5): the plane of least squares through each
-// channel, rounded, and then its neighbors until none is better.
+// Planar mode (Khronos Data Format 1.3, section 21.1.5): the least-squares plane of each channel,
+// rounded, then improved by trying neighbors until none is better.
 #include <algorithm>
 #include <cmath>
 
@@ -13,7 +13,7 @@ namespace {
 constexpr int kSide = 4;
 constexpr int kBits[] = {6, 7, 6};
 
-/// Of a channel: at the first texel, and a block further right and down.
+/// A channel's values at the first texel, and one block width to the right and down.
 using Corners = std::array<int, 3>;
 
 struct ChannelPlane {
@@ -37,7 +37,7 @@ int error_of(const EtcTexels& texels, std::size_t channel, const Corners& corner
   return error;
 }
 
-/// By all texels, those beyond the edge too: they repeat the ones inside.
+/// Uses all texels; those beyond the edge repeat the ones inside.
 Corners least_squares(const EtcTexels& texels, std::size_t channel) {
   constexpr double kMiddle = 1.5;
   constexpr double kSquares = 20.0;  // of the distances from the middle
@@ -58,16 +58,15 @@ Corners least_squares(const EtcTexels& texels, std::size_t channel) {
   return corners;
 }
 
-ChannelPlane search(const EtcTexels& texels, std::size_t channel, bool is_level) {
+ChannelPlane search(const EtcTexels& texels, std::size_t channel, bool is_flat) {
   const int most = (1 << kBits[channel]) - 1;
   ChannelPlane best{least_squares(texels, channel), 0};
   best.error = error_of(texels, channel, best.corners);
   for (bool is_better = true; is_better;) {
     is_better = false;
     const Corners middle = best.corners;
-    // A level one moves by the first, the middle and the last of them, which is alike in all
-    // corners.
-    for (int neighbor = 0; neighbor < 27; neighbor += is_level ? 13 : 1) {
+    // Flat planes try only the first, middle and last neighbor, which change all corners equally.
+    for (int neighbor = 0; neighbor < 27; neighbor += is_flat ? 13 : 1) {
       const Corners next{std::clamp(middle[0] + neighbor / 9 - 1, 0, most),
                          std::clamp(middle[1] + neighbor / 3 % 3 - 1, 0, most),
                          std::clamp(middle[2] + neighbor % 3 - 1, 0, most)};
@@ -82,7 +81,7 @@ ChannelPlane search(const EtcTexels& texels, std::size_t channel, bool is_level)
 
 std::uint64_t packed(const Corners& red, const Corners& green, const Corners& blue) {
   const auto at = [](int value, int place) { return static_cast<std::uint64_t>(value) << place; };
-  const LeavingBits leaving = bits_beyond(blue[0] >> 3 & 3, blue[0] >> 1 & 3);
+  const OverflowBits leaving = overflow_bits(blue[0] >> 3 & 3, blue[0] >> 1 & 3);
   std::uint64_t bits = at(red[0], 57) | at(green[0] >> 6, 56) | at(green[0] & 63, 49);
   bits |= bit_within(red[0] >> 2, (red[0] & 3) << 1 | green[0] >> 6) << 63;
   bits |= bit_within(green[0] >> 2 & 15, (green[0] & 3) << 1 | blue[0] >> 5) << 55;
@@ -96,11 +95,11 @@ std::uint64_t packed(const Corners& red, const Corners& green, const Corners& bl
 }  // namespace
 
 EtcBlock search_etc_plane(const EtcTexels& texels) {
-  const bool is_level = std::all_of(texels.colors.begin(), texels.colors.end(),
-                                    [&](const EtcColor& one) { return one == texels.colors[0]; });
-  const ChannelPlane red = search(texels, 0, is_level);
-  const ChannelPlane green = search(texels, 1, is_level);
-  const ChannelPlane blue = search(texels, 2, is_level);
+  const bool is_flat = std::all_of(texels.colors.begin(), texels.colors.end(),
+                                   [&](const EtcColor& one) { return one == texels.colors[0]; });
+  const ChannelPlane red = search(texels, 0, is_flat);
+  const ChannelPlane green = search(texels, 1, is_flat);
+  const ChannelPlane blue = search(texels, 2, is_flat);
   return {packed(red.corners, green.corners, blue.corners), red.error + green.error + blue.error};
 }
 

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 #include <cstring>
-// Needs std::size_t.
+// The header below needs std::size_t.
 #include <Decode.hpp>
 #include <vector>
 

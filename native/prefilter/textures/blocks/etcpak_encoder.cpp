@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The fitting is etcpak's: both halves of a block, and a plane, and the modes T and H of ETC2 where
-// its heuristics expect them to be better. But blocks of one color, which it cuts to five bits,
-// are the best of ETC1's differential mode here (Khronos Data Format 1.3, section 21.1).
+// Encodes with etcpak: both halves of a block, planar mode, and the ETC2 modes T and H if its
+// heuristics favor them. For single-color blocks, which etcpak truncates to five bits, uses the
+// closest block of ETC1's differential mode (Khronos Data Format 1.3, section 21.1).
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstring>
-// Needs std::size_t.
+// The header below needs std::size_t.
 #include <ProcessRGB.hpp>
 
 #include "prefilter/textures/blocks/encoders.h"
@@ -26,7 +26,7 @@ bool is_of_one_color(const std::uint8_t* rgba) {
   return true;
 }
 
-/// The nearest block to a color, one base for both halves.
+/// The closest block to a color, with the same base for both halves.
 std::array<std::uint8_t, 8> block_of_color(const std::uint8_t* rgb) {
   constexpr int kModifiers[8][2] = {{2, 8},   {5, 17},  {9, 29},   {13, 42},
                                     {18, 60}, {24, 80}, {33, 106}, {47, 183}};
@@ -40,8 +40,8 @@ std::array<std::uint8_t, 8> block_of_color(const std::uint8_t* rgb) {
       int error = 0;
       for (std::size_t c = 0; c < 3; ++c) {
         const int base = (std::clamp(rgb[c] - modifier, 0, 255) * 31 + 127) / 255;
-        const int found = std::clamp((base << 3 | base >> 2) + modifier, 0, 255);
-        error += (found - rgb[c]) * (found - rgb[c]);
+        const int decoded = std::clamp((base << 3 | base >> 2) + modifier, 0, 255);
+        error += (decoded - rgb[c]) * (decoded - rgb[c]);
         block[c] = static_cast<std::uint8_t>(base << 3);
       }
       if (error >= least) continue;
@@ -62,7 +62,7 @@ class EtcpakEncoder final : public ByteEncoder {
 
   void encode(const BlockRow<std::uint8_t>& row, std::uint8_t* blocks) override {
     for (int i = 0; i < row.count; ++i) {
-      // etcpak takes blue, green, red and alpha, in this order.
+      // etcpak expects the order blue, green, red, alpha.
       Texels texels{};
       const std::uint8_t* from = row.texels + std::ptrdiff_t{4} * kTexels * i;
       for (int t = 0; t < kTexels; ++t) {

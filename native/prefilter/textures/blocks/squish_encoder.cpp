@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The fitting is libsquish's: clusters along the principal axis of a block's colors, all ways to
-// split them tried, and least squares for the ends (Simon Brown, "DXT Compression Techniques").
+// Encodes with libsquish: cluster fit over all splits along the principal axis of a block's colors,
+// with least squares for the endpoints (Simon Brown, "DXT Compression Techniques").
 #include <squish.h>
 
 #include <algorithm>
@@ -58,7 +58,7 @@ class SquishEncoder final : public ByteEncoder {
       squish::CompressMasked(texels, inside, block, flags_);
       return;
     }
-    // The second half of a block with an alpha of its own: colors alone, four of them.
+    // The second half of a block with separate alpha: four colors, no transparency.
     std::array<std::uint8_t, 16> with_alpha{};
     squish::CompressMasked(texels, inside, with_alpha.data(), flags_);
     std::copy_n(with_alpha.begin() + 8, 8, block);

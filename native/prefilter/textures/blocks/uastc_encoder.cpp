@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The fitting is Basis Universal's: 14 modes of ASTC that turn into BC7 and ETC quickly.
+// Encodes UASTC with Basis Universal: 14 modes of ASTC that transcode quickly to BC7 and ETC.
 #include <encoder/basisu_bc7enc.h>
 #include <encoder/basisu_uastc_enc.h>
 #include <transcoder/basisu_transcoder.h>
@@ -15,7 +15,7 @@ namespace prefilter {
 namespace {
 
 constexpr std::ptrdiff_t kBlockTexelBytes = 4 * 16;
-// The hints are for loaders that turn UASTC into ETC1; the best ones double the time.
+// Effort includes hints for transcoding to ETC1; the best ones double the time.
 std::uint32_t flags_for(BlockEffort effort) {
   std::uint32_t level = basisu::cPackUASTCLevelDefault;
   if (effort == BlockEffort::kFast) level = basisu::cPackUASTCLevelFastest;
@@ -23,7 +23,7 @@ std::uint32_t flags_for(BlockEffort effort) {
   return level | basisu::cPackUASTCETC1FasterHints;
 }
 
-/// Makes the tables that the library keeps; what else its own function for that does needs OpenCL.
+/// Initializes the library's tables. Its own function for that requires OpenCL as well.
 void make_tables() {
   static std::once_flag once;
   std::call_once(once, [] {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Encoders and decoders that take long to make, one a thread.
+// A pool of encoders or decoders that are expensive to construct.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,7 @@
 
 namespace prefilter {
 
-/// Workers that are not in use. There are no more than threads.
+/// Idle workers. At most as many exist as threads use them.
 template <class Worker>
 class WorkerPool {
  public:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Section 7.3, least squares with the bilinear basis, one level by itself.
+// Section 7.3: least squares with the bilinear basis, for one level independently of the others.
 #include "prefilter/textures/mipmap/bilinear_system.h"
 
 #include <algorithm>
@@ -10,8 +10,8 @@ namespace {
 
 constexpr std::ptrdiff_t kTexelsPerReport = 1 << 16;
 
-// Integrals over one axis of a dual cell (between two texel centers) of the products of the two
-// tents there, low x low, low x high and high x high, from the moments.
+// Integrals along one axis of a dual cell (between two texel centers) of the products of its two
+// tents: low x low, low x high and high x high. Computed from the moments.
 void tent_products(const double* moments, int stride, double* products) {
   const double m0 = moments[0];
   const double m1 = moments[stride];
@@ -21,7 +21,8 @@ void tent_products(const double* moments, int stride, double* products) {
   products[2] = m2;
 }
 
-// The integral over a cell of what has these moments times the tent that is 1 at the corner (i, j).
+// Integral over a cell of the function with these moments times the tent that is 1 at corner (i,
+// j).
 template <typename Moments>
 float tent_integral(const Moments& m, int row_stride, int i, int j) {
   const double low_x = i == 0 ? m[0] - m[1] : m[1];
@@ -29,7 +30,7 @@ float tent_integral(const Moments& m, int row_stride, int i, int j) {
   return static_cast<float>(j == 0 ? low_x - high_x : high_x);
 }
 
-// Integrals of the image over a cell times the tents there.
+// Integrals over a cell of the image times each of its tents.
 template <std::size_t C>
 NinePointSystem<float>::TentIntegrals tent_integrals(const std::array<ImageMoments, C>& moments) {
   NinePointSystem<float>::TentIntegrals integrals{};
@@ -128,7 +129,8 @@ void BilinearSystem<C>::start_at_means(const Progress& progress) {
     sum += system_.diagonal(j);
     ++used;
   }
-  pull_ = static_cast<float>(used > 0 ? kPull * sum / static_cast<double>(used) : 0.0);
+  regularization_ =
+      static_cast<float>(used > 0 ? kRegularization * sum / static_cast<double>(used) : 0.0);
   system_.make_texels();
   for (std::ptrdiff_t j = 0; j < size; ++j) {
     if (j % kTexelsPerReport == 0) progress.report(0.0);
@@ -186,8 +188,8 @@ void BilinearSystem<C>::prepare(const TargetShares& target, const EquationShares
       own_squares_.image_means[c] += static_cast<double>(image[c]) * mean[c];
       own_finer[c] += static_cast<double>(finer_means_[j].v[c]) * mean[c];
     }
-    system_.right_side(j).v = times * (right - known * image) + pull_ * mean;
-    system_.diagonal(j) += pull_;
+    system_.right_side(j).v = times * (right - known * image) + regularization_ * mean;
+    system_.diagonal(j) += regularization_;
   }
   if (has_links()) target_square_ = square_of_target(target, own_finer);
   own_squares_.image = squares_.image;
@@ -199,11 +201,11 @@ void BilinearSystem<C>::prepare(const TargetShares& target, const EquationShares
 
 template <int C>
 int BilinearSystem<C>::linked_sweeps() const {
-  constexpr double kSteps = 1 << 18;
-  constexpr int kLeast = 12;
-  constexpr int kMost = 200;
+  constexpr double kTexelSweeps = 1 << 18;
+  constexpr int kMinSweeps = 12;
+  constexpr int kMaxSweeps = 200;
   const auto steps = static_cast<double>(system_.size() + links_.entry_count());
-  return static_cast<int>(std::clamp<double>(kSteps / steps, kLeast, kMost));
+  return static_cast<int>(std::clamp<double>(kTexelSweeps / steps, kMinSweeps, kMaxSweeps));
 }
 
 template <int C>
@@ -215,7 +217,7 @@ double BilinearSystem<C>::target_square(int first_channel) const {
 
 template <int C>
 double BilinearSystem<C>::squared_error(int first_channel, int threads) const {
-  const ChannelSums form = system_.form(target_, pull_, threads);
+  const ChannelSums form = system_.form(target_, regularization_, threads);
   double sum = target_square(first_channel);
   for (int c = first_channel; c < C; ++c) sum += form[c];
   return sum;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The least-squares problem of one level: which texels, looked up bilinearly, come closest to the
-// image over the surface (section 7.3 with the bilinear basis).
+// Least-squares system of one level: the texels whose bilinear lookups come closest to the image
+// over the surface (section 7.3 with the bilinear basis).
 #pragma once
 
 #include <memory>
@@ -19,113 +19,116 @@
 
 namespace prefilter {
 
-/// What stands on the right of a level's equations in place of the image: a sum of images, each
-/// times its share.
+/// The target of a level's fit: a weighted sum of images.
 struct TargetShares {
   double image = 1.0;
-  double finer_means = 0.0;  // the means p of the next finer level, interpolated between its texels
-  double own_means = 0.0;    // the same of this level
+  double finer_means = 0.0;  // the means p of the next finer level, interpolated bilinearly
+  double own_means = 0.0;    // the means p of this level, interpolated bilinearly
 };
 
-/// The target of a level whose pixels cover `footprint` of its texels, from 0 to kMostFootprint.
+/// The target of a level whose pixels have a footprint of `footprint` texels of the level, from 0
+/// to kMaxFootprint.
 ///
-/// Tents that weigh the image for a mean, and tents that interpolate the means, make a kernel that
-/// is a cubic B-spline on average over its places: with the tents of the next finer level its
-/// variance is that of a box as wide as a texel of this level, with those of this level of one
-/// twice as wide. Between them kernels are mixed so that their variances are the box's.
+/// Averaging the image under tents and then interpolating the means with the same tents filters it,
+/// on average over positions, with a cubic B-spline. The variance of this kernel for the tents of
+/// the next finer level equals the variance of a box one texel of this level wide; for the tents of
+/// this level, of a box two texels wide. For footprints in between the two are mixed to match the
+/// variance of the box.
 TargetShares target_shares(double footprint);
-inline constexpr double kMostFootprint = 2.0;
+inline constexpr double kMaxFootprint = 2.0;
 
-/// Integrals over the surface, by channel, that a squared error needs beside the equations.
+/// Integrals over the surface per channel, which complete the equations to a squared error.
 struct TargetSquares {
-  ChannelSums image{};        // of the image's square
-  ChannelSums means{};        // of that of the means p of a level, where they are part of a target
+  ChannelSums image{};  // of the square of the image
+  ChannelSums means{};  // of the square of the means p of a level, if they are part of a target
   ChannelSums image_means{};  // of the image times these means
 };
 
-/// How the equations of a level are part of larger ones: those for the target less `known` times
-/// the image, all times `times`.
+/// Scaling of a level's equations within a larger system: they are multiplied by `times`, and their
+/// target is reduced by `known` times the image.
 struct EquationShares {
   double times = 1.0;
   double known = 0.0;
 };
 
 /// Minimizes, over the texels t of a level and for each channel,
-///   integral over the surface of (sum_j b_j t_j - I)^2  +  kPull * m * sum_j (t_j - p_j)^2
-/// where I is the image, or another target; b_j are the bilinear basis functions, m is the mean of
-/// the integrals of b_j^2 over the texels in use, and p_j is the mean of the image under b_j. The
-/// second term decides for texels that hardly any of the surface reads, and leaves the others
-/// alone.
+///   integral over the surface of (sum_j b_j t_j - I)^2 + kRegularization * m * sum_j (t_j - p_j)^2
+/// where I is the target, the image by default; b_j are the bilinear basis functions, m is the mean
+/// of the integrals of b_j^2 over the texels in use, and p_j is the mean of the image under b_j.
+/// The second term determines texels that hardly any of the surface reads, and hardly affects
+/// others.
 template <int C>
 class BilinearSystem {
  public:
-  static constexpr double kPull = 1e-3;
+  static constexpr double kRegularization = 1e-3;
 
   BilinearSystem(int width, int height, WrapModes wrap);
 
-  /// Adds the integrals over the cells of one block of this level. Blocks that share texels must
-  /// not be added at the same time.
+  /// Adds the integrals over a block of cells of this level. Blocks that share texels must not be
+  /// added concurrently.
   void add(const MomentBlock<C>& block);
 
-  /// The means p_j, 0 for texels that nothing reads; to be called once all blocks are there.
+  /// The means p_j; 0 for texels that no lookup reads. Requires all blocks.
   Image means() const;
 
-  /// Makes room for `add_finer_means`.
+  /// Allocates the sums for `add_finer_means`.
   void expect_finer_means() { finer_means_.resize(system_.size()); }
-  /// Adds the integrals over the cells of one block of the means of level 0, for level 1. Blocks as
-  /// for `add`.
+  /// For level 1: adds the integrals over a block of cells of the means of level 0. Concurrency is
+  /// as for `add`.
   void add_finer_means(const MomentBlock<C>& block);
-  /// Adds those of the means of the next finer level, by its coupling with this one.
+  /// Adds the integrals of the means of the next finer level, from its coupling with this level.
   void add_finer_means(const LevelCoupling& coupling, const Image& means, const Progress& progress,
                        int threads) {
     coupling.add_fine(means, system_, progress, threads, &finer_means_);
   }
 
   struct Solution {
-    Image image;                      // texels that nothing reads are 0
+    Image image;                      // 0 in texels that no lookup reads
     std::vector<unsigned char> used;  // 1 for each texel that the surface reads
     int sweeps = 0;
   };
 
-  /// Adds, to what is minimized, the square of each link, which counts its strip's area in space
-  /// times `texels_by_area`, and a weight that `solve` finds. To be called once all blocks are
-  /// there.
+  /// Adds the square of each link to the objective, weighted by the area of its strip in space,
+  /// times `texels_by_area`, times a weight that `solve` determines. Requires all blocks.
   void add_links(const std::vector<SeamLink>& links, double texels_by_area,
                  const Progress& progress);
   bool has_links() const { return !links_.empty(); }
-  /// From here on links count, with that weight. To be called after `prepare`.
+  /// Sets the weight of the links. Requires `prepare`.
   void weigh_links(double weight) {
     system_.weigh_links(&links_, Lanes{} + static_cast<float>(weight));
   }
-  /// Before links can be solved for: the squares of the image, and of the next finer level's means.
+  /// Sets the squares of the image and of the next finer level's means. Required to solve with
+  /// links.
   void set_squares(const TargetSquares& squares) { squares_ = squares; }
-  /// Those of the image and this level's means, for the next level; after `prepare`, with links.
+  /// The squares of the image and of this level's means, for the next level. Requires links and
+  /// `prepare`.
   const TargetSquares& own_squares() const { return own_squares_; }
 
-  /// Solves for all channels, within their ranges. With links the squared error over the surface,
-  /// over the channels from budget.first_channel on, rises by no more than the budget allows;
-  /// without, `budget` may be null. Can be called once.
+  /// Solves for all channels, within their ranges. If there are links, the squared error over the
+  /// surface of the channels from budget.first_channel on rises by at most the budget; without,
+  /// `budget` may be null. Can be called only once.
   Solution solve(const TargetShares& target, const SolveOptions& options, SeamBudget* budget,
                  const Progress& progress);
 
-  /// The steps of `solve`, for those who go on from there. `prepare` makes the system ready, with
-  /// texels at their means p_j.
+  /// The steps of `solve`, for other solvers that continue from them. `prepare` sets up the system
+  /// with the texels at their means p_j.
   void prepare(const TargetShares& target, const EquationShares& shares, const Progress& progress);
   NinePointSystem<float>& system() { return system_; }
-  /// How many sweeps a fit with another weight of the links is worth.
+  /// Number of sweeps for a fit with a changed weight of the links.
   int linked_sweeps() const;
-  /// The squared error of the texels as they are, over the channels from `first_channel` on; only
-  /// where there are links.
+  /// Squared error of the current texels, over the channels from `first_channel` on. Requires
+  /// links.
   double squared_error(int first_channel, int threads) const;
-  /// The same of texels that are 0.
+  /// The squared error if all texels were 0.
   double target_square(int first_channel) const;
   Solution take_solution();
 
  private:
-  // Puts texels at their means p_j, and leaves out those that nothing reads; sets the pull.
+  // Initializes texels to their means p_j, excludes those that no lookup reads, and adds the
+  // regularization.
   void start_at_means(const Progress& progress);
-  // The integral of the target's square; `own_finer` is that of this level's means times the finer
-  // level's.
+  // Integral of the squared target. `own_finer` is the integral of this level's means times the
+  // finer level's.
   ChannelSums square_of_target(const TargetShares& target, const ChannelSums& own_finer) const;
   void add_dual_cell(const CellMoments<C>& moments, int column, int row);
   // The texel at corner k, [2 * y + x], of a cell between texel centers; -1 for the border.
@@ -136,16 +139,16 @@ class BilinearSystem {
   std::vector<float> weights_;           // integrals of b_j
   std::vector<LaneValues> finer_means_;  // integrals of b_j times the finer level's means
   LinkForm links_;
-  // For the squared error, where there are links.
+  // For the squared error, with links only.
   TargetSquares squares_;
   TargetSquares own_squares_;
   ChannelSums target_square_{};
   std::vector<LaneValues> target_;  // integrals of b_j times the target
-  float pull_ = 0.0F;
+  float regularization_ = 0.0F;
 };
 
-/// Adds the means of each level to what the next one needs of them: couplings[k] is that of
-/// systems[k] and systems[k + 1].
+/// Adds the means of each level to the target of the next. couplings[k] couples systems[k] and
+/// systems[k + 1].
 template <int C>
 void add_coupled_means(const std::vector<LevelCoupling>& couplings,
                        const std::vector<std::unique_ptr<BilinearSystem<C>>>& systems,

@@ -15,7 +15,7 @@
 namespace prefilter {
 namespace {
 
-// Where the lookups of one axis read: texels `first` and `first + 1`, the second by `fraction`.
+// A linear lookup along an axis: between texels `first` and `first` + 1, by `fraction`.
 struct Lookup {
   int first;
   float fraction;
@@ -32,8 +32,8 @@ std::vector<Lookup> lookups(int cells, int samples, int texels) {
   return result;
 }
 
-// Alpha with one more texel around it, as the wrap modes say, so that lookups need not ask.
-Image framed(const ImageView& alpha, WrapModes wrap, const Progress& progress, int threads) {
+// Alpha with a border of one texel defined by the wrap modes, so that lookups need no bounds check.
+Image add_border(const ImageView& alpha, WrapModes wrap, const Progress& progress, int threads) {
   Image result(alpha.width + 2, alpha.height + 2, 1);
   parallel_for(result.height, threads, progress, [&](std::int64_t row) {
     const int from_y = wrap_index(static_cast<int>(row) - 1, alpha.height, wrap.v);
@@ -60,10 +60,10 @@ void check(const ImageView& alpha, const ImageView& weights, int samples) {
   }
 }
 
-// How many of a cell's lookups are at the threshold or above. `texels` is framed.
-int hits_in(const Image& texels, std::span<const Lookup> columns, std::span<const Lookup> rows,
-            float threshold) {
-  // Most cells are read above the threshold everywhere, or nowhere.
+// Number of a cell's lookups that reach the threshold. `texels` has the border.
+int count_passing(const Image& texels, std::span<const Lookup> columns,
+                  std::span<const Lookup> rows, float threshold) {
+  // Shortcut for cells with all lookups on the same side of the threshold, as most are.
   float low = *texels.texel(columns.front().first + 1, rows.front().first + 1);
   float high = low;
   for (int y = rows.front().first + 1; y <= rows.back().first + 2; ++y) {
@@ -93,7 +93,7 @@ int hits_in(const Image& texels, std::span<const Lookup> columns, std::span<cons
 double covered_share(const ImageView& alpha, const ImageView& weights, int samples, float threshold,
                      WrapModes wrap, const Progress& progress, int threads) {
   check(alpha, weights, samples);
-  const Image texels = framed(alpha, wrap, progress.part(0.0, 0.1), threads);
+  const Image texels = add_border(alpha, wrap, progress.part(0.0, 0.1), threads);
   const std::vector<Lookup> columns = lookups(weights.width, samples, alpha.width);
   const std::vector<Lookup> rows = lookups(weights.height, samples, alpha.height);
   const auto lookups_of = [samples](const std::vector<Lookup>& all, std::int64_t cell) {
@@ -110,7 +110,7 @@ double covered_share(const ImageView& alpha, const ImageView& weights, int sampl
       if (!(weight > 0.0)) continue;
       all_here += weight;
       const int hits =
-          hits_in(texels, lookups_of(columns, cell_x), lookups_of(rows, cell_y), threshold);
+          count_passing(texels, lookups_of(columns, cell_x), lookups_of(rows, cell_y), threshold);
       kept_here += weight * hits / (static_cast<double>(samples) * samples);
     }
     kept[static_cast<std::size_t>(cell_y)] = kept_here;

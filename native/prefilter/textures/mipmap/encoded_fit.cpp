@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The reader's curve bends the least squares of section 7.3: its residual is decode(sum_j b_j t_j)
-// - I, with the Jacobian b_j decode'. Bounded Gauss-Newton; a round that makes a channel worse is
-// halved.
+// Section 7.3 for a nonlinear reader: the residual is decode(sum_j b_j t_j) - I, with the Jacobian
+// b_j decode'. Solved by bounded Gauss-Newton iterations with step halving per channel.
 #include "prefilter/textures/mipmap/encoded_fit.h"
 
 #include <algorithm>
@@ -10,16 +9,16 @@
 
 #include "prefilter/base/parallel.h"
 #include "prefilter/geometry/moments/four_point_rule.h"
+#include "prefilter/geometry/texels/tiles.h"
 #include "prefilter/images/srgb_decoder.h"
-#include "prefilter/textures/texels/tiles.h"
 
 namespace prefilter {
 namespace {
 
-constexpr int kMostRounds = 10;
-// Rounds end where none of the sums of squares falls by more than this share of what they have
-// fallen by in all.
-constexpr double kLeastGain = 1e-3;
+constexpr int kMaxGaussNewtonRounds = 10;
+// Iterations end once no channel's sum of squares falls by more than this share of its total
+// decrease.
+constexpr double kMinRelativeGain = 1e-3;
 constexpr int kSweepsPerRound = 20;
 
 }  // namespace
@@ -103,7 +102,7 @@ template <int C>
 auto EncodedFit<C>::assemble(int threads, const Progress& progress) -> ColorSums {
   system_.clear();
   std::vector<Sums> sums(cells_.size());
-  // Rows of tiles that are not beside each other share no texels.
+  // Rows of tiles that are not adjacent share no texels.
   for (int color = 0; color < kTileColors; ++color) {
     std::vector<int> rows;
     for (int row = 0; row < tile_rows_; ++row) {
@@ -180,13 +179,13 @@ Image EncodedFit<C>::solve(const Image& start, const std::vector<unsigned char>&
     std::vector<TexelLink>().swap(all_links_);
   }
   const bool searches = !links_.empty();
-  improve(start, used, 0.0, options, searches ? progress.part(0.0, 0.3) : progress);
+  iterate(start, used, 0.0, options, searches ? progress.part(0.0, 0.3) : progress);
   if (searches) {
     const Progress part = progress.part(0.3, 0.3);
     double square = 0.0;
     for (int c = 0; c < kColors; ++c) square += image_squares_[c];
     const LinkedFit fit{[&](double weight, const Progress& fitting) {
-                          improve(start, used, weight, options, fitting);
+                          iterate(start, used, weight, options, fitting);
                         },
                         [&] {
                           double sum = square;
@@ -211,8 +210,8 @@ auto EncodedFit<C>::sums_with_links(double weight, int threads, const Progress& 
 }
 
 template <int C>
-auto EncodedFit<C>::go_back(const std::vector<LaneValues>& before, const ColorSums& least,
-                            double weight, int threads, const Progress& progress, ColorSums sums)
+auto EncodedFit<C>::backtrack(const std::vector<LaneValues>& before, const ColorSums& least,
+                              double weight, int threads, const Progress& progress, ColorSums sums)
     -> ColorSums {
   constexpr int kMostHalvings = 5;
   for (int halving = 0; halving <= kMostHalvings; ++halving) {
@@ -234,7 +233,7 @@ auto EncodedFit<C>::go_back(const std::vector<LaneValues>& before, const ColorSu
 }
 
 template <int C>
-void EncodedFit<C>::add_pull(const Image& start, const std::vector<unsigned char>& used) {
+void EncodedFit<C>::add_regularization(const Image& start, const std::vector<unsigned char>& used) {
   const auto for_each_texel = [&](const auto& use) {
     for (int y = 0; y < system_.height(); ++y) {
       for (int x = 0; x < system_.width(); ++x) {
@@ -249,7 +248,7 @@ void EncodedFit<C>::add_pull(const Image& start, const std::vector<unsigned char
     mean += system_.diagonal(at).v;
     count += 1.0F;
   });
-  const Lanes pull = static_cast<float>(kPull) / std::max(count, 1.0F) * mean;
+  const Lanes pull = static_cast<float>(kRegularization) / std::max(count, 1.0F) * mean;
   for_each_texel([&](std::ptrdiff_t at, const float* texel) {
     Lanes target{};
     for (int c = 0; c < kColors; ++c) target[c] = texel[c];
@@ -259,7 +258,7 @@ void EncodedFit<C>::add_pull(const Image& start, const std::vector<unsigned char
 }
 
 template <int C>
-void EncodedFit<C>::improve(const Image& start, const std::vector<unsigned char>& used,
+void EncodedFit<C>::iterate(const Image& start, const std::vector<unsigned char>& used,
                             double weight, const SolveOptions& options, const Progress& progress) {
   SolveOptions round_options = options;
   round_options.max_sweeps = kSweepsPerRound;
@@ -267,23 +266,23 @@ void EncodedFit<C>::improve(const Image& start, const std::vector<unsigned char>
   std::vector<LaneValues> before(system_.size());
   ColorSums first{};
   ColorSums least{};
-  for (int round = 0; round < kMostRounds; ++round) {
-    const Progress part = progress.part(static_cast<double>(round) / kMostRounds,
-                                        static_cast<double>(round + 1) / kMostRounds);
+  for (int round = 0; round < kMaxGaussNewtonRounds; ++round) {
+    const Progress part = progress.part(static_cast<double>(round) / kMaxGaussNewtonRounds,
+                                        static_cast<double>(round + 1) / kMaxGaussNewtonRounds);
     const Progress assembling = part.part(0.0, 0.4);
     ColorSums sums = sums_with_links(weight, options.threads, assembling);
     if (round == 0) {
       first = least = sums;
     } else {
-      sums = go_back(before, least, weight, options.threads, assembling, sums);
+      sums = backtrack(before, least, weight, options.threads, assembling, sums);
       bool settled = true;
       for (int c = 0; c < kColors; ++c) {
-        if (least[c] - sums[c] > kLeastGain * (first[c] - sums[c])) settled = false;
+        if (least[c] - sums[c] > kMinRelativeGain * (first[c] - sums[c])) settled = false;
         least[c] = std::min(least[c], sums[c]);
       }
       if (settled) break;
     }
-    add_pull(start, used);
+    add_regularization(start, used);
     system_.invert_diagonal();
     if (weight > 0.0) system_.weigh_links(&links_, link_weights(weight));
     part.report(0.48);

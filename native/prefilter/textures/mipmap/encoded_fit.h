@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The fit of one level for a reader that interpolates encoded texels and decodes the result.
+// Fits one level for readers that interpolate encoded texels and decode the result.
 #pragma once
 
 #include <vector>
@@ -17,29 +17,29 @@ namespace prefilter {
 
 /// Minimizes, over the encoded texels t of a level and for each color channel,
 ///   integral over the surface of (decode(sum_j b_j t_j) - I)^2
-///     + kPull * m * sum_j (t_j - s_j)^2
-/// with b_j and m as for BilinearSystem, m scaled by the curve's slope, and s the start.
-/// Gauss-Newton with quadrature: each cell between texel centers is read at the four points of
-/// FourPointRule.
+///     + kRegularization * m * sum_j (t_j - s_j)^2
+/// with b_j and m as in BilinearSystem, m scaled by the slope of the decoding curve, and the start
+/// s. Gauss-Newton with quadrature: each cell between texel centers is sampled at the four points
+/// of FourPointRule.
 template <int C>
 class EncodedFit {
  public:
-  static constexpr double kPull = 1e-3;
+  static constexpr double kRegularization = 1e-3;
 
-  /// For a level of width x height texels, of an image of image_width x image_height.
+  /// For a level of width x height texels of an image of image_width x image_height texels.
   EncodedFit(int width, int height, int image_width, int image_height, WrapModes wrap);
 
-  /// Adds the cells of one block of this level. Blocks may be added at the same time.
+  /// Adds a block of cells of this level. Blocks may be added concurrently.
   void add(const MomentBlock<C>& block);
 
-  /// As BilinearSystem::add_links, of encoded texels; `squares` are the integrals of what the
-  /// reader shows of the image, squared.
+  /// Like BilinearSystem::add_links, but links encoded texels. `squares` are the integrals of the
+  /// squared image as the reader shows it.
   void add_links(const std::vector<SeamLink>& links, double texels_by_area,
                  const ChannelSums& squares);
 
-  /// Improves on `start`, encoded texels within the ranges, which are encoded too. A fourth channel
-  /// stays as it is. `used` has 1 for each texel that the surface reads. With links the error of
-  /// the colors rises by no more than the budget allows. Can be called once.
+  /// Improves `start`; it and the ranges are encoded. A fourth channel is not changed. `used` is 1
+  /// for each texel that the surface reads. If there are links, the error of the colors rises by at
+  /// most the budget. Can be called only once.
   Image solve(const Image& start, const std::vector<unsigned char>& used,
               const SolveOptions& options, SeamBudget* budget, const Progress& progress);
 
@@ -48,36 +48,36 @@ class EncodedFit {
 
   struct Cell {
     int column, row;
-    float x[2], y[2];      // of the points, from the center of texel (column, row)
-    float same, opposite;  // weights
+    float x[2], y[2];      // of the points, relative to the center of texel (column, row)
+    float same, opposite;  // quadrature weights of FourPointRule
     std::array<std::array<float, kColors>, 4> image;  // integrals at the points
   };
 
   using ColorSums = std::array<double, kColors>;
 
-  // Puts the Gauss-Newton system at the texels together; returns the sum of squares of each
-  // channel, less what does not depend on the texels, and without links.
+  // Assembles the Gauss-Newton system at the current texels. Returns the sum of squares of each
+  // channel, up to a constant and without links.
   ColorSums assemble(int threads, const Progress& progress);
-  // What links of this weight add to it.
+  // The links' contribution to the sums of squares.
   ColorSums link_squares(double weight) const;
-  // A difference of encoded values counts as the decoded one that the curve's mean slope makes of
-  // it: of the slopes at the start, so that all rounds minimize the same.
+  // A difference of encoded values is weighted by the curve's mean squared slope at the start,
+  // which stays fixed so that all iterations have the same objective.
   Lanes link_weights(double weight) const;
-  // The sums of squares of the texels as they are, with those of links of this weight; assembles.
+  // The sums of squares of the current texels including links of this weight. Assembles the system.
   ColorSums sums_with_links(double weight, int threads, const Progress& progress);
-  // Halves the way that the texels went since `before`, until no channel's sum, of those that there
-  // are now, is above its `least`. Returns the sums there.
-  ColorSums go_back(const std::vector<LaneValues>& before, const ColorSums& least, double weight,
-                    int threads, const Progress& progress, ColorSums sums);
-  // Adds what pulls texels to their start to the system.
-  void add_pull(const Image& start, const std::vector<unsigned char>& used);
-  // Rounds from where the texels are, to the fit with links of this weight.
-  void improve(const Image& start, const std::vector<unsigned char>& used, double weight,
+  // Halves the step from `before` to the current texels until no channel's sum is above `least`,
+  // starting from their sums `sums`. Returns the final sums.
+  ColorSums backtrack(const std::vector<LaneValues>& before, const ColorSums& least, double weight,
+                      int threads, const Progress& progress, ColorSums sums);
+  // Adds the regularization toward the start to the system.
+  void add_regularization(const Image& start, const std::vector<unsigned char>& used);
+  // Gauss-Newton iterations from the current texels to the fit with links of this weight.
+  void iterate(const Image& start, const std::vector<unsigned char>& used, double weight,
                const SolveOptions& options, const Progress& progress);
 
   struct Sums {
     ColorSums squares{};
-    ColorSums slopes{};  // squares of the curve's slope, times mass
+    ColorSums slopes{};  // sums of the curve's squared slope, weighted by mass
     double mass = 0.0;
   };
   Sums assemble(const std::vector<Cell>& cells);
@@ -91,7 +91,7 @@ class EncodedFit {
   std::vector<TexelLink> all_links_;
   LinkForm links_;
   bool has_slopes_ = false;
-  ColorSums mean_slopes_{};  // squares of the curve's slope, over the surface
+  ColorSums mean_slopes_{};  // mean squared slope of the curve over the surface
   ChannelSums image_squares_{};
 };
 

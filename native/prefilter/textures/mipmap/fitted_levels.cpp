@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Section 7.3 level by level is SurfaceFilter::kBilinear, all levels together are
-// SurfaceFilter::kTrilinear.
+// Section 7.3: SurfaceFilter::kBilinear fits level by level, SurfaceFilter::kTrilinear all levels
+// together.
 #include "prefilter/textures/mipmap/fitted_levels.h"
 
 #include <array>
 #include <utility>
 
+#include "prefilter/geometry/texels/coverage.h"
+#include "prefilter/geometry/texels/texel_triangles.h"
 #include "prefilter/images/filters/push_pull.h"
 #include "prefilter/images/filters/tent_means.h"
 #include "prefilter/images/transfer.h"
 #include "prefilter/textures/mipmap/argument_checks.h"
 #include "prefilter/textures/mipmap/level_sums.h"
 #include "prefilter/textures/mipmap/trilinear_system.h"
-#include "prefilter/textures/texels/coverage.h"
 #include "prefilter/textures/texels/levels.h"
-#include "prefilter/textures/texels/texel_triangles.h"
 
 namespace prefilter {
 namespace {
@@ -28,8 +28,8 @@ TexelTriangles mapped(const std::vector<const Surface*>& surfaces, const TexelSo
   return triangles;
 }
 
-// Adds the systems of all levels up, and what their errors are measured from. `swept` is the image
-// as its reader looks it up.
+// Assembles the systems of all levels and the squares for their errors. `swept` is the image as its
+// reader looks it up.
 template <int C, typename Systems>
 TargetSquares sum_up(const FilteredImage& image, const TexelSource& swept,
                      const std::vector<const Surface*>& surfaces, bool has_squares, int last_level,
@@ -57,8 +57,8 @@ TargetSquares sum_up(const FilteredImage& image, const TexelSource& swept,
   return squares;
 }
 
-// Calls add(level, links, texels_by_area) for levels 1 to last_level; nothing where there are no
-// seams. `image` is what the links are between texels of.
+// Calls add(level, links, texels_by_area) for levels 1 to last_level if there are seams. The links
+// are between texels of `image`.
 template <typename Add>
 void link_levels(std::vector<SeamEdge> seams, const ImageView& image,
                  const std::vector<const Surface*>& surfaces, WrapModes wrap, int last_level,
@@ -67,7 +67,7 @@ void link_levels(std::vector<SeamEdge> seams, const ImageView& image,
   weigh_seams(image, surfaces, wrap, progress, &seams);
   double area = 0.0;
   for (const Surface* surface : surfaces) area += surface->total_area();
-  // The fits count area in texels of the image.
+  // The fits measure area in texels of the image.
   const double texels_by_area = static_cast<double>(image.width) * image.height / area;
   for (int level = 1; level <= last_level; ++level) {
     add(level,
@@ -84,7 +84,7 @@ Image filled(Image level, const std::vector<unsigned char>& used, WrapModes wrap
   return level;
 }
 
-// All levels there are are solved for, also where fewer are asked for.
+// Solves for all levels down to 1 x 1, even if fewer are requested.
 template <int C>
 std::vector<Image> solve_together(const FilteredImage& image,
                                   const std::vector<const Surface*>& surfaces,
@@ -112,7 +112,7 @@ std::vector<Image> solve_together(const FilteredImage& image,
   return levels;
 }
 
-// Fits the colors of a level to a reader that decodes, from those that are fitted to another one.
+// Fits the colors of a level to a decoding reader, starting from a fit to a linear one.
 template <int C>
 Image fit_encoded(EncodedFit<C>* fit, const Image& level, const std::vector<unsigned char>& used,
                   SolveOptions solve, SeamBudget* budget, const Progress& progress) {
@@ -123,20 +123,20 @@ Image fit_encoded(EncodedFit<C>* fit, const Image& level, const std::vector<unsi
   return decode_srgb(fit->solve(start, used, solve, budget, progress).view(), solve.threads);
 }
 
-// Solves level after level, and lets go of the systems.
+// Solves level after level, and frees each system afterwards.
 template <int C>
 std::vector<Image> solve_in_turn(LevelSystems<C> systems, TargetSquares squares,
                                  const SolveOptions& solve, const MipmapOptions& options,
                                  const Progress& progress) {
   const bool is_encoded = !systems.encoded.empty();
-  // Of encoded levels only alpha is solved for by the linear systems, the fourth channel.
+  // The linear systems of encoded levels only determine alpha, the fourth channel.
   SeamBudget budget{.share = options.seam_budget,
                     .first_channel = is_encoded ? encoded_channels(C) : 0};
   SeamBudget encoded_budget{.share = options.seam_budget};
   std::vector<Image> levels;
   double from = 0.0;
   for (std::size_t k = 0; k < systems.linear.size(); ++k) {
-    // A level has a quarter of the texels of the one before.
+    // Each level has a quarter of the texels of the one before.
     const double to = from + 0.75 * (1.0 - from);
     const Progress part = progress.part(from, std::exchange(from, to));
     const auto system = std::move(systems.linear[k]);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Section 7.3: levels by least squares over the surface.
+// Section 7.3: levels fitted to lookups over the surface by least squares.
 #pragma once
 
 #include <vector>
@@ -14,9 +14,9 @@
 
 namespace prefilter {
 
-/// Levels 1 to level_count - 1, of the filter in `options`, which is a fit; texels that nothing
-/// reads are filled. `seams` are those that count, none where there is no budget for them, and
-/// `solve` has the ranges of the channels.
+/// Computes levels 1 to level_count - 1 with the fit in `options`; texels that no lookup reads are
+/// filled. `seams` are the seams to hide, none without a budget, and `solve` has the ranges of the
+/// channels.
 std::vector<Image> fitted_levels(const FilteredImage& image,
                                  const std::vector<const Surface*>& surfaces,
                                  const std::vector<SeamEdge>& seams, const SolveOptions& solve,

@@ -7,7 +7,7 @@
 namespace prefilter {
 namespace {
 
-// `moments_at(i, j)` are the image moments that count.
+// `moments_at(i, j)` returns the image moments of a cell.
 template <int C, typename MomentsAt>
 ChannelSums integral_of(const MomentBlock<C>& block, const MomentsAt& moments_at,
                         const ImageView& image, WrapModes wrap) {
@@ -70,7 +70,7 @@ ChannelSums integral_of_decoded_square(const MomentBlock<C>& block) {
       for (int c = 0; c < C; ++c) {
         const std::array<double, 4> integrals = rule.integrals(cell.image[c]);
         for (int k = 0; k < 4; ++k) {
-          // A point that weighs next to nothing tells nothing of the image.
+          // Points with a negligible weight carry no information about the image.
           if (!(rule.weight(k) > 1e-9 * cell.weight[0])) continue;
           sums[c] += integrals[k] * integrals[k] / rule.weight(k);
         }

@@ -17,13 +17,13 @@
 namespace prefilter {
 namespace {
 
-constexpr double kTolerance = 1e-3;
-constexpr int kSamples = 8;  // lookups along each side of a texel, at least
+constexpr double kCoverageTolerance = 1e-3;
+constexpr int kMinLookupsPerTexel = 8;  // along each axis
 constexpr int kFinestGrid = 4096;
 constexpr int kCoarsestGrid = 512;
-constexpr int kHalvings = 14;
-constexpr double kSmallestBend = 1.0 / (1 << kHalvings);
-constexpr double kRooms[] = {1.0 / 16, 1.0 / 64, 1.0 / 256};  // from a jump of the share
+constexpr int kBendHalvings = 14;
+constexpr double kSmallestBend = 1.0 / (1 << kBendHalvings);
+constexpr double kJumpMargins[] = {1.0 / 16, 1.0 / 64, 1.0 / 256};  // from a jump of the coverage
 
 int grid_side(int texels) {
   constexpr auto kFinest = static_cast<unsigned>(kFinestGrid);
@@ -32,11 +32,12 @@ int grid_side(int texels) {
       static_cast<int>(std::bit_ceil(std::min(static_cast<unsigned>(texels), kFinest))));
 }
 
-// Alpha on a curve through (0, 0), (bend, threshold) and (1, 1). A bend below 0, where all alpha
-// but 0 is above the threshold, lifts 0: to the threshold at -1.
-class Curve {
+// Maps alpha by a piecewise linear curve through (0, 0), (bend, threshold) and (1, 1). A bend below
+// 0 makes every alpha above 0 pass the test and lifts the value at 0, up to the threshold for a
+// bend of -1.
+class AlphaCurve {
  public:
-  Curve(double bend, double threshold) {
+  AlphaCurve(double bend, double threshold) {
     const double inside = std::clamp(bend, kSmallestBend, 1.0 - kSmallestBend);
     bend_ = static_cast<float>(inside);
     below_ = static_cast<float>(threshold / inside);
@@ -44,8 +45,8 @@ class Curve {
     least_ = static_cast<float>(-bend * threshold);
   }
   float operator()(float alpha) const {
-    const float bent = alpha <= bend_ ? alpha * below_ : 1.0F - (1.0F - alpha) * above_;
-    return std::max(bent, least_);
+    const float apply_curve = alpha <= bend_ ? alpha * below_ : 1.0F - (1.0F - alpha) * above_;
+    return std::max(apply_curve, least_);
   }
 
  private:
@@ -65,24 +66,25 @@ class CoverageKeeper {
   }
 
   std::vector<Image> run() {
-    wanted_ = share(alpha_of(levels_[0]), 0.3);
-    std::vector<Image> kept;
+    target_share_ = share(alpha_of(levels_[0]), 0.3);
+    std::vector<Image> adjusted;
     double done = 0.4;
     for (std::size_t k = 1; k < levels_.size(); ++k) {
       make_areas_coarser(levels_[k]);
-      kept.push_back(keep(levels_[k], done));
-      // A level has a quarter of the texels of the one before.
+      adjusted.push_back(keep(levels_[k], done));
+      // Each level has a quarter of the texels of the one before.
       done += 0.75 * (1.0 - done);
     }
     options_.progress.report(1.0);
-    return kept;
+    return adjusted;
   }
 
  private:
-  // How many shares a level takes is not known before: progress rises between levels.
+  // The number of calls per level is unknown in advance, so progress rises only between levels.
   double share(const Image& alpha, double done) const {
     const auto samples = [](int texels, int cells) {
-      return static_cast<int>(range_count(static_cast<std::int64_t>(kSamples) * texels, cells));
+      return static_cast<int>(
+          range_count(static_cast<std::int64_t>(kMinLookupsPerTexel) * texels, cells));
     };
     return covered_share(
         alpha.view(), areas_.view(),
@@ -108,9 +110,9 @@ class CoverageKeeper {
     return alpha;
   }
 
-  Image bent(const Image& alpha, double bend) const {
+  Image apply_curve(const Image& alpha, double bend) const {
     Image result(alpha.width, alpha.height, 1);
-    const Curve curve(bend, options_.threshold);
+    const AlphaCurve curve(bend, options_.threshold);
     for_each(&alpha, &result, [&](const float* from, float* to) { *to = curve(*from); });
     return result;
   }
@@ -118,50 +120,53 @@ class CoverageKeeper {
   Image keep(const ImageView& level, double done) const {
     Image alpha = alpha_of(level);
     for (float& value : alpha.data) value = std::clamp(value, 0.0F, 1.0F);
-    Image kept(level);
-    const double found = share(alpha, done);
-    if (std::abs(found - wanted_) <= kTolerance) return kept;
-    const double bend = find_bend(alpha, found, done);
-    const Curve curve(bend, options_.threshold);
+    Image adjusted(level);
+    const double unchanged = share(alpha, done);
+    if (std::abs(unchanged - target_share_) <= kCoverageTolerance) return adjusted;
+    const double bend = find_bend(alpha, unchanged, done);
+    const AlphaCurve curve(bend, options_.threshold);
     const int last = level.channels - 1;
     const int colors = options_.premultiplied ? last : 0;
-    for_each(&kept, &alpha, [&](float* texel, const float* value) {
+    for_each(&adjusted, &alpha, [&](float* texel, const float* value) {
       texel[last] = curve(*value);
       const float scale = texel[last] / (*value > 0.0F ? *value : 1.0F);
       for (int c = 0; c < colors; ++c) texel[c] *= scale;
     });
-    return kept;
+    return adjusted;
   }
 
-  // The bend that gives the share wanted; the threshold itself bends nothing, and gives `found`.
-  // The share falls as the bend rises. It may jump over what is wanted: then the closer side of the
-  // jump is taken, and left some room, so that the rounding of a byte image tips no texel.
-  double find_bend(const Image& alpha, double found, double done) const {
-    const auto share_of = [&](double bend) { return share(bent(alpha, bend), done); };
-    const bool shows_too_little = found < wanted_;
+  // The bend with the target share. The threshold itself is the identity, whose share is
+  // `unchanged`. The share falls as the bend rises, possibly in jumps. If the target lies in a
+  // jump, picks the closer side, and keeps a margin to the jump so that rounding to bytes does not
+  // cross it.
+  double find_bend(const Image& alpha, double unchanged, double done) const {
+    const auto share_of = [&](double bend) { return share(apply_curve(alpha, bend), done); };
+    const bool shows_too_little = unchanged < target_share_;
     double ends[] = {shows_too_little ? -1.0 : options_.threshold,
                      shows_too_little ? options_.threshold : 1.0};
-    double shares[] = {shows_too_little ? 1.0 : found, shows_too_little ? found : share_of(1.0)};
-    for (int k = 0; k < kHalvings; ++k) {
+    double shares[] = {shows_too_little ? 1.0 : unchanged,
+                       shows_too_little ? unchanged : share_of(1.0)};
+    for (int k = 0; k < kBendHalvings; ++k) {
       const double middle = (ends[0] + ends[1]) / 2.0;
-      const double reached = share_of(middle);
-      if (std::abs(reached - wanted_) <= kTolerance) return middle;
-      const int side = reached > wanted_ ? 0 : 1;
+      const double coverage = share_of(middle);
+      if (std::abs(coverage - target_share_) <= kCoverageTolerance) return middle;
+      const int side = coverage > target_share_ ? 0 : 1;
       ends[side] = middle;
-      shares[side] = reached;
+      shares[side] = coverage;
     }
-    const int side = std::abs(shares[1] - wanted_) < std::abs(shares[0] - wanted_) ? 1 : 0;
-    for (const double room : kRooms) {
-      const double bend = std::clamp(ends[side] + (side == 0 ? -room : room), -1.0, 1.0);
-      if (std::abs(share_of(bend) - shares[side]) <= kTolerance) return bend;
+    const int side =
+        std::abs(shares[1] - target_share_) < std::abs(shares[0] - target_share_) ? 1 : 0;
+    for (const double margin : kJumpMargins) {
+      const double bend = std::clamp(ends[side] + (side == 0 ? -margin : margin), -1.0, 1.0);
+      if (std::abs(share_of(bend) - shares[side]) <= kCoverageTolerance) return bend;
     }
     return ends[side];
   }
 
-  // As coarse as the level allows.
+  // Uses the coarsest grid that still has enough lookups for the level.
   void make_areas_coarser(const ImageView& level) {
     const auto can_halve = [](int cells, int texels) {
-      return cells / 2 >= std::max(kSamples * texels, kCoarsestGrid);
+      return cells / 2 >= std::max(kMinLookupsPerTexel * texels, kCoarsestGrid);
     };
     while (can_halve(areas_.width, level.width)) halve_areas(2, 1);
     while (can_halve(areas_.height, level.height)) halve_areas(1, 2);
@@ -181,7 +186,7 @@ class CoverageKeeper {
   const std::vector<ImageView>& levels_;
   const CoverageOptions& options_;
   Image areas_;  // of the surface, in each cell of a grid over the texture
-  double wanted_ = 0.0;
+  double target_share_ = 0.0;
 };
 
 bool has_finite_alpha(const ImageView& level, int threads) {

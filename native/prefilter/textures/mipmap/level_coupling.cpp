@@ -11,23 +11,23 @@
 namespace prefilter {
 namespace {
 
-// The integral over a cell of f g x^d for the linear functions f and g of its own coordinate, as
-// the coefficients of the moments 1, x and x^2.
+// The product of two linear functions f and g of a cell's coordinate x, as coefficients of 1, x and
+// x^2.
 std::array<double, 3> product(const std::array<double, 2>& f, const std::array<double, 2>& g) {
   return {f[0] * g[0], f[0] * g[1] + f[1] * g[0], f[1] * g[1]};
 }
 
-// The tents of the texels on the low and the high side of a cell, as constant and slope.
+// The tents of the texels on the low and high side of a cell, as constant and slope.
 std::array<std::array<double, 2>, 2> tents(const Placement& place) {
   return {{{1.0 - place.offset, -place.scale}, {place.offset, place.scale}}};
 }
 
-constexpr int kRowsAtOnce = 32;
+constexpr int kCoupledRowsPerTask = 32;
 
 }  // namespace
 
 int LevelCoupling::Axis::first(int texel) const {
-  // The texel's tent begins at the center of the texel before.
+  // The texel's tent starts at the center of the preceding texel.
   const double begin = (texel - 0.5) * next_size / size - 0.5;
   return static_cast<int>(std::floor(begin + 1e-9));
 }
@@ -43,7 +43,7 @@ std::vector<LevelCoupling::Triple> LevelCoupling::Axis::next_texels() const {
   for (int texel = 0; texel < size; ++texel) {
     for (int k = 0; k < 3; ++k) {
       const int next = wrap_index(first(texel) + k, next_size, wrap);
-      // Past the end are the zeros of NinePointSystem.
+      // Index next_size has zero entries in NinePointSystem.
       triples[texel][k] = next >= 0 ? next : next_size;
     }
   }
@@ -91,7 +91,7 @@ void LevelCoupling::add(const MomentBlock<C>& block) {
       for (int k = 0; k < 4; ++k) {
         const int row = in_y.texels[k % 2];
         if (row < 0) continue;
-        // Rows of moments, summed over y for this pair of tents along y.
+        // Row of moments, summed over y with this pair of tents along y.
         const std::array<double, 3>& along_y = in_y.products[k];
         double line[3];
         for (int a = 0; a < 3; ++a) {
@@ -132,8 +132,8 @@ template <typename Texel>
 void LevelCoupling::add_fine_texels(const Texel& texel, const NinePointSystem<float>& coarse,
                                     const Progress& progress, int threads,
                                     std::vector<LaneValues>* sums) const {
-  // Each band of the next level's rows collects what comes to it, in the order of the finer rows.
-  parallel_ranges(y_.next_size, kRowsAtOnce, threads, progress, [&](int begin, int end) {
+  // Each band of the next level's rows gathers its contributions in the order of the finer rows.
+  parallel_ranges(y_.next_size, kCoupledRowsPerTask, threads, progress, [&](int begin, int end) {
     for (int y = 0; y < y_.size; ++y) {
       for (int slot = 0; slot < 3; ++slot) {
         const int row = rows_[y][slot];

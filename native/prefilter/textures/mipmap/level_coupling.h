@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// How the bilinear basis functions of one level overlap those of the next.
+// Overlaps of the bilinear basis functions of one level with those of the next.
 #pragma once
 
 #include <array>
@@ -14,19 +14,19 @@
 
 namespace prefilter {
 
-/// Integrals over the surface of b_j B_k, b_j a basis function of a level and B_k one of the next,
-/// coarser one. A texel of the level meets at most three texels of the next along each axis.
+/// Integrals over the surface of b_j B_k, with b_j a basis function of a level and B_k one of the
+/// next coarser level. A texel overlaps at most three texels of the next level along each axis.
 class LevelCoupling {
  public:
   LevelCoupling(int width, int height, int next_width, int next_height, WrapModes wrap);
 
-  /// Adds the cells of one block of the finer level. Blocks that share texels must not be added at
-  /// the same time.
+  /// Adds a block of cells of the finer level. Blocks that share texels must not be added
+  /// concurrently.
   template <int C>
   void add(const MomentBlock<C>& block);
 
-  /// sums_j -= scale * sum_k <b_j B_k> coarse_k, for every texel of the finer level; `sums` and the
-  /// systems' texels are in the order of NinePointSystem::at.
+  /// sums_j -= scale * sum_k <b_j B_k> coarse_k, for every texel of the finer level. `sums` and the
+  /// texels of the systems are ordered as in NinePointSystem::at.
   void subtract_coarse(const NinePointSystem<float>& fine, const NinePointSystem<float>& coarse,
                        float scale, int threads, std::vector<LaneValues>* sums) const;
   /// sums_k -= scale * sum_j <b_j B_k> fine_j.
@@ -39,27 +39,27 @@ class LevelCoupling {
  private:
   using Triple = std::array<int, 3>;
 
-  // Along one axis: the texels of the next level that a texel meets.
+  // Overlaps along one axis.
   struct Axis {
     int size;
     int next_size;
     Wrap wrap;
 
-    // The first of the three, which may lie beyond the edge.
+    // The first of the three overlapped texels; it may lie beyond the edge.
     int first(int texel) const;
-    // Which of the three `next` is, for a cell above texel `low` of the level: `high` 0 for that
-    // texel and 1 for the one after. The texel itself, after wrapping, goes to `texel`; -1 for the
+    // Index among these three of `next`, for a cell above texel `low` of the level. `texel` is set
+    // to that texel if `high` is 0, to the one after it if 1; after wrapping, and -1 for the
     // border.
     int slot(int low, int high, int next, int* texel) const;
-    // The three of every texel, after wrapping; `next_size` for the border.
+    // The three overlapped texels of every texel, after wrapping; `next_size` for the border.
     std::vector<Triple> next_texels() const;
   };
 
-  // Along one axis: the tents that a cell lies under.
+  // The tents over a cell, along one axis.
   struct Overlap {
     std::array<int, 2> texels{};  // of the level, after wrapping; -1 for the border
-    // Of tent i % 2 of the level and tent i / 2 of the next: Axis::slot, and their product, by its
-    // coefficients of 1, x and x^2 in the cell's own coordinate x.
+    // For tent i % 2 of the level and tent i / 2 of the next: Axis::slot, and the product of the
+    // tents as coefficients of 1, x and x^2 in the cell's own coordinate x.
     std::array<int, 4> slots{};
     std::array<std::array<double, 3>, 4> products{};
   };
@@ -75,7 +75,7 @@ class LevelCoupling {
   Axis y_;
   std::vector<Triple> columns_;
   std::vector<Triple> rows_;
-  std::vector<std::array<float, 9>> products_;  // row by row of the level, at [3 * y + x]
+  std::vector<std::array<float, 9>> products_;  // row-major over the level, at [3 * y + x]
 };
 
 }  // namespace prefilter

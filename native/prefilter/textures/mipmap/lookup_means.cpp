@@ -22,8 +22,8 @@ Values mixed(const Values& from, const Values& to, float share) {
   return result;
 }
 
-// From the center toward a neighbor, in texels: 1/4 -+ 1/4 / sqrt(3).
-constexpr std::array<float, 2> kGaussPoints = {0.10566243F, 0.39433757F};
+// Distances from the center toward a neighbor, in texels: 1/4 -+ 1/4 / sqrt(3).
+constexpr std::array<float, 2> kQuarterGaussPoints = {0.10566243F, 0.39433757F};
 
 void add(const Values& lookup, float least_length, std::array<double, 4>* sums) {
   const double x = lookup[0];
@@ -33,7 +33,7 @@ void add(const Values& lookup, float least_length, std::array<double, 4>* sums) 
   if (!(length < least_length)) {
     (*sums)[0] += x / length;
     (*sums)[1] += y / length;
-    // Without cancellation where the normal is close to (0, 0, 1), as most are.
+    // No cancellation near (0, 0, 1), where most normals are.
     (*sums)[2] += z > 0.0 ? -(x * x + y * y) / (length * (length + z)) : z / length - 1.0;
   }
   const double square = static_cast<double>(lookup[3]) * lookup[3];
@@ -75,11 +75,11 @@ Image lookup_means(const ImageView& normals, const ImageView& roughness, WrapMod
       }
       std::array<double, 4> sums{};
       for (const int up : {0, 2}) {
-        for (const float share_y : kGaussPoints) {
+        for (const float share_y : kQuarterGaussPoints) {
           std::array<Values, 3> line;
           for (int i = 0; i < 3; ++i) line[i] = mixed(around[1][i], around[up][i], share_y);
           for (const int right : {0, 2}) {
-            for (const float share_x : kGaussPoints) {
+            for (const float share_x : kQuarterGaussPoints) {
               add(mixed(line[1], line[right], share_x), least_length, &sums);
             }
           }

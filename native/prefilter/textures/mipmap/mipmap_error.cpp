@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // Figure 7.7. Between two levels the lookup is linear in the fraction f of the mip value, so the
-// squared error is a quadratic in f, and its three coefficients are quadratic forms in the texels
-// whose matrices are the moments.
+// squared error is quadratic in f. Its three coefficients are quadratic forms in the texels, with
+// the moments as matrices.
 #include "prefilter/textures/mipmap_error.h"
 
 #include <algorithm>
@@ -14,20 +14,20 @@
 #include "prefilter/base/filterable.h"
 #include "prefilter/base/text.h"
 #include "prefilter/geometry/moments/four_point_rule.h"
+#include "prefilter/geometry/texels/coverage.h"
 #include "prefilter/images/srgb_decoder.h"
 #include "prefilter/images/transfer.h"
 #include "prefilter/textures/mipmap/argument_checks.h"
-#include "prefilter/textures/texels/coverage.h"
 #include "prefilter/textures/texels/levels.h"
 #include "prefilter/textures/texels/moment_sweep.h"
 
 namespace prefilter {
 namespace {
 
-// A bilinear polynomial p00 + p10 x + p01 y + p11 x y at [2 * b + a].
+// The polynomial p00 + p10 x + p01 y + p11 x y, its coefficients at [2 * b + a].
 using Bilinear = std::array<double, 4>;
 
-// A level's bilinear interpolant on a cell.
+// The bilinear interpolant of a level on a cell.
 template <int C>
 std::array<Bilinear, C> interpolant(const ImageView& level, WrapModes wrap, const CellPlace& in_x,
                                     const CellPlace& in_y) {
@@ -66,7 +66,7 @@ double integral_with_image(const Bilinear& p, const ImageMoments& image) {
   return p[0] * image[0] + p[1] * image[1] + p[2] * image[2] + p[3] * image[3];
 }
 
-// Of levels l and l + 1 with interpolants L and M and the image I.
+// Integrals for levels l and l + 1, with interpolants L and M and the image I.
 struct Integrals {
   double level_level = 0.0;  // of L^2
   double level_image = 0.0;  // of L I
@@ -83,7 +83,7 @@ struct Integrals {
   }
 };
 
-// The integrals of the squared error h + 2 f c + f^2 s at the fraction f between two levels.
+// Coefficients of the squared error h + 2 f c + f^2 s at the fraction f between two levels.
 struct Squares {
   double here = 0.0;   // h, of (L - I)^2
   double cross = 0.0;  // c, of (L - I) (M - L)
@@ -96,7 +96,7 @@ struct Squares {
   }
 };
 
-// Of each level, the sum over the blocks; `parts` holds the levels of a block side by side.
+// Sums over the blocks for each level. `parts` holds all levels of a block consecutively.
 template <class Sums>
 std::vector<Sums> totals_of_levels(const std::vector<Sums>& parts, std::size_t level_count) {
   std::vector<Sums> totals(level_count);
@@ -104,7 +104,7 @@ std::vector<Sums> totals_of_levels(const std::vector<Sums>& parts, std::size_t l
   return totals;
 }
 
-// The root mean squares where the squares that were integrated weigh `mass` in all.
+// Root mean squares, given the total mass over which the squares were integrated.
 std::vector<double> errors_at(const std::vector<double>& mip_values,
                               const std::vector<Squares>& levels, double mass) {
   const auto last = static_cast<double>(levels.size() - 1);
@@ -176,7 +176,7 @@ std::vector<double> measure(const std::vector<ImageView>& levels, const ImageVie
   return errors_at(mip_values, squares, triangles.total_mass * C);
 }
 
-// The decoded lookup at a place of the image, in its texels, of a level whose colors are encoded.
+// The decoded lookup at a position, in texels of the image, in a level with encoded colors.
 template <int C>
 std::array<double, C> decoded_lookup(const ImageView& level, const ImageView& image, WrapModes wrap,
                                      double u, double v) {
@@ -194,7 +194,7 @@ std::array<double, C> decoded_lookup(const ImageView& level, const ImageView& im
   return value;
 }
 
-// Adds what a place of this weight has to each level's.
+// Adds the squared errors at a position with this weight to all levels.
 template <int C>
 void add_decoded(const std::vector<ImageView>& levels, const ImageView& image, WrapModes wrap,
                  double u, double v, double weight, Squares* squares) {
@@ -272,8 +272,8 @@ void check(const std::vector<ImageView>& levels, const ImageView& image,
   }
 }
 
-// The view; where a value is not finite, that of a copy in `owner` with the texels that no lookup
-// reads set to 0.
+// Returns the view itself if all values are finite; otherwise a view of a copy in `owner` with the
+// texels that no lookup reads set to 0.
 ImageView readable(const ImageView& view, const std::string& name,
                    const std::vector<const Surface*>& surfaces, WrapModes wrap,
                    const Progress& progress, int threads, Image* owner) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Chapter 7. SurfaceFilter::kBox is equation 7.1 with a box, where the texels of the image are
-// boxes too, so that an even parameterization gives the plain box filter.
+// Chapter 7. SurfaceFilter::kBox is equation 7.1 with a box. The texels of the image are boxes too,
+// so a uniform parameterization yields the plain box filter.
 #include "prefilter/textures/mipmaps.h"
 
 #include <algorithm>
@@ -12,6 +12,8 @@
 #include "prefilter/base/filterable.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/text.h"
+#include "prefilter/geometry/texels/coverage.h"
+#include "prefilter/geometry/texels/texel_triangles.h"
 #include "prefilter/images/filters/filtered_image.h"
 #include "prefilter/textures/mipmap/argument_checks.h"
 #include "prefilter/textures/mipmap/bilinear_system.h"
@@ -19,14 +21,12 @@
 #include "prefilter/textures/mipmap/pam_box.h"
 #include "prefilter/textures/mipmap/seam_links.h"
 #include "prefilter/textures/mipmap/texture_space.h"
-#include "prefilter/textures/texels/coverage.h"
 #include "prefilter/textures/texels/levels.h"
-#include "prefilter/textures/texels/texel_triangles.h"
 
 namespace prefilter {
 namespace {
 
-// Which texels of the image a filter reads.
+// The image texels that a filter reads.
 enum class Reads { kAll, kTouched, kWeighted, kLookedUp };
 
 Reads reads_of(const MipmapFilter& filter) {
@@ -40,7 +40,7 @@ std::optional<int> alpha_channel(int channels, bool premultiplied) {
   return channels == 4 && !premultiplied ? std::optional(3) : std::nullopt;
 }
 
-// Whether the filter does more than read the texels once, as they are.
+// Whether the filter needs more than one pass over the unmodified texels.
 bool needs_floats(const MipmapOptions& options) {
   switch (reads_of(options.filter)) {
     case Reads::kAll:
@@ -72,8 +72,8 @@ std::vector<unsigned char> covered_texels(const std::vector<const Surface*>& sur
   return covered;
 }
 
-// 1 for each texel that the filter reads; `covered` are those that are touched, where it reads
-// these.
+// 1 for each texel that the filter reads. `covered` are the touched texels, for filters that read
+// those.
 std::vector<unsigned char> read_texels(const std::vector<const Surface*>& surfaces,
                                        const TexelSource& image,
                                        const std::vector<unsigned char>& covered,
@@ -98,7 +98,7 @@ std::vector<unsigned char> read_texels(const std::vector<const Surface*>& surfac
   return std::vector<unsigned char>(static_cast<std::size_t>(image.width) * image.height, 1);
 }
 
-// `covered` are the texels that count; all where there are none.
+// `covered` are the texels to filter; empty for all.
 std::vector<Image> texture_space_levels(const ImageView& image,
                                         const std::vector<unsigned char>& covered,
                                         const MipmapOptions& options, int level_count,
@@ -135,7 +135,7 @@ void clip(const ValueRange& range, const Progress& progress, int threads, Image*
   });
 }
 
-// The levels of checked arguments.
+// Computes the levels; the arguments have been checked.
 std::vector<Image> make_levels(const TexelSource& source,
                                const std::vector<const Surface*>& surfaces,
                                const MipmapOptions& options) {
@@ -143,7 +143,7 @@ std::vector<Image> make_levels(const TexelSource& source,
   const Reads reads = reads_of(options.filter);
   const int level_count =
       options.levels > 0 ? options.levels : full_level_count(source.width, source.height);
-  std::vector<SeamEdge> seams;  // that count in the fits
+  std::vector<SeamEdge> seams;  // to be hidden by the fits
   if (options.seam_budget != 0.0 && is_fit(options.filter)) {
     seams = find_seams(surfaces, progress.part(0.0, 0.0));
   }
@@ -214,8 +214,8 @@ void check_options(const TexelSource& image, const std::vector<const Surface*>& 
     throw_invalid("seam_budget: " + to_text(options.seam_budget) +
                   "; a finite number of at least 0 is needed");
   }
-  if (!(options.footprint >= 0.0 && options.footprint <= kMostFootprint)) {
-    throw_invalid("footprint: " + to_text(options.footprint) + "; 0 to " + to_text(kMostFootprint) +
+  if (!(options.footprint >= 0.0 && options.footprint <= kMaxFootprint)) {
+    throw_invalid("footprint: " + to_text(options.footprint) + "; 0 to " + to_text(kMaxFootprint) +
                   " texels of a level are allowed");
   }
   if (options.footprint != 0.0 && (!is_fit(options.filter) || options.reader != Reader::kLinear)) {

@@ -13,18 +13,18 @@
 #include "prefilter/base/error.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/text.h"
+#include "prefilter/geometry/texels/coverage.h"
 #include "prefilter/images/filters/push_pull.h"
 #include "prefilter/textures/mipmap/argument_checks.h"
 #include "prefilter/textures/mipmap/lookup_means.h"
 #include "prefilter/textures/mipmaps.h"
-#include "prefilter/textures/texels/coverage.h"
 #include "prefilter/textures/texture_use.h"
 
 namespace prefilter {
 namespace {
 
-// A texel of neutral gray decodes to a vector of this length at most, for 8 bits a channel.
-constexpr double kNoDirection = 0.02;
+// Maximum length of a vector without a direction: neutral gray in 8 bits decodes to less.
+constexpr double kMinNormalLength = 0.02;
 
 // Calls change(texel) for each texel.
 template <typename Change>
@@ -35,13 +35,13 @@ void for_each_texel(Image* image, const Progress& progress, int threads, const C
   });
 }
 
-// What is not finite becomes NaN in part.
+// Vectors that are not finite get NaN components.
 void make_unit(float* vector) {
   const double x = vector[0];
   const double y = vector[1];
   const double z = vector[2];
   const double length = std::sqrt(x * x + y * y + z * z);
-  if (length < kNoDirection) {
+  if (length < kMinNormalLength) {
     vector[0] = 0.0F;
     vector[1] = 0.0F;
     vector[2] = 1.0F;
@@ -52,9 +52,9 @@ void make_unit(float* vector) {
   vector[2] = static_cast<float>(z / length);
 }
 
-// Roughness from the mean difference of unit normals to (0, 0, 1), and the mean alpha^2. A unit
-// vector n differs from (0, 0, 1) by d with |d|^2 = -2 d_z; so the variance of the normals, 1 -
-// L^2, is -2 E[d_z] - |E[d]|^2.
+// Roughness from the mean difference of the unit normals from (0, 0, 1) and the mean alpha^2. A
+// unit vector n = (0, 0, 1) + d has |d|^2 = -2 d_z, so the variance of the normals, 1 - L^2, is -2
+// E[d_z] - |E[d]|^2.
 float roughness_of(const float* means) {
   const double x = means[0];
   const double y = means[1];
@@ -106,7 +106,7 @@ class NormalFilter {
     });
   }
 
-  // Takes from a level what least squares overshoot, and makes normals of it.
+  // Removes what least squares overshoots below the surface, and renormalizes.
   void finish(const Progress& progress, Image* level) {
     const bool lift = points_below(*level, nullptr, progress) && !map_points_below(progress);
     const bool encoded = options_.encoded;
@@ -117,7 +117,7 @@ class NormalFilter {
     });
   }
 
-  // Whether a vector does; where there are weights, one that has some.
+  // Whether any vector points below the surface; with weights, any with a weight above 0.
   bool points_below(const Image& vectors, const Image* weights, const Progress& progress) const {
     std::atomic<bool> found{false};
     parallel_for(vectors.height, options_.threads, progress, [&](std::int64_t row) {
@@ -130,7 +130,7 @@ class NormalFilter {
     return found.load();
   }
 
-  // Whether a texel of the map that counts does.
+  // Whether a texel of the map that counts points below the surface.
   bool map_points_below(const Progress& progress) {
     if (!map_points_below_) {
       map_points_below_ = points_below(vectors_, nullptr, progress);
@@ -155,9 +155,9 @@ class NormalFilter {
     check_roughness(rough);
     for_each_texel(&rough, Progress(), options_.threads,
                    [](float* value) { *value = std::clamp(*value, 0.0F, 1.0F); });
-    const Image shown =
-        lookup_means(vectors_.view(), rough.view(), options_.wrap, static_cast<float>(kNoDirection),
-                     options_.progress.part(0.65, 0.8), options_.threads);
+    const Image shown = lookup_means(vectors_.view(), rough.view(), options_.wrap,
+                                     static_cast<float>(kMinNormalLength),
+                                     options_.progress.part(0.65, 0.8), options_.threads);
     vectors_ = Image();
     rough = Image();
     std::vector<Image> levels;
@@ -190,7 +190,8 @@ class NormalFilter {
   }
 
   void check_roughness(const Image& rough) const {
-    std::vector<int> finite(static_cast<std::size_t>(rough.height));  // values from the row's left
+    std::vector<int> finite(
+        static_cast<std::size_t>(rough.height));  // leading finite values per row
     parallel_for(rough.height, options_.threads, Progress(), [&](std::int64_t row) {
       const float* values = rough.texel(0, static_cast<int>(row));
       while (finite[row] < rough.width && std::isfinite(values[finite[row]])) ++finite[row];
@@ -207,7 +208,7 @@ class NormalFilter {
   const ImageView* roughness_;
   const std::vector<const Surface*>& surfaces_;
   const NormalMipmapOptions& options_;
-  Image vectors_;  // the map, decoded, of length 1
+  Image vectors_;  // the map, decoded and normalized
   std::optional<bool> map_points_below_;
 };
 

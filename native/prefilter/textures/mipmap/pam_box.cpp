@@ -7,21 +7,21 @@
 
 #include "prefilter/base/lanes.h"
 #include "prefilter/base/parallel.h"
+#include "prefilter/geometry/texels/coverage.h"
 #include "prefilter/images/filters/push_pull.h"
-#include "prefilter/textures/texels/coverage.h"
 #include "prefilter/textures/texels/level_grid.h"
 #include "prefilter/textures/texels/levels.h"
 
 namespace prefilter {
 namespace {
 
-// Of cells or texels, the surface's mass, and mass times color.
+// The surface's mass in cells or texels, and mass times color.
 struct MassSums {
   Image image;
   std::vector<float> masses;
 };
 
-// Which row and column of the sums each cell belongs to. Both rise.
+// The column and row of sums that each cell belongs to. Both are nondecreasing.
 struct Blocks {
   const std::vector<int>& columns;
   int width;
@@ -31,7 +31,7 @@ struct Blocks {
 
 // Sums over blocks of cells. add(x, y, sums, mass) adds cell (x, y).
 template <int C, typename Add>
-MassSums gathered(const Blocks& to, int threads, const Progress& progress, const Add& add) {
+MassSums sum_cells(const Blocks& to, int threads, const Progress& progress, const Add& add) {
   MassSums sums{Image(to.width, to.height, C),
                 std::vector<float>(static_cast<std::size_t>(to.width) * to.height)};
   parallel_for(to.height, threads, progress, [&](std::int64_t row) {
@@ -49,9 +49,9 @@ MassSums gathered(const Blocks& to, int threads, const Progress& progress, const
 }
 
 template <int C>
-MassSums gathered(const MassSums& from, const Blocks& to, int threads, const Progress& progress) {
+MassSums sum_cells(const MassSums& from, const Blocks& to, int threads, const Progress& progress) {
   const int width = from.image.width;
-  return gathered<C>(to, threads, progress, [&](int x, int y, float* sum, float* mass) {
+  return sum_cells<C>(to, threads, progress, [&](int x, int y, float* sum, float* mass) {
     const float* own = from.image.texel(x, y);
     for (int c = 0; c < C; ++c) sum[c] += own[c];
     *mass += from.masses[static_cast<std::size_t>(y) * width + x];
@@ -98,25 +98,25 @@ std::vector<Image> levels_of(const TexelSource& image, const TexelTriangles& tri
   const Progress gathering = progress.part(0.5, 0.65);
   MassSums sums =
       image.has_bytes()
-          ? gathered<C>(cells_of(1), threads, gathering, add_cell([&](int x, int y, int c) {
-                          return image.value(image.byte_texel(x, y)[c], c);
-                        }))
-          : gathered<C>(cells_of(1), threads, gathering, add_cell([&](int x, int y, int c) {
-                          return image.floats().texel(x, y)[c];
-                        }));
+          ? sum_cells<C>(cells_of(1), threads, gathering, add_cell([&](int x, int y, int c) {
+                           return image.value(image.byte_texel(x, y)[c], c);
+                         }))
+          : sum_cells<C>(cells_of(1), threads, gathering, add_cell([&](int x, int y, int c) {
+                           return image.floats().texel(x, y)[c];
+                         }));
   std::vector<float>().swap(masses);
 
   double from = 0.65;
   for (int level = 1; level < level_count; ++level) {
-    // A level has a quarter of the texels of the one before.
+    // Each level has a quarter of the texels of the one before.
     const double to = from + 0.75 * (1.0 - from);
     const Progress part = progress.part(from, to);
     from = to;
-    if (level > 1) sums = gathered<C>(sums, cells_of(level), threads, part.part(0.0, 0.3));
+    if (level > 1) sums = sum_cells<C>(sums, cells_of(level), threads, part.part(0.0, 0.3));
     const Blocks texels = {columns.texels(level), level_size(image.width, level),
                            rows.texels(level), level_size(image.height, level)};
     const bool nested = sums.image.width == texels.width && sums.image.height == texels.height;
-    MassSums means = nested ? sums : gathered<C>(sums, texels, threads, part.part(0.3, 0.5));
+    MassSums means = nested ? sums : sum_cells<C>(sums, texels, threads, part.part(0.3, 0.5));
     divide<C>(threads, part.part(0.5, 0.6), &means);
     fill_holes(means.masses, wrap, C, part.part(0.6, 1.0), threads, &means.image);
     levels.push_back(std::move(means.image));

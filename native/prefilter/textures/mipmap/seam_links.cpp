@@ -14,12 +14,12 @@
 namespace prefilter {
 namespace {
 
-// Coordinates of two corners that are closer than this are the same: far less than a texel, and
-// more than floats make of them where a mesh is subdivided.
-constexpr double kSameUv = 1e-6;
+// UV coordinates closer than this are equal. The tolerance is far below a texel, and above the
+// rounding errors of floats in subdivided meshes.
+constexpr double kSameUvTolerance = 1e-6;
 
-// In texels. A longer one is left out: it runs over a texture that is repeated very often.
-constexpr double kLongestSeam = 1 << 16;
+// Texels. Longer seams are skipped; they cross a texture that repeats extremely often.
+constexpr double kMaxSeamTexels = 1 << 16;
 
 struct PositionHash {
   std::size_t operator()(const Vector3& position) const {
@@ -33,7 +33,7 @@ struct PositionHash {
   }
 };
 
-// The first vertex at each vertex's position.
+// For each vertex the first vertex at its position.
 std::vector<std::int32_t> weld(const std::vector<Vector3>& positions, Pulse* pulse) {
   std::unordered_map<Vector3, std::int32_t, PositionHash> first;
   first.reserve(positions.size());
@@ -63,13 +63,13 @@ double area_of_mesh(const Surface& surface) {
 }
 
 bool same(const TextureCoordinate& a, const TextureCoordinate& b) {
-  return std::abs(a.u - b.u) < kSameUv && std::abs(a.v - b.v) < kSameUv;
+  return std::abs(a.u - b.u) < kSameUvTolerance && std::abs(a.v - b.v) < kSameUvTolerance;
 }
 
-// Taps of a bilinear lookup, those of one texel added up.
+// Adds the taps of a bilinear lookup to a link, merging those of the same texel.
 void add_lookup(const TextureCoordinate& at, int width, int height, WrapModes wrap, float sign,
                 SeamLink* link) {
-  // A lookup outside of a clamped image is one at its edge.
+  // Lookups outside a clamped image read its edge.
   const auto place = [](double coordinate, int size, Wrap mode, int* texel) {
     const double clamped = mode == Wrap::kClamp ? std::clamp(coordinate, 0.0, 1.0) : coordinate;
     const double from_center = clamped * size - 0.5;
@@ -101,7 +101,7 @@ double texel_length(const std::array<TextureCoordinate, 2>& ends, int width, int
   return elementary::hypot((ends[1].u - ends[0].u) * width, (ends[1].v - ends[0].v) * height);
 }
 
-// Where a line from one coordinate, in texels, to another crosses the centers of texels, as
+// Adds the points where the line between two coordinates, in texels, crosses texel centers, as
 // fractions of its length.
 void add_stops(double from, double to, std::vector<double>* stops) {
   const double low = std::min(from, to);
@@ -132,7 +132,7 @@ double sum_of_squares(Lanes value) {
   return sum;
 }
 
-// Calls use(point) for the centers of n * n equal triangles that a triangle is cut into.
+// Calls use(center) for the n * n congruent triangles that subdivide a triangle.
 template <typename Use>
 void for_each_part(const std::array<TextureCoordinate, 3>& triangle, int n, const Use& use) {
   const auto at = [&](double b1, double b2) {
@@ -149,8 +149,8 @@ void for_each_part(const std::array<TextureCoordinate, 3>& triangle, int n, cons
   }
 }
 
-// The variance of the image over the surfaces, by points that stand for about the same area each,
-// at least one a triangle.
+// Variance of the image over the surfaces, from sample points of about equal area, at least one per
+// triangle.
 double variance_on(const std::vector<const Surface*>& surfaces, const ImageView& image,
                    WrapModes wrap, Pulse* pulse) {
   constexpr double kPoints = 1 << 14;
@@ -178,8 +178,8 @@ double variance_on(const std::vector<const Surface*>& surfaces, const ImageView&
   return variance;
 }
 
-// Where either side of a seam passes the center of a texel along an axis, from 0 to 1: between
-// these the difference of the lookups is quadratic.
+// Fractions from 0 to 1 where either side of a seam crosses a texel center along an axis. Between
+// them the difference of the lookups is quadratic.
 std::vector<double> stops_of(const SeamEdge& seam, int width, int height) {
   std::vector<double> stops = {0.0, 1.0};
   for (const std::array<TextureCoordinate, 2>& side : {seam.left, seam.right}) {
@@ -190,14 +190,14 @@ std::vector<double> stops_of(const SeamEdge& seam, int width, int height) {
   return stops;
 }
 
-// The root mean square of the difference between the sides of a seam, in standard deviations of the
-// image: up to the one it is hidden, from the other on it is what the image is meant to show.
+// Root mean square difference across a seam, in standard deviations of the image: seams up to the
+// first value are hidden, those above the second are features of the image.
 constexpr double kHiddenStep = 0.1;
 constexpr double kShownStep = 0.12;
 
-constexpr double kLeastPart = 1e-9;
+constexpr double kMinSeamPart = 1e-9;
 
-// Gauss's rule of three points, exact for degree 5.
+// Three-point Gauss rule, exact up to degree 5.
 constexpr double kGaussWeights[3] = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
 const double kGaussOffset = std::sqrt(0.6);
 
@@ -300,13 +300,13 @@ std::vector<SeamLink> link_seams(const std::vector<SeamEdge>& seams, int width, 
     pulse.step();
     const double left = texel_length(seam.left, width, height);
     const double right = texel_length(seam.right, width, height);
-    if (!(left + right > 0.0) || left + right > kLongestSeam) continue;
+    if (!(left + right > 0.0) || left + right > kMaxSeamTexels) continue;
     length += seam.length;
     texels += 0.5 * (left + right);
     if (!(seam.area_scale > 0.0)) continue;
     const std::vector<double> stops = stops_of(seam, width, height);
     for (std::size_t i = 1; i < stops.size(); ++i) {
-      if (stops[i] - stops[i - 1] < kLeastPart) continue;
+      if (stops[i] - stops[i - 1] < kMinSeamPart) continue;
       for (int k = 0; k < 3; ++k) {
         SeamLink link;
         const double f = gauss_point(stops[i - 1], stops[i], k);
@@ -318,8 +318,9 @@ std::vector<SeamLink> link_seams(const std::vector<SeamEdge>& seams, int width, 
       }
     }
   }
-  // All of the seams count by their length, as in their contrast, and with one width of a texel:
-  // edges that are next to nothing in the texture would make their own width anything.
+  // Normalized to strips one texel wide on average over all seams: each seam counts by its length,
+  // as in the seam contrast. Individual widths would be arbitrary for edges that are tiny in the
+  // texture.
   for (SeamLink& link : links) link.strip_area *= length / texels;
   return links;
 }

@@ -10,7 +10,7 @@
 namespace prefilter {
 namespace {
 
-constexpr float kLeastWeight = 0.1F;
+constexpr float kMinKernelWeight = 0.1F;
 
 }  // namespace
 
@@ -47,7 +47,7 @@ Image filter_covered_level(const ImageView& image, const std::vector<unsigned ch
   const Image box_sums = reduce(masked, box_kernel(), 0.5, 0.8);
   const Image box_weights = reduce(mask, box_kernel(), 0.8, 0.9);
   for (std::size_t i = 0; i < weights.data.size(); ++i) {
-    const bool box = weights.data[i] < kLeastWeight;
+    const bool box = weights.data[i] < kMinKernelWeight;
     const float weight = box ? box_weights.data[i] : weights.data[i];
     for (int c = 0; c < image.channels && box_weights.data[i] > 0.0F; ++c) {
       const std::size_t at = i * static_cast<std::size_t>(image.channels) + c;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Levels by filters in texture space, which know nothing of the surface but, at most, which texels
-// it touches. They are what parameterization-aware levels are compared with.
+// Filters in texture space. They ignore the surface, except possibly to skip texels it does not
+// touch; the parameterization-aware levels are compared with them.
 #pragma once
 
 #include <vector>
@@ -13,14 +13,14 @@
 
 namespace prefilter {
 
-/// One level, filtered from the full-size image with the kernel scaled to the level's texels.
+/// Filters one level from the full-size image, with the kernel scaled to the level's texels.
 Image filter_level(const ImageView& image, int level, const Kernel& kernel, WrapModes wrap,
                    const Progress& progress, int threads);
 
-/// The same over covered texels alone, renormalized: filter(image * covered) / filter(covered). A
-/// texel with no covered texel in its square is filled by push-pull. Where a kernel with negative
-/// lobes leaves less than a tenth of the weight, the box over the texel's square takes its place.
-/// Uncovered texels are not read, and may be anything. `covered` has 0 or 1 a texel.
+/// The same over covered texels only, renormalized: filter(image * covered) / filter(covered).
+/// Texels without a covered texel in their square are filled by push-pull. If a kernel with
+/// negative lobes leaves less than a tenth of the weight, the box over the texel's square is used
+/// instead. Uncovered texels are not read. `covered` is 0 or 1 per texel.
 Image filter_covered_level(const ImageView& image, const std::vector<unsigned char>& covered,
                            int level, const Kernel& kernel, WrapModes wrap,
                            const Progress& progress, int threads);

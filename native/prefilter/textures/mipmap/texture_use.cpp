@@ -7,10 +7,10 @@
 
 #include "prefilter/base/error.h"
 #include "prefilter/base/filterable.h"
+#include "prefilter/geometry/texels/coverage.h"
+#include "prefilter/geometry/texels/texel_triangles.h"
 #include "prefilter/images/filters/push_pull.h"
 #include "prefilter/textures/mipmap/argument_checks.h"
-#include "prefilter/textures/texels/coverage.h"
-#include "prefilter/textures/texels/texel_triangles.h"
 
 namespace prefilter {
 namespace {
@@ -61,7 +61,7 @@ Image fill_transparent(const ImageView& image, WrapModes wrap, const Progress& p
   std::vector<float> weights(image.texel_count());
   for (std::size_t i = 0; i < weights.size(); ++i) {
     const float alpha = filled.data[i * image.channels + colors];
-    // A NaN is no weight.
+    // NaN counts as a weight of 0.
     weights[i] = alpha > 0.0F ? std::min(alpha, 1.0F) : 0.0F;
   }
   fill_holes(weights, wrap, colors, progress, threads, &filled);

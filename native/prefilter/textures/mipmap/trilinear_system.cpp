@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Block Gauss-Seidel over the levels: the blocks beside the diagonal are at most half of it, so a
-// round takes the error down about fourfold, and each block is solved by a few sweeps from where it
-// is.
+// Block Gauss-Seidel iteration over the levels. The off-diagonal blocks are at most half the
+// diagonal, so a round reduces the error about fourfold; each block is solved by a few sweeps from
+// its current texels.
 #include "prefilter/textures/mipmap/trilinear_system.h"
 
 #include <algorithm>
@@ -13,15 +13,15 @@
 namespace prefilter {
 namespace {
 
-// The error is then 1e-9 of the first: below rounding.
-constexpr int kMostRounds = 16;
-constexpr int kSweepsPerRound = 4;
-// A level is read at the mip values from the level before it to the one after it. The root of the
-// mean square of a pixel's footprint there, weighted as the level is, against that at its own mip
-// value: the integrals over s from 0 to 1 of s 4^(s - 1) and (1 - s) 4^s add up to the square.
+// 4^-16 is about 1e-9, below rounding.
+constexpr int kMaxLevelRounds = 16;
+constexpr int kSweepsPerLevelRound = 4;
+// Root mean square footprint of the pixels that read a level, relative to pixels at the level's own
+// mip value. A level is read between the mip values of its neighbors, with tent weights: the
+// integrals over s from 0 to 1 of s 4^(s - 1) and (1 - s) 4^s add up to the square.
 constexpr double kMeanFootprint = 1.0820;
-// 1/6, as the equations are divided by 2/3.
-constexpr float kBeside = 0.25F;
+// 1/6 divided by 2/3, the scale of the equations.
+constexpr float kOffDiagonal = 0.25F;
 
 }  // namespace
 
@@ -45,7 +45,7 @@ void TrilinearSystem<C>::add(const MomentBlock<C>& block) {
     couplings_[block.level - 1].add(block);
     return;
   }
-  // The last level is one block: an image of more than one tile has levels that tiles do not visit.
+  // The last level is a single block, as levels that tiles do not visit are.
   double mass = 0.0;
   for (int y = 0; y < block.height; ++y) {
     for (int x = 0; x < block.width; ++x) {
@@ -69,9 +69,9 @@ void TrilinearSystem<C>::prepare(double footprint, const SolveOptions& options,
   for (int level = 1; level <= last_level_; ++level) {
     BilinearSystem<C>& system = *systems_[level - 1];
     system.set_squares(squares);
-    // The equations of a level are divided by 2/3. Of level 1, 1/6 A_1,0 times the image is known:
-    // it is 1/6 of what the image puts on its right side.
-    system.prepare(target_shares(std::min(kMeanFootprint * footprint, kMostFootprint)),
+    // The equations of a level are divided by 2/3. For level 1 the term 1/6 A_1,0 times the image
+    // is known: it is 1/6 of the image's right side.
+    system.prepare(target_shares(std::min(kMeanFootprint * footprint, kMaxFootprint)),
                    {.times = 1.5, .known = level == 1 ? 1.0 / 6.0 : 0.0}, progress);
     system.system().swap_right_side(&fixed_.emplace_back());
     squares = system.own_squares();
@@ -88,10 +88,10 @@ int TrilinearSystem<C>::solve_level(int level, const SolveOptions& options,
                                     const Progress& progress) {
   NinePointSystem<float>& system = systems_[level - 1]->system();
   right_ = fixed_[level - 1];
-  couplings_[level - 1].subtract_coarse(system, systems_[level]->system(), kBeside, options.threads,
-                                        &right_);
+  couplings_[level - 1].subtract_coarse(system, systems_[level]->system(), kOffDiagonal,
+                                        options.threads, &right_);
   if (level > 1) {
-    couplings_[level - 2].subtract_fine(systems_[level - 2]->system(), system, kBeside,
+    couplings_[level - 2].subtract_fine(systems_[level - 2]->system(), system, kOffDiagonal,
                                         options.threads, &right_);
   }
   system.swap_right_side(&right_);
@@ -101,20 +101,21 @@ int TrilinearSystem<C>::solve_level(int level, const SolveOptions& options,
 }
 
 template <int C>
-void TrilinearSystem<C>::settle(const SolveOptions& options, const Progress& progress) {
+void TrilinearSystem<C>::iterate_levels(const SolveOptions& options, const Progress& progress) {
   SolveOptions few = options;
-  few.max_sweeps = kSweepsPerRound;
-  // Whether a level moved when it was last solved for; it need not be again before one beside it
-  // does. The last level stays as it is.
+  few.max_sweeps = kSweepsPerLevelRound;
+  // Whether a level moved when it was last solved. A level is solved again only after a neighbor
+  // moved. The last level is fixed.
   std::vector<bool> moves(last_level_ + 1, true);
   moves[0] = moves[last_level_] = false;
   const auto settled = [&moves] {
     return std::find(moves.begin(), moves.end(), true) == moves.end();
   };
-  for (int round = 0; round < kMostRounds && !settled(); ++round) {
+  for (int round = 0; round < kMaxLevelRounds && !settled(); ++round) {
     for (int level = 1; level < last_level_; ++level) {
-      const Progress part = progress.part((round + 1.0 - std::ldexp(1.0, 1 - level)) / kMostRounds,
-                                          (round + 1.0 - std::ldexp(1.0, -level)) / kMostRounds);
+      const Progress part =
+          progress.part((round + 1.0 - std::ldexp(1.0, 1 - level)) / kMaxLevelRounds,
+                        (round + 1.0 - std::ldexp(1.0, -level)) / kMaxLevelRounds);
       part.report(0.0);
       if (!moves[level - 1] && !moves[level] && !moves[level + 1]) continue;
       moves[level] = solve_level(level, few, part) > 1;
@@ -123,14 +124,14 @@ void TrilinearSystem<C>::settle(const SolveOptions& options, const Progress& pro
 }
 
 template <int C>
-void TrilinearSystem<C>::heed_links(const SolveOptions& options, const SeamBudget& budget,
-                                    const Progress& progress) {
+void TrilinearSystem<C>::fit_links(const SolveOptions& options, const SeamBudget& budget,
+                                   const Progress& progress) {
   const auto error = [&](int level) {
     return systems_[level - 1]->squared_error(budget.first_channel, options.threads);
   };
   std::vector<std::vector<LaneValues>> alone(last_level_);
   std::vector<double> least(last_level_);
-  SeamBudget found = budget;
+  SeamBudget level_budget = budget;
   for (int level = 1; level < last_level_; ++level) {
     NinePointSystem<float>& system = systems_[level - 1]->system();
     for (std::size_t i = 0; i < system.size(); ++i) {
@@ -148,11 +149,11 @@ void TrilinearSystem<C>::heed_links(const SolveOptions& options, const SeamBudge
                         },
                         [&] { return error(level); }};
     fit_within(systems_[level - 1]->target_square(budget.first_channel), fit, part, &system,
-               &found);
-    systems_[level - 1]->weigh_links(found.weight);
+               &level_budget);
+    systems_[level - 1]->weigh_links(level_budget.weight);
   }
-  // Levels that moved pull those beside them.
-  settle(options, progress.part(0.7, 1.0));
+  // Levels that moved affect their neighbors.
+  iterate_levels(options, progress.part(0.7, 1.0));
   for (int level = 1; level < last_level_; ++level) {
     const double square = systems_[level - 1]->target_square(budget.first_channel);
     const double rise = allowed_rise(budget, least[level - 1], square);
@@ -160,7 +161,7 @@ void TrilinearSystem<C>::heed_links(const SolveOptions& options, const SeamBudge
       const double more = error(level) - least[level - 1];
       return rise > 0.0 ? more / rise : (more > 0.0 ? HUGE_VAL : 0.0);
     };
-    if (spent() > 1.0) draw_back(alone[level - 1], spent, &systems_[level - 1]->system());
+    if (spent() > 1.0) step_back_within(alone[level - 1], spent, &systems_[level - 1]->system());
   }
 }
 
@@ -171,8 +172,8 @@ auto TrilinearSystem<C>::solve(double footprint, const SolveOptions& options, Se
   prepare(footprint, options, progress);
   const bool has_links = std::any_of(systems_.begin(), systems_.end(),
                                      [](const auto& system) { return system->has_links(); });
-  settle(options, has_links ? progress.part(0.0, 0.3) : progress);
-  if (has_links) heed_links(options, budget, progress.part(0.3, 1.0));
+  iterate_levels(options, has_links ? progress.part(0.0, 0.3) : progress);
+  if (has_links) fit_links(options, budget, progress.part(0.3, 1.0));
   std::vector<typename BilinearSystem<C>::Solution> levels;
   for (const std::unique_ptr<BilinearSystem<C>>& system : systems_) {
     levels.push_back(system->take_solution());

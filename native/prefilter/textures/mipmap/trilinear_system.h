@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The least-squares problem of all levels together, for trilinear lookups (section 7.3).
+// Least-squares system of all levels together, for trilinear lookups (section 7.3).
 #pragma once
 
 #include <memory>
@@ -15,40 +15,40 @@
 
 namespace prefilter {
 
-/// Minimizes the integral over the mip values from 0 to the last level, and over the surface, of
-/// the squared difference between the trilinear lookup and the image. Level 0 is the image, the
-/// last one, of 1 x 1 texel, its mean over the surface; those between are solved for, with the pull
-/// of BilinearSystem. Over one interval the products of the two levels' weights integrate to 1/3,
-/// 1/6 and 1/3, so the normal matrix is block tridiagonal: 2/3 A_l,l on its diagonal and 1/6
-/// A_l,l+1 beside it.
+/// Minimizes the integral, over mip values from 0 to the last level and over the surface, of the
+/// squared difference between the trilinear lookup and the image. Level 0 is the image, and the
+/// last level, of 1 x 1 texel, its mean over the surface. The levels in between are unknown,
+/// regularized as in BilinearSystem. Over the interval between two levels the products of their
+/// weights integrate to 1/3, 1/6 and 1/3, so the normal matrix is block tridiagonal: 2/3 A_l,l on
+/// the diagonal and 1/6 A_l,l+1 beside it.
 template <int C>
 class TrilinearSystem {
  public:
   TrilinearSystem(int width, int height, WrapModes wrap);
 
-  /// Adds the cells of one block of any level from 1 on. Blocks that share texels must not be added
-  /// at the same time.
+  /// Adds a block of cells of any level from 1 on. Blocks that share texels must not be added
+  /// concurrently.
   void add(const MomentBlock<C>& block);
 
-  /// As for BilinearSystem, for all levels; the blocks are those of level 1.
+  /// Like BilinearSystem::expect_finer_means, for all levels; takes blocks of level 1.
   void expect_finer_means();
   void add_finer_means(const MomentBlock<C>& block) { systems_.front()->add_finer_means(block); }
-  /// To be called once all blocks are there.
+  /// Requires all blocks.
   void add_coupled_means(const Progress& progress, int threads) {
     prefilter::add_coupled_means(couplings_, systems_, progress, threads);
   }
 
-  /// As BilinearSystem::add_links, for a level.
+  /// BilinearSystem::add_links for a level.
   void add_links(int level, const std::vector<SeamLink>& links, double texels_by_area,
                  const Progress& progress) {
     systems_[level - 1]->add_links(links, texels_by_area, progress);
   }
-  /// As BilinearSystem::set_squares, for level 1.
+  /// BilinearSystem::set_squares for level 1.
   void set_squares(const TargetSquares& squares) { squares_ = squares; }
 
-  /// Levels 1 to the last, within the ranges. At the mip value m a pixel covers `footprint` times
-  /// 2^m texels of the image. With links the squared error of bilinear lookups of each level, at
-  /// its own mip value, rises by no more than the budget allows. Can be called once.
+  /// Solves for levels 1 to the last, within the ranges. At mip value m a pixel covers `footprint`
+  /// times 2^m texels of the image. If there are links, the squared error of bilinear lookups of
+  /// each level, at its own mip value, rises by at most the budget. Can be called only once.
   std::vector<typename BilinearSystem<C>::Solution> solve(double footprint,
                                                           const SolveOptions& options,
                                                           SeamBudget budget,
@@ -58,18 +58,18 @@ class TrilinearSystem {
   using RightSide = std::vector<LaneValues>;
 
   void prepare(double footprint, const SolveOptions& options, const Progress& progress);
-  // Solves for one level, the others as they are; returns the number of sweeps.
+  // Solves for one level with the others fixed. Returns the number of sweeps.
   int solve_level(int level, const SolveOptions& options, const Progress& progress);
-  // Rounds over the levels until none moves.
-  void settle(const SolveOptions& options, const Progress& progress);
-  // Finds the weights of the links of all levels, and goes there.
-  void heed_links(const SolveOptions& options, const SeamBudget& budget, const Progress& progress);
+  // Iterates over the levels until none moves.
+  void iterate_levels(const SolveOptions& options, const Progress& progress);
+  // Determines the weights of the links of all levels, and solves with them.
+  void fit_links(const SolveOptions& options, const SeamBudget& budget, const Progress& progress);
 
   int last_level_;
   std::vector<std::unique_ptr<BilinearSystem<C>>> systems_;  // of level l at [l - 1]
   std::vector<LevelCoupling> couplings_;                     // of levels l and l + 1 at [l - 1]
   std::array<double, C> mean_{};
-  std::vector<RightSide> fixed_;  // what the target puts on the right of each level
+  std::vector<RightSide> fixed_;  // the target's right side for each level
   RightSide right_;
   TargetSquares squares_;
 };

@@ -11,8 +11,9 @@
 namespace prefilter {
 namespace {
 
-// Centers of texels of two levels are at fractions with denominators of twice their sizes: they are
-// the same, or farther apart than this up to sizes of 2^16.
+// Texels: lines closer than this coincide. Texel centers of two levels are at fractions whose
+// denominators are twice the level sizes, so that distinct ones are farther apart for sizes up to
+// 2^16.
 constexpr double kSameLine = 1e-10;
 
 void append_centers(int size, int level, std::vector<double>* lines) {
@@ -22,7 +23,7 @@ void append_centers(int size, int level, std::vector<double>* lines) {
   }
 }
 
-void sort_out(std::vector<double>* lines) {
+void sort_and_merge(std::vector<double>* lines) {
   for (double& line : *lines) {
     const double whole = std::round(line);
     if (std::abs(line - whole) < kSameLine) line = whole;
@@ -70,11 +71,11 @@ AxisCells::AxisCells(int size, int level_count, int tile_size, int last_tile_lev
     if (level == last_tile_level || (level == level_count - 1 && level < last_tile_level)) {
       for (int edge = tile_size; edge < size; edge += tile_size) lines.push_back(edge);
     }
-    // The halves of the image's own texels.
+    // Edges of the image's own texels.
     if (level == 0) {
       for (int i = 1; i < size; ++i) lines.push_back(i);
     }
-    sort_out(&lines);
+    sort_and_merge(&lines);
     lines_[level] = lines;
   }
   for (int level = 0; level < level_count; ++level) {
@@ -95,7 +96,7 @@ AxisTexels::AxisTexels(int size, int level_count) {
   for (int level = level_count - 1; level >= 0; --level) {
     const int texels = level_size(size, level);
     for (int i = 0; i <= texels; ++i) lines.push_back(static_cast<double>(i) * size / texels);
-    sort_out(&lines);
+    sort_and_merge(&lines);
     lines_[level] = lines;
   }
   for (int level = 0; level < level_count; ++level) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Sections 7.2 and 7.3: closed-form integrals over triangles cut to the finest cells. Where a texel
-// lies inside of one triangle the integrals of the image are a fixed 3 x 3 stencil.
+// Sections 7.2 and 7.3: closed-form integrals over triangles cut to the finest cells. On texels
+// inside a single triangle the integrals of the image are a fixed 3 x 3 stencil.
 #include "prefilter/textures/texels/moment_sweep.h"
 
 #include <array>
@@ -13,22 +13,22 @@
 
 #include "prefilter/geometry/moments/axis_parts.h"
 #include "prefilter/geometry/moments/four_point_rule.h"
+#include "prefilter/geometry/texels/tiles.h"
 #include "prefilter/images/srgb_decoder.h"
 #include "prefilter/textures/texels/levels.h"
-#include "prefilter/textures/texels/tiles.h"
 
 namespace prefilter {
 namespace {
 
-// The last level that tiles visit by themselves. Tiles of one pass are a tile apart: they have no
-// texel in common if a texel is at most half a tile wide.
+// The last level that is visited tile by tile. Tiles of one pass are a tile apart, so they share no
+// texel of a level if its texels are at most half a tile wide.
 int last_tile_level(int width, int height) {
   const auto fits = [](int size, int level) {
     return 2 * size <= Tiles::kSize * level_size(size, level);
   };
-  constexpr int kMost = 4;  // where sides are powers of two
+  constexpr int kMaxTileLevel = 4;  // reached if the sides are powers of two
   int level = 1;
-  while (level < kMost && fits(width, level + 1) && fits(height, level + 1)) ++level;
+  while (level < kMaxTileLevel && fits(width, level + 1) && fits(height, level + 1)) ++level;
   return level;
 }
 
@@ -57,7 +57,7 @@ class TileMeasure final : public CellSink {
       }
     }
     touched_.clear();
-    // In half-texel units a uniform density is mass by a quarter of a texel.
+    // A uniform density is per texel, and a half-texel square is a quarter of one.
     uniform_.assign(range.count(), 0.25 * source.uniform_density);
     range_ = range;
 
@@ -77,7 +77,7 @@ class TileMeasure final : public CellSink {
 
   int cell(int x, int y) const { return y * range_.width + x; }
   bool has_pieces(int cell) const { return has_pieces_[cell] != 0; }
-  // Mass by squared half texel of what covers the cell evenly.
+  // Mass per half-texel square that covers the cell uniformly.
   double uniform(int cell) const { return uniform_[cell]; }
   WeightMoments moments(int x, int y) const {
     const int at = cell(x, y);
@@ -113,7 +113,7 @@ class TileMeasure final : public CellSink {
 
   void add_part(int column, int row, CellPiece piece) {
     if (!(piece.mass() > 0.0)) return;
-    // Positions go to the part's own coordinates.
+    // Positions in the coordinates of the part, from 0 to 1.
     if (!piece.is_barycentric) piece.mass_per_area *= x_parts_.width(column) * y_parts_.width(row);
     for (int i = 0; i < piece.count; ++i) {
       GridPoint& corner = piece.corners[i];
@@ -142,7 +142,7 @@ class TileMeasure final : public CellSink {
   std::vector<int> touched_;
 };
 
-// The texels of a tile and one beside it all around, as the wrap mode reads them.
+// The texels of a tile and a border of one texel, as the wrap mode reads them.
 template <int C>
 class Patch {
  public:
@@ -168,7 +168,7 @@ class Patch {
     }
   }
 
-  /// Texel of the tile; -1 and the tile's size are the ones beside it.
+  /// A texel of the tile; -1 and the tile's size are the border.
   const Texel& at(int x, int y) const { return texels_[(y + 1) * kSide + x + 1]; }
 
  private:
@@ -204,11 +204,11 @@ void add_uniform_texel(const Patch<C>& patch, int x, int y, double density,
   }
 }
 
-// The values of an image at the four texel centers around a cell, at [2 * y + x].
+// Image values at the four texel centers around a cell, at [2 * y + x].
 template <int C>
 using Corners = std::array<std::array<double, C>, 4>;
 
-// Image moments of a cell between four texel centers; `in_x`, `in_y` say where.
+// Image moments of a cell, placed at `in_x`, `in_y` between four texel centers.
 template <int C>
 ChannelMoments<C> moments_between(const WeightMoments& w, const Corners<C>& corners,
                                   const Placement& in_x, const Placement& in_y) {
@@ -238,7 +238,7 @@ ChannelMoments<C> moments_between(const WeightMoments& w, const Corners<C>& corn
   return moments;
 }
 
-// Image moments of a cell of level 0 that lies at `in_x`, `in_y` among the texels of the image.
+// Image moments of a level 0 cell at `in_x`, `in_y` between texels of the image.
 template <int C>
 ChannelMoments<C> cell_moments(const WeightMoments& w, const Patch<C>& patch,
                                const CellWindow& texels, const CellPlace& in_x,
@@ -251,7 +251,7 @@ ChannelMoments<C> cell_moments(const WeightMoments& w, const Patch<C>& patch,
                             in_x.placement, in_y.placement);
 }
 
-// The same of an image whose colors are encoded, and decoded after the lookup.
+// The same for an image with encoded colors, which are decoded after the lookup.
 template <int C>
 ChannelMoments<C> decoded_cell_moments(const WeightMoments& w, const Patch<C>& patch,
                                        const CellWindow& texels, const CellPlace& in_x,
@@ -282,14 +282,14 @@ ChannelMoments<C> decoded_cell_moments(const WeightMoments& w, const Patch<C>& p
   return moments;
 }
 
-// Memory that one tile needs at a time.
+// Buffers for one tile.
 template <int C>
 struct Workspace {
   TileMeasure measure;
   Patch<C> patch;
   std::vector<CellMoments<C>> cells[2];
   Patch<C> patch_of_means;
-  std::vector<ChannelMoments<C>> means[2];  // likewise; none where there are no means
+  std::vector<ChannelMoments<C>> means[2];  // empty without an image of means
 };
 
 template <int C>
@@ -371,8 +371,8 @@ class Sweep {
     visit_(block);
   }
 
-  // Adds the cells of a level to those of the next, which are `coarse_cells`; and `means` to
-  // `coarse_means`, unless that is null.
+  // Adds the moments of a level's cells to `coarse_cells`, the cells of the next level, and `means`
+  // to `coarse_means` unless that is null.
   void nest(int level, const CellRange& range, const CellMoments<C>* cells,
             const CellRange& coarse_range, CellMoments<C>* coarse_cells,
             const ChannelMoments<C>* means = nullptr,
@@ -398,7 +398,7 @@ class Sweep {
 
   bool has_means() const { return options_.means != nullptr; }
 
-  // The image moments of a cell of level 0 in a tile.
+  // Image moments of a level 0 cell in a tile.
   ChannelMoments<C> moments_in(const Patch<C>& patch, const WeightMoments& weight,
                                const CellWindow& texels, const CellRange& range, int x,
                                int y) const {
@@ -409,7 +409,7 @@ class Sweep {
                : cell_moments(weight, patch, texels, in_x, in_y);
   }
 
-  // The finest level that is visited, in cells[0] and means[0]; returns which level that is.
+  // Computes the finest visited level in cells[0] and means[0]; returns the level.
   int start_tile(const CellWindow& texels, Workspace<C>* work) const {
     const bool has_level_0 =
         options_.first_level == 0 || !x_cells_.halves_evenly() || !y_cells_.halves_evenly();
@@ -429,7 +429,7 @@ class Sweep {
     return has_level_0 ? 0 : 1;
   }
 
-  // A cell of level 0.
+  // Computes a cell of level 0.
   void start_cell(const CellWindow& texels, const CellRange& range, int x, int y,
                   Workspace<C>* work) const {
     const WeightMoments weight = work->measure.moments(x, y);
@@ -440,7 +440,7 @@ class Sweep {
     work->means[0][at] = moments_in(work->patch_of_means, weight, texels, range, x, y);
   }
 
-  // A texel, which is a cell of level 1; `range` are the cells of level 0.
+  // Computes a texel, which is a cell of level 1. `range` holds the cells of level 0.
   void start_texel(const CellWindow& texels, const CellRange& range, int x, int y,
                    Workspace<C>* work) const {
     const TileMeasure& measure = work->measure;
@@ -504,7 +504,7 @@ class Sweep {
       current = 1 - current;
       visit(level, next, work->cells[current].data(), means_of(level, current), tile);
     }
-    // Each cell of the coarse grid lies in one tile.
+    // Tiles cover disjoint cells of the coarse grid.
     if (!coarse_.empty()) {
       nest(level, within(texels, level), work->cells[current].data(), whole(level + 1),
            coarse_.data());
@@ -532,7 +532,8 @@ class Sweep {
   AxisCells x_cells_;
   AxisCells y_cells_;
   WorkspacePool<C> pool_;
-  std::vector<CellMoments<C>> coarse_;  // of level tile_levels_ + 1 and up
+  std::vector<CellMoments<C>>
+      coarse_;  // the finest coarse level not yet visited, from tile_levels_ + 1 on
 };
 
 }  // namespace

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The moment pyramid: one pass over the mesh that yields, for every level, the moments of the
+// The moment pyramid: one pass over the mesh that computes, for every level, the moments of the
 // surface and of the image on it.
 //
-// On a cell of level l every bilinear basis function of level l, and of every coarser level, is one
-// bilinear polynomial (figure 7.4, and level_grid.h). A cell of level l + 1 is a block of cells of
-// level l, so its moments are a fixed combination of theirs: the mesh is cut once, along the finest
-// cells. The image is cut into tiles that fit a processor's cache; nothing of the finest cells is
-// kept.
+// On a cell of level l the bilinear basis functions of level l and of all coarser levels are
+// bilinear polynomials (figure 7.4, and level_grid.h). A cell of level l + 1 is a block of cells of
+// level l, so its moments are a fixed linear combination of theirs: the mesh is cut only once,
+// along the finest cells. The image is processed in tiles that fit in a processor's cache; the
+// moments of the finest cells are not stored.
 #pragma once
 
 #include <functional>
@@ -16,9 +16,9 @@
 #include "prefilter/base/image.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/geometry/moments/cell_moments.h"
+#include "prefilter/geometry/texels/texel_triangles.h"
 #include "prefilter/textures/reader.h"
 #include "prefilter/textures/texels/level_grid.h"
-#include "prefilter/textures/texels/texel_triangles.h"
 
 namespace prefilter {
 
@@ -30,23 +30,23 @@ struct MomentBlock {
   int y0 = 0;
   int width = 0;
   int height = 0;
-  const CellMoments<C>* cells = nullptr;  // row by row
-  // The image moments of SweepOptions::means, likewise; of levels 0 and 1 alone.
+  const CellMoments<C>* cells = nullptr;  // row-major
+  // Image moments of SweepOptions::means, row-major; on levels 0 and 1 only.
   const ChannelMoments<C>* means = nullptr;
   const AxisCells* x_cells = nullptr;
   const AxisCells* y_cells = nullptr;
-  std::int64_t index = 0;  // which tile; the whole grid of a coarse level comes last
+  std::int64_t index = 0;  // of the tile; blocks of a whole coarse level have the last index
 
   const CellMoments<C>& at(int x, int y) const { return cells[index_of(x, y)]; }
   const ChannelMoments<C>& means_at(int x, int y) const { return means[index_of(x, y)]; }
   std::ptrdiff_t index_of(int x, int y) const { return static_cast<std::ptrdiff_t>(y) * width + x; }
-  /// Where the block's columns and rows of cells lie among the texels of a level, this one or the
-  /// next.
+  /// Positions of the block's columns and rows between texel centers of this level or the next.
   const CellPlace* x_places(int of) const { return x_cells->places(level, of).data() + x0; }
   const CellPlace* y_places(int of) const { return y_cells->places(level, of).data() + y0; }
 };
 
-/// Calls use(x, x_end, y, y_end) for the cells of a block between four texel centers of its level.
+/// Calls use(x, x_end, y, y_end) for each range of cells between the same four texel centers of the
+/// block's level.
 template <int C, typename Use>
 void for_each_dual_range(const MomentBlock<C>& block, const Use& use) {
   const CellPlace* x_places = block.x_places(block.level);
@@ -67,9 +67,9 @@ void for_each_dual_range(const MomentBlock<C>& block, const Use& use) {
   }
 }
 
-/// Calls use(moments, column, row) for each cell between the texel centers (column, row) and
-/// (column + 1, row + 1) of a block's level that some of the surface in the block lies in, with the
-/// moments of that part in the coordinates of this cell.
+/// For each dual cell, between the texel centers (column, row) and (column + 1, row + 1) of the
+/// block's level, that the block's surface reaches: calls use(moments, column, row) with the
+/// moments of the surface in it, in the coordinates of the dual cell.
 template <int C, typename Use>
 void for_each_dual_cell(const MomentBlock<C>& block, const Use& use) {
   const CellPlace* x_places = block.x_places(block.level);
@@ -87,7 +87,7 @@ void for_each_dual_cell(const MomentBlock<C>& block, const Use& use) {
   });
 }
 
-/// The same of the image moments of the means, for a block that has them.
+/// The same for the image moments of the means. The block must have them.
 template <int C, typename Use>
 void for_each_dual_cell_of_means(const MomentBlock<C>& block, const Use& use) {
   const CellPlace* x_places = block.x_places(block.level);
@@ -110,22 +110,22 @@ void for_each_dual_cell_of_means(const MomentBlock<C>& block, const Use& use) {
 struct SweepOptions {
   int first_level = 1;  // 0 or 1: the finest level that is visited
   int last_level = 1;
-  // With kSrgbAfter the colors of the image are encoded, and its moments are those of the decoded
-  // lookup: by FourPointRule in each of the finest cells.
+  // For kSrgbAfter the image has encoded colors, and the moments of its decoded lookups are
+  // computed by FourPointRule in each of the finest cells.
   Reader reader = Reader::kLinear;
-  // Another image of the same size and channels, whose moments come along in MomentBlock::means;
-  // not with kSrgbAfter.
+  // Another image of the same size and channels, whose moments are returned in MomentBlock::means;
+  // not supported with kSrgbAfter.
   const Image* means = nullptr;
   int threads = 0;
 };
 
-/// How many different values MomentBlock::index takes.
+/// Number of different values of MomentBlock::index.
 std::int64_t sweep_block_count(int width, int height);
 
-/// Visits every cell of the levels asked for, block by block. Blocks are visited at the
-/// same time only where their cells, and the texels of their level beside these, are apart, and any
-/// two blocks that are not are visited in the same order whatever the number of threads. `image` is
-/// finite and has C channels.
+/// Visits every cell of the requested levels, block by block. Blocks are visited concurrently only
+/// if their cells, including neighboring texels of their level, are disjoint; any other two blocks
+/// are visited in the same order for every number of threads. `image` must be finite and have C
+/// channels.
 template <int C>
 void sweep_moments(const TexelTriangles& triangles, const TexelSource& image, WrapModes wrap,
                    const SweepOptions& options, const Progress& progress,

@@ -24,9 +24,10 @@
 namespace prefilter {
 namespace {
 
-constexpr double kMostEffort = 100.0;
-// What a texel that few views read is worth: as much as so many frames that say what it was before.
-constexpr double kFramesOfPull = 20.0;
+constexpr double kMaxEffort = 100.0;
+// Weight of a texel's starting value, in frames: a texel seen by as many frames depends equally on
+// both.
+constexpr double kStartWeightFrames = 20.0;
 
 void check(const std::vector<ImageView>& levels, const std::vector<const Surface*>& surfaces,
            const ViewFitOptions& options) {
@@ -53,14 +54,15 @@ void check(const std::vector<ImageView>& levels, const std::vector<const Surface
   if (!(options.steadiness >= 0.0) || !std::isfinite(options.steadiness)) {
     throw_invalid("steadiness: " + to_text(options.steadiness) + "; 0 or more is needed");
   }
-  if (!(options.effort > 0.0 && options.effort <= kMostEffort)) {
+  if (!(options.effort > 0.0 && options.effort <= kMaxEffort)) {
     throw_invalid("effort: " + to_text(options.effort) +
                   "; a number above 0 and up to 100 is needed");
   }
   range_of(options.bounds);
 }
 
-// A level as it is filtered, multiplied by its alpha where that counts: always if `is_multiplied`.
+// The level as it is filtered: multiplied by its alpha if there is any transparency, always if
+// `is_multiplied`.
 std::unique_ptr<FilteredImage> filtered(const TexelSource& level, bool is_multiplied,
                                         const ViewFitOptions& options) {
   const bool has_alpha = level.channels == kMaxChannels && !options.premultiplied;
@@ -82,47 +84,49 @@ SolveOptions solve_options(const FilteredImage& image, const ViewFitOptions& opt
   return solve;
 }
 
-// The more frames look at a level, the less what it was before counts.
-std::vector<double> pulls_of(const std::vector<View>& views, std::size_t level_count) {
+// Weights of the starting values of the levels, relative to the frames that filtered_levels them.
+std::vector<double> start_weights(const std::vector<View>& views, std::size_t level_count) {
   std::vector<double> frames(level_count + 1);
   for (const View& view : views) {
-    // An octave looks up the levels at its two ends.
+    // The lookups of an octave mix the levels at its two ends.
     frames[static_cast<std::size_t>(view.octave)] += 1.0;
     frames[static_cast<std::size_t>(view.octave) + 1] += 1.0;
   }
-  std::vector<double> pulls(level_count);
+  std::vector<double> weights(level_count);
   for (std::size_t level = 0; level < level_count; ++level) {
-    pulls[level] = kFramesOfPull / std::max(1.0, frames[level]);
+    weights[level] = kStartWeightFrames / std::max(1.0, frames[level]);
   }
-  return pulls;
+  return weights;
 }
 
-// What views see, by rows of their frames: what is to be done at a time is little then.
-std::vector<SeenPixels> all_seen(const std::vector<View>& views,
-                                 const std::vector<ImageView>& levels,
-                                 const ViewFitOptions& options, const Progress& progress) {
-  constexpr std::int64_t kMostSamples = 1 << 18;
-  struct Rows {
+// Renders all views in bands of rows, so that each task needs little memory.
+std::vector<ViewPixels> render_views(const std::vector<View>& views,
+                                     const std::vector<ImageView>& levels,
+                                     const ViewFitOptions& options, const Progress& progress) {
+  constexpr std::int64_t kMaxSamplesPerTask = 1 << 18;
+  struct Band {
     const View* view;
     int begin;
     int end;
   };
-  std::vector<Rows> tasks;
+  std::vector<Band> tasks;
   for (const View& view : views) {
-    const std::int64_t of_row = static_cast<std::int64_t>(view.size) * view.samples * view.samples;
-    const int rows =
-        static_cast<int>(std::clamp<std::int64_t>(kMostSamples / of_row, 1, view.size));
+    const std::int64_t samples_per_row =
+        static_cast<std::int64_t>(view.size) * view.samples * view.samples;
+    const int rows = static_cast<int>(
+        std::clamp<std::int64_t>(kMaxSamplesPerTask / samples_per_row, 1, view.size));
     for (int begin = 0; begin < view.size; begin += rows) {
       tasks.push_back({&view, begin, std::min(begin + rows, view.size)});
     }
   }
-  std::vector<SeenPixels> seen(tasks.size());
-  parallel_for(
-      static_cast<std::int64_t>(tasks.size()), options.threads, progress, [&](std::int64_t k) {
-        const auto& [view, begin, end] = tasks[static_cast<std::size_t>(k)];
-        seen[static_cast<std::size_t>(k)] = seen_pixels(*view, begin, end, levels, options.wrap);
-      });
-  return seen;
+  std::vector<ViewPixels> rendered(tasks.size());
+  parallel_for(static_cast<std::int64_t>(tasks.size()), options.threads, progress,
+               [&](std::int64_t k) {
+                 const auto& [view, begin, end] = tasks[static_cast<std::size_t>(k)];
+                 rendered[static_cast<std::size_t>(k)] =
+                     view_pixels(*view, begin, end, levels, options.wrap);
+               });
+  return rendered;
 }
 
 }  // namespace
@@ -133,23 +137,25 @@ std::vector<Image> fit_to_views(const std::vector<ImageView>& levels,
   check(levels, surfaces, options);
   const ImageView& image = levels[0];
   const std::vector<TexelSource> sources(levels.begin(), levels.end());
-  std::vector<std::unique_ptr<FilteredImage>> read;
+  std::vector<std::unique_ptr<FilteredImage>> filtered_levels;
   std::vector<ImageView> start;
   for (const TexelSource& level : sources) {
-    read.push_back(filtered(level, !read.empty() && read[0]->is_multiplied(), options));
-    start.push_back(read.back()->floats());
+    filtered_levels.push_back(
+        filtered(level, !filtered_levels.empty() && filtered_levels[0]->is_multiplied(), options));
+    start.push_back(filtered_levels.back()->floats());
   }
   const std::vector<View> views = plan_views(surfaces, image.width, image.height,
                                              static_cast<int>(levels.size()), options.effort);
-  std::vector<SeenPixels> seen = all_seen(views, start, options, options.progress.part(0.01, 0.3));
-  ViewSystem system(start, pulls_of(views, levels.size()), std::move(seen), options,
+  std::vector<ViewPixels> rendered =
+      render_views(views, start, options, options.progress.part(0.01, 0.3));
+  ViewSystem system(start, start_weights(views, levels.size()), std::move(rendered), options,
                     options.progress.part(0.3, 0.4));
   std::vector<Image> fitted =
-      system.solve(solve_options(*read[0], options), options.progress.part(0.4, 0.98));
+      system.solve(solve_options(*filtered_levels[0], options), options.progress.part(0.4, 0.98));
   const ValueRange range = range_of(options.bounds);
   for (Image& level : fitted) {
-    read[0]->divide_by_alpha(options.wrap, options.progress.part(0.98, 0.99), options.threads,
-                             &level);
+    filtered_levels[0]->divide_by_alpha(options.wrap, options.progress.part(0.98, 0.99),
+                                        options.threads, &level);
     for (float& value : level.data) value = std::clamp(value, range.low, range.high);
   }
   options.progress.report(1.0);

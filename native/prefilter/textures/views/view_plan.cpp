@@ -9,29 +9,30 @@
 namespace prefilter {
 namespace {
 
-constexpr double kTurn = 6.283185307179586;
-// Fractions of multiples of these are spread evenly, by themselves and together.
-constexpr double kGolden = 0.6180339887498949;
-constexpr double kPlasticFirst = 0.7548776662466927;
-constexpr double kPlasticSecond = 0.5698402909980532;
-constexpr double kStep = 0.3;      // between the frames of a view, in pixels
-constexpr double kPixels = 1.0e6;  // of all views of an octave, about
-constexpr double kSeen = 0.5;      // of a frame's pixels, about
-constexpr double kFewestViews = 4.0;
-constexpr double kMostViews = 320.0;
-constexpr int kLeastSize = 6;    // pixels
-constexpr int kMostSize = 6000;  // likewise: larger ones, of many tiles, take too long
-constexpr int kMargin = 2;       // likewise
-constexpr int kFewSamples = 4;   // along a side of pixels of two to four texels
-constexpr int kMostSamples = 8;
+constexpr double kTwoPi = 6.283185307179586;
+// Low-discrepancy sequences: fractions of multiples of the inverse golden ratio, and of the first
+// two powers of the inverse plastic number, are evenly spread, alone and jointly.
+constexpr double kInverseGolden = 0.6180339887498949;
+constexpr double kInversePlastic = 0.7548776662466927;
+constexpr double kInversePlasticSquared = 0.5698402909980532;
+constexpr double kFrameStep = 0.3;          // pixels, between the frames of a view
+constexpr double kPixelsPerOctave = 1.0e6;  // rough total over all views
+constexpr double kCoveredShare = 0.5;       // rough share of a frame's pixels
+constexpr double kMinViews = 4.0;
+constexpr double kMaxViews = 320.0;
+constexpr int kMinFrameSize = 6;      // pixels
+constexpr int kMaxFrameSize = 6000;   // pixels; surfaces of many tiles would take too long
+constexpr int kFrameMargin = 2;       // pixels
+constexpr int kFinePixelSamples = 4;  // per side of a pixel, where pixels have two to four texels
+constexpr int kCoarsePixelSamples = 8;
 
 double fraction(double x) { return x - std::floor(x); }
 
-// A surface as a whole.
+// Size of a surface in space and in the texture.
 struct Extent {
   Vector3 center{};
   double radius = 0.0;
-  double texel = 0.0;  // the side of one of level 0 on the surface, on average
+  double texel = 0.0;  // average side of a level 0 texel on the surface
   double area = 0.0;   // in texels of level 0
 };
 
@@ -71,25 +72,25 @@ View view_at(const Surface& surface, const Extent& extent, int octave, std::int6
   view.octave = octave;
   const auto number = static_cast<double>(k);
   const double height = 1.0 - 2.0 * (number + 0.5) / static_cast<double>(count);
-  const double around = kTurn * fraction(number * kGolden + 0.37 * octave);
+  const double around = kTwoPi * fraction(number * kInverseGolden + 0.37 * octave);
   const double flat = std::sqrt(std::max(0.0, 1.0 - height * height));
   view.toward = {flat * elementary::cos(around), flat * elementary::sin(around), height};
   const Vector3 other = std::abs(height) < 0.9 ? Vector3{0.0, 0.0, 1.0} : Vector3{1.0, 0.0, 0.0};
   const Vector3 across = cross(other, view.toward);
   const Vector3 first = (1.0 / length(across)) * across;
   const Vector3 second = cross(view.toward, first);
-  const double roll = kTurn * fraction(number * kPlasticFirst + 0.5);
+  const double roll = kTwoPi * fraction(number * kInversePlastic + 0.5);
   const double c = elementary::cos(roll);
   const double s = elementary::sin(roll);
   view.right = c * first + s * second;
   view.up = c * second - s * first;
-  const double mip = octave + fraction(number * kPlasticSecond + 0.5);
+  const double mip = octave + fraction(number * kInversePlasticSquared + 0.5);
   view.pixel = extent.texel * elementary::exp2(mip);
-  view.size = 2 * (static_cast<int>(std::ceil(extent.radius / view.pixel)) + kMargin);
-  view.samples = octave < 2 ? kFewSamples : kMostSamples;
+  view.size = 2 * (static_cast<int>(std::ceil(extent.radius / view.pixel)) + kFrameMargin);
+  view.samples = octave < 2 ? kFinePixelSamples : kCoarsePixelSamples;
   view.sampled_level = std::max(0, octave - 2);
-  const double turn = kTurn * fraction(number * kGolden * kGolden + 0.25);
-  view.step = {kStep * elementary::cos(turn), kStep * elementary::sin(turn)};
+  const double turn = kTwoPi * fraction(number * kInverseGolden * kInverseGolden + 0.25);
+  view.step = {kFrameStep * elementary::cos(turn), kFrameStep * elementary::sin(turn)};
   return view;
 }
 
@@ -111,13 +112,14 @@ std::vector<View> plan_views(const std::vector<const Surface*>& surfaces, int wi
       if (!(extent.area > 0.0)) continue;
       const double typical = extent.texel * elementary::exp2(octave + 0.5);
       const double side = 2.0 * extent.radius / typical;
-      if (side < kLeastSize || side > kMostSize) continue;
-      const double wanted = std::clamp(kPixels / (kSeen * side * side), kFewestViews, kMostViews);
+      if (side < kMinFrameSize || side > kMaxFrameSize) continue;
+      const double view_count =
+          std::clamp(kPixelsPerOctave / (kCoveredShare * side * side), kMinViews, kMaxViews);
       const auto count =
-          std::max<std::int64_t>(1, std::llround(effort * wanted * extent.area / area));
+          std::max<std::int64_t>(1, std::llround(effort * view_count * extent.area / area));
       for (std::int64_t k = 0; k < count; ++k) {
         View view = view_at(*surfaces[i], extent, octave, k, count);
-        // By the area of the octave's smallest pixels.
+        // Proportional to the area of the smallest pixels in the octave.
         view.weight = elementary::exp2(2.0 * octave) / static_cast<double>(count);
         views.push_back(view);
       }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// From where a model is looked at, and how near.
+// Views of a model from all directions and distances.
 #pragma once
 
 #include <array>
@@ -12,24 +12,24 @@
 
 namespace prefilter {
 
-/// Two frames of square pixels, seen along parallel rays.
+/// Two frames with square pixels, in orthographic projection.
 struct View {
   const Surface* surface = nullptr;
-  Vector3 center{};  // at the middle of the frame
-  Vector3 right{};   // these three have a length of 1
+  Vector3 center{};  // shown at the center of the frame
+  Vector3 right{};   // unit vectors
   Vector3 up{};
-  Vector3 toward{};              // the viewer
-  double pixel = 0.0;            // its side, in units of space
-  int size = 0;                  // pixels along each side of the frame
-  int samples = 0;               // along each side of a pixel, of what it should show
-  int sampled_level = 0;         // whose texels are at most twice the steps between them
-  int octave = 0;                // levels 0 and 1, 1 and 2, ... are what most of its pixels look up
-  double weight = 0.0;           // of each pixel
-  std::array<double, 2> step{};  // to the second frame, in pixels
+  Vector3 toward{};       // to the viewer
+  double pixel = 0.0;     // side of a pixel, in units of space
+  int size = 0;           // side of the frame, in pixels
+  int samples = 0;        // per side of a pixel, for its target color
+  int sampled_level = 0;  // the level they read; their spacing is at least half a texel of it
+  int octave = 0;         // most pixels look up levels `octave` and `octave` + 1
+  double weight = 0.0;    // of each pixel
+  std::array<double, 2> step{};  // from the first frame to the second, in pixels
 };
 
-/// The views of all surfaces, of as many octaves as there are levels but one. Directions are spread
-/// over the sphere, and sizes of pixels over each octave; an octave counts as much as another.
+/// Plans views of all surfaces in each octave between two levels. Directions are spread evenly over
+/// the sphere, pixel sizes over the octave; all octaves have the same weight.
 std::vector<View> plan_views(const std::vector<const Surface*>& surfaces, int width, int height,
                              int level_count, double effort);
 

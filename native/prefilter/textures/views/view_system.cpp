@@ -13,19 +13,19 @@ namespace prefilter {
 namespace {
 
 constexpr std::int64_t kTexelsPerTask = 1 << 14;
-constexpr std::size_t kPixelsPerTurn = 20'000;
-constexpr std::size_t kMostSlices = 8;
-constexpr std::size_t kFewestSlices = 2;
-constexpr std::size_t kTexelsOfSlices = 12'000'000;  // of all together
-constexpr int kSteps = 20;
-constexpr int kStepsWithin = 8;  // once some texels are at the ends of their range
+constexpr std::size_t kPixelsPerBatch = 20'000;
+constexpr std::size_t kMaxSlices = 8;
+constexpr std::size_t kMinSlices = 2;
+constexpr std::size_t kTexelsOfSlices = 12'000'000;  // bounds the memory of all slices
+constexpr int kFirstIterations = 20;
+constexpr int kBoundedIterations = 8;  // with the texels at their bounds fixed
 
 Lanes all_lanes(float value) { return Lanes{} + value; }
 
 }  // namespace
 
 template <typename Visit>
-void ViewSystem::for_ways(const Visit& visit) const {
+void ViewSystem::for_lookup_kinds(const Visit& visit) const {
   const float share = lookups_ == Lookups::kBoth ? 0.5F : 1.0F;
   if (lookups_ != Lookups::kAnisotropic) visit(false, share);
   if (lookups_ != Lookups::kTrilinear) visit(true, share);
@@ -39,16 +39,17 @@ void ViewSystem::for_texels_at(double u, double v, float mip, float share,
   const auto finer = static_cast<std::size_t>(value);
   const float fraction = value - static_cast<float>(finer);
   for (const std::size_t level : {finer, finer + 1}) {
-    const float of_level = share * (level == finer ? 1.0F - fraction : fraction);
-    if (!(of_level > 0.0F)) continue;
-    for_bilinear(levels_[level], wrap_, u, v,
-                 [&](std::size_t texel, float weight) { visit(level, texel, of_level * weight); });
+    const float level_share = share * (level == finer ? 1.0F - fraction : fraction);
+    if (!(level_share > 0.0F)) continue;
+    for_bilinear(levels_[level], wrap_, u, v, [&](std::size_t texel, float weight) {
+      visit(level, texel, level_share * weight);
+    });
   }
 }
 
 template <typename Visit>
-void ViewSystem::for_texels(const SeenPixel& pixel, bool is_row, const Visit& visit) const {
-  if (!is_row) return for_texels_at(pixel.uv[0], pixel.uv[1], pixel.mip, 1.0F, visit);
+void ViewSystem::for_texels(const ViewPixel& pixel, bool is_anisotropic, const Visit& visit) const {
+  if (!is_anisotropic) return for_texels_at(pixel.uv[0], pixel.uv[1], pixel.mip, 1.0F, visit);
   const int count = pixel.count;
   for (int i = 1; i <= count; ++i) {
     const double at = static_cast<double>(i) / (count + 1) - 0.5;
@@ -57,9 +58,9 @@ void ViewSystem::for_texels(const SeenPixel& pixel, bool is_row, const Visit& vi
   }
 }
 
-ViewSystem::ViewSystem(const std::vector<ImageView>& levels, const std::vector<double>& pulls,
-                       std::vector<SeenPixels> seen, const ViewFitOptions& options,
-                       const Progress& progress)
+ViewSystem::ViewSystem(const std::vector<ImageView>& levels,
+                       const std::vector<double>& start_weights, std::vector<ViewPixels> seen,
+                       const ViewFitOptions& options, const Progress& progress)
     : levels_(levels),
       wrap_(options.wrap),
       lookups_(options.lookups),
@@ -80,22 +81,24 @@ ViewSystem::ViewSystem(const std::vector<ImageView>& levels, const std::vector<d
       start_.push_back(texel);
     }
   }
-  free_.assign(start_.size(), {all_lanes(1.0F)});
+  is_free_.assign(start_.size(), {all_lanes(1.0F)});
   make_slices();
-  find_steadiness(options.steadiness, progress.part(0.0, 0.3));
-  find_diagonal(pulls, progress.part(0.3, 0.6));
-  missing_ = sum_slices(progress.part(0.6, 1.0), [&](const SeenPixels& of_view, Texels* sums) {
-    spread(
-        of_view, [&](const SeenPixel& p, bool is_row) { return missing(p, is_row); }, sums);
+  scale_steadiness(options.steadiness, progress.part(0.0, 0.3));
+  compute_diagonal(start_weights, progress.part(0.3, 0.6));
+  right_side_ = sum_slices(progress.part(0.6, 1.0), [&](const ViewPixels& of_view, Texels* sums) {
+    scatter(
+        of_view,
+        [&](const ViewPixel& p, bool is_anisotropic) { return residual_of(p, is_anisotropic); },
+        sums);
   });
 }
 
-// They depend on the views and the texels alone, so that sums do not depend on threads.
+// The slices depend on the views and texels only, so that sums do not depend on the thread count.
 void ViewSystem::make_slices() {
-  const std::size_t count = std::clamp(kTexelsOfSlices / std::max<std::size_t>(1, start_.size()),
-                                       kFewestSlices, kMostSlices);
+  const std::size_t count =
+      std::clamp(kTexelsOfSlices / std::max<std::size_t>(1, start_.size()), kMinSlices, kMaxSlices);
   std::size_t pixels = 0;
-  for (const SeenPixels& one : seen_) pixels += one.pixels.size();
+  for (const ViewPixels& view_pixels : seen_) pixels += view_pixels.pixels.size();
   slices_ = {0};
   std::size_t sum = 0;
   for (std::size_t i = 0; i < seen_.size(); ++i) {
@@ -105,10 +108,10 @@ void ViewSystem::make_slices() {
   slices_.push_back(seen_.size());
 }
 
-Lanes ViewSystem::shown(const SeenPixel& pixel, bool is_row, const Texels& texels,
-                        bool with_image) const {
+Lanes ViewSystem::lookup(const ViewPixel& pixel, bool is_anisotropic, const Texels& texels,
+                         bool with_image) const {
   Lanes sum{};
-  for_texels(pixel, is_row, [&](std::size_t level, std::size_t texel, float weight) {
+  for_texels(pixel, is_anisotropic, [&](std::size_t level, std::size_t texel, float weight) {
     if (level > 0) {
       sum += texels[begins_[level] + texel].v * all_lanes(weight);
     } else if (with_image) {
@@ -120,8 +123,8 @@ Lanes ViewSystem::shown(const SeenPixel& pixel, bool is_row, const Texels& texel
   return sum;
 }
 
-Lanes ViewSystem::missing(const SeenPixel& pixel, bool is_row) const {
-  return pixel.shown - shown(pixel, is_row, start_, true);
+Lanes ViewSystem::residual_of(const ViewPixel& pixel, bool is_anisotropic) const {
+  return pixel.target - lookup(pixel, is_anisotropic, start_, true);
 }
 
 template <typename Add>
@@ -129,15 +132,15 @@ auto ViewSystem::sum_slices(const Progress& progress, const Add& add) const -> T
   const std::size_t count = slices_.size() - 1;
   std::vector<Texels> slices(count);
   for (Texels& sums : slices) sums.resize(start_.size());
-  // In turns, so that a cancel does not wait for a whole slice.
+  // In batches, so that cancelling need not wait for a whole slice.
   std::vector<std::size_t> next(slices_.begin(), slices_.end() - 1);
   bool is_done = false;
   while (!is_done) {
     parallel_for(static_cast<std::int64_t>(count), threads_, progress, [&](std::int64_t k) {
       const auto s = static_cast<std::size_t>(k);
       std::size_t pixels = 0;
-      while (next[s] < slices_[s + 1] && pixels < kPixelsPerTurn) {
-        const SeenPixels& of_view = seen_[next[s]++];
+      while (next[s] < slices_[s + 1] && pixels < kPixelsPerBatch) {
+        const ViewPixels& of_view = seen_[next[s]++];
         add(of_view, &slices[s]);
         pixels += of_view.pixels.size();
       }
@@ -159,34 +162,35 @@ auto ViewSystem::sum_slices(const Progress& progress, const Add& add) const -> T
 }
 
 template <typename Value>
-void ViewSystem::spread(const SeenPixels& seen, const Value& value, Texels* sums) const {
-  const std::vector<SeenPixel>& pixels = seen.pixels;
-  for_ways([&](bool is_row, float share) {
+void ViewSystem::scatter(const ViewPixels& seen, const Value& value, Texels* sums) const {
+  const std::vector<ViewPixel>& pixels = seen.pixels;
+  for_lookup_kinds([&](bool is_anisotropic, float share) {
     const float weight = share * static_cast<float>(seen.weight);
-    const auto put = [&](const SeenPixel& pixel, float trust, Lanes difference) {
+    const auto put = [&](const ViewPixel& pixel, float trust, Lanes difference) {
       const Lanes amount = all_lanes(weight * trust) * difference;
-      for_texels(pixel, is_row, [&](std::size_t level, std::size_t texel, float part) {
+      for_texels(pixel, is_anisotropic, [&](std::size_t level, std::size_t texel, float part) {
         if (level > 0) (*sums)[begins_[level] + texel].v += amount * all_lanes(part);
       });
     };
     for (std::size_t i = 0; i < pixels.size(); ++i) {
-      const Lanes first = value(pixels[i], is_row);
+      const Lanes first = value(pixels[i], is_anisotropic);
       if (i + 1 == pixels.size() || !pixels[i + 1].is_second) {
         put(pixels[i], pixels[i].trust, first);
         continue;
       }
-      const Lanes second = value(pixels[i + 1], is_row);
+      const Lanes second = value(pixels[i + 1], is_anisotropic);
       const Lanes change = all_lanes(steadiness_) * (second - first);
-      const float both = std::min(pixels[i].trust, pixels[i + 1].trust);
-      put(pixels[i], 1.0F, all_lanes(pixels[i].trust) * first - all_lanes(both) * change);
-      put(pixels[i + 1], 1.0F, all_lanes(pixels[i + 1].trust) * second + all_lanes(both) * change);
+      const float common_trust = std::min(pixels[i].trust, pixels[i + 1].trust);
+      put(pixels[i], 1.0F, all_lanes(pixels[i].trust) * first - all_lanes(common_trust) * change);
+      put(pixels[i + 1], 1.0F,
+          all_lanes(pixels[i + 1].trust) * second + all_lanes(common_trust) * change);
       ++i;
     }
   });
 }
 
-// A change counts by how large changes are beside errors, as they are at first.
-void ViewSystem::find_steadiness(double steadiness, const Progress& progress) {
+// Scales the weight of flicker by the ratio of squared errors to squared changes at the start.
+void ViewSystem::scale_steadiness(double steadiness, const Progress& progress) {
   if (!(steadiness > 0.0)) return;
   std::vector<std::array<double, 2>> sums(seen_.size());
   parallel_for(static_cast<std::int64_t>(seen_.size()), threads_, progress, [&](std::int64_t k) {
@@ -196,12 +200,12 @@ void ViewSystem::find_steadiness(double steadiness, const Progress& progress) {
         sums[at][which] += seen_[at].weight * share * static_cast<double>(value[c]) * value[c];
       }
     };
-    const std::vector<SeenPixel>& pixels = seen_[at].pixels;
-    for_ways([&](bool is_row, float share) {
+    const std::vector<ViewPixel>& pixels = seen_[at].pixels;
+    for_lookup_kinds([&](bool is_anisotropic, float share) {
       Lanes before{};
       float trust = 1.0F;
-      for (const SeenPixel& pixel : pixels) {
-        const Lanes error = missing(pixel, is_row);
+      for (const ViewPixel& pixel : pixels) {
+        const Lanes error = residual_of(pixel, is_anisotropic);
         add(0, error, share * pixel.trust);
         if (pixel.is_second) add(1, error - before, share * std::min(pixel.trust, trust));
         before = error;
@@ -215,18 +219,20 @@ void ViewSystem::find_steadiness(double steadiness, const Progress& progress) {
     error += of_view;
     change += of_change;
   }
-  // Changes that are much smaller than errors are none that anyone sees.
-  constexpr double kMost = 10.0;
-  steadiness_ = static_cast<float>(
-      steadiness * (error < kMost * change ? error / change : (change > 0.0 ? kMost : 0.0)));
+  // If changes are much smaller than errors nobody sees them.
+  constexpr double kMaxScale = 10.0;
+  steadiness_ = static_cast<float>(steadiness * (error < kMaxScale * change
+                                                     ? error / change
+                                                     : (change > 0.0 ? kMaxScale : 0.0)));
 }
 
-void ViewSystem::find_diagonal(const std::vector<double>& pulls, const Progress& progress) {
-  const Texels squares = sum_slices(progress, [&](const SeenPixels& of_view, Texels* sums) {
-    for_ways([&](bool is_row, float share) {
+void ViewSystem::compute_diagonal(const std::vector<double>& start_weights,
+                                  const Progress& progress) {
+  const Texels squares = sum_slices(progress, [&](const ViewPixels& of_view, Texels* sums) {
+    for_lookup_kinds([&](bool is_anisotropic, float share) {
       const float weight = share * static_cast<float>(of_view.weight) * (1.0F + steadiness_);
-      for (const SeenPixel& pixel : of_view.pixels) {
-        for_texels(pixel, is_row, [&](std::size_t level, std::size_t texel, float part) {
+      for (const ViewPixel& pixel : of_view.pixels) {
+        for_texels(pixel, is_anisotropic, [&](std::size_t level, std::size_t texel, float part) {
           if (level > 0) {
             (*sums)[begins_[level] + texel].v[0] += pixel.trust * weight * part * part;
           }
@@ -235,7 +241,7 @@ void ViewSystem::find_diagonal(const std::vector<double>& pulls, const Progress&
     });
   });
   diagonal_.resize(squares.size());
-  pulls_.resize(squares.size());
+  start_weights_.resize(squares.size());
   for (std::size_t level = 1; level < levels_.size(); ++level) {
     double sum = 0.0;
     std::size_t count = 0;
@@ -244,10 +250,11 @@ void ViewSystem::find_diagonal(const std::vector<double>& pulls, const Progress&
       sum += squares[j].v[0];
       count += squares[j].v[0] > 0.0F ? 1 : 0;
     }
-    const double pull = count > 0 ? pulls[level] * sum / static_cast<double>(count) : 1.0;
+    const double start_weight =
+        count > 0 ? start_weights[level] * sum / static_cast<double>(count) : 1.0;
     for (std::size_t j = begins_[level]; j < begins_[level + 1]; ++j) {
-      pulls_[j] = static_cast<float>(pull);
-      diagonal_[j] += static_cast<float>(pull);
+      start_weights_[j] = static_cast<float>(start_weight);
+      diagonal_[j] += static_cast<float>(start_weight);
     }
   }
 }
@@ -271,16 +278,19 @@ auto ViewSystem::dot(const Texels& a, const Texels& b) const -> Sums {
   return total;
 }
 
-void ViewSystem::improve(int steps, Texels* texels, const Progress& progress) const {
+void ViewSystem::iterate(int steps, Texels* texels, const Progress& progress) const {
   const std::size_t count = start_.size();
   const auto product = [&](const Texels& of, const Progress& part) {
-    Texels sums = sum_slices(part, [&](const SeenPixels& of_view, Texels* slice) {
-      spread(
-          of_view, [&](const SeenPixel& p, bool is_row) { return shown(p, is_row, of, false); },
+    Texels sums = sum_slices(part, [&](const ViewPixels& of_view, Texels* slice) {
+      scatter(
+          of_view,
+          [&](const ViewPixel& p, bool is_anisotropic) {
+            return lookup(p, is_anisotropic, of, false);
+          },
           slice);
     });
     for (std::size_t j = 0; j < count; ++j) {
-      sums[j].v = free_[j].v * (sums[j].v + all_lanes(pulls_[j]) * of[j].v);
+      sums[j].v = is_free_[j].v * (sums[j].v + all_lanes(start_weights_[j]) * of[j].v);
     }
     return sums;
   };
@@ -292,7 +302,7 @@ void ViewSystem::improve(int steps, Texels* texels, const Progress& progress) co
     }
   };
   for (std::size_t j = 0; j < count; ++j) {
-    residual[j].v = free_[j].v * missing_[j].v - residual[j].v;
+    residual[j].v = is_free_[j].v * right_side_[j].v - residual[j].v;
   }
   scale();
   Texels direction = scaled;
@@ -323,17 +333,18 @@ void ViewSystem::improve(int steps, Texels* texels, const Progress& progress) co
 }
 
 std::vector<Image> ViewSystem::solve(const SolveOptions& options, const Progress& progress) {
-  Texels beyond(start_.size());
+  Texels change_from_start(start_.size());
   Lanes low{};
   Lanes high{};
   for (std::size_t c = 0; c < kMaxChannels; ++c) {
-    // Open ranges are as wide as floats go, and not infinite: times an alpha of 0 they are 0.
+    // Unlimited ranges end at the largest float, not at infinity, which times an alpha of 0 would
+    // be NaN.
     low[c] = std::max(options.ranges[c].low, -std::numeric_limits<float>::max());
     high[c] = std::min(options.ranges[c].high, std::numeric_limits<float>::max());
   }
   const auto clip = [&] {
     for (std::size_t j = 0; j < start_.size(); ++j) {
-      const Lanes texel = start_[j].v + beyond[j].v;
+      const Lanes texel = start_[j].v + change_from_start[j].v;
       Lanes scale = all_lanes(1.0F);
       if (options.ranges_times_alpha) {
         scale = all_lanes(std::clamp(texel[3], low[3], high[3]));
@@ -341,21 +352,21 @@ std::vector<Image> ViewSystem::solve(const SolveOptions& options, const Progress
       }
       const Lanes within = lane_min(lane_max(texel, low * scale), high * scale);
       for (std::size_t c = 0; c < kMaxChannels; ++c) {
-        free_[j].v[c] = texel[c] == within[c] ? 1.0F : 0.0F;
+        is_free_[j].v[c] = texel[c] == within[c] ? 1.0F : 0.0F;
       }
-      beyond[j].v = within - start_[j].v;
+      change_from_start[j].v = within - start_[j].v;
     }
   };
-  improve(kSteps, &beyond, progress.part(0.0, 0.7));
+  iterate(kFirstIterations, &change_from_start, progress.part(0.0, 0.7));
   clip();
-  improve(kStepsWithin, &beyond, progress.part(0.7, 1.0));
+  iterate(kBoundedIterations, &change_from_start, progress.part(0.7, 1.0));
   clip();
   std::vector<Image> levels;
   for (std::size_t level = 1; level < levels_.size(); ++level) {
     const ImageView& from = levels_[level];
     Image image(from.width, from.height, from.channels);
     for (std::size_t i = 0; i < from.texel_count(); ++i) {
-      const Lanes value = start_[begins_[level] + i].v + beyond[begins_[level] + i].v;
+      const Lanes value = start_[begins_[level] + i].v + change_from_start[begins_[level] + i].v;
       for (int c = 0; c < from.channels; ++c) {
         image.data[i * static_cast<std::size_t>(from.channels) + static_cast<std::size_t>(c)] =
             value[c];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What more effort gains, and the search of ETC2's modes: blocks that it should find again.
+// The gain from higher effort, and the search of ETC2's modes on blocks that it should recover.
 #include "prefilter/textures/block_effort.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr int kSide = 68;  // more texels than coarse levels have
+constexpr int kSide = 68;  // more texels than in a coarse level
 constexpr BlockEffort kEfforts[] = {BlockEffort::kFast, BlockEffort::kNormal, BlockEffort::kBest};
 constexpr BlockFormat kFormats[] = {
     BlockFormat::kBc1Rgb,  BlockFormat::kBc3,     BlockFormat::kBc4,      BlockFormat::kBc5,
@@ -59,7 +59,7 @@ int channels_of(BlockFormat format) {
   return format == BlockFormat::kBc3 || format == BlockFormat::kEtc2Rgba ? 4 : 3;
 }
 
-/// Waves with noise upon them, as a coarse level has; alpha 255, or noise too.
+/// Waves with noise, as in a coarse level; alpha is 255 or noise.
 Bytes coarse_level(int width, int height, bool has_alpha, unsigned seed) {
   std::mt19937 random(seed);
   Bytes texels;
@@ -135,7 +135,7 @@ TEST(BlockEffort, NormalBc7StopsWhereItIsClose) {
       if (error_of(second, texels) < before) ++improved;
     }
   }
-  // All that can happen does.
+  // Both cases occur.
   EXPECT_GT(close, left);
   EXPECT_GT(left, 0);
   EXPECT_GT(improved, 0);
@@ -171,7 +171,7 @@ TEST(BlockEffort, OneColorIsNeverFarOff) {
   }
 }
 
-// Of one color, inside and at the edges, where a block has but a few texels.
+// Single-color images, including edge blocks with only a few texels.
 TEST(BlockEffort, FlatLevelsStayFlat) {
   constexpr int kWidth = 7, kHeight = 6;
   std::mt19937 random(7);
@@ -202,7 +202,7 @@ TEST(BlockEffort, BlocksDoNotDependOnThreads) {
   }
 }
 
-// What is beyond the edge does not count: a level of 3 x 2 texels has blocks as close as any.
+// Texels beyond the edge do not count: blocks of a 3 x 2 level are as close as any others.
 TEST(BlockEffort, TexelsInsideAreWhatCounts) {
   const Bytes texels = coarse_level(3, 2, false, 4);
   for (const BlockFormat format : {BlockFormat::kBc7, BlockFormat::kEtc2Rgb}) {
@@ -233,7 +233,7 @@ TEST(BlockEffort, NamesAreChecked) {
   EXPECT_THROW(block_effort_named(""), Error);
 }
 
-/// Blocks of random bits, whose five bits of red, green or blue and their step select the mode.
+/// Random blocks, in which five bits of red, green or blue and their step select the mode.
 Bytes random_etc2(int count, unsigned seed) {
   std::mt19937 random(seed);
   Bytes blocks;
@@ -255,8 +255,8 @@ EtcMode mode_of(const std::uint8_t* block) {
   return leaves(block[2]) ? EtcMode::kPlanar : EtcMode::kDifferential;
 }
 
-// The texels of any block of ETC2 have a block that is exact. Random ones of each mode, decoded by
-// etcpak: the search finds most of them, and is close to the others.
+// The texels of any ETC2 block can be encoded exactly. For random blocks of each mode, decoded by
+// etcpak, the search recovers most of them and comes close to the others.
 TEST(Etc2Search, FindsBlocksAgain) {
   constexpr int kBlocks = 1200;
   const Bytes blocks = random_etc2(kBlocks, 6);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// BC7 and BC6H, decoded by bcdec, which has nothing in common with the encoders.
+// BC7 and BC6H, decoded by bcdec, which is independent of the encoders.
 #define BCDEC_STATIC
 #define BCDEC_IMPLEMENTATION
 #include <bcdec.h>
@@ -32,8 +32,8 @@ BlockOptions options_of(BlockFormat format, int threads = 1) {
   return options;
 }
 
-/// RGBA of the texels inside, row by row, of blocks whose texels `decode` writes with as many
-/// channels; alpha is 0 where there are three.
+/// RGBA of the texels inside, row by row. `decode` writes a block's texels with the given number of
+/// channels; alpha is 0 for three.
 template <class Channel>
 std::vector<Channel> decoded(const Bytes& blocks, int width, int height, int channels,
                              const std::function<void(const std::uint8_t*, Channel*)>& decode) {
@@ -66,7 +66,7 @@ Halves through_bc6h(const Halves& texels, int width, int height) {
   });
 }
 
-/// A half float as a whole number in its order; neighbors differ by 1.
+/// The rank of a half float among all; neighbors differ by 1.
 int rank_of(HalfBits half) { return half & kMinus ? -(half & 0x7fff) : half; }
 
 double rms_error(const Bytes& found, const Bytes& wanted, int first, int end) {
@@ -80,7 +80,7 @@ double rms_error(const Bytes& found, const Bytes& wanted, int first, int end) {
   return std::sqrt(sum / (static_cast<double>(wanted.size()) / 4 * (end - first)));
 }
 
-/// Waves of their own in each channel, which no line of colors follows.
+/// Different waves in each channel, which no line of colors can follow.
 double wave(int x, int y, int c) {
   return std::sin(0.08 * x + 0.4 * c) * std::cos(0.06 * y + 0.9 * c);
 }
@@ -162,7 +162,7 @@ TEST(Bc6h, FollowsBrightnessOverManyPowersOfTwo) {
   for (std::size_t i = 0; i < texels.size(); ++i) {
     if (i % 4 < 3) sum += std::pow(rank_of(found[i]) - rank_of(texels[i]), 2);
   }
-  // 1024 of them are a factor of two.
+  // A step of 1024 is a factor of two.
   EXPECT_LT(std::sqrt(sum / (37.0 * 22 * 3)), 128.0);
 }
 
@@ -183,7 +183,7 @@ TEST(Bc6h, NegativeTexelsBecomeZero) {
   for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(found[c], 0);
 }
 
-// The brightest and the darkest half float in one block leave none that is not finite.
+// A block with the brightest and the darkest half float has finite texels only.
 TEST(Bc6h, ExtremesStayFinite) {
   std::mt19937 random(3);
   Halves texels(4 * 64 * 16);

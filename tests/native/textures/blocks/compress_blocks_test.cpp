@@ -35,7 +35,7 @@ Bytes compressed(const Bytes& texels, int width, int height, BlockFormat format,
   return compress_blocks(texels.data(), width, height, options_for(format, threads), Progress());
 }
 
-/// The value of texel `i` in a block of one channel, after the definition of BC4.
+/// Decodes texel `i` of a single-channel block, by the definition of BC4.
 double decoded_channel(const std::uint8_t* block, int i) {
   const double low = block[0];
   const double high = block[1];
@@ -48,7 +48,7 @@ double decoded_channel(const std::uint8_t* block, int i) {
   return ((6 - index) * low + (index - 1) * high) / 5;
 }
 
-/// The least sum of squares that a block of one channel can have, by all pairs of ends.
+/// The least possible sum of squares of a single-channel block, over all pairs of endpoints.
 double least_error(const Bytes& values) {
   double least = 1e30;
   for (int ends = 0; ends < 1 << 16; ++ends) {
@@ -77,7 +77,7 @@ double least_error(const Bytes& values) {
   return least;
 }
 
-/// A block of one channel: a slope with noise on it, or two values with a few of the range's ends.
+/// Values for a single-channel block: a noisy slope, or two values with a few extremes.
 Bytes channel_block(std::mt19937& random, int kind) {
   Bytes values(16);
   const int low = static_cast<int>(random() % 200);
@@ -91,7 +91,7 @@ Bytes channel_block(std::mt19937& random, int kind) {
   return values;
 }
 
-/// The color of texel `i` in a block of BC1, after its definition.
+/// The color of texel `i` in a BC1 block, by its definition.
 Color decoded_color(const std::uint8_t* block, int i) {
   const auto end = [block](int at) {
     const int packed = block[at] | block[at + 1] << 8;
@@ -113,8 +113,8 @@ Color decoded_color(const std::uint8_t* block, int i) {
 constexpr BlockFormat kByteFormats[] = {BlockFormat::kBc1, BlockFormat::kBc1Rgb, BlockFormat::kBc3,
                                         BlockFormat::kBc4, BlockFormat::kBc5,    BlockFormat::kBc7};
 
-TEST(CompressBlocks, OfAWideImageAreThoseOfItsColumns) {
-  // More blocks in a row than are compressed at once.
+TEST(CompressBlocks, WideImagesMatchTheirColumns) {
+  // More blocks in a row than a task has.
   const int columns = 150;
   const Bytes texels = random_texels(4 * columns, 4, 7);
   const Bytes blocks = compressed(texels, 4 * columns, 4, BlockFormat::kBc4);
@@ -150,7 +150,7 @@ TEST(CompressBlocks, AreTheSameForAnyNumberOfThreads) {
   }
 }
 
-// By libsquish alone they are 1.41 to 2.05 times as far off.
+// libsquish alone has 1.41 to 2.05 times the error.
 TEST(CompressBlocks, ChannelsAreNotFarFromTheClosestBlocks) {
   struct Case {
     BlockFormat format;
@@ -191,8 +191,7 @@ TEST(CompressBlocks, ChannelsAreNotFarFromTheClosestBlocks) {
   }
 }
 
-// Two channels of eight steps each: no texel is further from its step than half of one, in the
-// mean.
+// Two channels with eight steps each: the mean error is at most half a step.
 TEST(CompressBlocks, ChannelsStayWithinHalfAStep) {
   const int width = 18;
   const int height = 7;
@@ -223,7 +222,7 @@ TEST(CompressBlocks, ChannelsStayWithinHalfAStep) {
 }
 
 TEST(CompressBlocks, KeepTwoColorsThatTheFormatHas) {
-  // Both ends of a block are exact where they are multiples of 255 / 31 and 255 / 63.
+  // Endpoints are exact for multiples of 255 / 31 and 255 / 63.
   Bytes texels;
   for (int i = 0; i < 16; ++i) {
     const Bytes color = i % 3 == 0 ? Bytes{255, 0, 255, 255} : Bytes{0, 255, 0, 255};
@@ -260,8 +259,7 @@ TEST(CompressBlocks, TexelsOfBc1RgbAreOpaqueWhateverTheirAlpha) {
   }
 }
 
-// Four texels at a corner, and a whole block of each of them four times, have the same best
-// colors.
+// Four texels at a corner have the same best colors as a whole block with each of them four times.
 TEST(CompressBlocks, TexelsBeyondTheEdgeDoNotCount) {
   const Bytes corner = random_texels(2, 2, 7);
   Bytes whole;
@@ -278,7 +276,7 @@ TEST(CompressBlocks, TexelsBeyondTheEdgeDoNotCount) {
 }
 
 TEST(CompressBlocks, WeighColorsByAlpha) {
-  // Colors on no line, of which one can be met only at the cost of the others.
+  // Colors on no common line, so that one can only be matched at the cost of the others.
   Bytes texels;
   for (int i = 0; i < 16; ++i) {
     const Bytes color = i < 4    ? Bytes{255, 0, 0, 255}

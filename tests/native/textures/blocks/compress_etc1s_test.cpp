@@ -22,7 +22,7 @@ struct Image {
   Bytes rgba;
 };
 
-/// Gray waves with noise, and an alpha of their own.
+/// Gray waves with noise, and different waves of alpha.
 Image waves(int width, int height) {
   std::mt19937 random(7);
   Image image{width, height, Bytes(std::size_t{4} * static_cast<std::size_t>(width * height))};
@@ -85,7 +85,7 @@ TEST(CompressEtc1s, KeepsAlphaOnlyWhereItIsAskedTo) {
 }
 
 TEST(CompressEtc1s, RepeatsTexelsAtEdges) {
-  // What lies beyond an edge must not change a block of one color.
+  // Texels beyond an edge must not affect a single-color block.
   const Image image{5, 6, Bytes(std::size_t{4} * 5 * 6, 132)};
   const std::vector<Bytes> found = decoded(compressed({image}, {}), {image});
   for (const std::uint8_t value : found[0]) {
@@ -106,11 +106,11 @@ TEST(CompressEtc1s, DoesNotDependOnThreads) {
   EXPECT_EQ(one.levels[0].color, five.levels[0].color);
 }
 
-TEST(CompressEtc1s, RefusesWhatItCannotDo) {
+TEST(CompressEtc1s, RefusesInvalidSettings) {
   const std::vector<Image> levels = {waves(4, 4)};
   EXPECT_THROW(compressed({}, {}), Error);
   EXPECT_THROW(compressed({Image{0, 4, {}}}, {}), Error);
-  for (const int quality : {kWorstEtc1s - 1, kBestEtc1s + 1}) {
+  for (const int quality : {kMinEtc1sQuality - 1, kMaxEtc1sQuality + 1}) {
     Etc1sOptions options;
     options.quality = quality;
     EXPECT_THROW(compressed(levels, options), Error);
@@ -121,8 +121,8 @@ TEST(CompressEtc1s, RefusesWhatItCannotDo) {
   EXPECT_THROW(compress_etc1s(huge, {}, Progress()), Error);
 }
 
-/// A codebook of selectors whose table has a code for one symbol, bit by bit: three flags, how many
-/// symbols and lengths there are, which of these has a code, in the order of the format, and it.
+/// A selector codebook whose table has a code for one symbol only, bit by bit: three flags, the
+/// numbers of symbols and lengths, the length in the order of the format, and the symbol.
 Bytes selectors_of_one_symbol(int code_length) {
   const std::vector<int> order = {17, 18, 19, 20, 0, 8, 7, 9, 6, 10, 5, 11};
   const auto place = std::find(order.begin(), order.end(), code_length) - order.begin();

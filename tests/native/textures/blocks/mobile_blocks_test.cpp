@@ -42,7 +42,7 @@ Bytes compressed(const std::vector<Channel>& texels, int width, int height, Bloc
   return compress_blocks(texels.data(), width, height, mobile_options(format, threads), Progress());
 }
 
-/// Blocks of HDR as astcenc decodes them.
+/// HDR blocks decoded by astcenc.
 std::vector<float> decoded_mobile(Bytes blocks, int width, int height, BlockFormat format) {
   const auto side = static_cast<unsigned>(layout_of(format).columns);
   astcenc_config config{};
@@ -61,7 +61,7 @@ std::vector<float> decoded_mobile(Bytes blocks, int width, int height, BlockForm
   return texels;
 }
 
-/// A half float of a power of two, from 2^-14 to 2^15.
+/// A power of two from 2^-14 to 2^15 as a half float.
 HalfBits power_of_two(int exponent) { return static_cast<HalfBits>((exponent + 15) << 10); }
 
 TEST(MobileBlocks, SizesCountBlocks) {
@@ -89,8 +89,8 @@ TEST(MobileBlocks, AreTheSameForAnyNumberOfThreads) {
   }
 }
 
-// Decoders round colors of sRGB otherwise, so the nearest block may be another.
-TEST(MobileBlocks, OfAstcHeedTheEncoding) {
+// sRGB decoders round differently, so the closest block may be another.
+TEST(MobileBlocks, AstcDependsOnTheEncoding) {
   const Bytes texels = random_texels<std::uint8_t>(48, 48, 255, 4);
   BlockOptions options = mobile_options(BlockFormat::kAstc4x4);
   const Bytes linear = compress_blocks(texels.data(), 48, 48, options, Progress());
@@ -138,25 +138,25 @@ TEST(MobileBlocks, CanBeCancelled) {
                Error);
 }
 
-TEST(MobileBlocks, NeedWhatTheyAreMadeOf) {
+TEST(MobileBlocks, RefuseMissingInput) {
   const Bytes bytes(4);
   const Halves halves(4);
   EXPECT_THROW(compressed(bytes, 1, 1, BlockFormat::kAstc4x4Hdr), Error);
   EXPECT_THROW(compressed(halves, 1, 1, BlockFormat::kAstc4x4), Error);
 }
 
-TEST(Supercompress, TellsHowManyBytesThereWere) {
+TEST(Supercompress, RecordsTheContentSize) {
   const Bytes bytes(300000, 7);
   const Bytes frame = supercompress(bytes.data(), bytes.size(), Progress());
   EXPECT_LT(frame.size(), 100U);
-  // RFC 8878: the magic number; then a header whose upper two bits say 4 bytes of length.
+  // RFC 8878: the magic number, then a header whose upper two bits select a length of 4 bytes.
   EXPECT_EQ((Bytes(frame.begin(), frame.begin() + 4)), (Bytes{0x28, 0xb5, 0x2f, 0xfd}));
   ASSERT_EQ(frame[4] >> 6, 2);
   const std::size_t at = frame[4] & 0x20 ? 5 : 6;
   EXPECT_EQ(frame[at] | frame[at + 1] << 8 | frame[at + 2] << 16, 300000);
 }
 
-TEST(Supercompress, GrowsNoiseHardly) {
+TEST(Supercompress, HardlyGrowsNoise) {
   const Bytes noise = random_texels<std::uint8_t>(300, 300, 255, 8);
   const Bytes frame = supercompress(noise.data(), noise.size(), Progress());
   EXPECT_LT(frame.size(), noise.size() + 100);

@@ -8,8 +8,8 @@
 #include <limits>
 #include <vector>
 
+#include "geometry/texels/scenes.h"
 #include "prefilter/textures/texels/levels.h"
-#include "textures/texels/scenes.h"
 
 namespace prefilter {
 namespace {
@@ -103,8 +103,8 @@ TEST_P(LevelTest, MeetsTheOptimalityConditions) {
         gradient += dense.matrix[i * count + j] * solution.image.data[j];
       }
       const double value = solution.image.data[i];
-      // The pull moves texels by at most this, for values in [0, 1].
-      const double slack = 2e-4 + BilinearSystem<1>::kPull * mean_diagonal / diagonal;
+      // The regularization moves texels by at most this, for values in [0, 1].
+      const double slack = 2e-4 + BilinearSystem<1>::kRegularization * mean_diagonal / diagonal;
       if (value > range.low) {
         EXPECT_LT(gradient / diagonal, slack);
       }
@@ -141,7 +141,7 @@ TEST(BilinearSystemTest, UnreadTexelsAreMarked) {
   for (int y = 0; y < 8; ++y) {
     for (int x = 0; x < 8; ++x) {
       const bool read = x < 2 && y < 2;
-      if (x == 1 && y == 1) continue;  // only the slanted side comes near its tent
+      if (x == 1 && y == 1) continue;  // the slanted side comes only near its tent
       EXPECT_EQ(solution.used[8 * y + x], read ? 1 : 0) << x << " " << y;
     }
   }

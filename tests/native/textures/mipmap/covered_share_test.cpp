@@ -48,14 +48,14 @@ TEST(CoveredShare, WrapModesReachOverTheEdges) {
   *alpha.texel(0, 0) = 1.0F;
   const Image weights(4, 1, 1, 1.0F);
   // To the right, half of the gap between centers; to the left, the rest of the texel, or half of
-  // the gap to what the mode says.
+  // the gap to the wrapped texel.
   EXPECT_NEAR(share(alpha, weights, 0.5F, 16), 1.0 / 4.0, 1e-12);
   EXPECT_NEAR(share(alpha, weights, 0.75F, 16), 0.75 / 4.0, 1e-12);
   EXPECT_NEAR(share(alpha, weights, 0.75F, 16, {Wrap::kRepeat, Wrap::kClamp}), 0.5 / 4.0, 1e-12);
   EXPECT_NEAR(share(alpha, weights, 0.75F, 16, {Wrap::kBorder, Wrap::kClamp}), 0.5 / 4.0, 1e-12);
 }
 
-TEST(CoveredShare, WhatIsNotFiniteIsNotThere) {
+TEST(CoveredShare, NonfiniteValuesDoNotCount) {
   Image alpha(4, 4, 1, 1.0F);
   *alpha.texel(1, 1) = std::numeric_limits<float>::quiet_NaN();
   Image zero = alpha;
@@ -77,7 +77,7 @@ TEST(CoveredShare, ThreadsDoNotMatter) {
   EXPECT_EQ(share(alpha, weights, 0.4F, 3, kClamp, 1), share(alpha, weights, 0.4F, 3, kClamp, 5));
 }
 
-TEST(CoveredShare, RefusesWhatItCannotUse) {
+TEST(CoveredShare, RefusesInvalidValues) {
   const Image one(2, 2, 1, 1.0F);
   EXPECT_THROW(share(Image(2, 2, 3), one, 0.5F), Error);
   EXPECT_THROW(share(one, Image(2, 2, 2), 0.5F), Error);

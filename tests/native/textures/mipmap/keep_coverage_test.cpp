@@ -13,7 +13,7 @@
 namespace prefilter {
 namespace {
 
-// Alpha that rises along u as its power does.
+// An alpha ramp along u, raised to a power.
 Image ramp(int side, double power) {
   Image image(side, side, 1);
   for (int y = 0; y < side; ++y) {
@@ -24,7 +24,7 @@ Image ramp(int side, double power) {
   return image;
 }
 
-// Where a lookup along the middle row first reaches the threshold, in [0, 1].
+// The position in [0, 1] at which a lookup along the middle row first reaches the threshold.
 double edge(const Image& level, double threshold) {
   const float* row = level.texel(0, level.height / 2);
   int x = 0;
@@ -45,7 +45,7 @@ TEST(KeepCoverage, MovesTheEdgeOfARampBack) {
   }
 }
 
-TEST(KeepCoverage, LeavesALevelThatHasIt) {
+TEST(KeepCoverage, KeepsLevelsWithinTheTolerance) {
   const Image image = ramp(64, 1.0);
   const Image level = ramp(32, 1.0);
   const std::vector<Image> kept = keep_coverage({image.view(), level.view()}, {}, {});

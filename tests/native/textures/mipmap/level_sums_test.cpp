@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/texels/scenes.h"
 #include "prefilter/images/transfer.h"
-#include "textures/texels/scenes.h"
 
 namespace prefilter {
 namespace {
@@ -38,8 +38,8 @@ double lookup(const ImageView& image, double u, double v) {
   return sum;
 }
 
-// The integral over the triangle of what `value` says, by a fine grid. Sweeps count all of the
-// surface as so many texels as the image has.
+// The integral of `value` over the triangle, from a fine grid. Sweeps scale the surface's area to
+// the number of texels in the image.
 template <typename Value>
 double integral(const Value& value) {
   constexpr int kSteps = 600;
@@ -53,7 +53,7 @@ double integral(const Value& value) {
   return sum / kSteps / kSteps * 2.0 * kSize * kSize;
 }
 
-TEST(LevelSums, SquaresAreThoseOfWhatTheReaderShows) {
+TEST(LevelSums, SquaresMatchTheReader) {
   const Image image = testing::random_image(3, kSize, kSize, 1);
   const auto sum = [&](const Image& swept, Reader reader, bool has_squares) {
     int blocks = 0;
@@ -89,7 +89,7 @@ Image tent_image(int size, int i, int j) {
   return one;
 }
 
-// The integral of what a level shows times a tent of `size` x `size` texels.
+// The integral of a level's lookups times a tent of `size` x `size` texels.
 double tent_integral(const ImageView& seen, int size, int i, int j) {
   const Image one = tent_image(size, i, j);
   return integral(
@@ -149,7 +149,7 @@ TEST(LevelSums, CouplingsCarryMeansToTheNextLevel) {
   }
 }
 
-TEST(LevelSums, SystemsAreOneALevel) {
+TEST(LevelSums, ThereIsOneSystemPerLevel) {
   LevelSystems<3> linear(16, 8, 4, kClamped, Reader::kLinear);
   ASSERT_EQ(linear.linear.size(), 3U);
   EXPECT_TRUE(linear.encoded.empty());

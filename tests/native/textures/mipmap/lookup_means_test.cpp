@@ -28,7 +28,7 @@ Image all(float x, float y, float z) {
   return normals;
 }
 
-TEST(LookupMeans, EvenMapsAreTheirMeans) {
+TEST(LookupMeans, UniformMapsAreTheirMeans) {
   const Image found = means(all(0.6F, 0.0F, 0.8F), Image(4, 4, 1, 0.5F));
   for (int i = 0; i < 16; ++i) {
     EXPECT_NEAR(found.data[4 * i], 0.6, 1e-6);
@@ -38,7 +38,7 @@ TEST(LookupMeans, EvenMapsAreTheirMeans) {
   }
 }
 
-TEST(LookupMeans, LengthsDoNotCountButNoLengthDoes) {
+TEST(LookupMeans, OnlyZeroLengthsMatter) {
   const Image found = means(all(0.06F, 0.0F, 0.08F), Image(4, 4, 1));
   EXPECT_NEAR(found.data[0], 0.6, 1e-6);
   const Image none = means(all(0.01F, 0.0F, 0.0F), Image(4, 4, 1));
@@ -56,9 +56,9 @@ TEST(LookupMeans, RoughnessIsInterpolatedBeforeItIsUsed) {
   Image roughness(4, 4, 1);
   for (int y = 0; y < 4; ++y) *roughness.texel(1, y) = *roughness.texel(3, y) = 1.0F;
   const Image found = means(all(0.0F, 0.0F, 1.0F), roughness);
-  const double low = std::pow(0.5, 5) / 5.0 / 0.5;  // the mean of x^4 over [0, 1/2]
+  const double low = std::pow(0.5, 5) / 5.0 / 0.5;  // mean of x^4 over [0, 1/2]
   const double high = (1.0 - std::pow(0.5, 5)) / 5.0 / 0.5;
-  // A rule of two points is exact to the third power.
+  // The two-point rule is exact up to the third power.
   EXPECT_NEAR(found.texel(0, 0)[3], low, 4e-4);
   EXPECT_NEAR(found.texel(1, 0)[3], high, 4e-4);
 }

@@ -20,7 +20,7 @@ NormalMipmapOptions box_options() {
   return options;
 }
 
-// Stripes of 16 texels that lean to the left and to the right by an angle.
+// Stripes of 16 texels, tilted alternately to the left and right by an angle.
 Image stripes(double angle) {
   Image image(64, 64, 3);
   for (int y = 0; y < 64; ++y) {
@@ -34,8 +34,7 @@ Image stripes(double angle) {
   return image;
 }
 
-// The mean over a stripe and its two edges, where the lookups turn from one side to the other
-// along a straight line.
+// The mean over a stripe and its two edges, where lookups interpolate linearly between both sides.
 double mean_height(double angle) {
   const double low = std::cos(angle);
   const double side = std::sin(angle);
@@ -48,7 +47,7 @@ double mean_height(double angle) {
   return (15.0 * low + turning) / 16.0;
 }
 
-TEST(NormalMipmaps, GainTheRoughnessThatTheMeanLoses) {
+TEST(NormalMipmaps, RoughnessAbsorbsTheVariance) {
   for (const double angle : {0.05, 0.4}) {
     const Image normals = stripes(angle);
     const Image rough(64, 64, 1, 0.3F);
@@ -64,7 +63,7 @@ TEST(NormalMipmaps, GainTheRoughnessThatTheMeanLoses) {
   }
 }
 
-TEST(NormalMipmaps, CountLengthsForNothing) {
+TEST(NormalMipmaps, IgnoreLengths) {
   Image normals = stripes(0.4);
   const NormalMipmaps expected = normal_mipmaps(normals.view(), nullptr, {}, box_options());
   for (float& value : normals.data) value *= 5.0F;
@@ -78,7 +77,7 @@ TEST(NormalMipmaps, CountLengthsForNothing) {
 }
 
 TEST(NormalMipmaps, DoNotPointBelowAMapThatDoesNot) {
-  // Lanczos overshoots beside a bright line, and takes z below 0.
+  // Lanczos overshoots beside a bright line, to z below 0.
   const auto line = [](float z) {
     Image image(32, 32, 3);
     for (int y = 0; y < 32; ++y) {
@@ -105,7 +104,7 @@ TEST(NormalMipmaps, DoNotPointBelowAMapThatDoesNot) {
   EXPECT_LT(lowest(line(-1.0F)), -0.01F);
 }
 
-TEST(NormalMipmaps, RefuseWhatTheyCannotRead) {
+TEST(NormalMipmaps, RefuseInvalidInput) {
   Image normals = stripes(0.4);
   const Image rough(32, 64, 1, 0.3F);
   const ImageView rough_view = rough.view();

@@ -8,8 +8,8 @@
 #include <mutex>
 #include <tuple>
 
+#include "geometry/texels/scenes.h"
 #include "prefilter/textures/texels/levels.h"
-#include "textures/texels/scenes.h"
 
 namespace prefilter {
 namespace {

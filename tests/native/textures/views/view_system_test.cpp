@@ -10,9 +10,9 @@
 namespace prefilter {
 namespace {
 
-constexpr int kUnknowns = 4 + 1;  // texels of levels of 2 x 2 and 1 x 1
+constexpr int kUnknowns = 4 + 1;  // texels of the levels of 2 x 2 and 1 x 1
 
-// By its own arithmetic: the weights of the texels of all levels, of 4 x 4, 2 x 2 and 1 x 1.
+// An independent lookup: the weights of the texels of all levels, of 4 x 4, 2 x 2 and 1 x 1.
 std::array<double, 21> lookup(double u, double v, double mip) {
   std::array<double, 21> weights{};
   const std::array<int, 3> sizes = {4, 2, 1};
@@ -22,7 +22,7 @@ std::array<double, 21> lookup(double u, double v, double mip) {
     const int n = sizes[static_cast<std::size_t>(level)];
     for (int j = 0; j < n; ++j) {
       for (int i = 0; i < n; ++i) {
-        // Clamped: places beyond the outer centers read these.
+        // Clamped: positions beyond the outer centers read the outer texels.
         const double x = std::clamp(u * n - 0.5, 0.0, n - 1.0);
         const double y = std::clamp(v * n - 0.5, 0.0, n - 1.0);
         weights[static_cast<std::size_t>(begin + j * n + i)] =
@@ -34,7 +34,7 @@ std::array<double, 21> lookup(double u, double v, double mip) {
   return weights;
 }
 
-std::array<double, 21> row(const SeenPixel& pixel) {
+std::array<double, 21> row(const ViewPixel& pixel) {
   std::array<double, 21> sum{};
   for (int i = 1; i <= pixel.count; ++i) {
     const double at = static_cast<double>(i) / (pixel.count + 1.0) - 0.5;
@@ -47,7 +47,7 @@ std::array<double, 21> row(const SeenPixel& pixel) {
 
 struct Scene {
   std::vector<Image> levels;
-  std::vector<SeenPixels> seen;
+  std::vector<ViewPixels> seen;
 };
 
 Scene random_scene(unsigned seed) {
@@ -59,10 +59,10 @@ Scene random_scene(unsigned seed) {
     for (float& value : scene.levels.back().data) value = uniform(random);
   }
   for (int view = 0; view < 5; ++view) {
-    SeenPixels seen;
+    ViewPixels seen;
     seen.weight = 0.5 + view;
     for (int i = 0; i < 30; ++i) {
-      SeenPixel pixel;
+      ViewPixel pixel;
       pixel.uv = {uniform(random), uniform(random)};
       pixel.along = {0.3F * uniform(random), 0.2F * uniform(random)};
       pixel.mip = 2.5F * uniform(random);
@@ -70,7 +70,7 @@ Scene random_scene(unsigned seed) {
       pixel.count = static_cast<std::uint8_t>(1 + i % 3);
       pixel.is_second = i % 4 == 3;
       pixel.trust = i % 5 == 0 ? 0.1F : 1.0F;
-      pixel.shown[0] = uniform(random);
+      pixel.target[0] = uniform(random);
       seen.pixels.push_back(pixel);
     }
     scene.seen.push_back(seen);
@@ -78,18 +78,17 @@ Scene random_scene(unsigned seed) {
   return scene;
 }
 
-// The objective of texels, without what it pulls them back by; `steadiness` is the factor of
-// changes.
+// The objective without the terms of the starting values; `steadiness` is the factor of changes.
 double objective(const Scene& scene, const std::array<double, 21>& texels, double steadiness,
                  bool is_row, double* changes) {
   double sum = 0.0;
   *changes = 0.0;
-  for (const SeenPixels& seen : scene.seen) {
+  for (const ViewPixels& seen : scene.seen) {
     double before = 0.0;
     double trust = 1.0;
-    for (const SeenPixel& pixel : seen.pixels) {
+    for (const ViewPixel& pixel : seen.pixels) {
       const auto weights = is_row ? row(pixel) : lookup(pixel.uv[0], pixel.uv[1], pixel.mip);
-      double error = pixel.shown[0];
+      double error = pixel.target[0];
       for (std::size_t k = 0; k < 21; ++k) error -= weights[k] * texels[k];
       sum += seen.weight * pixel.trust * error * error;
       if (pixel.is_second) {
@@ -105,8 +104,8 @@ double objective(const Scene& scene, const std::array<double, 21>& texels, doubl
 
 class ViewSystemTest : public ::testing::TestWithParam<Lookups> {};
 
-// No texel can be moved either way to a lower objective.
-TEST_P(ViewSystemTest, SolutionIsTheLeast) {
+// Moving any texel either way does not lower the objective.
+TEST_P(ViewSystemTest, SolutionIsOptimal) {
   const Scene scene = random_scene(7);
   std::vector<ImageView> levels;
   std::array<double, 21> start{};
@@ -160,7 +159,7 @@ TEST_P(ViewSystemTest, SolutionIsTheLeast) {
   }
 }
 
-// Texels stay in their range.
+// Texels stay within their range.
 TEST_P(ViewSystemTest, SolutionIsWithinItsRange) {
   const Scene scene = random_scene(8);
   std::vector<ImageView> levels;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Surfaces and images for the tests of this folder.
+// Surfaces and images for the tests in this folder.
 #pragma once
 
 #include <random>

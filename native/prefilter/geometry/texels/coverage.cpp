@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "prefilter/textures/texels/coverage.h"
+#include "prefilter/geometry/texels/coverage.h"
 
 #include <algorithm>
 #include <numeric>
@@ -8,12 +8,12 @@
 
 #include "prefilter/base/parallel.h"
 #include "prefilter/geometry/moments/axis_parts.h"
-#include "prefilter/textures/texels/tiles.h"
+#include "prefilter/geometry/texels/tiles.h"
 
 namespace prefilter {
 namespace {
 
-// The masses of the parts of the texels of a window.
+// Sums the surface's mass in the cells between the lines of a window.
 class MassSink final : public CellSink {
  public:
   MassSink(const CellWindow& window, const AxisParts& x_parts, const AxisParts& y_parts,
@@ -68,7 +68,7 @@ std::vector<double> whole_lines(int size) {
   return lines;
 }
 
-// The lines of a window: indices of the ones at its two ends.
+// Indices of the lines at both ends of a window.
 std::pair<int, int> lines_between(const std::vector<double>& lines, int low, int high) {
   const auto at = [&](int line) {
     return static_cast<int>(std::lower_bound(lines.begin(), lines.end(), line) - lines.begin());
@@ -128,8 +128,8 @@ std::vector<unsigned char> looked_up_texels(const std::vector<const Surface*>& s
       texel_masses(map_to_texels(surfaces, 2 * width, 2 * height, wrap, MassOf::kArea,
                                  progress.part(0.0, 0.3), threads),
                    progress.part(0.3, 0.9), threads);
-  // A half-texel cell is read through the two texels beside it along each axis. So texel i is read
-  // in the cells from 2 i - 1 to 2 i + 2.
+  // Between neighboring texel centers a lookup reads the texels on both sides. So texel i is read
+  // from the half-texel cells 2 i - 1 to 2 i + 2.
   std::vector<unsigned char> read(static_cast<std::size_t>(width) * height);
   parallel_for(height, threads, progress.part(0.9, 1.0), [&](std::int64_t y) {
     std::vector<unsigned char> column_read(2 * static_cast<std::size_t>(width));

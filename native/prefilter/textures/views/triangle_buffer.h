@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Which triangles are in front, in a view.
+// A z-buffer of triangle indices: the frontmost triangle at each sample of a view.
 #pragma once
 
 #include <array>
@@ -11,25 +11,25 @@
 
 namespace prefilter {
 
-/// Where a triangle's texture coordinates are on the screen: u = at[0] + x * by_x[0] + y * by_y[0]
-/// at (x, y), in pixels, and likewise v.
+/// The texture coordinates of a triangle as linear functions of the pixel position (x, y): u =
+/// at[0] + x * by_x[0] + y * by_y[0], and v the same with [1].
 struct ScreenMap {
   std::array<double, 2> at{};
   std::array<double, 2> by_x{};
   std::array<double, 2> by_y{};
 };
 
-/// The triangles of a view's surface on the screen.
-class SeenTriangles {
+/// Renders the triangles of a view's surface.
+class TriangleBuffer {
  public:
   static constexpr std::uint32_t kNothing = 0xFFFFFFFFU;
 
-  /// Of the second frame where `is_second`.
-  SeenTriangles(const View& view, bool is_second);
+  /// Uses the camera of the second frame if `is_second`.
+  TriangleBuffer(const View& view, bool is_second);
 
-  /// The triangle in front at each of samples x samples points of the pixels of rows [begin, end):
-  /// of sample (i, j), counted over the whole frame from row `begin` on, at [j * samples * size +
-  /// i]. kNothing where there is none.
+  /// Draws the frontmost triangle at samples x samples points per pixel of rows [begin, end).
+  /// Sample (i, j), counted from the left edge and row `begin`, is at [j * samples * size + i];
+  /// kNothing where no triangle is.
   void draw(int begin, int end, int samples, std::vector<std::uint32_t>* triangles);
 
   ScreenMap map_of(std::uint32_t triangle) const;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "prefilter/textures/texels/texel_triangles.h"
+#include "prefilter/geometry/texels/texel_triangles.h"
 
 #include <gtest/gtest.h>
 
+#include "geometry/texels/scenes.h"
 #include "prefilter/base/error.h"
-#include "prefilter/textures/texels/coverage.h"
-#include "textures/texels/scenes.h"
+#include "prefilter/geometry/texels/coverage.h"
 
 namespace prefilter {
 namespace {
@@ -22,7 +22,7 @@ TEST(MapToTexels, KeepsTheMassUnlessABorderDropsIt) {
       EXPECT_NEAR(map(surface, u, v).total_mass, 32.0, 1e-9);
     }
   }
-  // A square of 3 x 3 tiles, of which one is the image.
+  // A square of 3 x 3 tiles, one of which is the image.
   Surface nine = testing::one_triangle({{{-1, -1}, {2, -1}, {2, 2}}});
   nine.uvs.push_back({{{-1, -1}, {2, 2}, {-1, 2}}});
   nine.areas.push_back(1.0);
@@ -47,7 +47,7 @@ TEST(MapToTexels, StaysInsideTheImage) {
 TEST(MapToTexels, PutsWholeTilesIntoTheUniformPart) {
   const Surface large = testing::one_triangle({{{0, 0}, {100, 0}, {0, 100}}});
   const TexelTriangles mapped = map(large, Wrap::kRepeat, Wrap::kRepeat);
-  // 4,950 of the 5,000 tiles' worth of area.
+  // 4,950 of the 5,000 tiles' area.
   EXPECT_NEAR(mapped.uniform_mass() / mapped.total_mass, 0.99, 1e-9);
   EXPECT_EQ(mapped.triangles.size(), 100U);
 }
@@ -86,8 +86,7 @@ TEST(Coverage, KnowsTouchedTexelsWithoutArea) {
 }
 
 TEST(Coverage, LooksUpTheTexelsAround) {
-  // Inside of the upper right half of texel (2, 1): lookups there read columns 2 and 3, rows 1
-  // and 2.
+  // Inside the upper right half of texel (2, 1), where lookups read columns 2 and 3, rows 1 and 2.
   const Surface small =
       testing::one_triangle({{{2.6 / 8, 1.6 / 4}, {2.9 / 8, 1.6 / 4}, {2.7 / 8, 1.9 / 4}}});
   const std::vector<unsigned char> read = looked_up_texels({&small}, 8, 4, {}, Progress(), 1);

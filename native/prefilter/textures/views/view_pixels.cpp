@@ -1,27 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "prefilter/textures/views/seen_pixels.h"
+#include "prefilter/textures/views/view_pixels.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "prefilter/textures/views/seen_triangles.h"
+#include "prefilter/textures/views/triangle_buffer.h"
 
 namespace prefilter {
 namespace {
 
-constexpr float kMostMip = 30.0F;   // of what a pixel looks up: no image has as many levels
-constexpr double kFarthest = 1e9;   // of u and v, so that floats hold them
-constexpr double kElsewhere = 0.5;  // pixels from where the middle of a pixel says
-// What pixels show of places that lookups do not know is mostly chance: errors there are large, and
-// would decide alone. With a tenth both kinds of pixels gain.
-constexpr float kTrustElsewhere = 0.1F;
+constexpr float kMaxPixelMip = 30.0F;    // clamp; no image has as many levels
+constexpr double kMaxTexcoord = 1e9;     // clamp of u and v, so that floats hold them
+constexpr double kMaxTexcoordGap = 0.5;  // pixels, from the position extrapolated from the center
+// Weight of pixels that show parts of the texture their lookup does not read. Their errors are
+// large and mostly chance, and would dominate the fit at full weight; at a tenth, both kinds of
+// pixels gain.
+constexpr float kMixedPixelTrust = 0.1F;
 
-// The maps of triangles, of which the last is asked for again and again.
-class Maps {
+// Caches the last map, as neighboring samples mostly show the same triangle.
+class ScreenMapCache {
  public:
-  explicit Maps(const SeenTriangles& triangles) : triangles_(triangles) {}
+  explicit ScreenMapCache(const TriangleBuffer& triangles) : triangles_(triangles) {}
   const ScreenMap& of(std::uint32_t triangle) {
     if (triangle != last_) {
       map_ = triangles_.map_of(triangle);
@@ -31,12 +32,12 @@ class Maps {
   }
 
  private:
-  const SeenTriangles& triangles_;
-  std::uint32_t last_ = SeenTriangles::kNothing;
+  const TriangleBuffer& triangles_;
+  std::uint32_t last_ = TriangleBuffer::kNothing;
   ScreenMap map_;
 };
 
-// A frame of a view, row by row.
+// One frame of a view, drawn in bands of rows.
 class Frame {
  public:
   Frame(const View& view, const std::vector<ImageView>& levels, WrapModes wrap, bool is_second)
@@ -52,32 +53,33 @@ class Frame {
     triangles_.draw(begin, end, 1, &middles_);
   }
 
-  /// Nothing where the surface does not cover it.
-  std::optional<SeenPixel> pixel(int x, int y) {
+  /// Nothing unless the surface covers the whole pixel.
+  std::optional<ViewPixel> pixel(int x, int y) {
     const std::uint32_t triangle =
         middles_[static_cast<std::size_t>(y - begin_) * static_cast<std::size_t>(view_.size) +
                  static_cast<std::size_t>(x)];
-    if (triangle == SeenTriangles::kNothing) return std::nullopt;
+    if (triangle == TriangleBuffer::kNothing) return std::nullopt;
     const ScreenMap middle = triangles_.map_of(triangle);
-    SeenPixel pixel = looked_up(middle, x + 0.5, y + 0.5);
-    if (!(pixel.mip <= kMostMip) || !look(x, y, middle, &pixel)) return std::nullopt;
+    ViewPixel pixel = lookup_at(middle, x + 0.5, y + 0.5);
+    if (!(pixel.mip <= kMaxPixelMip) || !sample_color(x, y, middle, &pixel)) return std::nullopt;
     return pixel;
   }
 
  private:
-  // Finds what is in front in a pixel, and how much of it is where the middle says; false where the
-  // surface does not cover it.
-  bool look(int x, int y, const ScreenMap& middle, SeenPixel* pixel) {
+  // Averages the surface color over the samples of a pixel, and lowers its trust if some samples
+  // are far from the texture position extrapolated from its center. Returns false unless the
+  // surface covers all samples.
+  bool sample_color(int x, int y, const ScreenMap& middle, ViewPixel* pixel) {
     const int n = view_.samples;
     const auto width = static_cast<std::size_t>(view_.size) * static_cast<std::size_t>(n);
-    const double reach = kElsewhere * elementary::exp2(pixel->mip);
+    const double max_gap = kMaxTexcoordGap * elementary::exp2(pixel->mip);
     Lanes sum{};
-    int near = 0;
+    int near_count = 0;
     for (int j = 0; j < n; ++j) {
       const std::size_t row = static_cast<std::size_t>((y - begin_) * n + j) * width;
       for (int i = 0; i < n; ++i) {
         const std::uint32_t triangle = samples_[row + static_cast<std::size_t>(x * n + i)];
-        if (triangle == SeenTriangles::kNothing) return false;
+        if (triangle == TriangleBuffer::kNothing) return false;
         const ScreenMap& map = maps_.of(triangle);
         const double sx = x + (i + 0.5) / n;
         const double sy = y + (j + 0.5) / n;
@@ -87,23 +89,23 @@ class Frame {
         sum += bilinear(sampled_, wrap_, u, v);
         const double off_u = u - middle.at[0] - sx * middle.by_x[0] - sy * middle.by_y[0];
         const double off_v = v - middle.at[1] - sx * middle.by_x[1] - sy * middle.by_y[1];
-        if (std::max(std::abs(off_u) * image_.width, std::abs(off_v) * image_.height) < reach) {
-          ++near;
+        if (std::max(std::abs(off_u) * image_.width, std::abs(off_v) * image_.height) < max_gap) {
+          ++near_count;
         }
       }
     }
-    pixel->shown = sum * (Lanes{} + 1.0F / static_cast<float>(n * n));
-    if (near < n * n) pixel->trust = kTrustElsewhere;
+    pixel->target = sum * (Lanes{} + 1.0F / static_cast<float>(n * n));
+    if (near_count < n * n) pixel->trust = kMixedPixelTrust;
     return true;
   }
 
-  SeenPixel looked_up(const ScreenMap& map, double x, double y) const {
-    SeenPixel pixel;
+  ViewPixel lookup_at(const ScreenMap& map, double x, double y) const {
+    ViewPixel pixel;
     for (std::size_t a = 0; a < 2; ++a) {
       double at = map.at[a] + x * map.by_x[a] + y * map.by_y[a];
-      // So that floats tell texels of far tiles apart.
+      // Wrapped first, as floats lack the precision for coordinates of far tiles.
       if ((a == 0 ? wrap_.u : wrap_.v) == Wrap::kRepeat) at -= std::floor(at);
-      pixel.uv[a] = static_cast<float>(std::clamp(at, -kFarthest, kFarthest));
+      pixel.uv[a] = static_cast<float>(std::clamp(at, -kMaxTexcoord, kMaxTexcoord));
     }
     const double side_x =
         elementary::hypot(map.by_x[0] * image_.width, map.by_x[1] * image_.height);
@@ -129,8 +131,8 @@ class Frame {
   const ImageView& image_;
   const ImageView& sampled_;
   WrapModes wrap_;
-  SeenTriangles triangles_;
-  Maps maps_{triangles_};
+  TriangleBuffer triangles_;
+  ScreenMapCache maps_{triangles_};
   int begin_ = 0;
   std::vector<std::uint32_t> samples_;
   std::vector<std::uint32_t> middles_;
@@ -147,9 +149,9 @@ Lanes bilinear(const ImageView& image, WrapModes wrap, double u, double v) {
   return sum;
 }
 
-SeenPixels seen_pixels(const View& view, int begin, int end, const std::vector<ImageView>& levels,
+ViewPixels view_pixels(const View& view, int begin, int end, const std::vector<ImageView>& levels,
                        WrapModes wrap) {
-  SeenPixels seen;
+  ViewPixels seen;
   seen.weight = view.weight;
   Frame first(view, levels, wrap, false);
   Frame second(view, levels, wrap, true);
@@ -157,8 +159,8 @@ SeenPixels seen_pixels(const View& view, int begin, int end, const std::vector<I
   second.draw(begin, end);
   for (int y = begin; y < end; ++y) {
     for (int x = 0; x < view.size; ++x) {
-      const std::optional<SeenPixel> before = first.pixel(x, y);
-      std::optional<SeenPixel> after = second.pixel(x, y);
+      const std::optional<ViewPixel> before = first.pixel(x, y);
+      std::optional<ViewPixel> after = second.pixel(x, y);
       if (before) seen.pixels.push_back(*before);
       if (!after) continue;
       after->is_second = before.has_value();

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "prefilter/textures/views/seen_pixels.h"
+#include "prefilter/textures/views/view_pixels.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "prefilter/textures/views/seen_triangles.h"
+#include "prefilter/textures/views/triangle_buffer.h"
 
 namespace prefilter {
 namespace {
 
-// Along z, with y up, in units of pixels.
+// A view along z, with y up, in units of pixels.
 View front_view(const Surface& surface, int size, int samples) {
   View view;
   view.surface = &surface;
@@ -27,7 +27,7 @@ View front_view(const Surface& surface, int size, int samples) {
   return view;
 }
 
-TEST(SeenTriangles, AreInFront) {
+TEST(TriangleBuffer, ShowsTheFrontmostTriangles) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-6.0, 6.0);
   Surface surface;
@@ -42,7 +42,7 @@ TEST(SeenTriangles, AreInFront) {
   constexpr int kSize = 12;
   constexpr int kSamples = 3;
   const View view = front_view(surface, kSize, kSamples);
-  SeenTriangles triangles(view, false);
+  TriangleBuffer triangles(view, false);
   std::vector<std::uint32_t> seen;
   constexpr int kBegin = 2;
   triangles.draw(kBegin, kSize, kSamples, &seen);
@@ -51,7 +51,7 @@ TEST(SeenTriangles, AreInFront) {
     const double x = (static_cast<double>(k % (kSize * kSamples)) + 0.5) / kSamples - kSize / 2.0;
     const double y = static_cast<double>(k / (kSize * kSamples)) / kSamples + 0.5 / kSamples +
                      kBegin - kSize / 2.0;
-    std::uint32_t expected = SeenTriangles::kNothing;
+    std::uint32_t expected = TriangleBuffer::kNothing;
     double highest = -1e9;
     bool is_near_edge = false;
     for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
@@ -78,7 +78,7 @@ TEST(SeenTriangles, AreInFront) {
   }
 }
 
-// A square of 32 units, which wears the image four times as large, slanted.
+// A slanted square of 32 units, on which the image is magnified four times.
 Surface square(double slant) {
   Surface surface;
   const double c = std::cos(slant);
@@ -96,8 +96,8 @@ Surface square(double slant) {
   return surface;
 }
 
-TEST(SeenPixels, ShowMeansOfWhatTheyCover) {
-  constexpr int kTexels = 64;  // two a unit along each axis
+TEST(ViewPixels, TargetsAreMeansOverPixels) {
+  constexpr int kTexels = 64;  // two per unit along each axis
   Image image(kTexels, kTexels, 1);
   std::mt19937 random(4);
   for (float& value : image.data) value = std::uniform_real_distribution<float>()(random);
@@ -105,17 +105,17 @@ TEST(SeenPixels, ShowMeansOfWhatTheyCover) {
   View view = front_view(surface, 36, 8);
   view.step = {0.25, 0.0};
   const std::vector<ImageView> levels = {image.view()};
-  const SeenPixels seen = seen_pixels(view, 0, 36, levels, {Wrap::kRepeat, Wrap::kRepeat});
-  // 32 x 32 in the first frame; in the second the columns at the ends are not covered.
+  const ViewPixels seen = view_pixels(view, 0, 36, levels, {Wrap::kRepeat, Wrap::kRepeat});
+  // 32 x 32 in the first frame; in the second the outer columns are not covered.
   std::size_t seconds = 0;
-  for (const SeenPixel& pixel : seen.pixels) seconds += pixel.is_second ? 1 : 0;
+  for (const ViewPixel& pixel : seen.pixels) seconds += pixel.is_second ? 1 : 0;
   EXPECT_EQ(seen.pixels.size(), 32U * 32U + 31U * 32U);
   EXPECT_EQ(seconds, 31U * 32U);
-  for (const SeenPixel& pixel : seen.pixels) {
+  for (const ViewPixel& pixel : seen.pixels) {
     EXPECT_FLOAT_EQ(pixel.mip, 1.0F);
     EXPECT_EQ(pixel.count, 1);
     EXPECT_FLOAT_EQ(pixel.trust, 1.0F);
-    // The image, interpolated, by a finer rule.
+    // The interpolated image, integrated by a finer rule.
     double sum = 0.0;
     constexpr int kRule = 40;
     for (int j = 0; j < kRule; ++j) {
@@ -125,39 +125,39 @@ TEST(SeenPixels, ShowMeansOfWhatTheyCover) {
                         pixel.uv[1] + ((j + 0.5) / kRule - 0.5) / 32.0)[0];
       }
     }
-    EXPECT_NEAR(pixel.shown[0], sum / (kRule * kRule), 0.004);
+    EXPECT_NEAR(pixel.target[0], sum / (kRule * kRule), 0.004);
   }
 }
 
-TEST(SeenPixels, RowsLieAlongTheLongerSide) {
+TEST(ViewPixels, FootprintsFollowTheLongerSide) {
   const Image image(64, 64, 1, 0.5F);
   const Surface surface = square(std::acos(0.3));
   const std::vector<ImageView> levels = {image.view()};
-  const SeenPixels seen =
-      seen_pixels(front_view(surface, 40, 4), 0, 40, levels, {Wrap::kClamp, Wrap::kClamp});
+  const ViewPixels seen =
+      view_pixels(front_view(surface, 40, 4), 0, 40, levels, {Wrap::kClamp, Wrap::kClamp});
   ASSERT_FALSE(seen.pixels.empty());
-  for (const SeenPixel& pixel : seen.pixels) {
-    // Two texels by 2 / 0.3.
+  for (const ViewPixel& pixel : seen.pixels) {
+    // Two texels divided by 0.3.
     EXPECT_NEAR(pixel.mip, std::log2(2.0 / 0.3), 1e-5);
     EXPECT_EQ(pixel.count, 4);
     EXPECT_NEAR(pixel.row_mip, std::log2(2.0 / 0.3 / 4.0), 1e-5);
     EXPECT_NEAR(std::abs(pixel.along[0]), 1.0 / 32.0 / 0.3, 1e-6);
     EXPECT_NEAR(pixel.along[1], 0.0, 1e-9);
-    EXPECT_FLOAT_EQ(pixel.shown[0], 0.5F);
+    EXPECT_FLOAT_EQ(pixel.target[0], 0.5F);
   }
 }
 
-TEST(SeenPixels, OfTwoPlacesCountLess) {
+TEST(ViewPixels, MixedPixelsHaveLessWeight) {
   Surface surface = square(0.0);
   // The other half is elsewhere in the texture.
   for (TextureCoordinate& corner : surface.uvs[1]) corner.u += 0.37;
   const Image image(64, 64, 1, 0.5F);
   const std::vector<ImageView> levels = {image.view()};
   const View view = front_view(surface, 36, 4);
-  const SeenPixels seen = seen_pixels(view, 0, 36, levels, {Wrap::kRepeat, Wrap::kRepeat});
+  const ViewPixels seen = view_pixels(view, 0, 36, levels, {Wrap::kRepeat, Wrap::kRepeat});
   std::size_t less = 0;
-  for (const SeenPixel& pixel : seen.pixels) less += pixel.trust < 1.0F ? 1 : 0;
-  // Those on the diagonal, of both frames.
+  for (const ViewPixel& pixel : seen.pixels) less += pixel.trust < 1.0F ? 1 : 0;
+  // The pixels on the diagonal, in both frames.
   EXPECT_EQ(less, 2U * 32U);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "prefilter/textures/texels/texel_triangles.h"
+#include "prefilter/geometry/texels/texel_triangles.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,8 +15,8 @@ namespace prefilter {
 namespace {
 
 constexpr double kMaxTiles = 1 << 20;
-// Farther out, what lies inside of the image could not be told from rounding.
-constexpr double kMaxReach = 1 << 30;
+// Farther out, rounding errors of coordinates are too large to place triangles in the image.
+constexpr double kMaxTexcoordReach = 1 << 30;
 
 struct Extent {
   double low, high;
@@ -33,7 +33,7 @@ class Mapper final : public CellSink {
   Mapper(int width, int height, WrapModes wrap, TexelTriangles* out)
       : width_(width), height_(height), wrap_(wrap), out_(out) {}
 
-  // `triangle` is in units of tiles; the indices name it in messages.
+  // `triangle` is in units of tiles; error messages contain the indices.
   void add(const MassTriangle& triangle, std::size_t surface_index, std::size_t triangle_index) {
     const Extent u = extent(triangle, &GridPoint::x);
     const Extent v = extent(triangle, &GridPoint::y);
@@ -44,7 +44,7 @@ class Mapper final : public CellSink {
     const double tiles = tile_count(u, wrap_.u) * tile_count(v, wrap_.v);
     const double repeated = std::max(repeated_reach(u, wrap_.u), repeated_reach(v, wrap_.v));
     const double reach = std::max({-u.low, u.high, -v.low, v.high});
-    if (tiles > kMaxTiles || repeated > kMaxTiles || reach > kMaxReach) {
+    if (tiles > kMaxTiles || repeated > kMaxTiles || reach > kMaxTexcoordReach) {
       throw_invalid(
           "surface " + std::to_string(surface_index) + ", uvs: triangle " +
           std::to_string(triangle_index) + " spans u from " + to_text(u.low) + " to " +
@@ -57,7 +57,7 @@ class Mapper final : public CellSink {
       const CellSpan rows = cell_span(v.low, v.high);
       cut_to_cells(triangle, {columns.first, rows.first, columns.last + 1, rows.last + 1}, this);
     } else {
-      // Parts beyond the edge are moved to it, and keep their areas.
+      // Parts beyond the edge move onto it and keep their mass.
       cut(whole_piece(triangle, true), 0, wrap_.u, u, [&](const CellPiece& part) {
         cut(part, 1, wrap_.v, v, [&](const CellPiece& inner) { push_fan(inner); });
       });
@@ -87,8 +87,8 @@ class Mapper final : public CellSink {
     return mode == Wrap::kRepeat ? std::max(std::abs(extent.low), std::abs(extent.high)) : 0.0;
   }
 
-  // Cuts a piece along one axis where the wrap mode breaks, and moves each part to where a lookup
-  // there reads the image.
+  // Cuts a piece along one axis at the breaks of the wrap mode, and moves each part to the place
+  // where a lookup there reads the image.
   template <typename Use>
   static void cut(const CellPiece& piece, int axis, Wrap mode, const Extent& extent,
                   const Use& use) {
@@ -149,8 +149,8 @@ class Mapper final : public CellSink {
     out_->triangles.push_back(triangle);
   }
 
-  // What lies all on the image's far edge belongs to the last texel, which is half-open like every
-  // cell.
+  // Triangles that lie entirely on the image's far edge belong to the last texel, as cells are
+  // half-open.
   static void keep_off_far_edge(double GridPoint::*axis, int size, MassTriangle* triangle) {
     for (const GridPoint& corner : triangle->corners) {
       if (corner.*axis != size) return;
@@ -182,7 +182,7 @@ TexelTriangles map_to_texels(const std::vector<const Surface*>& surfaces, int wi
       runs.push_back({s, first, std::min(first + kTrianglesAtOnce, count)});
     }
   }
-  // Scaled so that numbers stay of order 1 whatever the units of space.
+  // Scaled so that masses are of order 1 in any unit of length.
   const double scale = total_area > 0.0 ? static_cast<double>(width) * height / total_area : 0.0;
 
   std::vector<TexelTriangles> mapped(runs.size());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "prefilter/textures/texels/tiles.h"
+#include "prefilter/geometry/texels/tiles.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 namespace prefilter {
 namespace {
 
-// How many texels lie between two tiles of an axis that is joined at its ends.
+// The number of texels between two tiles along a periodic axis.
 int texels_between(int a, int b, int count, int size) {
   const auto begin = [](int tile) { return tile * Tiles::kSize; };
   const auto end = [&](int tile) { return std::min(begin(tile + 1), size); };
@@ -22,7 +22,7 @@ int texels_between(int a, int b, int count, int size) {
   return std::min(begin(high) - end(low), begin(low) + size - end(high));
 }
 
-TEST(Tiles, ThoseOfOneColorAreAWholeTileApart) {
+TEST(Tiles, TilesOfOneColorAreATileApart) {
   for (int size = 1; size <= 12 * Tiles::kSize; ++size) {
     const int count = (size + Tiles::kSize - 1) / Tiles::kSize;
     for (int a = 0; a < count; ++a) {

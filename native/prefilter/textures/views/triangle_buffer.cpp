@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "prefilter/textures/views/seen_triangles.h"
+#include "prefilter/textures/views/triangle_buffer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace prefilter {
 
-SeenTriangles::SeenTriangles(const View& view, bool is_second) : view_(&view) {
+TriangleBuffer::TriangleBuffer(const View& view, bool is_second) : view_(&view) {
   const double middle = 0.5 * view.size;
   const std::array<double, 2> from = {is_second ? view.step[0] : 0.0,
                                       is_second ? view.step[1] : 0.0};
@@ -21,7 +21,7 @@ SeenTriangles::SeenTriangles(const View& view, bool is_second) : view_(&view) {
   }
 }
 
-void SeenTriangles::draw(int begin, int end, int samples, std::vector<std::uint32_t>* triangles) {
+void TriangleBuffer::draw(int begin, int end, int samples, std::vector<std::uint32_t>* triangles) {
   const int width = view_->size * samples;
   const int height = (end - begin) * samples;
   const auto count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
@@ -29,7 +29,7 @@ void SeenTriangles::draw(int begin, int end, int samples, std::vector<std::uint3
   depths_.assign(count, -std::numeric_limits<float>::infinity());
   const auto& all = view_->surface->triangles;
   for (std::uint32_t t = 0; t < all.size(); ++t) {
-    // In samples, of which the first is at 0.
+    // In samples; the first sample is at 0.
     std::array<std::array<double, 2>, 3> p;
     std::array<double, 3> z;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -56,7 +56,7 @@ void SeenTriangles::draw(int begin, int end, int samples, std::vector<std::uint3
         const auto& b = p[(k + 1) % 3];
         if (std::min(a[1], b[1]) > y || std::max(a[1], b[1]) < y) continue;
         const double rise = b[1] - a[1];
-        // Of a level side its ends are those of the others.
+        // Horizontal edges are skipped: the adjacent edges contribute their end points.
         if (rise == 0.0) continue;
         const double x = a[0] + (y - a[1]) / rise * (b[0] - a[0]);
         from = std::min(from, x);
@@ -78,7 +78,7 @@ void SeenTriangles::draw(int begin, int end, int samples, std::vector<std::uint3
   }
 }
 
-ScreenMap SeenTriangles::map_of(std::uint32_t triangle) const {
+ScreenMap TriangleBuffer::map_of(std::uint32_t triangle) const {
   const auto& [a, b, c] = view_->surface->triangles[triangle];
   const Point& p = points_[static_cast<std::size_t>(a)];
   const Point& q = points_[static_cast<std::size_t>(b)];

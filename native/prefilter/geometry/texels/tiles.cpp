@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "prefilter/textures/texels/tiles.h"
+#include "prefilter/geometry/texels/tiles.h"
 
 #include <array>
 #include <utility>
@@ -32,8 +32,8 @@ void for_each_tile(const MassTriangle& triangle, int columns, int rows, const Us
 
 }  // namespace
 
-// Colors 0 and 1 in turn. The last one is beside the first around the edge, and may be so narrow
-// that the one before it comes near the first too: they have colors of their own.
+// Colors alternate between 0 and 1. The last tile is next to the first around the edge, and may be
+// so narrow that the tile before it comes close to the first too; these two get their own colors.
 int tile_color(int tile, int count, int size) {
   const bool narrow = size % Tiles::kSize != 0;
   if (count > 1 && tile == count - 1 && (narrow || count % 2 == 1)) return 2;
@@ -46,7 +46,8 @@ Tiles::Tiles(const TexelTriangles& triangles, const Progress& progress, int thre
       height_(triangles.height),
       columns_((triangles.width + kSize - 1) / kSize),
       rows_((triangles.height + kSize - 1) / kSize) {
-  // Runs of triangles are counted tile by tile, and then each run knows where its own go.
+  // Two passes over runs of triangles: the first counts each run's entries per tile, the second
+  // writes them to their final positions.
   constexpr std::size_t kRuns = 16;
   const std::size_t size = triangles.triangles.size();
   const auto run_first = [size](std::int64_t run) { return size * run / kRuns; };
