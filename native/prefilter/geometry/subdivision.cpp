@@ -17,8 +17,8 @@
 #include <numeric>
 #include <vector>
 
+#include "prefilter/base/cancel_check.h"
 #include "prefilter/base/error.h"
-#include "prefilter/base/pulse.h"
 #include "prefilter/base/text.h"
 
 namespace prefilter {
@@ -317,15 +317,16 @@ void check_creases(const PolygonArrays& mesh, const ControlMesh& control,
 template <typename Values>
 class CancellableArray {
  public:
-  CancellableArray(Values* values, Pulse* pulse) : values_(*values), pulse_(*pulse) {}
+  CancellableArray(Values* values, CancelCheck* cancel_check)
+      : values_(*values), cancel_check_(*cancel_check) {}
   auto& operator[](int i) {
-    pulse_.step();
+    cancel_check_.step();
     return values_[i];
   }
 
  private:
   Values& values_;
-  Pulse& pulse_;
+  CancelCheck& cancel_check_;
 };
 
 // The arrays of the surface at the last level.
@@ -348,14 +349,14 @@ Refined refine(const ControlMesh& control, const Far::TopologyRefiner& refiner, 
     next.points.resize(topology.GetNumVertices());
     next.uvs.resize(topology.GetNumFVarValues());
     const Progress part = progress.part(static_cast<double>(l - 1) / level, 1.0);
-    Pulse pulse(part);
-    CancellableArray points(&next.points, &pulse);
-    CancellableArray uvs(&next.uvs, &pulse);
+    CancelCheck cancel_check(part);
+    CancellableArray points(&next.points, &cancel_check);
+    CancellableArray uvs(&next.uvs, &cancel_check);
     primvars.Interpolate(l, now.points, points);
     primvars.InterpolateFaceVarying(l, now.uvs, uvs);
     if (!now.weights.empty()) {
       next.weights.resize(topology.GetNumVertices());
-      CancellableArray weights(&next.weights, &pulse);
+      CancellableArray weights(&next.weights, &cancel_check);
       primvars.InterpolateVarying(l, now.weights, weights);
     }
     next.base_faces.resize(topology.GetNumFaces());
@@ -366,13 +367,13 @@ Refined refine(const ControlMesh& control, const Far::TopologyRefiner& refiner, 
     progress.report(static_cast<double>(l) / level);
   }
   const Progress limits = progress.part(1.0, 1.0);
-  Pulse pulse(limits);
+  CancelCheck cancel_check(limits);
   Points points(now.points.size());
-  CancellableArray limit_points(&points, &pulse);
+  CancellableArray limit_points(&points, &cancel_check);
   primvars.Limit(now.points, limit_points);
   now.points = std::move(points);
   Uvs uvs(now.uvs.size());
-  CancellableArray limit_uvs(&uvs, &pulse);
+  CancellableArray limit_uvs(&uvs, &cancel_check);
   primvars.LimitFaceVarying(now.uvs, limit_uvs);
   now.uvs = std::move(uvs);
   return now;
@@ -395,9 +396,9 @@ Surface triangulated(const PolygonArrays& mesh, const Refined& refined,
     uvs.insert(uvs.end(), refined.uvs[uv].v.begin(), refined.uvs[uv].v.end());
     return place;
   };
-  Pulse pulse(progress);
+  CancelCheck cancel_check(progress);
   for (int face = 0; face < topology.GetNumFaces(); ++face) {
-    pulse.step();
+    cancel_check.step();
     const int base = refined.base_faces[face];
     if (mesh.kept != nullptr && !mesh.kept[base]) continue;
     const Far::ConstIndexArray vertices = topology.GetFaceVertices(face);

@@ -8,8 +8,8 @@
 #include <numeric>
 #include <string>
 
+#include "prefilter/base/cancel_check.h"
 #include "prefilter/base/error.h"
-#include "prefilter/base/pulse.h"
 #include "prefilter/base/text.h"
 
 namespace prefilter {
@@ -98,11 +98,11 @@ Surface make_surface(const TexturedMesh& textured, const Progress& progress) {
   surface.uvs.resize(count);
   surface.areas.resize(count);
   surface.triangles.resize(count);
-  Pulse pulse(progress);
+  CancelCheck cancel_check(progress);
   surface.positions.reserve(mesh.positions.size());
   for (const Vector3& position : mesh.positions) surface.positions.push_back(position);
   for (std::size_t k = 0; k < count; ++k) {
-    pulse.step();
+    cancel_check.step();
     for (int corner = 0; corner < 3; ++corner) {
       surface.triangles[k][corner] = static_cast<std::int32_t>(mesh.triangles[k][corner]);
       const double* uv = textured.uvs + 6 * k + 2 * corner;

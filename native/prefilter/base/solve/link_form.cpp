@@ -7,7 +7,7 @@
 #include <limits>
 #include <span>
 
-#include "prefilter/base/pulse.h"
+#include "prefilter/base/cancel_check.h"
 
 namespace prefilter {
 
@@ -23,10 +23,10 @@ struct LinkCoefficient {
 // The coefficients of all links whose texels are all part of the system, sorted by texel.
 std::vector<LinkCoefficient> coefficients_of(const std::vector<TexelLink>& links,
                                              const std::function<bool(std::ptrdiff_t)>& is_part,
-                                             Pulse* pulse) {
+                                             CancelCheck* cancel_check) {
   std::vector<LinkCoefficient> uses;
   for (std::size_t i = 0; i < links.size(); ++i) {
-    pulse->step();
+    cancel_check->step();
     const TexelLink& link = links[i];
     if (!(link.weight > 0.0F) ||
         !std::all_of(link.texels.begin(), link.texels.begin() + link.count, is_part)) {
@@ -37,8 +37,8 @@ std::vector<LinkCoefficient> coefficients_of(const std::vector<TexelLink>& links
     }
   }
   std::stable_sort(uses.begin(), uses.end(),
-                   [pulse](const LinkCoefficient& a, const LinkCoefficient& b) {
-                     pulse->step();
+                   [cancel_check](const LinkCoefficient& a, const LinkCoefficient& b) {
+                     cancel_check->step();
                      return a.at < b.at;
                    });
   return uses;
@@ -68,11 +68,11 @@ void find_products(const std::vector<TexelLink>& links, std::span<const LinkCoef
 
 LinkForm::LinkForm(const std::vector<TexelLink>& links,
                    const std::function<bool(std::ptrdiff_t)>& is_part, const Progress& progress) {
-  Pulse pulse(progress);
-  const std::vector<LinkCoefficient> uses = coefficients_of(links, is_part, &pulse);
+  CancelCheck cancel_check(progress);
+  const std::vector<LinkCoefficient> uses = coefficients_of(links, is_part, &cancel_check);
   std::vector<Product> products;
   for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
-    pulse.step();
+    cancel_check.step();
     while (end < uses.size() && uses[end].at == uses[begin].at) ++end;
     find_products(links, std::span(uses).subspan(begin, end - begin), &products);
     Texel texel{uses[begin].at, 0.0F, entries_.size()};

@@ -12,8 +12,8 @@
 #include <functional>
 #include <limits>
 
+#include "prefilter/base/cancel_check.h"
 #include "prefilter/base/parallel.h"
-#include "prefilter/base/pulse.h"
 
 namespace prefilter {
 namespace {

@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "prefilter/base/cancel_check.h"
 #include "prefilter/base/geometry.h"
-#include "prefilter/base/pulse.h"
 #include "prefilter/geometry/spatial/morton.h"
 
 namespace prefilter {
@@ -86,12 +86,12 @@ BoxTree::BoxTree(std::span<const std::uint64_t> keys, std::size_t leaf_items, co
   std::array<Waiting, kMaxDepth> waiting;
   std::size_t count = 0;
   waiting[count++] = {0, static_cast<std::uint32_t>(keys.size()), kNoParent};
-  Pulse pulse(progress);
+  CancelCheck cancel_check(progress);
   while (count > 0) {
     auto [begin, end, parent] = waiting[--count];
     if (parent != kNoParent) nodes_[parent].right = static_cast<std::uint32_t>(nodes_.size());
     while (true) {
-      pulse.step();
+      cancel_check.step();
       nodes_.push_back({kEmptyBox, begin, end, 0});
       if (end - begin <= leaf_items) break;
       const std::uint32_t middle = split(keys, begin, end);
@@ -102,7 +102,7 @@ BoxTree::BoxTree(std::span<const std::uint64_t> keys, std::size_t leaf_items, co
     for (std::uint32_t item = leaf.begin; item < leaf.end; ++item) leaf.box.include(box_of(item));
   }
   for (std::size_t node = nodes_.size(); node-- > 0;) {
-    pulse.step();
+    cancel_check.step();
     if (nodes_[node].right == 0) continue;
     nodes_[node].box = nodes_[node + 1].box;
     nodes_[node].box.include(nodes_[nodes_[node].right].box);

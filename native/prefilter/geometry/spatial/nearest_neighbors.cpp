@@ -6,8 +6,8 @@
 #include <cmath>
 #include <string>
 
+#include "prefilter/base/cancel_check.h"
 #include "prefilter/base/error.h"
-#include "prefilter/base/pulse.h"
 #include "prefilter/base/sort.h"
 #include "prefilter/geometry/spatial/curve_order.h"
 
@@ -32,9 +32,9 @@ void sort_by_position(std::span<const Vector3> points, std::vector<CurvePlace>* 
   };
   constexpr std::size_t kMany = 1U << 15;
   std::vector<CurvePlace> copies;
-  Pulse pulse(progress);
+  CancelCheck cancel_check(progress);
   for (std::size_t begin = 0, end = 0; begin < order->size(); begin = end) {
-    pulse.step();
+    cancel_check.step();
     while (end < order->size() && (*order)[end].key == (*order)[begin].key) ++end;
     if (end == begin + 1) continue;
     const auto first = order->begin() + static_cast<std::ptrdiff_t>(begin);
@@ -82,9 +82,9 @@ NeighborSearch::NeighborSearch(std::span<const Vector3> points, const Progress& 
   }
   std::vector<std::uint32_t> usable;
   usable.reserve(points.size());
-  Pulse pulse(progress);
+  CancelCheck cancel_check(progress);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    pulse.step();
+    cancel_check.step();
     if (is_usable(points[i])) usable.push_back(static_cast<std::uint32_t>(i));
   }
   std::vector<CurvePlace> order = along_curve(
@@ -97,7 +97,7 @@ NeighborSearch::NeighborSearch(std::span<const Vector3> points, const Progress& 
   std::vector<std::uint64_t> keys;
   keys.reserve(order.size());
   for (const CurvePlace& place : order) {
-    pulse.step();
+    cancel_check.step();
     const Vector3& point = points[place.index];
     if (positions_.empty() || positions_.back() != point) {
       positions_.push_back(point);

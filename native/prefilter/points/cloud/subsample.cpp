@@ -9,9 +9,9 @@
 #include <limits>
 #include <string>
 
+#include "prefilter/base/cancel_check.h"
 #include "prefilter/base/error.h"
 #include "prefilter/base/parallel.h"
-#include "prefilter/base/pulse.h"
 #include "prefilter/base/sort.h"
 #include "prefilter/base/text.h"
 #include "prefilter/geometry/spatial/nearest_neighbors.h"
@@ -132,10 +132,10 @@ std::vector<std::int64_t> grid_points(std::span<const Vector3> points, const Nei
   sort_in_parallel(&cells, progress.part(0.1, 0.9), threads);
   std::vector<std::int64_t> kept;
   const Progress last = progress.part(0.9, 1.0);
-  Pulse pulse(last);
+  CancelCheck cancel_check(last);
   for (std::size_t begin = 0, end = 0; begin < cells.size(); begin = end) {
     while (end < cells.size() && cells[end].cell == cells[begin].cell) {
-      pulse.step();
+      cancel_check.step();
       ++end;
     }
     kept.push_back(central_point(points, std::span(cells).subspan(begin, end - begin)));

@@ -8,8 +8,8 @@
 #include <limits>
 #include <string>
 
+#include "prefilter/base/cancel_check.h"
 #include "prefilter/base/error.h"
-#include "prefilter/base/pulse.h"
 
 namespace prefilter {
 namespace {
@@ -60,10 +60,10 @@ class Grid {
   // The median distance of neighbors in rows and columns; 0 where there are none.
   double spacing(const Progress& progress) const {
     std::vector<double> lengths;
-    Pulse pulse(progress);
+    CancelCheck cancel_check(progress);
     for (std::int64_t row = 0; row < rows(); ++row) {
       for (std::int64_t column = 0; column < columns(); ++column) {
-        pulse.step();
+        cancel_check.step();
         if (column + 1 < columns())
           add_length(point(row, column), point(row, column + 1), &lengths);
         if (row + 1 < rows()) add_length(point(row, column), point(row + 1, column), &lengths);
@@ -122,9 +122,9 @@ std::vector<std::int8_t> steps_to_end(std::int64_t rows, std::int64_t columns,
   for (std::size_t i = 0; i < steps.size(); ++i) {
     steps[i] = is_end[i] ? 0 : static_cast<std::int8_t>(kBorder);
   }
-  Pulse pulse(progress);
+  CancelCheck cancel_check(progress);
   const auto look = [&](std::int64_t row, std::int64_t column, std::int64_t along) {
-    pulse.step();
+    cancel_check.step();
     std::int8_t& own = steps[static_cast<std::size_t>(row * columns + column)];
     // The neighbors that were visited before: one of this row, three of the last.
     const std::array<std::array<std::int64_t, 2>, 4> before = {{{row, column - along},
@@ -151,9 +151,9 @@ std::vector<std::int8_t> steps_to_end(std::int64_t rows, std::int64_t columns,
 std::vector<Vector3> mesh_normals(const InputMesh& mesh, const Progress& progress) {
   std::vector<Vector3> normals(mesh.positions.size());
   const auto count = static_cast<std::int64_t>(mesh.positions.size());
-  Pulse pulse(progress);
+  CancelCheck cancel_check(progress);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    pulse.step();
+    cancel_check.step();
     for (const std::int64_t vertex : mesh.triangles[t]) {
       if (vertex >= 0 && vertex < count) continue;
       throw_no_vertex("triangles: triangle " + std::to_string(t), vertex, mesh.positions.size());
@@ -166,7 +166,7 @@ std::vector<Vector3> mesh_normals(const InputMesh& mesh, const Progress& progres
     }
   }
   for (Vector3& normal : normals) {
-    pulse.step();
+    cancel_check.step();
     normal = unit_or_none(normal);
   }
   return normals;
@@ -181,10 +181,10 @@ GridNormals grid_normals(std::span<const Vector3> points, const RangeGrid& grid,
   // A place is at the end where one of the cells around it is not whole.
   std::vector<bool> is_end(grid.points.size(), true);
   std::vector<std::uint8_t> whole_cells(grid.points.size());
-  Pulse pulse(progress);
+  CancelCheck cancel_check(progress);
   for (std::int64_t row = 0; row + 1 < places.rows(); ++row) {
     for (std::int64_t column = 0; column + 1 < places.columns(); ++column) {
-      pulse.step();
+      cancel_check.step();
       std::array<Triangle, 2> found;
       const int count = places.triangles(row, column, longest, &found);
       triangles.insert(triangles.end(), found.begin(), found.begin() + count);
@@ -203,7 +203,7 @@ GridNormals grid_normals(std::span<const Vector3> points, const RangeGrid& grid,
   };
   double shown = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    pulse.step();
+    cancel_check.step();
     if (result.normals[i] != Vector3{}) shown += dot(result.normals[i], toward(i));
   }
   if (shown < 0.0) {
@@ -213,7 +213,7 @@ GridNormals grid_normals(std::span<const Vector3> points, const RangeGrid& grid,
       steps_to_end(places.rows(), places.columns(), is_end, progress);
   result.weights.resize(points.size());
   for (std::size_t place = 0; place < grid.points.size(); ++place) {
-    pulse.step();
+    cancel_check.step();
     if (grid.points[place] < 0) continue;
     const auto i = static_cast<std::size_t>(grid.points[place]);
     if (result.normals[i] == Vector3{}) continue;

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "prefilter/base/pulse.h"
+#include "prefilter/base/cancel_check.h"
 #include "prefilter/points/normals/some_points.h"
 
 namespace prefilter {
@@ -138,7 +138,7 @@ void look_at_cell(std::span<const Placed> cell, double side, CellFindings* found
 }
 
 CellFindings look_at_cells(std::span<const Vector3> points, const Range& x, const Range& y,
-                           double side, Pulse* pulse) {
+                           double side, CancelCheck* cancel_check) {
   const auto index = [side](double value, const Range& range) {
     // What is far outside is in the cells of the border.
     const double last = std::floor(range.size / side) + 2.0;
@@ -152,7 +152,7 @@ CellFindings look_at_cells(std::span<const Vector3> points, const Range& x, cons
   CellFindings found;
   for (std::size_t begin = 0, end = 0; begin < placed.size(); begin = end) {
     while (end < placed.size() && placed[end].key == placed[begin].key) ++end;
-    for (std::size_t i = begin; i < end; ++i) pulse->step();
+    for (std::size_t i = begin; i < end; ++i) cancel_check->step();
     look_at_cell(std::span(placed).subspan(begin, end - begin), side, &found);
   }
   return found;
@@ -167,10 +167,10 @@ bool is_height_field(std::span<const Vector3> all, const Progress& progress) {
   const Range y = range_along(points, 1);
   const auto count = static_cast<double>(points.size());
   double side = std::sqrt(x.size / count) * std::sqrt(kPointsPerCell * y.size);
-  Pulse pulse(progress);
+  CancelCheck cancel_check(progress);
   for (int scale = 0; scale < kScales; ++scale, side *= 2.0) {
     if (!(side > 0.0 && kLeastCells * side <= std::min(x.size, y.size))) return false;
-    const CellFindings found = look_at_cells(points, x, y, side, &pulse);
+    const CellFindings found = look_at_cells(points, x, y, side, &cancel_check);
     const auto told = static_cast<double>(found.told);
     if (told < kLeastTold * count) continue;
     if (static_cast<double>(found.layered) > kMostElsewhere * told) return false;

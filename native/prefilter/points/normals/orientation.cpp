@@ -10,8 +10,8 @@
 #include <limits>
 #include <utility>
 
+#include "prefilter/base/cancel_check.h"
 #include "prefilter/base/parallel.h"
-#include "prefilter/base/pulse.h"
 #include "prefilter/base/sort.h"
 
 namespace prefilter {
@@ -97,11 +97,11 @@ Patches grow_patches(const LinkedPoints& points, std::span<const std::int16_t> a
                      const std::vector<bool>& is_known, const Progress& progress) {
   const std::size_t count = points.positions.size();
   SignedSets sets(count);
-  Pulse pulse(progress);
+  CancelCheck cancel_check(progress);
   const auto known = [&](std::size_t i) { return !is_known.empty() && is_known[i]; };
   std::uint32_t first_known = kNone;
   for (std::size_t i = 0, e = 0; i < count; ++i) {
-    pulse.step();
+    cancel_check.step();
     if (known(i)) {
       first_known = std::min(first_known, static_cast<std::uint32_t>(i));
       sets.join(first_known, static_cast<std::uint32_t>(i), false);
@@ -114,7 +114,7 @@ Patches grow_patches(const LinkedPoints& points, std::span<const std::int16_t> a
   Patches patches;
   patches.members.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
-    pulse.step();
+    cancel_check.step();
     SignedSets::Member& own = patches.members[i];
     own = sets.find(static_cast<std::uint32_t>(i));
     // A set is named after its first member, so that one has been numbered.
@@ -174,9 +174,9 @@ std::vector<Border> find_borders(const LinkedPoints& points,
                                  std::span<const std::int16_t> agreements, const Patches& patches,
                                  const Progress& progress) {
   RecentBorders borders;
-  Pulse pulse(progress);
+  CancelCheck cancel_check(progress);
   for (std::size_t i = 0, e = 0; i < points.positions.size(); ++i) {
-    pulse.step();
+    cancel_check.step();
     for (std::size_t end = e + points.degree; e < end; ++e) {
       // The fourth power: many doubtful pairs count for less than a few good ones.
       const std::int64_t square = agreements[e] * agreements[e];
@@ -207,12 +207,12 @@ void merge_borders(std::vector<Border>* borders, const Progress& progress, int t
 SignedSets join_patches(std::size_t count, std::vector<Border> borders, const Progress& progress,
                         int threads) {
   SignedSets sets(count);
-  Pulse pulse(progress);
+  CancelCheck cancel_check(progress);
   while (!borders.empty()) {
     merge_borders(&borders, progress.part(0.0, 0.0), threads);
     std::vector<std::uint32_t> strongest(count, kNone);
     for (std::uint32_t k = 0; k < borders.size(); ++k) {
-      pulse.step();
+      cancel_check.step();
       for (const std::uint32_t patch : {borders[k].a, borders[k].b}) {
         std::uint32_t& best = strongest[patch];
         if (best == kNone || std::abs(borders[k].votes) > std::abs(borders[best].votes)) best = k;
@@ -223,7 +223,7 @@ SignedSets join_patches(std::size_t count, std::vector<Border> borders, const Pr
     }
     std::vector<Border> left;
     for (const Border& border : borders) {
-      pulse.step();
+      cancel_check.step();
       const Border next = border_between(sets.find(border.a), sets.find(border.b), border.votes);
       if (next.a != next.b) left.push_back(next);
     }
@@ -274,9 +274,9 @@ std::vector<bool> sets_inside_out(const LinkedPoints& points, std::span<const Ve
   };
   std::vector<Part> parts(patches.count);
   Part whole;
-  Pulse pulse(progress);
+  CancelCheck cancel_check(progress);
   for (std::size_t i = 0; i < points.positions.size(); ++i) {
-    pulse.step();
+    cancel_check.step();
     const double area = points.areas[i] / largest;
     const Vector3 p = place(i);
     for (Part* part : {&parts[patches.members[i].set], &whole}) {
@@ -285,7 +285,7 @@ std::vector<bool> sets_inside_out(const LinkedPoints& points, std::span<const Ve
     }
   }
   for (std::size_t i = 0; i < points.positions.size(); ++i) {
-    pulse.step();
+    cancel_check.step();
     Part& part = parts[patches.members[i].set];
     const double area = points.areas[i] / largest;
     const Vector3 p = place(i);
@@ -327,9 +327,9 @@ std::vector<bool> sets_upside_down(const LinkedPoints& points, std::span<const V
   std::vector<double> sums(patches.count);
   std::vector<bool> has_known(patches.count);
   std::vector<bool> result(patches.count);
-  Pulse pulse(progress);
+  CancelCheck cancel_check(progress);
   for (std::size_t i = 0; i < points.positions.size(); ++i) {
-    pulse.step();
+    cancel_check.step();
     const SignedSets::Member& own = patches.members[i];
     if (is_known[i]) {
       has_known[own.set] = true;

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "prefilter/base/cancel_check.h"
 #include "prefilter/base/error.h"
-#include "prefilter/base/pulse.h"
 #include "prefilter/base/text.h"
 
 namespace prefilter {
@@ -192,9 +192,9 @@ void PlyFile::skip_rows(const Progress& progress) {
   scalars_.assign(element.properties.size(), 0.0);
   list_ends_.assign(element.properties.size(), 0);
   is_skipping_ = true;
-  Pulse pulse(progress);
+  CancelCheck cancel_check(progress);
   while (rows_left() > 0) {
-    pulse.step();
+    cancel_check.step();
     read_row();
   }
   is_skipping_ = false;

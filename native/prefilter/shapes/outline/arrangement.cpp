@@ -148,7 +148,7 @@ CutOutcome Arrangement::collect_sites(std::size_t most_steps, const Progress& pr
 }
 
 // Sites that are near each other become one vertex.
-void Arrangement::merge_sites(Pulse* pulse, SiteList* list) {
+void Arrangement::merge_sites(CancelCheck* cancel_check, SiteList* list) {
   const std::vector<Site>& sites = list->sites;
   DisjointSets<std::uint32_t>& same = list->same;
   struct PlaceHash {
@@ -168,7 +168,7 @@ void Arrangement::merge_sites(Pulse* pulse, SiteList* list) {
     return std::pair{cell_at(off.x / precision_), cell_at(off.y / precision_)};
   };
   for (std::uint32_t i = 0; i < sites.size(); ++i) {
-    pulse->step();
+    cancel_check->step();
     const Point2& point = sites[i].point;
     const auto place = place_of(point);
     const auto [found, is_new] = places.try_emplace(place, i);
@@ -195,7 +195,7 @@ void Arrangement::merge_sites(Pulse* pulse, SiteList* list) {
     return std::tuple(roots[i], !site.is_joint, site.point.x, site.point.y);
   };
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    pulse->step();
+    cancel_check->step();
     return key(a) < key(b);
   });
   for (std::size_t i = 0; i < order.size(); ++i) {
@@ -211,22 +211,22 @@ CutOutcome Arrangement::cut(ArrangementEffort effort, const Progress& progress) 
   SiteList list(contours_);
   const CutOutcome outcome = collect_sites(most_steps(effort), progress, &list);
   if (outcome != CutOutcome::kCut) return outcome;
-  Pulse pulse(progress);
-  merge_sites(&pulse, &list);
+  CancelCheck cancel_check(progress);
+  merge_sites(&cancel_check, &list);
   std::sort(cuts_.begin(), cuts_.end(), [&](const Cut& a, const Cut& b) {
-    pulse.step();
+    cancel_check.step();
     return std::tie(a.place, a.parameter, a.vertex) < std::tie(b.place, b.parameter, b.vertex);
   });
   const auto last = std::unique(cuts_.begin(), cuts_.end(), [](const Cut& a, const Cut& b) {
     return a.place == b.place && a.parameter == b.parameter && a.vertex == b.vertex;
   });
   cuts_.erase(last, cuts_.end());
-  make_chains(&pulse);
-  group_chains(&pulse);
+  make_chains(&cancel_check);
+  group_chains(&cancel_check);
   return CutOutcome::kCut;
 }
 
-void Arrangement::make_chains(Pulse* pulse) {
+void Arrangement::make_chains(CancelCheck* cancel_check) {
   std::uint32_t cut = 0;
   const auto cut_count = static_cast<std::uint32_t>(cuts_.size());
   for (std::uint32_t c = 0; c < contours_.contours().size(); ++c) {
@@ -237,7 +237,7 @@ void Arrangement::make_chains(Pulse* pulse) {
       continue;
     }
     for (std::uint32_t i = first; i < cut; ++i) {
-      pulse->step();
+      cancel_check->step();
       const OutlineChain chain = {c, i, i + 1 < cut ? i + 1 : first};
       if (!is_negligible(chain)) chains_.push_back(chain);
     }
@@ -272,7 +272,7 @@ std::optional<Arrangement::Part> Arrangement::only_part(const OutlineChain& chai
   return found;
 }
 
-void Arrangement::group_chains(Pulse* pulse) {
+void Arrangement::group_chains(CancelCheck* cancel_check) {
   struct Entry {
     std::uint32_t low;
     std::uint32_t high;
@@ -287,11 +287,11 @@ void Arrangement::group_chains(Pulse* pulse) {
     if (a != b) entries.push_back({std::min(a, b), std::max(a, b), i});
   }
   std::sort(entries.begin(), entries.end(), [&](const Entry& a, const Entry& b) {
-    pulse->step();
+    cancel_check->step();
     return std::tie(a.low, a.high, a.chain) < std::tie(b.low, b.high, b.chain);
   });
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    pulse->step();
+    cancel_check->step();
     for (std::size_t j = i + 1; j < entries.size() && entries[j].low == entries[i].low &&
                                 entries[j].high == entries[i].high;
          ++j) {

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "prefilter/base/pulse.h"
+#include "prefilter/base/cancel_check.h"
 #include "prefilter/shapes/outline/meetings.h"
 #include "prefilter/shapes/outline/monotone_contours.h"
 #include "prefilter/shapes/outline/run_tree.h"
@@ -93,9 +93,9 @@ class Arrangement {
   CutOutcome collect_sites(std::size_t most_steps, const Progress& progress, SiteList* list) const;
   Site site_at(const PieceId& id, const MonotonePiece& piece, double parameter,
                const Point2& point) const;
-  void merge_sites(Pulse* pulse, SiteList* list);
-  void make_chains(Pulse* pulse);
-  void group_chains(Pulse* pulse);
+  void merge_sites(CancelCheck* cancel_check, SiteList* list);
+  void make_chains(CancelCheck* cancel_check);
+  void group_chains(CancelCheck* cancel_check);
   bool is_negligible(const OutlineChain& chain) const;
   std::optional<Part> only_part(const OutlineChain& chain) const;
   std::optional<Reach> farthest_part(const OutlineChain& chain) const;

@@ -8,8 +8,8 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "prefilter/base/cancel_check.h"
 #include "prefilter/base/elementary.h"
-#include "prefilter/base/pulse.h"
 
 namespace prefilter {
 namespace {
@@ -34,12 +34,12 @@ struct PositionHash {
 };
 
 // For each vertex the first vertex at its position.
-std::vector<std::int32_t> weld(const std::vector<Vector3>& positions, Pulse* pulse) {
+std::vector<std::int32_t> weld(const std::vector<Vector3>& positions, CancelCheck* cancel_check) {
   std::unordered_map<Vector3, std::int32_t, PositionHash> first;
   first.reserve(positions.size());
   std::vector<std::int32_t> welded(positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    pulse->step();
+    cancel_check->step();
     Vector3 position = positions[i];
     for (double& value : position) value += 0.0;  // -0 is 0
     welded[i] = first.try_emplace(position, static_cast<std::int32_t>(i)).first->second;
@@ -152,7 +152,7 @@ void for_each_part(const std::array<TextureCoordinate, 3>& triangle, int n, cons
 // Variance of the image over the surfaces, from sample points of about equal area, at least one per
 // triangle.
 double variance_on(const std::vector<const Surface*>& surfaces, const ImageView& image,
-                   WrapModes wrap, Pulse* pulse) {
+                   WrapModes wrap, CancelCheck* cancel_check) {
   constexpr double kPoints = 1 << 14;
   double area = 0.0;
   for (const Surface* surface : surfaces) area += surface->total_area();
@@ -161,7 +161,7 @@ double variance_on(const std::vector<const Surface*>& surfaces, const ImageView&
   std::array<double, kMaxChannels> mean{};
   for (const Surface* surface : surfaces) {
     for (std::size_t k = 0; k < surface->triangle_count(); ++k) {
-      pulse->step();
+      cancel_check->step();
       if (!(surface->areas[k] > 0.0)) continue;
       const int n = static_cast<int>(std::ceil(std::sqrt(kPoints * surface->areas[k] / area)));
       const double part = surface->areas[k] / (static_cast<double>(n) * n);
@@ -208,12 +208,12 @@ double gauss_point(double begin, double end, int k) {
 }  // namespace
 
 std::vector<SeamEdge> find_seams(const Surface& surface, const Progress& progress) {
-  Pulse pulse(progress);
-  const std::vector<std::int32_t> welded = weld(surface.positions, &pulse);
+  CancelCheck cancel_check(progress);
+  const std::vector<std::int32_t> welded = weld(surface.positions, &cancel_check);
   std::vector<Edge> edges;
   edges.reserve(3 * surface.triangles.size());
   for (std::size_t k = 0; k < surface.triangles.size(); ++k) {
-    pulse.step();
+    cancel_check.step();
     for (int corner = 0; corner < 3; ++corner) {
       const int next = (corner + 1) % 3;
       Edge edge{welded[surface.triangles[k][corner]], welded[surface.triangles[k][next]],
@@ -227,7 +227,7 @@ std::vector<SeamEdge> find_seams(const Surface& surface, const Progress& progres
     }
   }
   std::stable_sort(edges.begin(), edges.end(), [&](const Edge& a, const Edge& b) {
-    pulse.step();
+    cancel_check.step();
     return std::tie(a.low, a.high) < std::tie(b.low, b.high);
   });
   const auto same_line = [](const Edge& a, const Edge& b) {
@@ -238,7 +238,7 @@ std::vector<SeamEdge> find_seams(const Surface& surface, const Progress& progres
   std::vector<SeamEdge> seams;
   std::size_t end = 0;
   for (std::size_t begin = 0; begin < edges.size(); begin = end) {
-    pulse.step();
+    cancel_check.step();
     end = begin + 1;
     while (end < edges.size() && same_line(edges[begin], edges[end])) ++end;
     if (end - begin != 2) continue;
@@ -278,10 +278,10 @@ double mean_square_across(const SeamEdge& seam, const ImageView& image, WrapMode
 
 void weigh_seams(const ImageView& image, const std::vector<const Surface*>& surfaces,
                  WrapModes wrap, const Progress& progress, std::vector<SeamEdge>* seams) {
-  Pulse pulse(progress);
-  const double variance = variance_on(surfaces, image, wrap, &pulse);
+  CancelCheck cancel_check(progress);
+  const double variance = variance_on(surfaces, image, wrap, &cancel_check);
   for (SeamEdge& seam : *seams) {
-    pulse.step();
+    cancel_check.step();
     const double difference = mean_square_across(seam, image, wrap);
     if (!(difference > 0.0)) continue;
     const double step = variance > 0.0 ? std::sqrt(difference / variance) : HUGE_VAL;
@@ -292,12 +292,12 @@ void weigh_seams(const ImageView& image, const std::vector<const Surface*>& surf
 
 std::vector<SeamLink> link_seams(const std::vector<SeamEdge>& seams, int width, int height,
                                  WrapModes wrap, const Progress& progress) {
-  Pulse pulse(progress);
+  CancelCheck cancel_check(progress);
   std::vector<SeamLink> links;
   double length = 0.0;
   double texels = 0.0;
   for (const SeamEdge& seam : seams) {
-    pulse.step();
+    cancel_check.step();
     const double left = texel_length(seam.left, width, height);
     const double right = texel_length(seam.right, width, height);
     if (!(left + right > 0.0) || left + right > kMaxSeamTexels) continue;

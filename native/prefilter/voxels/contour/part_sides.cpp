@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "prefilter/base/cancel_check.h"
 #include "prefilter/base/parallel.h"
-#include "prefilter/base/pulse.h"
 
 namespace prefilter {
 namespace {
@@ -51,10 +51,10 @@ float value_at(const ContourTree& tree, const RootFrame& frame, const Vector3& p
 PartSides::PartSides(const ContourTree& tree, const RootFrame& frame, const SourceSurface& surface,
                      const Progress& progress)
     : surface_(surface), frame_(frame) {
-  Pulse pulse(progress);
+  CancelCheck cancel_check(progress);
   surface.for_meeting_bricks([&](const Vector3& low, double side) {
     for (int i = 0; i < kCellSamples * kCellSamples * kCellSamples; ++i) {
-      pulse.step();
+      cancel_check.step();
       const Vector3 point = {
           low[0] + (i % kCellSamples + 0.4) / kCellSamples * side,
           low[1] + (i / kCellSamples % kCellSamples + 0.4) / kCellSamples * side,
@@ -230,7 +230,7 @@ void PartSides::settle(const ThickenedCells& thickened, const Progress& progress
     Vector3 size;
   };
   std::vector<Leaf> leaves;
-  Pulse pulse(progress);
+  CancelCheck cancel_check(progress);
   const auto find = [&](const auto& self, const CellNode& cell, const CellCoordinates& at) -> void {
     for (int o = 0; o < 8; ++o) {
       const CellNode octant = tree->octant(cell, o);
@@ -239,7 +239,7 @@ void PartSides::settle(const ThickenedCells& thickened, const Progress& progress
         self(self, octant, octant_cell);
         continue;
       }
-      pulse.step();
+      cancel_check.step();
       const float value = tree->value(octant);
       if (!(value > 0.0F && value < 1.0F)) continue;
       Vector3 center;

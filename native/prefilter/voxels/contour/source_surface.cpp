@@ -7,8 +7,8 @@
 #include <limits>
 #include <unordered_map>
 
+#include "prefilter/base/cancel_check.h"
 #include "prefilter/base/parallel.h"
-#include "prefilter/base/pulse.h"
 #include "prefilter/geometry/spatial/curve_order.h"
 #include "prefilter/geometry/spatial/triangle_pieces.h"
 #include "prefilter/geometry/spatial/triangle_point.h"
@@ -118,11 +118,11 @@ void SourceSurface::mark_around(const Box& box) {
 }
 
 void SourceSurface::mark_borders(const Progress& progress) {
-  Pulse pulse(progress);
+  CancelCheck cancel_check(progress);
   const auto& positions = regions_.positions;
   std::unordered_map<std::uint64_t, double> lengths;
   for (const RegionBorder& border : regions_.borders) {
-    pulse.step();
+    cancel_check.step();
     const Vector3 a = positions[static_cast<std::size_t>(border.ends[0])];
     const Vector3 d = positions[static_cast<std::size_t>(border.ends[1])] - a;
     const int steps = 1 + static_cast<int>(std::min(length(d) / brick_, 1e5));
@@ -150,9 +150,9 @@ void SourceSurface::Meeting::add(std::int32_t part) {
 }
 
 void SourceSurface::mark_meetings(const Progress& progress) {
-  Pulse pulse(progress);
+  CancelCheck cancel_check(progress);
   for (std::size_t t = 0; t < regions_.triangles.size(); ++t) {
-    pulse.step();
+    cancel_check.step();
     if (regions_.labels[t] < 0) continue;
     const std::int32_t part = regions_.parts[t];
     const auto add = [&](const std::array<Vector3, 3>& piece) {
@@ -430,9 +430,9 @@ std::optional<Vector3> SourceSurface::nearest_border(const Vector3& point, doubl
 }
 
 void SourceSurface::find_rim_corners(const Progress& progress) {
-  Pulse pulse(progress);
+  CancelCheck cancel_check(progress);
   for (const RegionBorder& border : regions_.borders) {
-    pulse.step();
+    cancel_check.step();
     const std::int32_t part = regions_.parts[static_cast<std::size_t>(border.triangles[0])];
     const Vector3 a = regions_.positions[static_cast<std::size_t>(border.ends[0])];
     const Vector3 d = regions_.positions[static_cast<std::size_t>(border.ends[1])] - a;

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "prefilter/base/pulse.h"
+#include "prefilter/base/cancel_check.h"
 
 namespace prefilter {
 namespace {
@@ -40,7 +40,7 @@ Normal unit_normal(const MeshView<std::int32_t>& mesh, std::size_t t) {
 
 // Those of the vertices at which some normal is more than 60 degrees from the first one.
 Flags rough_vertices(const MeshView<std::int32_t>& mesh, std::size_t first, const Flags& is_touched,
-                     Pulse* pulse) {
+                     CancelCheck* cancel_check) {
   constexpr float kLeast = 0.51F;  // cosine
   std::vector<std::uint32_t> places(mesh.positions.size());
   std::uint32_t count = 0;
@@ -51,7 +51,7 @@ Flags rough_vertices(const MeshView<std::int32_t>& mesh, std::size_t first, cons
   std::vector<Normal> firsts(count);
   Flags is_rough(mesh.positions.size(), 0);
   for (std::size_t t = first; t < mesh.triangles.size(); ++t) {
-    pulse->step();
+    cancel_check->step();
     const auto& corners = mesh.triangles[t];
     const auto is_any = [&](std::int32_t v) {
       return is_touched[static_cast<std::size_t>(v)] != 0;
@@ -73,10 +73,10 @@ Flags rough_vertices(const MeshView<std::int32_t>& mesh, std::size_t first, cons
 
 // Those between two flagged vertices, in the order of their lower ends.
 std::vector<FoldSide> sides_between(const MeshView<std::int32_t>& mesh, std::size_t first,
-                                    const Flags& is_flagged, Pulse* pulse) {
+                                    const Flags& is_flagged, CancelCheck* cancel_check) {
   std::vector<FoldSide> sides;
   for (std::size_t t = first; t < mesh.triangles.size(); ++t) {
-    pulse->step();
+    cancel_check->step();
     for (std::size_t k = 0; k < 3; ++k) {
       const auto a = static_cast<std::uint32_t>(mesh.triangles[t][k]);
       const auto b = static_cast<std::uint32_t>(mesh.triangles[t][(k + 1) % 3]);
@@ -95,15 +95,15 @@ std::vector<std::array<std::uint32_t, 2>> folded_pairs(const MeshView<std::int32
                                                        std::size_t first,
                                                        std::span<const std::uint8_t> is_suspect,
                                                        const Progress& progress) {
-  Pulse pulse(progress);
+  CancelCheck cancel_check(progress);
   const auto is_counted = [&](std::size_t t) { return is_suspect.empty() || is_suspect[t] != 0; };
   Flags is_touched(mesh.positions.size(), 0);
   for (std::size_t t = first; t < mesh.triangles.size(); ++t) {
     if (!is_counted(t)) continue;
     for (const std::int32_t v : mesh.triangles[t]) is_touched[static_cast<std::size_t>(v)] = 1;
   }
-  const std::vector<FoldSide> sides =
-      sides_between(mesh, first, rough_vertices(mesh, first, is_touched, &pulse), &pulse);
+  const std::vector<FoldSide> sides = sides_between(
+      mesh, first, rough_vertices(mesh, first, is_touched, &cancel_check), &cancel_check);
   std::vector<std::array<std::uint32_t, 2>> pairs;
   for (std::size_t i = 0; i < sides.size(); ++i) {
     for (std::size_t j = i + 1; j < sides.size() && sides[j].low == sides[i].low; ++j) {

@@ -15,7 +15,7 @@
 #include <cmath>
 #include <limits>
 
-#include "prefilter/base/pulse.h"
+#include "prefilter/base/cancel_check.h"
 #include "prefilter/voxels/remesh/intersections.h"
 
 namespace prefilter {
@@ -181,10 +181,10 @@ std::vector<std::uint8_t> where_rough(const MeshView<std::int32_t>& mesh, std::s
                     [](std::uint8_t flag) { return flag != 0; }));
   if (kFew * suspects < mesh.triangles.size() - first) return is_suspect;
   NormalCubes cubes(side, mesh.triangles.size() - first);
-  Pulse pulse(progress);
+  CancelCheck cancel_check(progress);
   const auto visit = [&](const auto& work) {
     for (std::size_t t = first; t < mesh.triangles.size(); ++t) {
-      pulse.step();
+      cancel_check.step();
       if (mesh.triangles[t][0] >= 0) work(t, mesh.corners(t));
     }
   };
@@ -208,9 +208,9 @@ NearTriangles near_triangles(const MeshView<std::int32_t>& mesh, std::size_t fir
   const bool is_any = 2 * count > mesh.triangles.size() - first;
   CubeSet cubes(side, is_any ? 0 : count);
   CubeSet large_cubes(kLargeSide * side, is_any ? 0 : count);
-  Pulse pulse(progress);
+  CancelCheck cancel_check(progress);
   for (std::size_t t = first; t < mesh.triangles.size() && !is_any; ++t) {
-    pulse.step();
+    cancel_check.step();
     if (is_suspect[t] == 0 || mesh.triangles[t][0] < 0) continue;
     cubes.insert(mesh.corners(t));
     large_cubes.insert(mesh.corners(t));
@@ -219,7 +219,7 @@ NearTriangles near_triangles(const MeshView<std::int32_t>& mesh, std::size_t fir
     const std::size_t end = std::min(begin + kRun, mesh.triangles.size());
     if (!is_any && !large_cubes.meets(corners_of_box(mesh, begin, end))) continue;
     for (std::size_t t = begin; t < end; ++t) {
-      pulse.step();
+      cancel_check.step();
       if (mesh.triangles[t][0] < 0) continue;
       if (!is_any && is_suspect[t] == 0 && !cubes.meets(mesh.corners(t))) continue;
       near.numbers.push_back(static_cast<std::uint32_t>(t));

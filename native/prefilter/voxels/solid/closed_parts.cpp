@@ -9,9 +9,9 @@
 #include <tuple>
 #include <vector>
 
+#include "prefilter/base/cancel_check.h"
 #include "prefilter/base/disjoint_sets.h"
 #include "prefilter/base/parallel.h"
-#include "prefilter/base/pulse.h"
 #include "prefilter/voxels/solid/edge_hash.h"
 #include "prefilter/voxels/solid/nesting.h"
 
@@ -23,9 +23,9 @@ constexpr std::int64_t kRowsPerTask = 1 << 14;
 // What hangs together by vertices: of each, the first one.
 std::vector<std::uint32_t> first_vertices(const InputMesh& mesh, const Progress& progress) {
   DisjointSets<std::uint32_t> parts(mesh.positions.size());
-  Pulse pulse(progress);
+  CancelCheck cancel_check(progress);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    pulse.step();
+    cancel_check.step();
     const auto [a, b, c] = mesh.triangles[t];
     parts.join(static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b));
     parts.join(static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(c));
@@ -91,9 +91,9 @@ bool is_solid(const InputMesh& mesh, double thickness, const Progress& progress,
   std::vector<bool> is_seen(mesh.positions.size(), false);
   std::vector<std::uint32_t> number_of(mesh.triangles.size());
   const Progress summing = progress.part(0.6, 0.8);
-  Pulse pulse(summing);
+  CancelCheck cancel_check(summing);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    pulse.step();
+    cancel_check.step();
     const std::uint32_t root = part_of[static_cast<std::size_t>(mesh.triangles[t][0])];
     if (!is_seen[root]) {
       numbers[root] = static_cast<std::uint32_t>(parts.size());

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "prefilter/base/pulse.h"
+#include "prefilter/base/cancel_check.h"
 #include "prefilter/voxels/grid_contour.h"
 #include "prefilter/wavelet/cell_polygon.h"
 
@@ -68,9 +68,9 @@ CellPlanes planes_of(const MeshView<std::int32_t>& mesh, const ReachGrid& grid,
                      const std::vector<bool>& is_filled, const Progress& progress) {
   CellPlanes planes;
   const CellBox all = {{0, 0, 0}, grid.size()};
-  Pulse pulse(progress);
+  CancelCheck cancel_check(progress);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    pulse.step();
+    cancel_check.step();
     const std::array<Vector3, 3> corners = mesh.corners(t);
     Vector3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
     const double size = length(normal);

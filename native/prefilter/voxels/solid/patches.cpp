@@ -6,7 +6,7 @@
 #include <limits>
 #include <span>
 
-#include "prefilter/base/pulse.h"
+#include "prefilter/base/cancel_check.h"
 
 namespace prefilter {
 namespace {

@@ -9,8 +9,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "prefilter/base/cancel_check.h"
 #include "prefilter/base/parallel.h"
-#include "prefilter/base/pulse.h"
 #include "prefilter/wavelet/cell_polygon.h"
 
 namespace prefilter {

@@ -9,8 +9,8 @@
 #include <span>
 #include <tuple>
 
+#include "prefilter/base/cancel_check.h"
 #include "prefilter/base/parallel.h"
-#include "prefilter/base/pulse.h"
 #include "prefilter/voxels/solid/buckets.h"
 #include "prefilter/voxels/solid/edge_table.h"
 

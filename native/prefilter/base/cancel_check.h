@@ -11,9 +11,9 @@ namespace prefilter {
 
 /// Reports 0 progress every few thousand steps, so that long sorts and library loops can be
 /// cancelled. The progress must outlive it.
-class Pulse {
+class CancelCheck {
  public:
-  explicit Pulse(const Progress& progress) : progress_(progress) {}
+  explicit CancelCheck(const Progress& progress) : progress_(progress) {}
   void step() {
     if (++steps_ % kStepsPerReport == 0) progress_.report(0.0);
   }
