@@ -53,7 +53,7 @@ void find_cells(const TexelPlan& plan, const SampleBlock& block, CellPlaces& pla
     sides.outside.add(i, !is_inside);
     for (int finer = 0; finer < 3; ++finer) {
       const Pair corner = cells.corner(finer, uv, cell, in_cell);
-      places.corners[i][finer] = cells.texels[finer] + distance(corner, cells.pitches[finer]);
+      places.corners[i][finer] = cells.texels[finer] + texel_offset(corner, cells.pitches[finer]);
     }
   }
 }

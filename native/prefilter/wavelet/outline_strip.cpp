@@ -204,12 +204,12 @@ void OutlineStrip::clip(const MonotoneCurve& piece, double sign, const Pass& pas
     double t;
     Point2 point;
   };
-  std::array<Crossing, 6> places;
+  std::array<Crossing, 6> crossings;
   int count = 0;
   const auto add_crossing = [&](double t, const Point2& point) {
     int i = count++;
-    for (; i > 0 && places[i - 1].t > t; --i) places[i] = places[i - 1];
-    places[i] = {t, point};
+    for (; i > 0 && crossings[i - 1].t > t; --i) crossings[i] = crossings[i - 1];
+    crossings[i] = {t, point};
   };
   add_crossing(piece.t_begin, piece.begin);
   const auto passes = [](double a, double b, double value) {
@@ -227,10 +227,10 @@ void OutlineStrip::clip(const MonotoneCurve& piece, double sign, const Pass& pas
     const auto [t, x] = pass(1, y);
     add_crossing(t, {x, y});
   }
-  places[count++] = {piece.t_end, piece.end};
+  crossings[count++] = {piece.t_end, piece.end};
   for (int i = 0; i + 1 < count; ++i) {
-    const Crossing& a = places[i];
-    const Crossing& b = places[i + 1];
+    const Crossing& a = crossings[i];
+    const Crossing& b = crossings[i + 1];
     if (is_inside(a.point, b.point)) {
       inside(a.point, a.t, b.point, b.t);
     } else {
@@ -368,8 +368,8 @@ void OutlineStrip::add_inner_line(const Point2& begin_, const Point2& end_, doub
 }
 
 template <bool kIsCubic>
-void OutlineStrip::Passes::find(const MonotonePolynomials& piece, int axis, int first, int step,
-                                int count_) {
+void OutlineStrip::Crossings::find(const MonotonePolynomials& piece, int axis, int first, int step,
+                                   int count_) {
   count = count_;
   const auto room = static_cast<std::size_t>(count + 1);  // evaluated in pairs
   if (s.size() < room) {

@@ -15,9 +15,9 @@
 namespace prefilter {
 
 struct TexelLink {
-  static constexpr int kMostTexels = 8;
-  std::array<std::ptrdiff_t, kMostTexels> texels;  // as in NinePointSystem::at
-  std::array<float, kMostTexels> shares;
+  static constexpr int kMaxLinkTexels = 8;
+  std::array<std::ptrdiff_t, kMaxLinkTexels> texels;  // as in NinePointSystem::at
+  std::array<float, kMaxLinkTexels> shares;
   int count = 0;
   float weight = 0.0F;  // of the squared combination
 };

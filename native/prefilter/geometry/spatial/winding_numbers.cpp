@@ -104,18 +104,18 @@ WindingNumbers::WindingNumbers(const InputMesh& mesh, const Progress& progress, 
     return box;
   };
   tree_ = BoxTree(keys, kTrianglesPerLeaf, box_of, progress.part(0.6, 0.9));
-  fars_.resize(tree_.nodes().size());
-  std::vector<double> areas(fars_.size());
-  for (std::size_t n = fars_.size(); n-- > 0;) {
+  far_fields_.resize(tree_.nodes().size());
+  std::vector<double> areas(far_fields_.size());
+  for (std::size_t n = far_fields_.size(); n-- > 0;) {
     if (n % (1U << 16U) == 0) progress.report(0.9);
-    fars_[n] = far_of(n, &areas);
+    far_fields_[n] = far_field_of(n, &areas);
   }
   progress.report(1.0);
 }
 
-auto WindingNumbers::far_of(std::size_t n, std::vector<double>* areas) const -> Far {
+auto WindingNumbers::far_field_of(std::size_t n, std::vector<double>* areas) const -> FarField {
   const BoxTree::Node& node = tree_.nodes()[n];
-  Far far{};
+  FarField far{};
   double area = 0.0;
   Vector3 sum{};
   const auto add = [&](const Vector3& middle, double weight) {
@@ -133,8 +133,8 @@ auto WindingNumbers::far_of(std::size_t n, std::vector<double>* areas) const -> 
     }
   } else {
     for (const std::size_t child : {n + 1, std::size_t{node.right}}) {
-      add(fars_[child].middle, (*areas)[child]);
-      far.normal = far.normal + fars_[child].normal;
+      add(far_fields_[child].middle, (*areas)[child]);
+      far.normal = far.normal + far_fields_[child].normal;
     }
   }
   (*areas)[n] = area;
@@ -156,7 +156,7 @@ double WindingNumbers::at(const Vector3& point, double far_radii) const {
   while (count > 0) {
     const std::uint32_t n = waiting[--count];
     const BoxTree::Node& node = nodes[n];
-    const Far& far = fars_[n];
+    const FarField& far = far_fields_[n];
     const Vector3 to = far.middle - point;
     const double squared = dot(to, to);
     if (squared > far_radii * far_radii * far.squared_radius) {

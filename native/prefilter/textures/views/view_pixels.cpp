@@ -115,10 +115,10 @@ class Frame {
     const double shorter = std::min(side_x, side_y);
     const auto& along = side_x > side_y ? map.by_x : map.by_y;
     pixel.along = {static_cast<float>(along[0]), static_cast<float>(along[1])};
-    const double ratio = longer <= shorter * kMostLookups ? longer / shorter : kMostLookups;
+    const double ratio = longer <= shorter * kMaxLookups ? longer / shorter : kMaxLookups;
     pixel.count = static_cast<std::uint8_t>(
-        shorter > 0.0 ? std::clamp(std::ceil(ratio), 1.0, static_cast<double>(kMostLookups))
-                      : kMostLookups);
+        shorter > 0.0 ? std::clamp(std::ceil(ratio), 1.0, static_cast<double>(kMaxLookups))
+                      : kMaxLookups);
     const auto mip_of = [](double side) {
       return side <= 1.0 ? 0.0F : static_cast<float>(elementary::log2(side));
     };

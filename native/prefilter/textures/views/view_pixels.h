@@ -36,7 +36,7 @@ struct ViewPixels {
 };
 
 /// Most lookups in an anisotropic one.
-inline constexpr int kMostLookups = 16;
+inline constexpr int kMaxLookups = 16;
 
 /// Calls visit(texel, weight) for the four texels, by row-major index, between which a bilinear
 /// lookup at (u, v) interpolates; fewer at a border.

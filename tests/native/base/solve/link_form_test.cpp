@@ -16,7 +16,7 @@ std::vector<TexelLink> random_links(std::mt19937* random, int count) {
   std::uniform_real_distribution<float> share(-1.0F, 1.0F);
   std::vector<TexelLink> links(static_cast<std::size_t>(count));
   for (TexelLink& link : links) {
-    link.count = 1 + static_cast<int>((*random)() % TexelLink::kMostTexels);
+    link.count = 1 + static_cast<int>((*random)() % TexelLink::kMaxLinkTexels);
     for (int k = 0; k < link.count; ++k) {  // a texel may occur twice
       link.texels[k] = static_cast<std::ptrdiff_t>((*random)() % kTexels);
       link.shares[k] = share(*random);
