@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Union-find over the edges that are not seams.
 #include "prefilter/geometry/charts.h"
 
 #include <algorithm>

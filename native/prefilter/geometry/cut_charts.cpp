@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Shortest paths from both sides of each slit divide a chart half way between them.
 #include "prefilter/geometry/cut_charts.h"
 
 #include <algorithm>
@@ -32,53 +33,53 @@ class SlitSplitter {
       : mesh_(mesh),
         links_(links),
         charts_(*charts),
-        way_(charts->size(), std::numeric_limits<double>::infinity()),
+        distances_(charts->size(), std::numeric_limits<double>::infinity()),
         side_(charts->size()) {
     next_ = *std::max_element(charts_.begin(), charts_.end()) + 1;
   }
 
   void run(const Progress& progress) {
     const std::size_t most = kMaxVisitsPerTriangle * charts_.size();
-    for (const auto& [one, other] : links_.slits) {
-      if (charts_[one] != charts_[other]) continue;
-      if (work_ > most) break;
-      part(one, other);
-      progress.report(static_cast<double>(work_) / static_cast<double>(most));
+    for (const auto& [left, right] : links_.slits) {
+      if (charts_[left] != charts_[right]) continue;
+      if (visits_ > most) break;
+      separate(left, right);
+      progress.report(static_cast<double>(visits_) / static_cast<double>(most));
     }
   }
 
  private:
-  // Gives the triangles closer to `other` than to `one` a new number.
-  void part(std::uint32_t one, std::uint32_t other) {
-    reach(one, 0.0, 0);
-    reach(other, 0.0, 1);
+  // Gives the triangles closer to `right` than to `left` a new number.
+  void separate(std::uint32_t left, std::uint32_t right) {
+    visit(left, 0.0, 0);
+    visit(right, 0.0, 1);
     while (!queue_.empty()) {
-      const auto [way, triangle, side] = queue_.top();
+      const auto [distance, triangle, side] = queue_.top();
       queue_.pop();
-      if (way != way_[triangle] || side != side_[triangle]) continue;
+      if (distance != distances_[triangle] || side != side_[triangle]) continue;
       const Vector3 middle = middle_of(mesh_, triangle);
       for (const std::int32_t beyond : links_.beyond[triangle]) {
         if (beyond < 0) continue;
         const auto to = static_cast<std::uint32_t>(beyond);
         if (charts_[to] != charts_[triangle]) continue;
-        reach(to, way + length(middle_of(mesh_, to) - middle), side);
+        visit(to, distance + length(middle_of(mesh_, to) - middle), side);
       }
     }
     for (const std::uint32_t triangle : reached_) {
-      way_[triangle] = std::numeric_limits<double>::infinity();
+      distances_[triangle] = std::numeric_limits<double>::infinity();
       if (side_[triangle] == 1) charts_[triangle] = next_;
     }
     ++next_;
-    work_ += reached_.size();
+    visits_ += reached_.size();
     reached_.clear();
   }
 
-  void reach(std::uint32_t triangle, double way, int side) {
-    if (way >= way_[triangle]) return;
-    if (std::isinf(way_[triangle])) reached_.push_back(triangle);
-    way_[triangle] = way;
+  void visit(std::uint32_t triangle, double distance, int side) {
+    if (distance >= distances_[triangle]) return;
+    if (std::isinf(distances_[triangle])) reached_.push_back(triangle);
+    distances_[triangle] = distance;
     side_[triangle] = side;
-    queue_.emplace(way, triangle, side);
+    queue_.emplace(distance, triangle, side);
   }
 
   using Step = std::tuple<double, std::uint32_t, int>;
@@ -87,10 +88,10 @@ class SlitSplitter {
   const ChartLinks& links_;
   std::vector<std::int32_t>& charts_;
   std::int32_t next_ = 0;
-  std::vector<double> way_;
+  std::vector<double> distances_;
   std::vector<int> side_;
   std::vector<std::uint32_t> reached_;
-  std::size_t work_ = 0;
+  std::size_t visits_ = 0;
   std::priority_queue<Step, std::vector<Step>, std::greater<>> queue_;
 };
 
@@ -99,7 +100,7 @@ class PieceGrower {
  public:
   PieceGrower(const InputMesh& mesh, std::span<const CornerUvs> maps,
               std::span<const std::uint32_t> place, const ChartLinks& links)
-      : mesh_(mesh), maps_(maps), place_(place), links_(links), held_(place.size(), {-1, 0}) {}
+      : mesh_(mesh), maps_(maps), place_(place), links_(links), claimed_(place.size(), {-1, 0}) {}
 
   std::vector<std::int32_t> run(std::span<const std::int32_t> charts) {
     std::vector<std::int32_t> pieces(charts.size(), -1);
@@ -107,14 +108,14 @@ class PieceGrower {
       if (pieces[first] >= 0) continue;
       std::vector<std::uint32_t> found{first};
       pieces[first] = next_;
-      hold(first);
+      claim(first);
       for (std::size_t i = 0; i < found.size(); ++i) {
         for (const std::int32_t beyond : links_.beyond[found[i]]) {
           if (beyond < 0) continue;
           const auto to = static_cast<std::uint32_t>(beyond);
           if (pieces[to] >= 0 || charts[to] != charts[first] || !fits(to)) continue;
           pieces[to] = next_;
-          hold(to);
+          claim(to);
           found.push_back(to);
         }
       }
@@ -130,19 +131,19 @@ class PieceGrower {
 
   bool fits(std::uint32_t triangle) const {
     for (std::size_t i = 0; i < 3; ++i) {
-      const auto& [piece, corner] = held_[vertex(triangle, i)];
+      const auto& [piece, corner] = claimed_[vertex(triangle, i)];
       if (piece != next_) continue;
-      const std::size_t other = corner / 3;
+      const std::size_t right = corner / 3;
       const std::size_t at = corner % 3;
       for (const CornerUvs& map : maps_) {
-        if (!are_near_uvs(map[triangle][i], map[other][at])) return false;
+        if (!are_near_uvs(map[triangle][i], map[right][at])) return false;
       }
     }
     return true;
   }
 
-  void hold(std::uint32_t triangle) {
-    for (std::size_t i = 0; i < 3; ++i) held_[vertex(triangle, i)] = {next_, 3 * triangle + i};
+  void claim(std::uint32_t triangle) {
+    for (std::size_t i = 0; i < 3; ++i) claimed_[vertex(triangle, i)] = {next_, 3 * triangle + i};
   }
 
   const InputMesh& mesh_;
@@ -150,7 +151,7 @@ class PieceGrower {
   std::span<const std::uint32_t> place_;
   const ChartLinks& links_;
   std::int32_t next_ = 0;
-  std::vector<std::pair<std::int32_t, std::size_t>> held_;  // by vertex: a piece, and its corner
+  std::vector<std::pair<std::int32_t, std::size_t>> claimed_;  // by vertex: a piece, and its corner
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Singular value decomposition of a 2 x 2 matrix, in closed form.
 #include "prefilter/sampling/footprint.h"
 
 #include <algorithm>

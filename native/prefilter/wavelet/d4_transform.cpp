@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Section 4.2 on sparse grids: analysis from fine to coarse, then synthesis from coarse to fine.
 #include "prefilter/wavelet/d4_transform.h"
 
 #include <algorithm>

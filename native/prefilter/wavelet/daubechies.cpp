@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Tabulates phi and its integral by the refinement relation.
 #include "prefilter/wavelet/daubechies.h"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Section 3.2.2: fluxes are summed from the bricks up to the root.
 #include "prefilter/wavelet/plane_haar.h"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Visits blocks from the root down, along with the cells around them.
 #include "prefilter/wavelet/smooth.h"
 
 #include <array>

@@ -19,10 +19,9 @@ struct NormalMipmapOptions {
   MipmapFilter filter = SurfaceFilter::kBilinear;
   WrapModes wrap;
   double footprint = 0.0;  // MipmapOptions::footprint, for the normals
-  bool encoded =
-      true;         // whether a component c is stored as (c + 1) / 2, in the input and the result
-  int levels = 0;   // number of levels, including level 0; 0 = down to 1 x 1
-  int threads = 0;  // 0 = all processors
+  bool encoded = true;     // components c are stored as (c + 1) / 2, in the input and the result
+  int levels = 0;          // number of levels, including level 0; 0 = down to 1 x 1
+  int threads = 0;         // 0 = all processors
   Progress progress;
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Green's theorem: moments of a region from integrals along its border.
 #include "prefilter/geometry/moments/arc_moments.h"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Turning points are roots of the derivative, or of its numerator for conics.
 #include "prefilter/geometry/moments/monotone_curve.h"
 
 #include <cmath>

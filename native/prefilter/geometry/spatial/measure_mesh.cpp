@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// The volume is the sum of the signed volumes of tetrahedra.
 #include "prefilter/geometry/measure_mesh.h"
 
 #include <vector>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Branch and bound on the bounding box tree.
 #include "prefilter/geometry/spatial/nearest_neighbors.h"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Cuts triangles to texels, tile by tile (section 7.2).
 #include "prefilter/geometry/texels/coverage.h"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Clips triangles at the lines between tiles, and moves the parts as the wrap mode does.
 #include "prefilter/geometry/texels/texel_triangles.h"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Minima and maxima over the texels around, along columns and then along rows.
 #include "prefilter/images/resize/ranges_around.h"
 
 #include <algorithm>

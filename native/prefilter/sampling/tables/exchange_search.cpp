@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Minimizes equation 6.4 over sets of texels, by exchanging one texel at a time.
 #include "prefilter/sampling/tables/exchange_search.h"
 
 #include <algorithm>

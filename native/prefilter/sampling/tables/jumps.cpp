@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Compares the weights of samples on both sides of each border.
 #include "prefilter/sampling/jumps.h"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Assembles equation 6.4 by Gauss quadrature over the subdomain.
 #include "prefilter/sampling/tables/subdomain_system.h"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Counts sampled lookups cell by cell; cells on one side of the threshold are decided at once.
 #include "prefilter/textures/mipmap/covered_share.h"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Exact integrals over cells, from the moments of the image.
 #include "prefilter/textures/mipmap/image_squares.h"
 
 #include "prefilter/geometry/moments/four_point_rule.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Bisection for the bend of the alpha curve, level by level.
 #include "prefilter/textures/keep_coverage.h"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Section 7.3: the off-diagonal blocks A_l,l+1, integrated cell by cell from moments.
 #include "prefilter/textures/mipmap/level_coupling.h"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Gauss quadrature with 2 x 2 points in each quarter of a texel.
 #include "prefilter/textures/mipmap/lookup_means.h"
 
 #include <array>

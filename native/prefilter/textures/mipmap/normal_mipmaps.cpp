@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Filters unit vectors with the mipmap filters, and derives the roughness from their variance.
 #include "prefilter/textures/normal_mipmaps.h"
 
 #include <algorithm>

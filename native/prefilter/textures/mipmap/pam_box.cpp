@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Equation 7.1 with a box, as sums over cells that are passed on from level to level.
 #include "prefilter/textures/mipmap/pam_box.h"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Renders all views, then solves one least-squares system for all levels.
 #include "prefilter/textures/fit_to_views.h"
 
 #include <algorithm>

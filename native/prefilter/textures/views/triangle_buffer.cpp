@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Scanline rasterization with a z-buffer.
 #include "prefilter/textures/views/triangle_buffer.h"
 
 #include <algorithm>

@@ -24,10 +24,9 @@ struct ViewPixel {
   float mip = 0.0F;              // of a single trilinear lookup
   float row_mip = 0.0F;          // of each of the `count` lookups of an anisotropic one
   std::uint8_t count = 1;
-  bool is_second =
-      false;           // seen in the second frame; the entry before is the same pixel in the first
-  float trust = 1.0F;  // weight, 0 to 1
-  Lanes target{};      // the color that it should show
+  bool is_second = false;  // of the second frame; the entry before is its first frame's
+  float trust = 1.0F;      // weight, 0 to 1
+  Lanes target{};          // the color that it should show
 };
 
 struct ViewPixels {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Directions form a spherical Fibonacci lattice; rolls, pixel sizes and steps follow further low-
+// discrepancy sequences.
 #include "prefilter/textures/views/view_plan.h"
 
 #include <algorithm>

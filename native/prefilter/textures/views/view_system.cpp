@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Conjugate gradients with a diagonal preconditioner, matrix-free: each product looks up all pixels
+// and scatters the result back.
 #include "prefilter/textures/views/view_system.h"
 
 #include <algorithm>
