@@ -3,7 +3,7 @@
 // Columns are filtered first, as this accesses whole rows; one band of rows of the result at a
 // time, in strips whose source rows stay in the processor's cache. The order of summation depends
 // only on the channel count.
-#include "prefilter/images/filters/read_separably.h"
+#include "prefilter/images/filters/separable_bytes.h"
 
 #include <algorithm>
 #include <cstring>
