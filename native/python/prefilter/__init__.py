@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Prefilter: images and shapes filtered for the surface that uses them.
+"""Prefilter filters images and shapes for the surfaces that use them.
 
 Arrays are numpy or nested lists of real numbers; images and occupancies come out as float32,
 positions as float64. Images have shape (height, width, channels) or (height, width), row 0 at v = 0

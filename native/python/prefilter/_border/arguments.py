@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Arguments that several functions take, checked once, here at the border."""
+"""Checks and conversions of arguments that several public functions take."""
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from typing import Any, TypeVar
@@ -15,7 +15,7 @@ Bounds = tuple[float | None, float | None]
 Check = Callable[[Any], object]
 Options = TypeVar("Options")
 Item = TypeVar("Item")
-# A tuple, as a union would be made in each call.
+# A tuple, because isinstance with a union would build that union at each call.
 WHOLE = (int, np.integer)
 _OTHER = object()
 
@@ -38,11 +38,11 @@ def set_options(
     arguments: Mapping[str, object],
     defaults: Mapping[str, object] | None = None,
 ) -> Options:
-    """Options of the native module, set from the arguments of a function by their names.
+    """Sets options of the native module from a function's arguments of the same names.
 
-    A check raises ValueError, or returns what the native module takes. Its defaults are those of
-    the functions: where `defaults` are given, arguments that are these stay unset, which counts in
-    calls that draw little.
+    A check raises ValueError, or returns the value for the native module. Functions and native
+    options have equal defaults: arguments identical to those in `defaults` are not set again, which
+    saves time in calls that draw little.
     """
     known = {} if defaults is None else defaults
     for name, check in checks.items():
@@ -76,7 +76,7 @@ def _is_pair(value: object) -> bool:
 
 
 def as_items(argument: str, items: Iterable[Item], needed: str) -> list[Item]:
-    """What is in a list, a tuple or the like; `needed` says of what."""
+    """Returns the items of a sequence as a list; `needed` names the type in the error message."""
     try:
         return list(items)
     except TypeError:
@@ -92,11 +92,11 @@ def as_progress(progress: ProgressCallback | None) -> ProgressCallback | None:
 def progress_part(
     progress: ProgressCallback | None, low: float, high: float
 ) -> ProgressCallback | None:
-    """What covers the share from `low` to `high` of the work that `progress` is told of."""
-    told = as_progress(progress)
-    if told is None:
+    """Returns a callback for the share from `low` to `high` of the work."""
+    checked = as_progress(progress)
+    if checked is None:
         return None
-    return lambda fraction: told(low + (high - low) * fraction)
+    return lambda fraction: checked(low + (high - low) * fraction)
 
 
 def as_level_count(levels: int | None) -> int:
@@ -104,7 +104,7 @@ def as_level_count(levels: int | None) -> int:
         return 0
     if isinstance(levels, bool) or not isinstance(levels, WHOLE) or levels < 1:
         raise ValueError(f"levels: {levels!r}; a whole number of at least 1 is needed, or None")
-    # More than any image has, yet an int for the native module, whose message knows the image.
+    # More levels than any image has, but still an int: the native module reports the error.
     return min(int(levels), 2**30)
 
 
@@ -115,7 +115,7 @@ def as_size(argument: str, size: int) -> int:
 
 
 def as_int(argument: str, value: int, allowed: str) -> int:
-    """A whole number that the native module can take as an int, whose range it checks."""
+    """Returns an int that fits the native module, which checks its range."""
     is_int = isinstance(value, WHOLE) and not isinstance(value, bool)
     if not is_int or not -(2**31) <= value < 2**31:
         raise ValueError(f"{argument}: {value!r}; {allowed}")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Arrays as the native module takes them, checked once, here at the border."""
+"""Checks and conversions of arrays for the native module."""
 
 from collections.abc import Sequence
 from typing import Any, TypeAlias, TypeVar
@@ -10,10 +10,10 @@ import numpy.typing as npt
 
 from .arguments import WHOLE
 
-# What the native module takes as an int; larger counts mean the same to it.
+# Counts are passed as int; larger ones mean the same.
 _LARGEST_INT = 2**30
 
-# What can be filtered without overflow.
+# Larger values could overflow in filters.
 _LARGEST_VALUE = np.float32(1e30)
 
 _MESH_NAMES = ("positions", "triangles")
@@ -30,21 +30,21 @@ _IMAGE_TYPES = (
 def as_floats(
     name: str, array: npt.ArrayLike, shape: Sequence[int | str], dtype: npt.DTypeLike
 ) -> np.ndarray:
-    """The array as a C-contiguous one of `dtype`, not copied where it is one.
+    """Returns a C-contiguous array of `dtype`, not copied if it already is one.
 
-    `shape` gives the length of each axis, or a name where any length will do. Integers stand for
-    themselves. Raises ValueError where the shape differs or the values are no real numbers.
+    `shape` gives the length of each axis, or a name where any length will do. Integers keep their
+    values. Raises ValueError where the shape differs or the values are no real numbers.
     """
     found = as_array(name, array)
     if not is_real(found):
         raise ValueError(f"{name}: dtype {found.dtype}; real numbers are needed")
     check_shape(name, found, shape)
-    with np.errstate(over="ignore"):  # What is too large becomes infinite, and is refused as that.
+    with np.errstate(over="ignore"):  # Too large values become infinite and are refused later.
         return np.ascontiguousarray(found, dtype)
 
 
 def as_indices(name: str, array: npt.ArrayLike, shape: Sequence[int | str]) -> np.ndarray:
-    """The array as C-contiguous int64. Raises ValueError where it holds no integers."""
+    """Returns a C-contiguous int64 array. Raises ValueError unless it holds integers."""
     found = as_array(name, array)
     if found.size and found.dtype.kind not in "iu":
         raise ValueError(f"{name}: dtype {found.dtype}; integers are needed")
@@ -57,7 +57,7 @@ def as_indices(name: str, array: npt.ArrayLike, shape: Sequence[int | str]) -> n
 def as_mesh(
     positions: npt.ArrayLike, triangles: npt.ArrayLike, *, names: Sequence[str] = _MESH_NAMES
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The arrays of a mesh, C-contiguous, and not copied where they are.
+    """Returns C-contiguous arrays of a mesh, not copied if they already are.
 
     Positions become float32 or float64, (vertices, 3), and triangles int32 or int64,
     (triangles, 3). Raises ValueError as `as_floats` and `as_indices` do.
@@ -73,9 +73,9 @@ def as_mesh(
 
 
 def as_labels(name: str, array: npt.ArrayLike, count: int, of: str) -> np.ndarray:
-    """The array as C-contiguous int32, a number for each of `count` things; `of` says of what.
+    """Returns C-contiguous int32 labels, one for each of `count` things; `of` names these.
 
-    Raises ValueError where it holds no integers, others than int32 has, or not as many.
+    Raises ValueError unless there are `count` integers that fit int32.
     """
     found = as_array(name, array)
     if not np.issubdtype(found.dtype, np.integer):
@@ -94,10 +94,10 @@ def as_labels(name: str, array: npt.ArrayLike, count: int, of: str) -> np.ndarra
 def as_corner_uvs(
     name: str, uvs: npt.ArrayLike, triangles: np.ndarray, vertices: int, dtype: npt.DTypeLike
 ) -> np.ndarray:
-    """UVs of the triangles' corners, (triangles, 3, 2), from those or from UVs of the vertices.
+    """Returns UVs of the triangles' corners, (triangles, 3, 2), from UVs of corners or vertices.
 
-    Two axes, (vertices, 2), mean vertices. Indices are not checked. Raises ValueError where the
-    shape is neither, or the values are no real numbers.
+    UVs of vertices have shape (vertices, 2). Indices are not checked. Raises ValueError for other
+    shapes, or values that are no real numbers.
     """
     found = as_array(name, uvs)
     corners = (len(triangles), 3, 2)
@@ -113,12 +113,12 @@ def as_corner_uvs(
 
 
 def as_image(name: str, array: npt.ArrayLike) -> FloatArray:
-    """A float32 image of shape (height, width, channels).
+    """Returns a float32 image of shape (height, width, channels).
 
-    Texels of uint8 stand for a 255th each, those of uint16 for a 65535th; False is 0 and True 1. An
-    image of two axes has one channel; see `in_form_of`. Whole numbers in a list may be 0 and 1
-    alone: what others stand for only the type of an array says. Raises ValueError where the shape
-    or the type is another, or there are no texels.
+    Texels of uint8 are divided by 255, those of uint16 by 65535; False is 0 and True 1. An image of
+    two axes has one channel; see `in_form_of`. A list of whole numbers may hold only 0 and 1,
+    because only an array's type says how to scale others. Raises ValueError for other shapes or
+    types, or if there are no texels.
     """
     texels = as_texels(name, array)
     image: FloatArray = texels
@@ -128,7 +128,7 @@ def as_image(name: str, array: npt.ArrayLike) -> FloatArray:
 
 
 def as_texels(name: str, array: npt.ArrayLike) -> npt.NDArray[Any]:
-    """An image as for `as_image`, but texels of uint8 and uint16 as they are stored."""
+    """Returns an image as `as_image` does, but leaves texels of uint8 and uint16 unscaled."""
     found = as_array(name, array)
     if found.dtype.kind == "i" and isinstance(array, list | tuple):
         others = found[(found != 0) & (found != 1)]
@@ -147,23 +147,23 @@ def as_texels(name: str, array: npt.ArrayLike) -> npt.NDArray[Any]:
     if 0 in found.shape:
         raise ValueError(f"{name}: shape {found.shape} holds no pixels; at least one is needed")
     stored = found.dtype if found.dtype.kind == "u" else np.float32
-    with np.errstate(over="ignore"):  # What is too large becomes infinite, and is refused as that.
+    with np.errstate(over="ignore"):  # Too large values become infinite and are refused later.
         texels = np.ascontiguousarray(found, stored)
     return texels[:, :, None] if texels.ndim == 2 else texels
 
 
-def in_form_of(array: npt.ArrayLike, made: npt.NDArray[Value]) -> npt.NDArray[Value]:
-    """What was made of an image, (..., channels): without that axis where the image had none."""
-    return made[..., 0] if np.ndim(array) == 2 else made
+def in_form_of(array: npt.ArrayLike, image: npt.NDArray[Value]) -> npt.NDArray[Value]:
+    """Returns a result (..., channels), without the last axis if the input image had none."""
+    return image[..., 0] if np.ndim(array) == 2 else image
 
 
 def is_real(array: np.ndarray) -> bool:
-    """Whether its values are real numbers; those of bool are not."""
+    """Whether the values are real numbers; bool does not count."""
     return array.dtype.kind in "iuf"
 
 
 def check_texels(name: str, image: np.ndarray) -> None:
-    """Raises ValueError where a value is not finite or beyond 1e30."""
+    """Raises ValueError if a value is not finite or is beyond 1e30."""
     beyond = ~(np.abs(image) <= _LARGEST_VALUE)
     if beyond.any():
         row, column, channel = np.argwhere(beyond)[0]
@@ -174,7 +174,7 @@ def check_texels(name: str, image: np.ndarray) -> None:
 
 
 def check_shape(name: str, array: np.ndarray, shape: Sequence[int | str]) -> None:
-    """Raises ValueError unless the array has the shape; a name fits any length."""
+    """Raises ValueError unless the array has the shape; a name allows any length."""
     fits = array.ndim == len(shape) and all(
         isinstance(wanted, str) or found == wanted
         for found, wanted in zip(array.shape, shape, strict=True)
@@ -185,7 +185,7 @@ def check_shape(name: str, array: np.ndarray, shape: Sequence[int | str]) -> Non
 
 
 def as_threads(threads: int) -> int:
-    """A number of threads; 0 stands for all processors."""
+    """Returns a checked number of threads; 0 stands for all processors."""
     if isinstance(threads, bool) or not isinstance(threads, WHOLE) or threads < 0:
         raise ValueError(
             f"threads: {threads!r}; a whole number is needed, 0 meaning all processors"
@@ -194,7 +194,7 @@ def as_threads(threads: int) -> int:
 
 
 def as_array(name: str, array: npt.ArrayLike) -> np.ndarray:
-    """Any array, in the byte order of the machine. Raises ValueError where it is none."""
+    """Returns an array in native byte order. Raises ValueError where it is none."""
     try:
         found = np.asarray(array)
     except (TypeError, ValueError) as error:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Images of any number of channels, for native functions that take up to four."""
+"""Filtering of images with many channels by native functions that take up to four."""
 
 from collections.abc import Callable
 from typing import TypeVar
@@ -21,15 +21,15 @@ def in_channel_groups(
     filtered: Callable[[FloatArray, bool, ProgressCallback | None], Found],
     progress: ProgressCallback | None,
 ) -> list[Found]:
-    """What `filtered` makes of up to four channels at a time.
+    """Returns the results of `filtered` for each group of up to four channels.
 
-    It is given the channels, whether they are to be filtered as they stand, and what to tell its
-    progress. Images of more than four channels have no alpha.
+    Its arguments are the channels, whether to filter them as they stand, and a progress callback.
+    Images of more than four channels have no alpha.
     """
     channels = image.shape[2]
     if channels <= _CHANNELS_AT_ONCE:
         return [filtered(image, premultiplied, as_progress(progress))]
-    check_texels("image", image)  # here, where channels have their own numbers
+    check_texels("image", image)  # Here, so that messages count the image's own channels.
     found = []
     for begin in range(0, channels, _CHANNELS_AT_ONCE):
         end = min(begin + _CHANNELS_AT_ONCE, channels)

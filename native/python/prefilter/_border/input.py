@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Paths, and files that are opened to be read."""
+"""Paths and input files."""
 
 import errno
 import os
@@ -18,7 +18,7 @@ def as_path(path: str | os.PathLike[str]) -> str:
 
 
 def open_file(path: str) -> BinaryIO:
-    """Opens a file. Raises what `open` does, but for a folder IsADirectoryError on Windows too."""
+    """Opens a file as `open` does, but raises IsADirectoryError for folders on Windows too."""
     try:
         return open(path, "rb")
     except PermissionError:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The names that arguments may have, for type checkers and editors; the library checks them."""
+"""Allowed names of arguments, for type checkers and editors; the library checks them."""
 
 from typing import Literal, TypeAlias
 

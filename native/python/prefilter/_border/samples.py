@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Levels, and the places of samples, checked once, here at the border."""
+"""Checks of mipmap levels and of sample positions."""
 
 from collections.abc import Sequence
 
@@ -20,13 +20,13 @@ from .arrays import (
 )
 
 SAMPLE_CHECKS: dict[str, Check] = {"wrap": as_wrap, "threads": as_threads}
-"""Of what all functions that take samples have."""
+"""Checks of the arguments that all sampling functions share."""
 
 
 def as_pyramid(levels: Sequence[npt.ArrayLike]) -> list[np.ndarray]:
-    """Levels, level 0 first: all of float32 or all of uint8, and all of as many channels.
+    """Returns levels, level 0 first: all float32 or all uint8, with equally many channels.
 
-    Others than uint8 become float32.
+    Types other than uint8 become float32.
     """
     if not isinstance(levels, Sequence) or isinstance(levels, str | bytes):
         raise ValueError(f"levels: a {type(levels).__name__}; a list of arrays is needed")
@@ -49,7 +49,7 @@ def _as_level(name: str, level: npt.ArrayLike) -> np.ndarray:
 
 
 def as_samples(levels: Sequence[npt.ArrayLike], found: FloatArray) -> FloatArray:
-    """Samples (n, channels) of levels; (n,) where those have no axis of channels."""
+    """Returns samples (n, channels); (n,) if the levels have no axis of channels."""
     return in_form_of(levels[0], found)
 
 
@@ -58,7 +58,7 @@ def as_coordinates(coordinates: npt.ArrayLike) -> npt.NDArray[np.float64]:
 
 
 def as_scales(scales: npt.ArrayLike, samples: int) -> npt.NDArray[np.float64]:
-    """One for each sample, or a single one for all of them."""
+    """Returns a scale for each sample, or a single one for all."""
     found = as_array("scales", scales)
     if found.dtype.kind not in "iuf":
         raise ValueError(f"scales: dtype {found.dtype}; numbers are needed")

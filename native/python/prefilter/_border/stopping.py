@@ -2,8 +2,8 @@
 
 """Signals that ask a command to stop: Ctrl-C, and SIGTERM as farms and services send it.
 
-They interrupt it where it stands, as KeyboardInterrupt, so that whatever has files in the making
-removes them. Where they are held, whoever holds them looks for one, or they interrupt it after.
+A signal raises KeyboardInterrupt in the main thread, so that unfinished files are removed. Code
+that holds signals back polls `asked`, or is interrupted once it releases them.
 """
 
 import signal
@@ -27,13 +27,13 @@ class _Stopping:
             yield
         finally:
             for one, handler in zip(_SIGNALS, before, strict=True):
-                # Blender's own handler is none of Python's; it only waits for another Ctrl-C.
+                # None means Blender's own handler, not Python's; it only waits for another Ctrl-C.
                 signal.signal(one, signal.SIG_DFL if handler is None else handler)
 
     @contextmanager
     def held(self) -> Iterator[None]:
         if threading.current_thread() is not threading.main_thread():
-            yield  # Signals never interrupt it.
+            yield  # Signals interrupt the main thread only.
             return
         self._holds += 1
         came_before = self.number
@@ -46,7 +46,7 @@ class _Stopping:
 
     def _note(self, number: int, *_: object) -> None:
         self.number = number
-        for one in _SIGNALS:  # A second one ends the program.
+        for one in _SIGNALS:  # A second signal ends the program.
             signal.signal(one, signal.SIG_DFL)
         if not self._holds:
             raise KeyboardInterrupt
@@ -54,14 +54,14 @@ class _Stopping:
 
 _stopping = _Stopping()
 heeded, held = _stopping.heeded, _stopping.held
-"""Contexts: a command, on the main thread; and what no signal may interrupt."""
+"""Contexts: a command that signals stop, on the main thread; and code they must not interrupt."""
 
 
 def asked() -> int:
-    """The signal that has asked the command to stop; 0 where none has."""
+    """Returns the signal that has asked the command to stop; 0 if none has."""
     return _stopping.number
 
 
 def status() -> int:
-    """The exit status of a command that was stopped: 130 after Ctrl-C, 143 after SIGTERM."""
+    """Returns the exit status of a stopped command: 130 after Ctrl-C, 143 after SIGTERM."""
     return 128 + (_stopping.number or signal.SIGINT)

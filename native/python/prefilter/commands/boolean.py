@@ -28,8 +28,8 @@ from . import outputs, telling, voxelize
 from .host import PLAIN
 
 FLAGS = (*voxelize.FLAGS, "operation")
-"""The options that need no Blender."""
-_VOXELIZED, _COMPUTED = 0.5, 0.95  # What the progress is once there are trees, and a surface.
+"""The options that work without Blender."""
+_VOXELIZED, _COMPUTED = 0.5, 0.95  # Progress once the trees, and the surface, are there.
 _NOTES = """\
 The meshes of one file count as one. With --object, the operands are these meshes, in this order.
 Meshes may be open, leaky, and intersect themselves. Only positions and triangles are written;
@@ -64,10 +64,10 @@ def add(commands: Any, purpose: str) -> None:
 
 
 class BooleanFile:
-    """Meshes, combined in one grid of cells, to a file."""
+    """Combines meshes in one grid of cells and writes the result to a file."""
 
     def __init__(self, operands: list[Part], target: Path, settings: BooleanSettings) -> None:
-        """Takes what to combine, where to, and how."""
+        """Takes the meshes to combine, the file to write, and the settings."""
         self._operands = operands
         self._target = target
         self._settings = settings
@@ -115,12 +115,12 @@ class BooleanFile:
         return Outcome(self._line, files=files, warnings=self._warnings, notes=self._notes)
 
     def discard(self) -> None:
-        """Removes what was staged, if it was not put into place."""
+        """Removes the staged file if it was not put into place."""
         if self._staged is not None:
             self._staged.discard()
 
     def _combined(self, progress: Progress) -> tuple[prefilter.Octree, list[tuple[Any, ...]], int]:
-        """Returns what is filled, the meshes that fill it, and how many cells there are."""
+        """Returns the combined tree, its source meshes, and the number of cells along an axis."""
         settings = self._settings
         measures = [self._measured(one) for one in self._operands]
         grid = choose_grid(
@@ -168,7 +168,7 @@ def _boolean(options: argparse.Namespace) -> None:
 
 
 def check_output(options: argparse.Namespace, allowed: Sequence[str]) -> None:
-    """Ends the program unless the file to write has a known extension, and is not read."""
+    """Ends the program if the file to write has an unknown extension, or is also read."""
     options.output = outputs.resolved(options, "--output", options.output)
     telling.check_ending(options, "--output", options.output, allowed)
     outputs.check_kept(options, [options.output], options.files)
@@ -187,7 +187,7 @@ def _operands(options: argparse.Namespace) -> list[Part]:
 
 
 def as_one(name: str, meshes: Sequence[Part]) -> Part:
-    """Returns several meshes as one, without UVs."""
+    """Returns several meshes joined into one, without UVs."""
     starts = np.cumsum([0, *(len(one.positions) for one in meshes)])
     triangles = [one.triangles + start for one, start in zip(meshes, starts, strict=False)]
     positions = np.concatenate([one.positions for one in meshes])

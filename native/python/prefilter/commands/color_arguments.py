@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Flags of commands that read pictures: which colors these have, and what becomes of some."""
+"""Flags for the color space of a picture, and for its colors outside of sRGB."""
 
 import argparse
 from pathlib import Path
@@ -13,11 +13,11 @@ if TYPE_CHECKING:
 
 
 def add_flags(parser: argparse.ArgumentParser, thing: str) -> None:
-    """Adds the flags that say which colors a picture has, and what becomes of some.
+    """Adds flags for the color space of a picture, and for clipping its colors.
 
     Args:
-        parser: Gets them.
-        thing: What the picture is called.
+        parser: The parser that gets the flags.
+        thing: What the help calls the picture.
     """
     parser.add_argument(
         "--colorspace",
@@ -46,12 +46,12 @@ def _space_name(name: str) -> str:
 def check_range(
     argument: str, picture: "Picture", target: Path, options: argparse.Namespace
 ) -> None:
-    """Raises ValueError where a file would lose colors of a picture, and nothing says it may.
+    """Raises ValueError if a file would clip colors of a picture and --clip is not given.
 
     Args:
-        argument: What the picture is called in messages.
+        argument: The picture's name in messages.
         picture: The picture.
-        target: A file that holds no colors outside of sRGB.
+        target: A file whose format cannot hold colors outside of sRGB.
         options: The arguments.
     """
     if picture.outside > 0.0 and not options.clip:

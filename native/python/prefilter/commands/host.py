@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What is different where a command runs: with Blender, or without."""
+"""Differences between commands run inside Blender and without it."""
 
 import argparse
 from collections.abc import Callable
@@ -27,13 +27,13 @@ def _settings(options: argparse.Namespace, settings: type, **more: Any) -> Any:
 
 @dataclass(frozen=True)
 class Host:
-    """Where a command runs; by default without Blender.
+    """The environment that a command runs in; by default without Blender.
 
     Attributes:
         read: Reads a picture, as `picture_files.read` does.
         add_preset: Adds the flag that names a preset, where there are any.
-        preset: Returns what the preset sets that the arguments name.
-        settings: Returns settings: by keywords, else by flags, else by what the host knows.
+        preset: Returns the values set by the preset that the arguments name.
+        settings: Returns settings from keywords, else from flags, else from the host's defaults.
         preferred: See `add_flags`.
     """
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Commands that do the same with each of many files: which file becomes which, and the tasks."""
+"""Commands that process many files alike: naming the outputs, splitting tasks, skipping."""
 
 import argparse
 import os
@@ -22,9 +22,9 @@ class Pair:
     """A file to read, and the one to write.
 
     Attributes:
-        source: The path, as it was given.
-        target: The path, with the name of the source in it.
-        metadata: What the file to write is to keep, by keys; None for nothing.
+        source: The path, as given.
+        target: The path, with the source's name filled in.
+        metadata: Key-value pairs to store in the file to write; None for none.
     """
 
     source: str
@@ -48,10 +48,10 @@ def add_arguments(
     """Adds the arguments that name the files.
 
     Args:
-        parser: Gets them, and the flags that split the work; `run` reads them.
-        names: What the file to read and the one to write are called.
-        source: What may be read.
-        target: What may be written.
+        parser: The parser that gets the arguments, and flags that split the work; see `run`.
+        names: Metavars of the file to read and of the file to write.
+        source: Description of the files that can be read.
+        target: Description of the files that can be written.
     """
     parser.add_argument(
         "sources",
@@ -69,7 +69,7 @@ def add_arguments(
 
 
 def settle(options: argparse.Namespace) -> None:
-    """Finds out which files are read, and which one is written; ends the program in doubt."""
+    """Determines which files are read and written; ends the program where that is ambiguous."""
     outputs.settle(options, options.file_names, (outputs.NAME,))
 
 
@@ -80,20 +80,20 @@ def run(
     kinds: Sequence[str] = PICTURES,
     may_skip: Callable[[str], bool] = lambda _: True,
 ) -> None:
-    """Does something with each file of this task, or lists the tasks.
+    """Processes each file of this task, or lists the tasks.
 
     A file that fails does not stop the others.
 
     Args:
         options: The arguments.
-        do: Reads a file, and writes another.
-        settings: All that decides what is made of a file, where what is up to date may be left
-            alone; None where it may not.
-        kinds: The extensions of files that can keep what they were made of.
-        may_skip: Tells whether a file has all that decides, but for the settings.
+        do: Reads one file and writes another.
+        settings: The settings that determine the result, if up-to-date files may be skipped;
+            None if they may not.
+        kinds: The extensions of files that can store the fingerprint of their inputs.
+        may_skip: Tells whether a file and the settings alone determine the result.
 
     Raises:
-        ValueError: Some failed; of a single one, whatever `do` raises.
+        ValueError: Some files failed; for a single file, `do`'s own exception is raised.
     """
     tasks.check(options)
     pairs = _pairs(options)
@@ -120,7 +120,7 @@ def run(
 def _skipping(
     do: Callable[[Pair], None], settings: Mapping[str, Any], may_skip: Callable[[str], bool]
 ) -> Callable[[Pair], None]:
-    """Returns what leaves files alone that are up to date."""
+    """Returns a function like `do` that leaves up-to-date files alone."""
 
     def do_unless(pair: Pair) -> None:
         if not may_skip(pair.source):
@@ -135,7 +135,7 @@ def _skipping(
 
 
 def _pairs(options: argparse.Namespace) -> list[Pair]:
-    """Returns what is to become of each file; ends the program where files would meet."""
+    """Returns the pairs of files; ends the program where two would write the same file."""
     sources: Sequence[str] = options.sources
     if len(sources) > 1 and not patterns.has(options.target, outputs.NAME):
         options.usage_error(
@@ -150,7 +150,7 @@ def _pairs(options: argparse.Namespace) -> list[Pair]:
             both = listed((written[identity].source, pair.source))
             options.usage_error(f"{both} would both become '{pair.target}'")
         written |= dict.fromkeys(own, pair)
-        # Even where files may be replaced: one would be read after that.
+        # Even with --overwrite: the file would be read after it was replaced.
         if any(other is not pair and not own.isdisjoint(names) for other, names in read):
             options.usage_error(f"'{pair.target}' is read; choose other files to write")
     outputs.check_kept(

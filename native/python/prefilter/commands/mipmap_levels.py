@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What the command `mipmaps` does: the levels of one texture, from files to files."""
+"""The work of the command `mipmaps`: from a picture and meshes to a file of levels."""
 
 import argparse
 from collections.abc import Mapping, Sequence
@@ -21,11 +21,11 @@ from ..workflows.picture import Encoding, Picture
 from ..workflows.progress import Progress, go_on, share
 from . import color_arguments
 
-_FILTERED = 0.9  # What the progress is once the levels are filtered.
+_FILTERED = 0.9  # Progress once the levels are filtered.
 
 
 class Levels:
-    """The levels of one texture, to a file."""
+    """Computes the levels of one texture and writes them to a file."""
 
     def __init__(
         self,
@@ -34,7 +34,7 @@ class Levels:
         warnings: list[str],
         metadata: Mapping[str, str] | None = None,
     ) -> None:
-        """Takes what was read, and what KTX 2 files are to keep, by keys."""
+        """Takes the inputs, and key-value pairs to store in KTX 2 files."""
         self._metadata = metadata
         self._source = source
         self._outputs = outputs
@@ -77,7 +77,7 @@ class Levels:
         )
 
     def discard(self) -> None:
-        """Removes what was staged, if it was not put into place."""
+        """Removes staged files that were not put into place."""
         for file in self._staged:
             file.discard()
 
@@ -90,19 +90,19 @@ def read(
     metadata: Mapping[str, str] | None,
     options: argparse.Namespace,
 ) -> Levels:
-    """Reads the files, and checks what the settings say of them.
+    """Reads the files and checks them against the settings.
 
     Args:
         texture: The picture.
-        meshes: Those that wear it.
-        objects: The names of those in these files that count; all where there are none.
+        meshes: Files of meshes that use it as their texture.
+        objects: Names of the meshes to use; all if empty.
         settings: What to make.
-        metadata: What KTX 2 files are to keep, by keys.
+        metadata: Key-value pairs to store in KTX 2 files.
         options: The flags of colors: see `color_arguments.add_flags`.
 
     Raises:
-        OSError: A file cannot be read, or not be written.
-        ValueError: A file does not go with the settings.
+        OSError: A file cannot be read or written.
+        ValueError: A file does not fit the settings.
     """
     target = target_files.check_target(settings.filepath)
     is_data = settings.content in {"normal", "data"}
@@ -160,7 +160,7 @@ def _on_meshes(
     content: str,
     told: list[str],
 ) -> Source:
-    """Returns the picture on its surfaces; `told` gets what is to be known of these, first."""
+    """Returns the picture on its surfaces; prepends warnings about these to `told`."""
     surfaces, names, without = mesh_files.surfaces(parts)
     wrap = "repeat" if settings.wrap == "auto" else settings.wrap
     wraps = (wrap, wrap if settings.wrap_v == "same" else settings.wrap_v)
@@ -176,7 +176,7 @@ def _holds_all_colors(picture: Picture, target: Path, texture_format: str) -> bo
 
 
 def _of_orientation(picture: Picture) -> list[str]:
-    """Returns what to tell of a texture that is not turned as its file says."""
+    """Returns a warning if the file's EXIF orientation is ignored."""
     if picture.orientation == 1:
         return []
     return [

@@ -69,7 +69,7 @@ def _run(options: argparse.Namespace) -> None:
         if telling.are_up_to_date(targets, number):
             return
     metadata = None if number is None else {KEY: number}
-    from . import mipmap_levels  # A run that finds all up to date needs none of it.
+    from . import mipmap_levels  # Imported late: a run in which all is up to date needs none of it.
 
     work = mipmap_levels.read(
         options.texture, options.meshes, options.object, settings, metadata, options
@@ -78,7 +78,7 @@ def _run(options: argparse.Namespace) -> None:
 
 
 def _check_files(options: argparse.Namespace, settings: Settings) -> None:
-    """Ends the program where a file that is read would be replaced."""
+    """Ends the program if it would replace a file that it reads."""
     written = [file for path in _paths(settings) for file in target_files.written(Path(path))]
     sources = [options.texture, settings.roughness, *options.meshes]
     outputs.check_kept(options, written, filter(None, sources))
@@ -89,7 +89,7 @@ def _paths(settings: Settings) -> list[str]:
 
 
 def _fingerprint(options: argparse.Namespace, settings: Settings) -> str:
-    """Returns what the files keep; ends the program where one cannot."""
+    """Returns the fingerprint of all inputs; ends the program if a file cannot store it."""
     for path in _paths(settings):
         telling.check_can_tell(options, path, LEVELS)
     chosen = asdict(settings)
@@ -103,7 +103,7 @@ def _fingerprint(options: argparse.Namespace, settings: Settings) -> str:
 
 
 def _settings(options: argparse.Namespace) -> Settings:
-    """Returns the settings; ends the program where flags do not go together."""
+    """Returns the settings; ends the program if flags contradict one another."""
     found = given(options, Settings)
     if not found.get("filepath"):
         options.usage_error("nothing to write: give -o FILE")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Where commands write: the flag -o, patterns in it, and files that stay as they are."""
+"""Output paths of commands: the flag -o, patterns in it, and protection of input files."""
 
 import argparse
 import os
@@ -11,7 +11,7 @@ from ..files.file_names import check_windows_names, identities, stem_of
 from ..workflows.files import patterns
 
 NAME = "name"
-"""The placeholder that stands for the name of what is read."""
+"""The placeholder that stands for the name of the input."""
 
 
 def add_output(
@@ -22,13 +22,13 @@ def add_output(
     is_required: bool = False,
     destination: str = "target",
 ) -> None:
-    """Adds -o, and the flag that lets it name a file that is read.
+    """Adds -o, and the flag that lets it replace an input file.
 
     Args:
-        parser: Gets them.
-        metavar: What the file to write is called.
-        description: What may be written.
-        is_required: Whether there is no other way to name that file.
+        parser: The parser that gets the flags.
+        metavar: What the help calls the file to write.
+        description: Description of the files that can be written.
+        is_required: Whether -o is the only way to name that file.
         destination: The attribute of the arguments that gets the path.
     """
     parser.add_argument(
@@ -43,7 +43,7 @@ def add_output(
 
 
 def add_overwrite(parser: argparse.ArgumentParser) -> None:
-    """Adds the flag that lets files be replaced that are read."""
+    """Adds the flag that lets input files be replaced."""
     parser.add_argument(
         "--overwrite",
         action="store_true",
@@ -57,14 +57,14 @@ def settle(
     names: tuple[str, str],
     placeholders: Sequence[str] = (),
 ) -> None:
-    """Finds out which file is written: that of -o, the second of two, or a pattern behind several.
+    """Determines the output path: that of -o, the second of two paths, or a pattern after several.
 
-    A pattern of the shell becomes names of files that exist, none of which has a placeholder.
+    A shell has replaced its own patterns by existing files, so only ours have placeholders.
 
     Args:
-        options: The arguments: `sources` and `target`, which are set as they were meant.
-        names: What the file to read and the one to write are called.
-        placeholders: Those that the path to write may have.
+        options: The arguments; sets their `sources` and `target` to the resolved ones.
+        names: Metavars of the file to read and of the file to write.
+        placeholders: Placeholders that the output path may have.
     """
     source, target = names
     options.is_positional = options.target is None
@@ -88,7 +88,7 @@ def settle(
 def check_path(
     options: argparse.Namespace, argument: str, path: str, placeholders: Sequence[str] = ()
 ) -> None:
-    """Ends the program for a path to write with unknown placeholders, or that Windows reserves."""
+    """Ends the program if an output path has unknown placeholders, or Windows reserves it."""
     try:
         patterns.check(argument, path, placeholders)
         check_windows_names(path, f"{argument}: ")
@@ -99,20 +99,20 @@ def check_path(
 def resolved(
     options: argparse.Namespace, argument: str, path: str, source: str | None = None
 ) -> str:
-    """Returns the path to write that a user gives, with the name of what is read in it.
+    """Returns a user's output path, with the input's name filled in.
 
     Args:
         options: The arguments.
-        argument: What the path is called in messages.
+        argument: The path's name in messages.
         path: The path.
-        source: The file that `{name}` stands for; None where there is no such placeholder.
+        source: The file that `{name}` stands for; None if that placeholder is not allowed.
     """
     check_path(options, argument, path, () if source is None else (NAME,))
     return for_source(path, source or "")
 
 
 def for_source(pattern: str, source: str) -> str:
-    """Returns the path to write for a file that is read."""
+    """Returns the output path for an input file."""
     return patterns.filled(pattern, {NAME: stem_of(source)})
 
 
@@ -121,11 +121,11 @@ def check_kept(
     targets: Iterable[str | os.PathLike[str]],
     sources: Iterable[str | os.PathLike[str]],
 ) -> None:
-    """Ends the program where a file that is read would be replaced, or one that may be meant so.
+    """Ends the program if it would replace an input file, or a file that may be one by mistake.
 
     Args:
-        options: The arguments: `overwrite` allows it, and `is_positional` tells that the file was
-            named without -o.
+        options: The arguments: `overwrite` allows it, and `is_positional` says that the output was
+            named without -o, where a shell's pattern may have put an existing file.
         targets: The files to write.
         sources: The files that are read.
     """

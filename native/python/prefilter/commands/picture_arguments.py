@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What `resize` and `resample` read and write: picture files."""
+"""Arguments of `resize` and `resample`, which read and write pictures."""
 
 import argparse
 from pathlib import Path
@@ -35,25 +35,25 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def decisive(options: argparse.Namespace, host: Host, settings: type) -> dict[str, Any]:
-    """Returns all that decides what a command makes of a picture, but for the picture itself.
+    """Returns the settings that determine a command's result, besides the picture itself.
 
     Args:
         options: The arguments.
-        host: Where the command runs.
-        settings: The dataclass of its options.
+        host: The environment of the command.
+        settings: The dataclass of the command's options.
     """
     names = ("data", "colorspace", "clip", "corners", "rectify", "scale")
     return telling.decisive(options, settings, *names, preset=host.preset(options))
 
 
 def check_target(options: argparse.Namespace) -> None:
-    """Ends the program unless OUTPUT has an extension of a picture."""
+    """Ends the program unless OUTPUT has the extension of a picture file."""
     many.settle(options)
     telling.check_ending(options, "OUTPUT", options.target, pictures.ENDINGS)
 
 
 def read_source(options: argparse.Namespace, host: Host, pair: Pair) -> tuple[Picture, Path]:
-    """Returns what an INPUT has, and the file to write."""
+    """Returns the picture of INPUT, and the file to write."""
     target = pair.checked_target()
     is_png = target.suffix.lower() == ".png"
     picture = host.read(

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The command: which commands there are, and how they end."""
+"""The entry point `prefilter`: its commands, their arguments, and their exit status."""
 
 import argparse
 import sys
@@ -22,14 +22,14 @@ COMMANDS = {
     "rasterize": "make an image of curves and texts, of an SVG file, or of a UV map",
     "reconstruct": "make the surface of points that a scanner has measured",
 }
-"""What each command does; the module of that name, with underscores, adds its arguments."""
+"""Purpose of each command; the module of that name, with underscores, adds its arguments."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs `prefilter ARGUMENTS`.
 
     Returns:
-        The exit status: 0, 1 for a failure that was told on stderr, 2 for wrong arguments, 130
+        The exit status: 0, 1 for a failure reported on stderr, 2 for wrong arguments, 130
         after Ctrl-C, 143 after SIGTERM.
     """
     words = list(sys.argv[1:] if arguments is None else arguments)
@@ -37,7 +37,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 class Parser(argparse.ArgumentParser):
-    """Prints help and errors where commands print."""
+    """An argument parser that prints help and errors to the streams of the commands."""
 
     def _print_message(self, message: str, file: Any = None) -> None:
         stream = streams.output() if file is sys.stdout else streams.errors()
@@ -56,17 +56,17 @@ def parse(reader: argparse.ArgumentParser, words: Sequence[str]) -> argparse.Nam
 
 
 def execute(options: argparse.Namespace) -> None:
-    """Does what arguments say, and tells of it as they say."""
+    """Runs the chosen command and reports progress in the chosen format."""
     telling.speak(options.progress)
     options.execute(options)
 
 
 def ended(run: Callable[[], object], *, is_end: bool = False) -> int:
-    """Runs a command; returns its exit status, of which stderr says why it is not 0.
+    """Runs a command and returns its exit status; stderr says why it is not 0.
 
     Args:
-        run: Reads arguments, and does what they say.
-        is_end: Whether whatever the process prints after that is lost.
+        run: Parses the arguments and runs the command.
+        is_end: Whether to discard everything that the process prints afterwards.
     """
     telling.speak()
     with streams.apart(is_end=is_end), stopping.heeded():
@@ -92,10 +92,10 @@ def _status_of(run: Callable[[], object]) -> int:
 
 
 def parser(chosen: Sequence[str] = tuple(COMMANDS)) -> argparse.ArgumentParser:
-    """Returns what reads the arguments.
+    """Returns the parser of the command line.
 
     Args:
-        chosen: The commands that need their arguments: the modules of others are not imported.
+        chosen: The commands whose arguments are needed; the modules of others are not imported.
     """
     found = Parser(
         prog="prefilter",

@@ -60,7 +60,7 @@ def add(commands: Any, purpose: str) -> None:
 
 
 def settings_of(options: argparse.Namespace, host: Host) -> RasterizeSettings:
-    """Returns the settings that were given, with what follows from them."""
+    """Returns the given settings, with those that follow from them."""
     found = given(options, RasterizeSettings)
     more: dict[str, Any] = {}
     ways = {"width": "size", "height": "size", "density": "density", "side": "side"}
@@ -90,7 +90,7 @@ def _rasterize(options: argparse.Namespace) -> None:
 
 
 def check_files(options: argparse.Namespace, allowed: Sequence[str]) -> set[str]:
-    """Returns the extensions of what is read; ends the program unless the files fit the flags."""
+    """Returns the extensions of the inputs; ends the program if the files do not fit the flags."""
     many.settle(options)
     endings = {telling.check_ending(options, "INPUT", path, allowed) for path in options.sources}
     telling.check_ending(options, "OUTPUT", options.target, pictures.ENDINGS)

@@ -47,7 +47,7 @@ def add(commands: Any, purpose: str) -> None:
 def add_files(
     parser: argparse.ArgumentParser, sources: Sequence[str], targets: Sequence[str]
 ) -> None:
-    """Adds the arguments that name files, of which these kinds are read and written."""
+    """Adds the arguments that name files, with the extensions of files to read and to write."""
     parser.add_argument(
         "sources",
         metavar="SOURCE",
@@ -69,9 +69,9 @@ def add_files(
 
 
 def settle(options: argparse.Namespace) -> None:
-    """Finds out which files are read and written; a folder stands for its files of points.
+    """Determines which files are read and written; a folder stands for its point files.
 
-    Ends the program where a file that is read would be replaced.
+    Ends the program if it would replace a file that it reads.
     """
     outputs.settle(options, ("SOURCE", "TARGET"))
     options.target = outputs.for_source(options.target, "")
@@ -82,7 +82,7 @@ def settle(options: argparse.Namespace) -> None:
 
 
 def _expand_folders(options: argparse.Namespace) -> None:
-    """Puts the files of points in the place of the folders that they are in, by their names."""
+    """Replaces each folder among the sources by its files of points, sorted by name."""
     found: list[str] = []
     for source in options.sources:
         if not os.path.isdir(source):
@@ -98,7 +98,7 @@ def _expand_folders(options: argparse.Namespace) -> None:
 
 
 def add_settings(parser: argparse.ArgumentParser, host: Host) -> None:
-    """Adds the flags of settings."""
+    """Adds the flags of the settings."""
     host.add_preset(parser)
     sizes = ("depth", "voxel_size")
     add_flags(
@@ -111,7 +111,7 @@ def add_settings(parser: argparse.ArgumentParser, host: Host) -> None:
 
 
 def add_steps(parser: argparse.ArgumentParser) -> None:
-    """Adds the flags of work in steps."""
+    """Adds the flags for work in steps."""
     parser.add_argument(
         "--step",
         choices=STEPS,
@@ -134,7 +134,7 @@ def add_steps(parser: argparse.ArgumentParser) -> None:
 
 
 def check_steps(options: argparse.Namespace) -> None:
-    """Ends the program where the flags of steps do not go together."""
+    """Ends the program if the flags of steps contradict one another."""
     tasks.check(options)
     for name in ("work", "task", "list"):
         if options.step is None and getattr(options, name):
@@ -151,7 +151,7 @@ def do_step(
     settings: ScanSettings,
     length: Callable[[float], str],
 ) -> None:
-    """Does the runs of a step that are this task's, or lists them."""
+    """Does, or lists, this task's runs of a step."""
     sources = [Path(path) for path in options.sources]
     known = scan_options(settings) | {"viewpoint": options.viewpoint}
     steps = Steps(sources, Path(options.work), options.parts, known)
@@ -174,7 +174,7 @@ def do_step(
 
 
 def settings_of(options: argparse.Namespace, host: Host) -> ScanSettings:
-    """Returns the settings that were given, with what follows from them."""
+    """Returns the given settings, with those that follow from them."""
     found, more = given(options, ScanSettings), {}
     for name, resolution in (("depth", "depth"), ("voxel_size", "size")):
         if name in found:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What is kept of failures that nobody has foreseen, for those who mend them."""
+"""Descriptions of failures, and tracebacks of unexpected ones for bug reports."""
 
 import sys
 
@@ -11,7 +11,7 @@ _PAGE = "https://extensions.blender.org/add-ons/prefilter/"
 
 
 def told(error: BaseException) -> str:
-    """Returns the line that says why work failed: our own reason, or that nobody foresaw it."""
+    """Returns the line that says why work failed: a known reason, or a request to report it."""
     from ..workflows.outcome import reason
 
     is_of_system = isinstance(error, OSError) and error.strerror is not None
@@ -22,7 +22,7 @@ def told(error: BaseException) -> str:
 
 
 def unexpected(error: BaseException) -> str:
-    """Returns the line that asks for a report; the traceback is printed, or kept in a file."""
+    """Returns the line that asks for a report; the traceback is printed, or saved in a file."""
     kind, text = type(error).__name__, str(error)
     what = f"{kind}: {text[:200]}" if text else kind
     if is_debugging():
@@ -35,13 +35,13 @@ def unexpected(error: BaseException) -> str:
 
 
 def show(error: BaseException) -> None:
-    """Prints where an error comes from, where that is wanted."""
+    """Prints the traceback of an error, if debugging is on."""
     if is_debugging():
         streams.write(streams.errors(), _traceback(error), "")
 
 
 def _kept(error: BaseException) -> str:
-    """Returns the new file that has the traceback; empty where there can be none."""
+    """Saves the traceback in a new file and returns its path; empty if that is impossible."""
     import tempfile
 
     try:

@@ -126,7 +126,7 @@ def _settings(options: argparse.Namespace, host: Host) -> ResampleSettings:
 
 
 def _complete_proportions(options: argparse.Namespace, found: dict[str, Any]) -> None:
-    """Lets --aspect say how the proportions are given."""
+    """Makes --aspect imply --proportions given; ends the program if flags contradict that."""
     for name in ("aspect", "proportions"):
         if name in found and options.rectify is None:
             options.usage_error(f"--{name}: not allowed without --rectify")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Standard output and standard error, which have only what commands say.
+"""Standard output and standard error, reserved for the messages of commands.
 
-What a command does never fails because nobody reads what it says, or a console lacks a letter.
+Commands never fail because a pipe is closed, or because a console cannot show a character.
 """
 
 import ctypes
@@ -24,7 +24,7 @@ _NUMBERS = {"stdout": 1, "stderr": 2}
 
 @dataclass
 class _Streams:
-    """Where commands write, and what went wrong."""
+    """The streams that commands write to, and the first failure to do so."""
 
     output: TextIO
     errors: TextIO
@@ -35,22 +35,22 @@ _own: _Streams | None = None
 
 
 def output() -> TextIO:
-    """Returns standard output, whatever else it is that prints in this process."""
+    """Returns the commands' standard output, even while other code's is redirected."""
     return sys.stdout if _own is None else _own.output
 
 
 def errors() -> TextIO:
-    """Returns standard error likewise."""
+    """Returns the commands' standard error, even while other code's is redirected."""
     return sys.stderr if _own is None else _own.errors
 
 
 def write(stream: TextIO, text: str, end: str = "\n") -> None:
-    """Writes to a stream at once; what nobody reads any more is lost."""
+    """Writes to a stream and flushes it; output to a closed pipe is dropped."""
     try:
         stream.write(text + end)
         stream.flush()
     except ValueError:
-        pass  # It has been closed.
+        pass  # The stream is closed.
     except OSError as error:
         _silence(stream)
         if error.errno not in _NOBODY_READS and _own is not None:
@@ -58,20 +58,20 @@ def write(stream: TextIO, text: str, end: str = "\n") -> None:
 
 
 def failure() -> OSError | None:
-    """Returns why something that may be read could not be written; None if all was."""
+    """Returns why output could not be written, other than to a closed pipe; else None."""
     return None if _own is None else _own.failure
 
 
 @contextmanager
 def apart(*, is_end: bool) -> Iterator[None]:
-    """A context in which only what commands say reaches the streams.
+    """A context in which only messages of commands reach the standard streams.
 
-    What libraries, Blender and its importers print is lost, or goes to standard error where
-    somebody debugs.
+    Everything that libraries, Blender and its importers print is dropped, or goes to standard
+    error when debugging.
 
     Args:
-        is_end: Whether that stays so, because this process has no more to say. Blender prints
-            something as it quits.
+        is_end: Whether to leave the redirection in place at the end. Blender prints something as it
+            quits.
     """
     global _own
     _prepare()
@@ -86,12 +86,13 @@ def apart(*, is_end: bool) -> Iterator[None]:
 
 
 def _prepare() -> None:
-    """Gives both streams numbers and objects, whatever was closed before this program began.
+    """Makes sure that descriptors 0 to 2 are open and that both stream objects exist.
 
-    A file that is opened later would get the number of a closed stream, and what libraries print.
+    Otherwise a file opened later could get the descriptor of a closed stream, and with it the
+    output of libraries.
     """
     if hasattr(signal, "SIGPIPE") and threading.current_thread() is threading.main_thread():
-        # Python leaves pipes that nobody reads to `write`; Blender would end there.
+        # `write` handles closed pipes; in Blender SIGPIPE would end the process.
         signal.signal(signal.SIGPIPE, signal.SIG_IGN)
     for number in range(3):
         try:
@@ -108,7 +109,7 @@ def _prepare() -> None:
 
 @contextmanager
 def _quiet(*, is_end: bool) -> Iterator[tuple[TextIO, TextIO]]:
-    """Moves both streams elsewhere; yields those that go where they went."""
+    """Redirects both streams; yields new streams that lead where they led before."""
     own = [_same(getattr(sys, name), number) for name, number in _NUMBERS.items()]
     kept = {number: os.dup(number) for number in _NUMBERS.values()}
     for stream in (sys.stdout, sys.stderr):
@@ -116,7 +117,7 @@ def _quiet(*, is_end: bool) -> Iterator[tuple[TextIO, TextIO]]:
     sink = os.dup(2) if is_debugging() else os.open(os.devnull, os.O_WRONLY)
     for number in _NUMBERS.values():
         os.dup2(sink, number)
-    _flush_c()  # It is nobody's any more; later it would come after our last line.
+    _flush_c()  # Drop buffered output now, before it can appear after our last line.
     given = sys.stdout, sys.stderr
     sys.stdout, sys.stderr = (_text(one) for one in (sink, os.dup(sink)))
     moved = sys.stdout, sys.stderr
@@ -130,7 +131,7 @@ def _quiet(*, is_end: bool) -> Iterator[tuple[TextIO, TextIO]]:
             if not is_end:
                 os.dup2(old, number)
             os.close(old)
-        # At the end, what others have kept of these goes on to work.
+        # At the process's end, objects that others hold of the moved streams stay usable.
         done = [] if is_end else list(moved)
         for stream in (*done, *(each for each in own if each not in given)):
             write(stream, "", "")
@@ -138,7 +139,7 @@ def _quiet(*, is_end: bool) -> Iterator[tuple[TextIO, TextIO]]:
 
 
 def _same(stream: TextIO, number: int) -> TextIO:
-    """Returns a stream of its own to where a stream leads, or what somebody put in its place."""
+    """Returns a new stream to the same descriptor, or the stream itself if it was replaced."""
     try:
         if not os.path.samestat(os.fstat(stream.fileno()), os.fstat(number)):
             return stream
@@ -152,13 +153,13 @@ def _text(number: int, encoding: str = "utf-8") -> TextIO:
 
 
 def _flush_c() -> None:
-    """Writes what C has not written yet."""
+    """Flushes the buffers of C's stdio."""
     if os.name == "posix":
         ctypes.CDLL(None).fflush(None)
 
 
 def _silence(stream: TextIO) -> None:
-    """Loses what a stream still holds, and what comes: Python would fail at its end otherwise."""
+    """Drops a stream's buffered and future output, on which Python would fail at exit."""
     with suppress(OSError, ValueError):
         nothing = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nothing, stream.fileno())

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Work in tasks, which machines of a farm do apart: what they are, and which of them are done here.
+"""Splitting work into tasks that the machines of a render farm do separately.
 
-Every task leaves the files, byte for byte, that the whole would.
+Together the tasks leave the same files, byte for byte, as one undivided run.
 """
 
 import argparse
@@ -19,18 +19,18 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class Part:
-    """One of several parts of the tasks, of which each takes every so manieth.
+    """One of `count` parts of the tasks, which takes every `count`-th of them.
 
     Attributes:
-        number: Which one, from 1.
-        count: Of how many.
+        number: Which part, from 1.
+        count: How many parts there are.
     """
 
     number: int
     count: int
 
     def of(self, tasks: Sequence[T]) -> list[T]:
-        """Returns the tasks in this part; none where there are fewer of them than parts."""
+        """Returns the tasks in this part; none if there are fewer tasks than parts."""
         return list(tasks[self.number - 1 :: self.count])
 
 
@@ -38,9 +38,9 @@ def add_flags(parser: argparse.ArgumentParser, thing: str, *, needs: str = "") -
     """Adds the flags that split the work.
 
     Args:
-        parser: Gets them; `check` looks at them.
-        thing: What a task does, such as "file".
-        needs: What the help begins with, where another flag is needed too.
+        parser: The parser that gets the flags; `check` validates them.
+        thing: What one task does, such as "file".
+        needs: Prefix of the help texts, where another flag is required.
     """
     parser.add_argument(
         "--task",
@@ -58,7 +58,7 @@ def add_flags(parser: argparse.ArgumentParser, thing: str, *, needs: str = "") -
 
 
 def check(options: argparse.Namespace) -> None:
-    """Ends the program where flags do not go together."""
+    """Ends the program if the flags contradict one another."""
     if options.json and not options.list:
         options.usage_error("--json: needs --list")
     if options.task and options.list:
@@ -66,7 +66,7 @@ def check(options: argparse.Namespace) -> None:
 
 
 def chosen(options: argparse.Namespace, tasks: Sequence[T]) -> list[T]:
-    """Returns the tasks that are done here, and says so where there are none."""
+    """Returns the tasks to do here; prints a line if there are none."""
     if options.task is None:
         return list(tasks)
     found: list[T] = options.task.of(tasks)
@@ -76,7 +76,7 @@ def chosen(options: argparse.Namespace, tasks: Sequence[T]) -> list[T]:
 
 
 def say_json(tasks: Sequence[Mapping[str, Any]], **more: Any) -> None:
-    """Prints tasks with their numbers, and more, as one JSON object on a line."""
+    """Prints numbered tasks, and more values, as one JSON object on a line."""
     numbered = [{"task": number, **task} for number, task in enumerate(tasks, start=1)]
     telling.say(json.dumps({"tasks": numbered, **more}))
 

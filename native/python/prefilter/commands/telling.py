@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What the commands share: options, progress, messages."""
+"""Helpers that all commands share: common flags, progress, and messages."""
 
 import argparse
 import os
@@ -22,7 +22,7 @@ from .voices import VOICES, Plain
 _NONE: Mapping[str, Any] = MappingProxyType({})
 _voice = Plain()
 _share: tuple[int, int] = (0, 1)
-"""The part of the command that its work is now: which of how many."""
+"""Which of how many equal shares of the command's progress the current work is."""
 
 
 def add_command(commands: Any, name: str, purpose: str, *notes: str) -> argparse.ArgumentParser:
@@ -38,7 +38,7 @@ def add_command(commands: Any, name: str, purpose: str, *notes: str) -> argparse
 
 
 def add_progress(parser: argparse.ArgumentParser) -> None:
-    """Adds the flag that says whom progress is told."""
+    """Adds the flag that chooses how progress is reported."""
     parser.add_argument(
         "--progress",
         choices=VOICES,
@@ -50,7 +50,7 @@ def add_progress(parser: argparse.ArgumentParser) -> None:
 
 
 def add_skipping(parser: argparse.ArgumentParser) -> None:
-    """Adds the flag that leaves alone what would be made again."""
+    """Adds the flag that skips files that are up to date."""
     parser.add_argument(
         "--skip-up-to-date",
         action="store_true",
@@ -62,13 +62,13 @@ def add_skipping(parser: argparse.ArgumentParser) -> None:
 def decisive(
     options: argparse.Namespace, settings: type, *names: str, preset: Mapping[str, Any] = _NONE
 ) -> dict[str, Any]:
-    """Returns all that decides what a command makes of a file, but for the file itself.
+    """Returns the settings that determine a command's result, besides the input file itself.
 
     Args:
         options: The arguments.
         settings: The dataclass of the command's options.
-        names: Of arguments that are no options.
-        preset: Options by a preset.
+        names: Names of arguments that are not options but matter too.
+        preset: Options set by a preset.
     """
     chosen = {**preset, **given(options, settings)}
     chosen.pop("threads", None)
@@ -77,7 +77,7 @@ def decisive(
 
 
 def check_can_tell(options: argparse.Namespace, path: str, allowed: Sequence[str]) -> None:
-    """Ends the program unless a file can keep what it was made of."""
+    """Ends the program unless the file can store the fingerprint of its inputs."""
     if not path.lower().endswith(tuple(allowed)):
         options.usage_error(
             f"--skip-up-to-date: found '{path}', and only {', '.join(allowed)} files can tell"
@@ -85,7 +85,7 @@ def check_can_tell(options: argparse.Namespace, path: str, allowed: Sequence[str
 
 
 def are_up_to_date(targets: Sequence[Path], number: str) -> bool:
-    """Tells whether files have been made of what has this fingerprint; says so where they have."""
+    """Tells whether all files store this fingerprint of their inputs; prints a line if so."""
     if not is_up_to_date(targets, number):
         return False
     say(up_to_date(targets))
@@ -93,14 +93,14 @@ def are_up_to_date(targets: Sequence[Path], number: str) -> bool:
 
 
 def speak(kind: str = "plain") -> None:
-    """Has all that follows told in one way; see `add_progress`."""
+    """Selects how everything that follows is reported; see `add_progress`."""
     global _voice, _share
     _voice, _share = VOICES[kind](), (0, 1)
 
 
 def check_ending(options: argparse.Namespace, name: str, path: str, allowed: Sequence[str]) -> str:
     """Returns the extension of a file; ends the program unless it is allowed."""
-    # Of several that a name ends in, such as ".ply.gz" and ".gz", the longest one.
+    # Among several allowed extensions, such as ".ply.gz" and ".gz", the longest that matches.
     fitting = [one for one in allowed if path.lower().endswith(one)]
     extension = max(fitting, key=len, default="")
     if not os.path.splitext(path)[1] or not extension:
@@ -109,7 +109,7 @@ def check_ending(options: argparse.Namespace, name: str, path: str, allowed: Seq
 
 
 def done(work: Work) -> Outcome:
-    """Computes and writes, and tells of the progress."""
+    """Runs work to its end, reporting progress; returns its outcome."""
     with progress_line() as progress:
         try:
             work.compute(progress)
@@ -121,7 +121,7 @@ def done(work: Work) -> Outcome:
 
 @contextmanager
 def share(number: int, count: int) -> Iterator[None]:
-    """What is done in this context is one of several works of the same command."""
+    """A context whose work is one of `count` equal shares of the command's progress."""
     global _share
     _share = (number, count)
     try:
@@ -136,7 +136,7 @@ def say(line: str) -> None:
 
 
 def tell(outcome: Outcome) -> None:
-    """Prints what was done, and on stderr what the user should look at."""
+    """Prints the result, and its warnings on stderr."""
     warn(outcome.warnings)
     _voice.tell(outcome)
 
@@ -154,7 +154,7 @@ def fail(text: str) -> None:
 
 def is_canceled(error: BaseException) -> bool:
     """Tells whether work failed because a signal asked it to stop."""
-    # What was interrupted may fail in any way, as operators of Blender do.
+    # Interrupted work may fail with any exception, as Blender's operators do.
     return bool(stopping.asked()) or isinstance(error, _native.Cancelled | KeyboardInterrupt)
 
 
@@ -165,9 +165,9 @@ def cancel() -> None:
 
 @contextmanager
 def progress_line() -> Iterator[Progress]:
-    """Progress for as long as the context lasts, in which signals stop the work by it alone.
+    """A context that yields a progress callback, through which alone signals stop the work.
 
-    Ctrl-C, or SIGTERM, has the work stop at its next report; a second one ends the program.
+    Ctrl-C or SIGTERM makes the work stop at its next report; a second one ends the program.
     """
 
     def report(fraction: float) -> bool:

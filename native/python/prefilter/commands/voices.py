@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""How commands say what they do: to people, to Open Job Description, or to other programs.
+"""Reporters: how commands show progress and results to people, Open Job Description or programs.
 
-Warnings and errors are lines on standard error for all of them, which people read in logs.
+All of them print warnings and errors as lines on standard error, which people read in logs.
 """
 
 import json
@@ -13,14 +13,14 @@ from . import streams
 
 
 class Plain:
-    """To people: progress on standard error, results on standard output."""
+    """For people: progress on standard error, results on standard output."""
 
     def __init__(self) -> None:
-        """Has shown no progress yet."""
+        """Starts without any progress shown."""
         self._shown = -1
 
     def progress(self, fraction: float) -> None:
-        """Shows how much is done: one line that changes on a terminal, else a line each quarter."""
+        """Shows the percentage: one line that changes on a terminal, else a line each quarter."""
         step = 1 if streams.errors().isatty() else 25
         percent = self._risen(fraction, step)
         if percent is not None:
@@ -28,23 +28,23 @@ class Plain:
             streams.write(streams.errors(), line, end="\r" if step == 1 else "\n")
 
     def end_progress(self) -> None:
-        """Leaves the line of progress."""
+        """Ends the progress line."""
         if self._shown >= 0 and streams.errors().isatty():
             streams.write(streams.errors(), "")
         self._shown = -1
 
     def say(self, line: str) -> None:
-        """Prints a line of what was asked for."""
+        """Prints a line of requested output."""
         streams.write(streams.output(), line)
 
     def tell(self, outcome: Outcome) -> None:
-        """Prints what was done."""
+        """Prints the result."""
         for note in outcome.notes:
             self.say(note)
         self.say(outcome.summary)
 
     def warn(self, text: str) -> None:
-        """Prints what a user should look at."""
+        """Prints a warning."""
         streams.write(streams.errors(), f"prefilter: warning: {one_line(text)}")
 
     def fail(self, text: str) -> None:
@@ -56,7 +56,7 @@ class Plain:
         streams.write(streams.errors(), "prefilter: canceled")
 
     def _risen(self, fraction: float, step: int = 1) -> int | None:
-        """Returns percents where they have risen by a step; None where not."""
+        """Returns the percentage if it has risen by a step since it was last shown, else None."""
         percent = int(100 * fraction) // step * step
         if percent <= self._shown:
             return None
@@ -65,55 +65,55 @@ class Plain:
 
 
 class OpenJobDescription(Plain):
-    """To a session of Open Job Description, which reads lines with a certain beginning."""
+    """For a session of Open Job Description, which parses lines with certain prefixes."""
 
     def progress(self, fraction: float) -> None:
-        """Prints the percents."""
+        """Prints the percentage."""
         percent = self._risen(fraction)
         if percent is not None:
             streams.write(streams.output(), f"openjd_progress: {percent:.1f}")
 
     def end_progress(self) -> None:
-        """Starts anew."""
+        """Restarts at 0 %."""
         self._shown = -1
 
     def tell(self, outcome: Outcome) -> None:
-        """Prints what was done, which becomes the status of the task."""
+        """Prints the result, which becomes the status of the task."""
         for note in outcome.notes:
             self.say(note)
         self.say(f"openjd_status: {one_line(outcome.summary)}")
 
     def fail(self, text: str) -> None:
-        """Prints why the command ends, which becomes that of the task."""
+        """Prints why the command ends, which becomes the task's failure message."""
         super().fail(text)
         self.say(f"openjd_fail: {one_line(text)}")
 
 
 class JsonLines(Plain):
-    """To programs: an object a line on standard output, whose only key but "files" is its kind."""
+    """For programs: one JSON object a line on standard output, keyed by its kind (and "files")."""
 
     def progress(self, fraction: float) -> None:
-        """Prints the fraction, for each percent."""
+        """Prints the fraction, once per percent."""
         percent = self._risen(fraction)
         if percent is not None:
             self._print(progress=percent / 100)
 
     def end_progress(self) -> None:
-        """Starts anew."""
+        """Restarts at 0 %."""
         self._shown = -1
 
     def say(self, line: str) -> None:
-        """Prints a line of what was asked for."""
+        """Prints a line of requested output."""
         self._print(note=line)
 
     def tell(self, outcome: Outcome) -> None:
-        """Prints what was done, and which files were written."""
+        """Prints the result and the files that were written."""
         for note in outcome.notes:
             self.say(note)
         self._print(done=outcome.summary, files=outcome.files)
 
     def warn(self, text: str) -> None:
-        """Prints what a user should look at."""
+        """Prints a warning."""
         super().warn(text)
         self._print(warning=text)
 
@@ -128,13 +128,13 @@ class JsonLines(Plain):
         self._print(error="canceled")
 
     def _print(self, **values: Any) -> None:
-        streams.write(streams.output(), json.dumps(values))  # ASCII, which every encoding has.
+        streams.write(streams.output(), json.dumps(values))  # ASCII, so any encoding can print it.
 
 
 VOICES = {"plain": Plain, "openjd": OpenJobDescription, "json": JsonLines}
-"""By what `--progress` calls them."""
+"""The reporters by their names in `--progress`."""
 
 
 def one_line(text: str) -> str:
-    """Returns a text without breaks of lines, which messages of others and names may have."""
+    """Returns a text in one line: names and messages of other libraries may have line breaks."""
     return " ".join(line.strip() for line in text.splitlines())

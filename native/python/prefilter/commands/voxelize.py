@@ -30,9 +30,9 @@ FLAGS = (
     *(*RESOLUTIONS, "interpolant", "adaptivity", "thickness", "gap", "use_close_holes", "holes"),
     *("use_cleanup", "threads"),
 )
-"""The options that need no Blender."""
-_VOXELIZED = 0.5  # What the progress is once there is a tree.
-_COMPUTED = 0.95  # The same once there are surfaces.
+"""The options that work without Blender."""
+_VOXELIZED = 0.5  # Progress once there is a tree.
+_COMPUTED = 0.95  # Progress once there are surfaces.
 _NOTES = """\
 Each mesh of FILE is voxelized by itself. Meshes may be open, leaky, and intersect themselves. Only
 positions and triangles are written; materials and attributes need Blender.
@@ -64,7 +64,7 @@ def add(commands: Any, purpose: str) -> None:
 def settings_of(
     options: argparse.Namespace, host: Host, settings: type[VoxelSettings], **more: Any
 ) -> Any:
-    """Returns the settings that were given, with what follows from them."""
+    """Returns the given settings, with those that follow from them."""
     found = given(options, settings)
     for name, resolution in zip(RESOLUTIONS, ("depth", "size"), strict=True):
         if name in found:
@@ -75,12 +75,12 @@ def settings_of(
 
 
 class VoxelFile:
-    """Meshes, each voxelized, to a file."""
+    """Voxelizes each of several meshes and writes the results to a file."""
 
     def __init__(self, meshes: list[Part], target: Path, settings: VoxelizeSettings) -> None:
-        """Takes what to voxelize, where to, and how."""
+        """Takes the meshes to voxelize, the file to write, and the settings."""
         self.metadata: Mapping[str, str] | None = None
-        """What the file is to keep, by keys."""
+        """Key-value pairs to store in the file."""
         self._meshes = meshes
         self._target = target
         self._settings = settings
@@ -94,7 +94,7 @@ class VoxelFile:
         """Voxelizes, contours, and stages the file.
 
         Raises:
-            ValueError: The cells of a mesh are too small, or nothing is left of any.
+            ValueError: The cells of a mesh are too small, or every mesh vanishes.
             MemoryError: A result does not fit into memory.
             OSError: The file cannot be written.
             prefilter.Cancelled: `progress` returned False.
@@ -124,7 +124,7 @@ class VoxelFile:
         return Outcome(summary, files=[str(self._target)], warnings=self._warnings, notes=notes)
 
     def discard(self) -> None:
-        """Removes what was staged, if it was not put into place."""
+        """Removes the staged file if it was not put into place."""
         if self._staged is not None:
             self._staged.discard()
 

@@ -1,3 +1,3 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Files that are written beside their target and renamed, and names that every system allows."""
+"""Atomic replacement of files, and portable file names."""

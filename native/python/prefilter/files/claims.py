@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Names that a process has in a folder for the time being, and what dead processes have left there.
+"""Lock files for temporary names in a folder, and removal of files that dead processes left there.
 
-A claim is a file that stays locked while its process lives. It owns what has its name and a number,
-so whoever can lock it may remove all that. A file without a claim is its own: it is locked itself.
-Locks may hold for one machine only, so names say which one it was.
+A claim is a file that stays locked while its process lives. It owns all files named like it with a
+number appended; whoever can lock the claim may remove them. A temporary file without a claim is
+locked itself. Locks may hold for one machine only, so temporary names contain the machine.
 """
 
 import os
@@ -26,62 +26,62 @@ else:
     import fcntl
 
 CLAIM, JOURNAL = ".lock", ".set"
-"""How claims end: a journal's file says what is to be done before it is removed."""
+"""Extensions of claims. A journal also holds recovery steps to take before it is removed."""
 
 _STEM = re.compile(r"\.prefilter-([0-9a-f]+)")
 _SECONDS_ELSEWHERE = 24 * 3600.0
 
 End = Callable[[Path, BinaryIO], bool]
-"""Does what the file of a claim says; returns whether all that it owns can go."""
+"""Carries out the recovery steps of a claim's file; returns whether its files can be removed."""
 
 
 def is_temporary(path: Path) -> bool:
-    """Tells whether a name, or that of a folder it is in, is one of those."""
+    """Tells whether a path is a temporary file, or inside a temporary folder."""
     return any(_STEM.match(part) for part in path.parts)
 
 
 class Claim:
-    """Names in a folder, of this process until it ends; raises OSError where it cannot write."""
+    """A lock file that reserves temporary names in a folder; raises OSError if not possible."""
 
     def __init__(self, folder: Path, ending: str = CLAIM) -> None:
-        """Makes the file, and locks it, as far as the file system has locks."""
+        """Creates the file and locks it, if the file system has locks."""
         self._numbers = iter(range(1 << 62))
         while True:
             self.path = folder / f"{random_name()}{ending}"
             self._file = self.path.open("xb", buffering=0)
             with suppress(OSError):
                 _lock(self._file, waits=True)
-            if self.path.exists():  # Else somebody has removed it as one that nobody has locked.
+            if self.path.exists():  # Another process may have swept it before it was locked.
                 return
             self._file.close()
 
     def beside(self, suffix: str) -> Path:
-        """Returns a name that nobody else thinks of."""
+        """Returns an unused name that this claim owns."""
         return self.path.with_name(f"{self.path.stem}-{next(self._numbers)}{suffix}")
 
     def say(self, text: bytes) -> None:
-        """Has the disk hold what is to be done if this process is killed."""
+        """Writes recovery steps in case this process is killed, and syncs them to disk."""
         while text:
             text = text[self._file.write(text) :]
         os.fsync(self._file.fileno())
 
     def unsay(self) -> None:
-        """Has the disk hold that nothing is to be done."""
+        """Empties the journal and syncs that to disk: nothing is left to recover."""
         self._file.truncate(0)
         os.fsync(self._file.fileno())
 
     def end(self) -> None:
-        """Gives the names back; files that have them are gone by then."""
+        """Removes the claim; its temporary files must be gone by then."""
         self._file.close()
         self.path.unlink(missing_ok=True)
 
     def leave(self) -> None:
-        """Leaves the rest to the next run, as a dead process does."""
+        """Unlocks the claim but leaves its files, so that the next run recovers them."""
         self._file.close()
 
 
 class _Shared:
-    """The claims that staged files of one folder have in common, until the last of them ends."""
+    """One reference-counted claim per folder, shared by its staged files."""
 
     def __init__(self) -> None:
         self._guard = threading.Lock()
@@ -108,10 +108,12 @@ take, give_back = _shared.take, _shared.give_back
 
 @contextmanager
 def temporary_folder(parent: str | os.PathLike[str] | None = None) -> Iterator[Path]:
-    """A new folder that is removed at the end of the context, or by the next one after a kill.
+    """A context that yields a new folder and removes it at the end.
+
+    After a kill, the next call removes it.
 
     Args:
-        parent: Where; in the system's folder for temporary files if None.
+        parent: The folder to create it in; None for the system's temporary folder.
     """
     import tempfile
 
@@ -130,7 +132,7 @@ def temporary_folder(parent: str | os.PathLike[str] | None = None) -> Iterator[P
 
 
 def sweep(folder: Path, end: End = lambda path, file: path.suffix != JOURNAL) -> None:
-    """Removes what dead processes have left in a folder, and leaves what it cannot be sure of."""
+    """Removes files that dead processes left in a folder; in doubt, leaves them."""
     owned: dict[str, list[Path]] = {}
     try:
         for entry in os.scandir(folder):
@@ -142,16 +144,17 @@ def sweep(folder: Path, end: End = lambda path, file: path.suffix != JOURNAL) ->
         held = [path for path in paths if path.suffix in (CLAIM, JOURNAL)]
         for path in held:
             sweep_claim(path, end)
-        if not held and sys.platform != "win32":  # There they go with their process.
+        if not held and sys.platform != "win32":  # Windows removes them with their process.
             for path in paths:
                 _sweep_own(path)
 
 
 def sweep_claim(path: Path, end: End) -> bool:
-    """Ends a claim and removes what it owns, unless its process lives; returns whether it is gone.
+    """Recovers and removes a claim and its files if its process is dead; returns whether it is
+    gone.
 
     Raises:
-        OSError: What is to be done before cannot be done.
+        OSError: A recovery step fails.
     """
     try:
         file = path.open("r+b")
@@ -164,7 +167,7 @@ def sweep_claim(path: Path, end: End) -> bool:
             _lock(file, waits=False)
         except OSError:
             return False
-        # A journal counts at once, wherever it is from: its process replaces files for moments.
+        # Journals are recovered at once, whatever their machine: they live for moments only.
         if path.exists() and not (path.suffix == JOURNAL or _may_be_swept(path)):
             return False
         if not end(path, file):
@@ -178,7 +181,7 @@ def sweep_claim(path: Path, end: End) -> bool:
 
 
 def _sweep_own(path: Path) -> None:
-    """Removes a file that nobody has locked; it may have been put into place meanwhile."""
+    """Removes an unlocked file, unless it has been renamed into place meanwhile."""
     try:
         descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | getattr(os, "O_NOFOLLOW", 0))
     except OSError:
@@ -190,7 +193,7 @@ def _sweep_own(path: Path) -> None:
 
 
 def _may_be_swept(path: Path) -> bool:
-    """Tells whether a lock that can be had says enough: that of another machine may not."""
+    """Tells whether a free lock proves that the process is dead; on another machine it may not."""
     found = _STEM.match(path.name)
     assert found is not None
     half = MACHINE_DIGITS // 2
@@ -211,13 +214,13 @@ def _remove(path: Path) -> None:
 
 
 def lock_new(file: BinaryIO) -> None:
-    """Locks a file without a name, so that it is in use once it has one."""
+    """Locks a nameless file, so that it counts as in use once it has a name."""
     with suppress(OSError):
         _lock(file, waits=False)
 
 
 def _lock(file: BinaryIO, *, waits: bool) -> None:
-    """Locks a file until it is closed; raises OSError where another process has done so."""
+    """Locks a file until it is closed; raises OSError if another process holds the lock."""
     if sys.platform == "win32":
         msvcrt.locking(file.fileno(), msvcrt.LK_LOCK if waits else msvcrt.LK_NBLCK, 1)
     else:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Names of files: what each system allows in them, and which paths lead to one file."""
+"""File names: characters that each system allows, and paths that lead to the same file."""
 
 import ntpath
 import os
@@ -11,19 +11,19 @@ from contextlib import suppress
 from pathlib import PurePath
 
 _FORBIDDEN = re.compile(r'[<>:"/\\|?*\x00-\x1f\x7f\ud800-\udfff]')
-"""Characters that Windows forbids in names, and halves of characters that no system can show."""
+"""Characters that Windows forbids in names, and lone surrogates."""
 _DEVICES = frozenset(
     ["con", "prn", "aux", "nul", "conin$", "conout$"]
     + [f"{device}{digit}" for device in ("com", "lpt") for digit in "0123456789¹²³"]
 )
-"""Names of devices in Windows, in small letters, whatever extension follows."""
+"""Device names of Windows, in lower case; reserved with any extension."""
 
 
 def portable(name: str) -> str:
-    """Returns a name of one part of a path that every system can write and reads the same.
+    """Returns a path component that is valid and reads the same on every system.
 
-    Characters that Windows forbids become "_", as do dots and spaces at the end; letters with
-    accents are composed (NFC); "_" follows the names of Windows' devices.
+    Characters that Windows forbids and trailing dots and spaces become "_"; accented letters are
+    composed (NFC); "_" is appended to Windows' device names.
     """
     composed = _FORBIDDEN.sub("_", unicodedata.normalize("NFC", name))
     bare = composed.rstrip(". ")
@@ -33,11 +33,11 @@ def portable(name: str) -> str:
 
 
 def check_windows_names(path: str, who: str = "", *, is_windows: bool = os.name == "nt") -> None:
-    """Raises ValueError for a path to write that Windows reserves or forbids; elsewhere, never.
+    """Raises ValueError on Windows if a path to write is reserved or forbidden there.
 
     Args:
-        path: The path as it was given.
-        who: Begins the text of the error.
+        path: The path as given.
+        who: Prefix of the error message.
         is_windows: Whether this system is Windows.
     """
     if not is_windows:
@@ -53,10 +53,10 @@ def check_windows_names(path: str, who: str = "", *, is_windows: bool = os.name 
 
 
 def identities(path: str | os.PathLike[str]) -> set[Hashable]:
-    """Returns all that tells a file from others: paths to one file have one of these in common.
+    """Returns keys that identify a file: two paths lead to the same file if they share a key.
 
-    Symbolic links are followed; hard links, and names that differ in the case or in the composition
-    of their letters, count as one file.
+    Symbolic links are followed; hard links, and names that differ only in case or in Unicode
+    composition, count as one file.
     """
     name = unicodedata.normalize("NFC", os.path.realpath(path))
     found: set[Hashable] = {unicodedata.normalize("NFC", name.casefold())}
@@ -68,7 +68,7 @@ def identities(path: str | os.PathLike[str]) -> set[Hashable]:
 
 
 def stem_of(path: str) -> str:
-    """Returns the name of a file without its folder and its last extension, as `portable`."""
+    """Returns a file's name without folder and last extension, made `portable`."""
     return portable(PurePath(path).stem)
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Files whose names are no text, for libraries that take only text: they get another name."""
+"""Aliases for files whose names are no valid text, for libraries that need text."""
 
 import os
 import shutil
@@ -17,7 +17,7 @@ Result = TypeVar("Result")
 
 
 def is_text(path: str | os.PathLike[str]) -> bool:
-    """Tells whether a path can be written in UTF-8: names of files in Linux may be any bytes."""
+    """Tells whether a path is valid UTF-8; Linux allows file names of any bytes."""
     try:
         os.fspath(path).encode()
     except UnicodeEncodeError:
@@ -27,9 +27,9 @@ def is_text(path: str | os.PathLike[str]) -> bool:
 
 @contextmanager
 def readable_name(path: str | os.PathLike[str]) -> Iterator[str]:
-    """A path that is text, and leads to a file for as long as the context lasts.
+    """A context that yields a path of valid text to the file, through a link where needed.
 
-    What is said of it in errors is said of the file.
+    Error messages show the file's own path.
     """
     given = os.fspath(path)
     if is_text(given):
@@ -42,14 +42,14 @@ def readable_name(path: str | os.PathLike[str]) -> Iterator[str]:
             yield str(link)
         except (OSError, ValueError) as error:
             if type(error) not in (OSError, ValueError):
-                raise  # They say more than a text.
+                raise  # Subclasses hold more than a message.
             raise type(error)(str(error).replace(str(link), given)) from error
 
 
 def reads_any_name(
     function: Callable[Concatenate[Path, P], Result],
 ) -> Callable[Concatenate[Path, P], Result]:
-    """Has a function that reads a file, its first argument, get a path that is text."""
+    """Decorator: passes a path of valid text to a function that reads the file."""
 
     @wraps(function)
     def read(path: Path, /, *arguments: P.args, **more: P.kwargs) -> Result:
@@ -64,7 +64,7 @@ def reads_any_name(
 def writes_any_name(
     function: Callable[Concatenate[Path, P], None],
 ) -> Callable[Concatenate[Path, P], None]:
-    """The same for a function that writes a file; that is then moved to where it belongs."""
+    """Decorator: passes a path of valid text to a function that writes a file, then moves that."""
 
     @wraps(function)
     def write(path: Path, /, *arguments: P.args, **more: P.kwargs) -> None:

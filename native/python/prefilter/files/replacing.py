@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Files renamed over others: how that is undone, by who did it, or by the next run after a kill.
+"""Replacing several files all or none, with undo on failure and recovery after a kill.
 
-Several files cannot be renamed at once. So while a set is put into place, a journal beside it says
-under which names the earlier files are kept. Who is killed in between leaves it there, and whoever
-writes into the folder next puts the earlier files back. Each step is on the disk before the next
-one counts on it, so that holds where the power fails, too.
+Several files cannot be renamed at once. So while a set is put into place, a journal beside it lists
+the backup names of the earlier files. A killed process leaves the journal, and the next one that
+writes into the folder restores the earlier files. Each step is synced to disk before the next one
+relies on it, so recovery works after a power failure too.
 """
 
 import json
@@ -19,11 +19,11 @@ from typing import BinaryIO
 from .claims import JOURNAL, Claim, sweep, sweep_claim
 
 Kept = tuple[Path, Path | None]
-"""A target, and the second name of the file that was there; None where there was none."""
+"""A target, and the backup of the file that was there; None if there was none."""
 
 
 def rename(new: Path, target: Path) -> None:
-    """Renames a file, over another one if there is one."""
+    """Renames a file, replacing the target if it exists."""
     try:
         os.replace(new, target)
     except PermissionError as error:
@@ -34,10 +34,10 @@ def rename(new: Path, target: Path) -> None:
 
 
 def sync(path: Path) -> None:
-    """Has the disk hold what a file, or a folder, has; some systems cannot do that for folders.
+    """Syncs a file or folder to disk; for folders, systems without support are tolerated.
 
     Raises:
-        OSError: There is no room for what was written.
+        OSError: The disk has no room for the file's data.
     """
     is_folder = path.is_dir()
     if is_folder and os.name == "nt":
@@ -54,14 +54,14 @@ def sync(path: Path) -> None:
 
 @contextmanager
 def undone_on_failure(pairs: Sequence[tuple[Path, Path]]) -> Iterator[None]:
-    """Replaces files, all of them or none: this undoes what was done in a context that fails.
+    """A context whose replacements of files are all undone if it fails.
 
     Args:
         pairs: The new files under their temporary names, and their targets.
 
     Raises:
-        OSError: The journal cannot be written; or the context has failed, and what the message
-            names cannot be undone.
+        OSError: The journal cannot be written; or the context has failed, and the replacements that
+            the message lists cannot be undone.
     """
     folders = list(dict.fromkeys(target.parent for _, target in pairs))
     with _claimed(folders) as claims:
@@ -73,7 +73,7 @@ def undone_on_failure(pairs: Sequence[tuple[Path, Path]]) -> Iterator[None]:
             yield
             for folder in folders:
                 sync(folder)
-            claims[folders[0]].unsay()  # Now the set is there.
+            claims[folders[0]].unsay()  # The whole set is in place.
         except BaseException as error:
             lost = [text for target, earlier in kept if (text := _put_back(target, earlier))]
             if lost:
@@ -88,7 +88,7 @@ def undone_on_failure(pairs: Sequence[tuple[Path, Path]]) -> Iterator[None]:
 
 
 def link_or_copy(path: Path, other: Path) -> None:
-    """Gives a file a second name, or where that cannot be has the disk hold it twice."""
+    """Creates a hard link to a file, or a synced copy where links are not possible."""
     try:
         os.link(path, other)
     except OSError:
@@ -101,31 +101,31 @@ def link_or_copy(path: Path, other: Path) -> None:
 
 
 def recover(folder: Path) -> None:
-    """Undoes what runs have left half done that were killed, and removes what they have left.
+    """Undoes unfinished replacements of killed processes and removes their temporary files.
 
     Raises:
-        OSError: Files cannot be put back.
+        OSError: Files cannot be restored.
     """
     sweep(folder, _undo)
 
 
 @contextmanager
 def _claimed(folders: Sequence[Path]) -> Iterator[dict[Path, Claim]]:
-    """Journals, one a folder, that end with the context, unless they are taken out before."""
+    """A context that yields one journal per folder and ends those still in the mapping."""
     claims: dict[Path, Claim] = {}
     try:
         for folder in folders:
             claims[folder] = Claim(folder, JOURNAL)
         yield claims
     finally:
-        for claim in reversed(claims.values()):  # Others refer to the first.
+        for claim in reversed(claims.values()):  # Other journals refer to the first.
             claim.end()
 
 
 def _begin(
     claims: dict[Path, Claim], pairs: Sequence[tuple[Path, Path]], kept: Sequence[Kept]
 ) -> None:
-    """Has the disk hold the journals, and the names of all that they speak of."""
+    """Writes the journals and syncs them and their folders to disk."""
     first, *others = claims.values()
     place = first.path.parent
     entries = [
@@ -133,7 +133,7 @@ def _begin(
         for (new, _), (target, earlier) in zip(pairs, kept, strict=True)
     ]
     first.say(json.dumps({"kept": entries}).encode())
-    # Whoever writes into another folder of the set finds the way from there.
+    # The journals in the other folders point to the first one.
     for claim in others:
         claim.say(json.dumps({"see": str(first.path)}).encode())
     for folder in claims:
@@ -141,7 +141,7 @@ def _begin(
 
 
 def _second_name(target: Path, claim: Claim) -> Path | None:
-    """Gives a file a second name that outlasts its replacement; None where there is no file."""
+    """Backs a file up under a name that outlasts its replacement; None if there is no file."""
     if not target.exists():
         return None
     other = claim.beside(target.suffix)
@@ -150,12 +150,12 @@ def _second_name(target: Path, claim: Claim) -> Path | None:
 
 
 def _put_back(target: Path, earlier: Path | None) -> str:
-    """Undoes a replacement; returns what is to be told where that fails, else nothing."""
+    """Undoes a replacement; returns an error message if that fails, else an empty text."""
     try:
         if earlier is None:
             target.unlink(missing_ok=True)
         elif target.exists() and target.samefile(earlier):
-            earlier.unlink()  # It was not replaced, and perhaps cannot be.
+            earlier.unlink()  # The target was not replaced yet.
         else:
             rename(earlier, target)
     except OSError as error:
@@ -165,7 +165,7 @@ def _put_back(target: Path, earlier: Path | None) -> str:
 
 
 def _undo(path: Path, file: BinaryIO) -> bool:
-    """Does what a journal says; one that is damaged was not in use yet."""
+    """Carries out a journal; a damaged one was not in use yet."""
     if path.suffix != JOURNAL:
         return True
     try:
@@ -183,7 +183,7 @@ def _undo(path: Path, file: BinaryIO) -> bool:
 
 
 def _put_back_again(folder: Path, target: str, earlier: str | None, identity: Sequence[int]) -> str:
-    """Undoes one replacement, unless that was done before, or somebody has written there since."""
+    """Undoes one replacement, unless that is done already or the target has changed since."""
     with suppress(OSError):
         if _identity(folder / target) == list(identity):
             if earlier is None:
@@ -194,13 +194,13 @@ def _put_back_again(folder: Path, target: str, earlier: str | None, identity: Se
 
 
 def _identity(path: Path) -> list[int]:
-    """Returns what tells a file from others that it gets the name of, also after a move."""
+    """Returns values that identify a file even after a move: size and modification time."""
     found = path.stat()
     return [found.st_size, found.st_mtime_ns]
 
 
 def _said(path: Path | None, folder: Path) -> str | None:
-    """Returns how a journal in a folder calls a file; folders may be moved."""
+    """Returns a file's path for a journal; relative to its folder, which may be moved."""
     if path is None:
         return None
     return path.name if path.parent == folder else str(path.absolute())

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Files staged beside their target and renamed into place, so that no half-written one is seen.
+"""Files staged beside their target and renamed into place, so that nobody sees half-written ones.
 
-The package and the add-on write all files by this, but for those that the library streams.
+The package and the add-on write all files this way, except those that the library streams.
 """
 
 import os
@@ -24,23 +24,23 @@ Output = str | os.PathLike[str] | BinaryIO
 
 _WRITE_BITS = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
 _KINDS = {stat.S_IFDIR: "folder", stat.S_IFIFO: "pipe", stat.S_IFSOCK: "socket"}
-_NEW_MODE = 0o666  # What the user's umask takes away aside.
+_NEW_MODE = 0o666  # Before the user's umask.
 _nameless_left = threading.BoundedSemaphore(64)
-"""Files without a name have to stay open, and a process may have a thousand open files or so."""
+"""Nameless files have to stay open, and a process may have only about a thousand open files."""
 
 
 class StagedFile:
-    """A finished file in the folder of its target, under a temporary name or without one."""
+    """A finished file in the folder of its target, under a temporary name or nameless."""
 
     def __init__(
         self, target: Path, named: Path | None = None, nameless: BinaryIO | None = None
     ) -> None:
-        """Takes a file that is on the disk.
+        """Takes a file that is on disk.
 
         Args:
-            target: What it is to replace.
-            named: Its temporary name, of the claim on the target's folder; that ends with it.
-            nameless: Instead, the open file that has none.
+            target: The path that it will get.
+            named: Its temporary name, owned by the claim on the target's folder.
+            nameless: The open file, if it has no name.
         """
         self.target = target
         self._name = named
@@ -48,15 +48,15 @@ class StagedFile:
         self._nameless = nameless
 
     def commit(self) -> None:
-        """Puts the file into place; it gets the mode of a file that it replaces."""
+        """Puts the file into place; a replaced file's mode is kept."""
         commit_all([self])
 
     def name(self) -> Path:
-        """Returns the temporary name, which is given now if there was none."""
+        """Returns the temporary name, after giving the file one if it is nameless."""
         if self._name is None:
             assert self._nameless is not None
             path = self.target.with_name(random_name() + self.target.suffix)
-            # The only way there leads through a symbolic link, which is followed by linkat alone.
+            # The link in /proc has to be followed, which os.link does only with src_dir_fd.
             anywhere = os.open(self.target.parent, os.O_RDONLY)
             try:
                 with _known_as(self.target, {path: self.target}):
@@ -80,7 +80,7 @@ class StagedFile:
         if self._name is not None:
             self._name.unlink(missing_ok=True)
         if self._nameless is not None:
-            with suppress(OSError):  # What it still held back is not wanted.
+            with suppress(OSError):  # Errors of buffered data no longer matter.
                 self._nameless.close()
             self._nameless = None
             _nameless_left.release()
@@ -90,16 +90,16 @@ class StagedFile:
 
 
 class StagedFolder:
-    """A finished file with those that go with it, in a temporary folder beside its target."""
+    """A finished file and its companions, in a temporary folder beside its target."""
 
     def __init__(self, target: Path, folder: Path) -> None:
-        """Takes a folder whose name is of the claim on the target's folder."""
+        """Takes a folder whose name the claim on the target's folder owns."""
         self.target = target
         self._folder = folder
         self._is_claimed = True
 
     def make(self, write: Callable[[Path], object]) -> None:
-        """Has a function write the files."""
+        """Calls a function that writes the files."""
         made = self._folder / self.target.name
         with _known_as(self.target, {self._folder: self.target.parent}):
             self._folder.mkdir()
@@ -124,7 +124,7 @@ class StagedFolder:
 
 
 class _InFolder(StagedFile):
-    """A file of a temporary folder, which is removed with that."""
+    """A file in a temporary folder, which is removed with that folder."""
 
     def __init__(self, target: Path, named: Path) -> None:
         super().__init__(target, named)
@@ -134,12 +134,12 @@ class _InFolder(StagedFile):
 def stage_with(
     target: Path, write: Callable[[Path], object], suffix: str | None = None
 ) -> StagedFile:
-    """Has a function write a file beside its target, by its path.
+    """Stages a file that a function writes, given a path beside the target.
 
     Args:
-        target: What the file is to replace.
+        target: The path that the file will get.
         write: Writes a new file.
-        suffix: What the path ends in; as the target does if None.
+        suffix: Extension of the temporary path; None for that of the target.
 
     Raises:
         OSError: The file cannot be written.
@@ -159,7 +159,7 @@ def stage_with(
 
 
 def stage_bytes(target: Path, write: Callable[[BinaryIO], object]) -> StagedFile:
-    """Has a function write into a new file, which has no name yet where the system can do that.
+    """Stages a file that a function writes into an open file, nameless where the system allows it.
 
     Raises:
         OSError: The file cannot be written.
@@ -181,12 +181,12 @@ def stage_bytes(target: Path, write: Callable[[BinaryIO], object]) -> StagedFile
 
 
 def stage_data(target: Path, data: bytes) -> StagedFile:
-    """Writes bytes into a new file, as `stage_bytes` does."""
+    """Stages a file with these bytes, as `stage_bytes` does."""
     return stage_bytes(target, lambda file: file.write(data))
 
 
 def stage_folder(target: Path, write: Callable[[Path], object]) -> StagedFolder:
-    """Has a function write a file under its own name, and others with it, beside its target.
+    """Stages a file, and others with it, that a function writes into a temporary folder.
 
     Raises:
         OSError: The file cannot be written.
@@ -204,16 +204,16 @@ def stage_folder(target: Path, write: Callable[[Path], object]) -> StagedFolder:
 
 
 def stage_other_name(path: Path, other: Path) -> StagedFile:
-    """Stages what there is under a name for another one in the same folder, where both stay.
+    """Stages a link or copy of a file under another name in the same folder.
 
     Raises:
-        OSError: That cannot be done.
+        OSError: That is not possible.
     """
     return stage_with(other, lambda new: link_or_copy(path, new))
 
 
 def write_output(output: Path | BinaryIO, write: Callable[[BinaryIO], object]) -> None:
-    """Has a function write what `as_output` returned: an open file, or one that is replaced."""
+    """Calls a function to write into an open file, or into a new one that replaces `output`."""
     if not isinstance(output, Path):
         write(output)
         return
@@ -227,12 +227,12 @@ def write_output(output: Path | BinaryIO, write: Callable[[BinaryIO], object]) -
 def commit_all(files: Sequence[StagedFile]) -> None:
     """Renames files into place: all of them, or none.
 
-    Where the program is killed in between, the next one that stages a file in a folder of theirs
-    puts the earlier files back.
+    If the process is killed in between, the next one that stages a file in one of their folders
+    restores the earlier files.
 
     Raises:
-        OSError: One cannot be put into place, and the others are as they were; but for those that
-            the message names.
+        OSError: A file cannot be put into place. The others are restored, except those that the
+            message names.
     """
     folders = list(dict.fromkeys(file.target.parent for file in files))
     with stopping.held():
@@ -253,19 +253,19 @@ def commit_all(files: Sequence[StagedFile]) -> None:
 
 
 def as_output(path: Output) -> Path | BinaryIO:
-    """An open file as it is; else what `as_target` returns."""
+    """Returns an open file as it is, and `as_target` of a path."""
     if hasattr(path, "write"):
         return cast(BinaryIO, path)
     return as_target(path)
 
 
 def as_target(path: str | os.PathLike[str]) -> Path:
-    """The regular file that a path stands for, or will, if it can be written.
+    """Returns the absolute path of a regular or new file that can be written.
 
-    Symbolic links are followed: what they lead to is replaced.
+    Symbolic links are followed: the file they lead to will be replaced.
 
     Raises:
-        ValueError: That is no path.
+        ValueError: The argument is no path.
         OSError: See `check_target`.
     """
     given = as_path(path)
@@ -276,7 +276,7 @@ def as_target(path: str | os.PathLike[str]) -> Path:
 
 
 def check_target(target: Path, who: str = "") -> None:
-    """Raises OSError if a file has no folder, or `check_writable` does; `who` begins the text."""
+    """Raises OSError if the folder is missing, or as `check_writable`; `who` starts the message."""
     if not target.parent.is_dir():
         raise OSError(f"{who}there is no folder '{target.parent}'")
     check_writable(target, who)
@@ -285,7 +285,7 @@ def check_target(target: Path, who: str = "") -> None:
 def check_writable(path: Path, who: str = "") -> None:
     """Raises OSError if a file or its folder is read-only, or if it is no regular file.
 
-    Root may write what has no write bits; a path without them is left alone all the same.
+    A path without write bits counts as read-only even for root.
     """
     check_regular(path, who)
     if path.exists() and not _is_writable(path):
@@ -295,7 +295,7 @@ def check_writable(path: Path, who: str = "") -> None:
 
 
 def check_regular(path: Path, who: str = "") -> None:
-    """Raises OSError for what is there and is no regular file: a file renamed would replace it."""
+    """Raises OSError if the path exists and is no regular file, which renaming would replace."""
     try:
         mode = path.stat().st_mode
     except (FileNotFoundError, NotADirectoryError):
@@ -307,11 +307,11 @@ def check_regular(path: Path, who: str = "") -> None:
 
 @contextmanager
 def _known_as(target: Path, names: Mapping[Path, Path]) -> Iterator[None]:
-    """Lets errors name what was to be written, not what it is called until then.
+    """A context in which errors name the target instead of its temporary files.
 
     Args:
-        target: What errors of the system are about that name nothing, or something temporary.
-        names: Temporary files or folders, and what texts are to call them.
+        target: The path to name in errors of the system that name nothing or a temporary file.
+        names: Temporary files or folders, and the paths that messages show instead.
     """
     try:
         yield
@@ -332,13 +332,13 @@ def _known_as(target: Path, names: Mapping[Path, Path]) -> Iterator[None]:
 
 def _is_writable(path: Path) -> bool:
     if os.name == "nt" and path.is_dir():
-        # What marks folders there as read-only means that they have a look of their own.
+        # The read-only attribute of Windows folders only marks a custom appearance.
         return True
     return os.access(path, os.W_OK) and bool(path.stat().st_mode & _WRITE_BITS)
 
 
 def _nameless(folder: Path) -> BinaryIO | None:
-    """Opens a file that is gone when it is closed, unless it is named before; None without such."""
+    """Opens a nameless file, deleted on close unless it gets a name; None if not supported."""
     if not hasattr(os, "O_TMPFILE") or not _nameless_left.acquire(blocking=False):
         return None
     try:

@@ -1,3 +1,3 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Images: their mipmaps, colors, sizes, and which of their texels are used."""
+"""Images: mipmaps, color encodings, resizing, and the texels that surfaces use."""

@@ -12,11 +12,11 @@ from .._border.arrays import FloatArray, as_image, as_texels, as_threads, in_for
 def to_linear(image: npt.ArrayLike, *, threads: int = 0) -> FloatArray:
     """Decodes sRGB values to scene-linear ones (IEC 61966-2-1).
 
-    Negative values are decoded by symmetry. A fourth channel is alpha, and stays as it is.
+    Negative values are decoded by symmetry. A fourth channel is alpha, and is unchanged.
 
     Args:
         image: (height, width, channels) or (height, width), display values, usually in [0, 1].
-            Bytes (uint8) stand for a 255th each, uint16 for a 65535th.
+            uint8 is divided by 255, uint16 by 65535.
         threads: How many to use; 0 = all processors.
 
     Returns:
@@ -40,7 +40,7 @@ def to_srgb(image: npt.ArrayLike, *, threads: int = 0) -> FloatArray:
 
 
 def as_light(stored: np.ndarray, srgb: bool, threads: int) -> FloatArray:
-    """An image of floats, or of uint16 that stand for a 65535th each."""
+    """Returns an image as floats of light, from floats or uint16."""
     floats = as_image("image", stored)
     if not srgb:
         return floats
@@ -52,7 +52,7 @@ def as_light(stored: np.ndarray, srgb: bool, threads: int) -> FloatArray:
 
 
 def as_words(level: FloatArray, srgb: bool, threads: int) -> npt.NDArray[np.uint16]:
-    """A level in steps of a 65535th, rounded to the nearest."""
+    """Converts a level to uint16, rounded to the nearest step of 1/65535."""
     if srgb:
         level = to_srgb(level, threads=threads)
     full = np.float32(np.iinfo(np.uint16).max)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Alpha-tested cut-outs: levels that keep as much of the surface as the image does."""
+"""Alpha-tested cut-outs: levels that preserve the image's coverage of the surface."""
 
 from collections.abc import Sequence
 from functools import partial
@@ -39,26 +39,28 @@ def keep_coverage(
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> list[FloatArray]:
-    """Levels whose alpha test keeps the share of the surface that level 0's keeps.
+    """Levels whose alpha test preserves the coverage of level 0.
 
-    A cut-out shows where a lookup's alpha is at least a threshold. Filtered alpha drifts to its
-    mean, so that leaves and fences get thinner or thicker level by level. Here the alpha of each
-    level is mapped by a curve that rises, of two straight pieces: 0 and 1 stay, and some value goes
-    to the threshold: that which gives the coverage of level 0. Where even the smallest such value
-    shows too little, as with thresholds near 1, alpha of 0 rises too, but not to the threshold.
+    A cut-out is visible where a lookup's alpha is at least a threshold. Filtered alpha drifts to
+    its mean, so that leaves and fences get thinner or thicker level by level. Here the alpha of
+    each level is mapped by an increasing curve of two straight pieces: 0 and 1 stay, and the
+    threshold is taken at the value that gives the coverage of level 0. If even the smallest such
+    value shows too little, as with thresholds near 1, alpha of 0 is raised too, but stays below the
+    threshold.
 
-    Coverage is the share of the surface's area, or of the image where there is no surface, where a
-    bilinear lookup's alpha is at least the threshold. A level that has it within 0.001 stays as it
-    is; others get it as closely as they can: one of few texels may have to show all or nothing.
+    Coverage is the share of the surface's area, or of the image if there is no surface, in which a
+    bilinear lookup's alpha is at least the threshold. A level with the right coverage within 0.001
+    is unchanged; others get as close as they can: a level of few texels may have to show all or
+    nothing.
 
     Args:
         levels: Level 0 first, as `mipmaps` returns them: (height, width, 4) with alpha as the
-            fourth channel, or (height, width, 1) or (height, width), which is alpha. Bytes (uint8)
-            stand for a 255th each, uint16 for a 65535th.
+            fourth channel, or (height, width, 1) or (height, width), which is alpha. uint8 is
+            divided by 255, uint16 by 65535.
         surface: One surface, or several that share the image.
-        threshold: The alpha that is still shown; above 0, at most 1.
+        threshold: The least visible alpha; above 0, at most 1.
         wrap: As for `mipmaps`.
-        premultiplied: Whether colors are multiplied by alpha; then they change along with it.
+        premultiplied: Whether colors are multiplied by alpha; then they are scaled along with it.
         progress: As for `mipmaps`.
         threads: As for `mipmaps`.
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The filters of mipmaps by name; what options are made of, so it loads little."""
+"""Names of mipmap filters, in a module of its own because options load it early."""
 
 from typing import NamedTuple
 
@@ -9,12 +9,12 @@ from .._border.names import MipmapFilterName
 
 
 class MipmapFilter(NamedTuple):
-    """A filter that `mipmaps` has.
+    """A filter of `mipmaps`.
 
     Attributes:
-        name: What it is called: "tent", "tent-covered" or "pam-bilinear".
-        needs_surface: Whether it is made over the surface, or the texels that the surface touches.
-        is_fit: Whether it is a least-squares fit: the only ones that `seam_budget` changes.
+        name: Its name, such as "tent", "tent-covered" or "pam-bilinear".
+        needs_surface: Whether it filters over the surface, or over texels that the surface touches.
+        is_fit: Whether it is a least-squares fit: only these depend on `seam_budget`.
     """
 
     name: MipmapFilterName
@@ -23,5 +23,4 @@ class MipmapFilter(NamedTuple):
 
 
 MIPMAP_FILTERS = tuple(MipmapFilter(*found) for found in _native.mipmap_filters())
-"""All filters: each kernel, each with "-covered" behind, least squares, and those over the surface.
-"""
+"""All filters: kernels, "-covered" kernels, least squares, and filters over the surface."""

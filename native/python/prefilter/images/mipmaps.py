@@ -48,7 +48,7 @@ _CHECKS: dict[str, Check] = {
 
 
 class _TypedByImage(Protocol[_Arguments]):
-    """A function whose levels have the type of its image: bytes, words, or else float32."""
+    """A function whose levels have the type of its image: uint8, uint16, or else float32."""
 
     @overload
     def __call__(
@@ -91,63 +91,64 @@ def mipmaps(
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> FilteredLevels[Any]:
-    """The levels of an image's mipmap, each fitted to the surface that uses it.
+    """Mipmap levels of an image, each fitted to the surface that uses it.
 
     "pam-bilinear" minimizes, level by level, the integral over the surface of the squared
     difference between a bilinear lookup of the level and one of the image (section 7.3), within
     the bounds. "pam-trilinear" does the same for all levels together and trilinear lookups,
     averaged over all mip values; level 0 is the image and the last level, of 1 x 1 texel, its mean
     over the surface. "ls-bilinear" is "pam-bilinear" for the unit square: for tiled textures, and
-    those that meshes to come will share. "pam-box" takes means over the surface (equation 7.1).
-    The other filters work in texture space: kernels, "box", "tent" or "lanczos3", over all texels,
-    and with "-covered" behind their names over texels that some triangle touches. `MIPMAP_FILTERS`
-    has all names.
+    textures shared by meshes that are not known yet. "pam-box" takes means over the surface
+    (equation 7.1). The other filters work in texture space: kernels such as "box", "tent" or
+    "lanczos3" use all texels, and their "-covered" variants only texels that some triangle touches.
+    `MIPMAP_FILTERS` has all names.
     Texels that the surface does not read have no influence on the "pam-" and "-covered" filters;
-    they are filled from what is around them (push-pull).
+    they are filled from their surroundings (push-pull).
 
     Args:
-        image: (height, width, 1 to 4 channels) or (height, width), scene-linear, row 0 at v = 0.
-            Any sides. Bytes (uint8) stand for a 255th each, uint16 for a 65535th; see `encoding`.
-        surface: One surface, or several that share the image. Not needed for plain kernels.
+        image: (height, width, 1 to 4 channels) or (height, width), scene-linear, row 0 at v = 0, of
+            any size. uint8 is divided by 255, uint16 by 65535; see `encoding`.
+        surface: One surface, or several that share the image. Plain kernels need none.
         filter: A name of `MIPMAP_FILTERS`.
-        wrap: What lookups read outside of the image: "clamp", "repeat" or "border" (zero, and
-            surface outside of the unit square weighs nothing), or a pair of these for u and v.
-        bounds: (low, high) that texels of the levels may take; either may be None, and None stands
-            for both. "pam-bilinear" and "pam-trilinear" solve under them, the others are clipped.
-        levels: How many levels to return, level 0 included; None = down to 1 x 1.
-        premultiplied: Whether the colors of a 4-channel image are multiplied by alpha already, or
-            its fourth channel is no coverage: then every channel is filtered as it stands.
+        wrap: Result of lookups outside of the image: "clamp", "repeat" or "border" (zero; surface
+            outside of the unit square has no weight), or a pair of these for u and v.
+        bounds: (low, high) limits of the levels' texels; either may be None, and None means
+            neither. "pam-bilinear" and "pam-trilinear" are solved within them, the others are
+            clipped.
+        levels: How many levels to return, including level 0; None = down to 1 x 1.
+        premultiplied: Whether the colors of a 4-channel image are already multiplied by alpha, or
+            its fourth channel is not coverage: then every channel is filtered as it stands.
             Otherwise they are multiplied for filtering and divided afterward.
-        reader: What will look up the levels, for "pam-bilinear": "linear" decodes texels, then
+        reader: How the levels will be looked up, for "pam-bilinear": "linear" decodes texels, then
             filters (GPUs, and float textures everywhere); "srgb-after" filters sRGB-encoded texels,
             then decodes (Cycles on 8-bit sRGB images). The image and the levels are scene-linear in
-            both cases, and what the image shows is defined by the reader too. The second is a
-            bounded Gauss-Newton fit, started from the first.
-        encoding: Of an image of uint8 or uint16, and of its levels: with "srgb" its colors are
-            decoded to be filtered, and encoded again. The fourth of four channels is alpha, and
-            linear.
-        seam_budget: By how much, as a share, the error of each level may rise to hide UV seams, for
+            both cases, and lookups of the image use the same reader. The second is a bounded
+            Gauss-Newton fit, started from the first.
+        encoding: Encoding of uint8 and uint16 images and of their levels: with "srgb", colors are
+            decoded for filtering and encoded again. A fourth channel is alpha, and linear.
+        seam_budget: Share by which the error of each level may rise to hide UV seams, for
             least-squares filters: 0.01 is 1 %. The two sides of the seams then agree as well as
-            that allows. The error is the root mean square over the surface, as `mipmap_error` has
-            it for the level and its reader; with a footprint, against the image averaged over it.
+            that allows. The error is the root mean square over the surface, as in `mipmap_error`
+            for the level and its reader; with a footprint, against the image averaged over it.
             Seams along which the image itself differs, by more than a tenth of its standard
-            deviation, are left alone; 0 leaves all alone.
-        footprint: Texels of a level that a pixel of the reader covers, 0 to 2, for least squares
-            and the linear reader. 0: levels are fitted to the image itself, which is right where
-            a pixel is the mean of many lookups (film, and all that is supersampled). 1: a pixel is
-            one lookup (games); levels are fitted to the image averaged over what a pixel covers,
-            by kernels of the variance of a box of that width. 1.5: one lookup with anisotropic
-            filtering, which reads finer levels than the pixel's shorter side asks for.
+            deviation, are ignored; 0 ignores all.
+        footprint: Width of a reader's pixel in texels of a level, 0 to 2, for least squares and the
+            linear reader. 0: levels are fitted to the image itself, which is right if a pixel is
+            the mean of many lookups (film, supersampling). 1: a pixel is one lookup (games); levels
+            are fitted to the image averaged over a pixel, by kernels with the variance of a box of
+            that width. 1.5: one lookup with anisotropic filtering, which reads finer levels than
+            the pixel's shorter side asks for.
         progress: Called with the fraction done, in [0, 1]; may return False to stop.
         threads: How many to use; 0 = all processors. Results do not depend on it.
 
     Returns:
-        The levels, with as many axes as the image, level 0 first; it is a copy of the image. They
-            are uint8 or uint16 where the image is, else float32, in a list that knows its filter.
-        Each has half the sides of the one before, rounded down, never less than 1.
+        The levels, with as many axes as the image, level 0 first, which is a copy of the image.
+            They are uint8 or uint16 if the image is, else float32, in a list that stores its
+            filter.
+        Each level has half the sides of the previous one, rounded down, at least 1.
 
     Raises:
-        ValueError: An argument is out of range, or a texel that counts is not finite.
+        ValueError: An argument is out of range, or a texel that matters is not finite.
         Cancelled: The progress callback returned False.
     """
     options = set_options(_native.MipmapOptions(), _CHECKS, locals())
@@ -181,14 +182,14 @@ def coarser_levels(
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> FilteredLevels[np.float32]:
-    """The levels of `mipmaps` from level 1 on, in floats whatever the image holds.
+    """The levels of `mipmaps` from level 1 on, always as floats.
 
-    It takes less memory: there is no copy of the image, and "pam-bilinear", "pam-trilinear" and
-    "pam-box" read bytes as they are, where alpha plays no part. All arguments are those of
-    `mipmaps`; `levels` counts level 0.
+    This takes less memory: the image is not copied, and "pam-bilinear", "pam-trilinear" and
+    "pam-box" read bytes directly unless alpha matters. All arguments are those of `mipmaps`;
+    `levels` includes level 0.
 
     Returns:
-        Levels 1, 2, ..., float32 and scene-linear; of an image of bytes too.
+        Levels 1, 2, ..., float32 and scene-linear, even if the image has bytes.
 
     Raises:
         ValueError: As `mipmaps`.
@@ -216,22 +217,22 @@ def mipmap_error(
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> npt.NDArray[np.float64]:
-    """How far a mipmap is from its image over the surface, at any mip value (figure 7.7).
+    """Error of a mipmap relative to its image over the surface, at any mip value (figure 7.7).
 
     The root mean square, over the surface's area and the channels, of the difference between a
     trilinear lookup of the levels and a bilinear lookup of the image. It is exact: the integrals
-    come from moments, not from samples.
+    are computed from moments, not samples.
 
     Args:
-        levels: Level 0 first, sizes as `mipmaps` returns them; coarse ones may be left out.
-        image: The image that they stand for.
+        levels: Level 0 first, with the sizes of `mipmaps`; the last ones may be omitted.
+        image: The image that they approximate.
         surface: One surface, or several that share the image.
-        mip_values: Numbers of any shape; 0 is the first level. Those below 0 or past the last level
-            read the nearest one, as on a GPU.
+        mip_values: Numbers in an array of any shape; 0 is the first level. Values below 0 or beyond
+            the last level read the nearest level, as on a GPU.
         wrap: As for `mipmaps`.
-        reader: As for `mipmaps`: with "srgb-after" each bilinear lookup, also of the image, is of
-            encoded texels and decoded afterward; the integrals are by quadrature in the cells of
-            the image then.
+        reader: As for `mipmaps`: with "srgb-after" each bilinear lookup, also of the image,
+            interpolates encoded texels and decodes the result; the integrals are then computed by
+            quadrature in the cells of the image.
         progress: As for `mipmaps`.
         threads: As for `mipmaps`.
 
@@ -271,10 +272,10 @@ def seam_contrast(
     wrap: Wrap = "clamp",
     progress: ProgressCallback | None = None,
 ) -> npt.NDArray[np.float64]:
-    """How far the two sides of UV seams differ in each level: what `seam_budget` brings down.
+    """Contrast across UV seams in each level, which `seam_budget` reduces.
 
-    A seam is an edge whose two triangles have it at different places of the texture; vertices at
-    the same position are one, and edges of more than two triangles are none.
+    A seam is an edge whose two triangles have different texture coordinates there; vertices at the
+    same position count as one, and edges of more than two triangles are ignored.
 
     Args:
         levels: Arrays (height, width, channels) or (height, width), of any sizes.

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Mipmaps of normal maps, and the roughness that takes what averaging normals loses."""
+"""Mipmaps of normal maps, and roughness that compensates for the averaging of normals."""
 
 from collections.abc import Sequence
 from functools import partial
@@ -76,29 +76,29 @@ def normal_mipmaps(
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> list[FloatArray] | tuple[list[FloatArray], list[FloatArray]]:
-    """The levels of a normal map: filtered as vectors, and of length 1 again.
+    """Levels of a normal map, filtered as vectors and renormalized.
 
-    Where the normals under a texel differ, their mean is shorter than 1, and the surface looks
-    rougher from afar. With a roughness, that goes into its levels: if L is the length of the mean
-    of the normals in a texel, the texel gets
+    Where the normals under a texel differ, their mean is shorter than 1, and the surface should
+    look rougher from afar. If a roughness is given, its levels account for that: if L is the length
+    of the mean of the normals in a texel, the texel gets
 
         alpha^2 = (mean of alpha^2) + 2 (1 - L),    alpha = roughness^2,    at most 1.
 
-    The normals are taken for a von Mises-Fisher distribution. Its mean has the length
-    L = coth k - 1 / k, so its concentration k is 1 / (1 - L) but for e^(-2 k), and it spreads as
-    much as a lobe with alpha^2 = 2 / k. Squares of widths add up, as in LEAN mapping.
+    The model is a von Mises-Fisher distribution of normals. Its mean has the length
+    L = coth k - 1 / k, so its concentration k is 1 / (1 - L) up to e^(-2 k), and it spreads like a
+    lobe with alpha^2 = 2 / k. Squares of widths add up, as in LEAN mapping.
 
-    The convention, OpenGL or DirectX, does not matter: levels have that of the map.
+    Both conventions, OpenGL and DirectX, work: levels use that of the map.
 
     Args:
-        normals: (height, width, 3). Tangent or object space. Bytes (uint8) stand for a 255th each,
-            uint16 for a 65535th. Lengths count for nothing; a vector that is shorter than 0.02 has
-            no direction, and is taken for (0, 0, 1).
+        normals: (height, width, 3), in tangent or object space. uint8 is divided by 255, uint16 by
+            65535. Lengths are ignored; a vector shorter than 0.02 has no direction and is replaced
+            by (0, 0, 1).
         surface: As for `mipmaps`.
         roughness: None, a number, or (height, width, 1) or (height, width) of the size of the
             normals, as the Principled BSDF takes it; clamped to [0, 1].
         filter: As for `mipmaps`, for the normals. The means for the roughness are over a texel's
-            surface ("pam-box") for the "pam-" filters, and else those of "box" or "box-covered".
+            surface ("pam-box") for the "pam-" filters, otherwise by "box" or "box-covered".
         wrap: As for `mipmaps`.
         footprint: As for `mipmaps`, for the normals.
         encoded: Whether a component c is stored as (c + 1) / 2, in the map and in the levels.
@@ -107,11 +107,11 @@ def normal_mipmaps(
         threads: As for `mipmaps`.
 
     Returns:
-        The levels of the normals, level 0 as it was given; with a roughness, a pair of them and the
+        The levels of the normals, level 0 unchanged; with a roughness, a pair of these and the
         levels of the roughness.
 
     Raises:
-        ValueError: An argument is out of range, or a texel that counts is not finite.
+        ValueError: An argument is out of range, or a texel that matters is not finite.
         Cancelled: The progress callback returned False.
     """
     options = set_options(_native.NormalMipmapOptions(), _CHECKS, locals())

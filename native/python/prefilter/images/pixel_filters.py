@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The filters of the library, and what each may be used for."""
+"""The library's pixel filters, and their uses."""
 
 from typing import Any, NamedTuple
 
@@ -11,10 +11,10 @@ class PixelFilter(NamedTuple):
     """A filter of pixels.
 
     Attributes:
-        name: As functions take it.
-        label: As users see it.
-        radius: Half the width of what it reads, in pixels.
-        uses: Some of "raster", "resize", "mipmap" and "sampling".
+        name: The name that functions take.
+        label: The name that users see.
+        radius: Half the filter's width, in pixels.
+        uses: A subset of "raster", "resize", "mipmap" and "sampling".
     """
 
     name: str
@@ -27,5 +27,5 @@ PIXEL_FILTERS = tuple(PixelFilter(*found) for found in _native.pixel_filters())
 
 
 def names_for(use: str) -> tuple[Any, ...]:
-    """The names of the filters that may be used so: those of a type in `_border.names`."""
+    """Returns the names of the filters for a use; `_border.names` has a type of them."""
     return tuple(found.name for found in PIXEL_FILTERS if use in found.uses)

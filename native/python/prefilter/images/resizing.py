@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Images of other sizes (chapter 1)."""
+"""Resizing of images (chapter 1)."""
 
 from functools import partial
 from typing import Any, overload
@@ -127,56 +127,55 @@ def resize(
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> npt.NDArray[Any]:
-    """The image with another number of pixels, larger or smaller.
+    """The image resized to a larger or smaller number of pixels.
 
     Kernels ("box", "tent", "bspline2", "mitchell", "lanczos2", "lanczos3", "gaussian") filter along
-    x and along y. Along each axis they are as wide as the old pixels or the new ones, whichever are
-    wider, and an axis whose size stays is left alone. "box" is the mean of the old pixels, as
-    squares, over the square of the new one; enlarged, they stay squares.
+    x and along y. Along each axis their unit is the larger one of old and new pixels, and an axis
+    of unchanged size is not filtered. "box" is the mean of the old pixels, as squares, over the
+    square of the new one; when enlarging, pixels stay squares.
 
     "radial2" and "radial3" weigh pixels by their distance r with jinc(r) sinc(r / radius), where
     jinc(r) = J1(pi r) / (pi r) and sinc(x) = sin(pi x) / (pi x), up to the radius (section 1.1).
-    They cut off detail that is too fine equally in all directions. They are not separable, and take
-    longer.
+    They cut off fine detail equally in all directions. They are not separable, and take longer.
 
-    "least-squares" gives the pixels that come closest to the image once they are enlarged
+    "least-squares" yields the pixels that come closest to the image once they are enlarged
     bilinearly: they minimize the integral, over the image, of the squared difference between the
     old pixels, as squares, and the new ones, interpolated (figures 1.8 and 7.3).
 
-    An image of the same size stays as it is, whatever the filter. So does a constant one at any
-    size, but for "border" next to its edges.
+    Every filter leaves an image of unchanged size as it is. A constant image stays constant at any
+    size, except near the edges with "border".
 
     Args:
         image: (height, width, 1 to 4 channels) or (height, width), scene-linear, row 0 at the
-            bottom; encoded colors are decoded first (`to_linear`, or `encoding`). Bytes (uint8)
-            stand for a 255th each, uint16 for a 65535th.
-        width: Of the result, in pixels, 1 to 2^20.
-        height: Of the result.
+            bottom; encoded colors are decoded first (`to_linear`, or `encoding`). uint8 is divided
+            by 255, uint16 by 65535.
+        width: Width of the result in pixels, 1 to 2^20.
+        height: Height of the result.
         filter: A name of `RESIZE_FILTERS`.
         constrained: Whether values stay in [0, 1]. "least-squares" is solved within these bounds;
             the results of the others are clipped to them.
-        ringing: "limit": values stay within the range of the old pixels around, which are those in
-            a square of two new pixels a side, or two old ones where these are wider; so none is
-            below 0 where the image is not. "least-squares" is solved within these bounds, the
-            results of the others are clipped to them. "allow": values go as far as the filter takes
-            them. "auto": "limit" for "least-squares", "allow" for the others.
-        wrap: What lies outside of the image: "clamp" (its nearest pixel), "repeat" or "border"
-            (zero), or a pair of these for x and y.
-        premultiplied: Whether the colors of an image of 2 or 4 channels are multiplied by alpha
-            already, or its last channel is no alpha: then every channel is filtered as it stands.
-            Otherwise they are multiplied for filtering and divided afterward; where alpha is not
-            1 everywhere, colors stay within the range that those of visible pixels have, and alpha
-            within [0, 1].
-        encoding: What integers of the image are: "linear", or "srgb", which is decoded for
-            filtering and encoded again. The result then holds such integers too, rounded to the
-            nearest, and bytes are never floats all at once, which takes a fraction of the time.
-            None: the result is of floats.
+        ringing: "limit": values stay within the range of the surrounding old pixels, in a square
+            with sides of two new pixels, or two old ones if these are wider; so no value is below 0
+            unless the image is. "least-squares" is solved within these bounds, the results of the
+            others are clipped to them. "allow": values are not limited. "auto": "limit" for
+            "least-squares", "allow" for the others.
+        wrap: Pixels outside of the image: "clamp" (the nearest pixel), "repeat" or "border" (zero),
+            or a pair of these for x and y.
+        premultiplied: Whether the colors of an image of 2 or 4 channels are already multiplied by
+            alpha, or its last channel is not alpha: then every channel is filtered as it stands.
+            Otherwise they are multiplied for filtering and divided afterward; unless alpha is 1
+            everywhere, colors stay within the range of visible pixels' colors, and alpha within
+            [0, 1].
+        encoding: Encoding of integers in the image: "linear", or "srgb", which is decoded for
+            filtering and encoded again. The result then has the same integer type, rounded to the
+            nearest, and bytes are never converted to floats all at once, which takes a fraction of
+            the time. None: the result has floats.
         progress: Called with the fraction done, in [0, 1]; may return False to stop.
         threads: How many to use; 0 = all processors. Results do not depend on it.
 
     Returns:
-        A new array, (height, width, channels), or (height, width) for such an image: float32, or
-            with an `encoding` of the image's type.
+        A new array, (height, width, channels), or (height, width) if the image is: float32, or the
+            image's type if `encoding` is given.
 
     Raises:
         ValueError: An argument is out of range, or a pixel is not finite or beyond 1e30.

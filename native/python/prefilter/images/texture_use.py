@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a surface uses of its texture."""
+"""The texels of a texture that a surface uses."""
 
 from collections.abc import Sequence
 
@@ -22,7 +22,7 @@ def texel_weights(
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> npt.NDArray[np.float32]:
-    """How much of the surface lies in each texel: what "pam-box" weights texels by (equation 7.1).
+    """Surface area in each texel: the weights of "pam-box" (equation 7.1).
 
     Args:
         surface: One surface, or several that share the image.
@@ -33,8 +33,8 @@ def texel_weights(
         threads: As for `mipmaps`.
 
     Returns:
-        (height, width) shares of the area, row 0 at v = 0, scaled so that an even use of the whole
-        image gives 1; exactly 0 in a texel that holds none.
+        (height, width) shares of the area, row 0 at v = 0, scaled so that a uniform use of the
+        whole image gives 1; exactly 0 in texels without surface.
 
     Raises:
         ValueError: An argument is out of range.
@@ -58,15 +58,15 @@ def fill_unused(
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> npt.NDArray[np.float32]:
-    """The image with the texels that no bilinear lookup on the surface reads filled.
+    """The image with those texels filled that no bilinear lookup on the surface reads.
 
-    They are filled from what is around the others, out to the image's edge (push-pull: Gortler et
-    al., "The Lumigraph", 1996, section 3.4). Renders of the surface at level 0 do not change;
-    texture compressors and readers that filter wider no longer see the background.
+    They are filled from the others, out to the image's edge (push-pull: Gortler et al., "The
+    Lumigraph", 1996, section 3.4). Renders of the surface at level 0 do not change; texture
+    compressors, and readers with wider filters, no longer see the background.
 
     Args:
-        image: (height, width, 1 to 4 channels) or (height, width). Bytes (uint8) stand for a 255th
-            each, uint16 for a 65535th.
+        image: (height, width, 1 to 4 channels) or (height, width). uint8 is divided by 255, uint16
+            by 65535.
         surface: One surface, or several that share the image.
         wrap: As for `mipmaps`.
         progress: As for `mipmaps`.
@@ -96,21 +96,21 @@ def fill_transparent(
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> npt.NDArray[np.float32]:
-    """The image with colors where alpha is 0, which flow in from around (push-pull).
+    """The image with transparent pixels filled by the colors around them (push-pull).
 
-    Lookups between texels then do not mix in what is hidden, which darkens the edges of cut-outs.
+    Otherwise lookups between texels would mix in hidden colors, which darkens edges of cut-outs.
 
     Args:
-        image: (height, width, 2 to 4 channels), the last of which is straight alpha. Colors where
-            it is 0 or less are not read. Those near alpha count by it. Bytes (uint8) stand for a
-            255th each, uint16 for a 65535th.
+        image: (height, width, 2 to 4 channels), the last of which is straight alpha. Colors are
+            ignored where it is 0 or less, and otherwise weighted by it. uint8 is divided by 255,
+            uint16 by 65535.
         wrap: As for `mipmaps`.
         progress: As for `mipmaps`.
         threads: As for `mipmaps`.
 
     Returns:
-        The image, float32; alpha, and colors where it is above 0, are as they were. An image that
-        is transparent everywhere stays as it is.
+        The image, float32; alpha is unchanged, and so are colors where it is above 0. An image that
+        is transparent everywhere is unchanged.
 
     Raises:
         ValueError: An argument is out of range.

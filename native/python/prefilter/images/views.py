@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Levels fitted to what pixels show of a model."""
+"""Levels fitted to views of a model."""
 
 from collections.abc import Sequence
 from functools import partial
@@ -51,34 +51,34 @@ def fit_to_views(
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> FilteredLevels[np.float32]:
-    """Levels that come nearest to what pixels of a game should show of a model.
+    """Levels fitted to the pixels that a game should show of a model.
 
-    The model is drawn from all around, at distances where each level counts. What a pixel should
-    show is the mean of the image over what is visible in it; what it shows is a lookup of the
-    levels, one or a row of them. All levels together are fitted to that, by least squares with
-    less weight for what is far off (Huber). They then know what `mipmaps` leaves out: which
-    footprints occur, rows of lookups, and what lies beside the edges of charts and of the model,
-    which single lookups miss. It takes much longer, and is for one model: textures that several
-    share are better left to `mipmaps`.
+    The model is drawn from all around, at distances where each level matters. A pixel should show
+    the mean of the image over the surface visible in it; instead it shows a lookup of the levels,
+    or the mean of a row of lookups. All levels together are fitted to the former, by least squares
+    with less weight for large errors (Huber). They thus account for effects that `mipmaps` ignores:
+    the footprints that actually occur, rows of lookups, and the neighborhood of edges of charts and
+    of the model, which single lookups miss. This takes much longer, and is for one model: textures
+    that several share are better left to `mipmaps`.
 
     Args:
         levels: The image, (height, width, 1 to 4 channels) or (height, width), scene-linear, and
-            its other levels, as `mipmaps` returns them with `footprint` 1.5, or 1 for "trilinear":
-            the search starts there, and texels that hardly any view reads stay near them.
-        surface: One surface, or several that share the image, each of which is seen by itself.
-        lookups: How pixels look levels up: "trilinear", one lookup by the longer axis of the
+            its other levels from `mipmaps` with `footprint` 1.5, or 1 for "trilinear": the search
+            starts there, and texels that hardly any view reads stay near them.
+        surface: One surface, or several that share the image, each of which is viewed separately.
+        lookups: How pixels look up levels: "trilinear", one lookup by the longer axis of the
             pixel's footprint; "anisotropic", a row of up to 16 along that axis; "both", half of the
-            time each.
+            views each.
         wrap: As for `mipmaps`.
         bounds: As for `mipmaps`.
         premultiplied: As for `mipmaps`.
-        steadiness: What flickers counts so much beside what is wrong in single frames, 0 and up.
-        effort: How many more views there are, above 0 and up to 100.
+        steadiness: Weight of flicker relative to errors in single frames, 0 and up.
+        effort: Factor of the number of views, above 0 and up to 100.
         progress: As for `mipmaps`.
         threads: As for `mipmaps`.
 
     Returns:
-        The levels, float32, level 0 first, which is the image.
+        The levels, float32, starting with the image as level 0.
 
     Raises:
         ValueError: An argument is out of range, sizes are not those of a mipmap, or a texel is not

@@ -20,11 +20,12 @@ def uv_charts(
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> npt.NDArray[np.int32]:
-    """Which triangles hang together in all of several UV maps.
+    """Labels the groups of triangles that are connected in all of several UV maps.
 
-    Two triangles do at an edge of theirs alone, where they have the same UVs at both ends, within
-    1e-4. Vertices at one place count as one. What meets itself at a seam, as the side of a tube, is
-    cut about half way around: triangles that hang together have the same UVs at a vertex.
+    Two triangles are connected if they share an edge that no other triangle has, with equal UVs at
+    both ends, within 1e-4. Vertices at the same position count as one. A chart that meets itself at
+    a seam, such as the side of a tube, is cut about half way around, so that connected triangles
+    have equal UVs at a vertex.
 
     Args:
         positions: (vertices, 3).
@@ -34,7 +35,7 @@ def uv_charts(
         threads: 0 means all processors. The result does not depend on it.
 
     Returns:
-        (triangles,) int32: the same number, from 0, for triangles that hang together.
+        (triangles,) int32: equal numbers, from 0, for connected triangles.
 
     Raises:
         ValueError: A shape or type is wrong, there is no triangle, an index names no vertex, or a

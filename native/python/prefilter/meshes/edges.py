@@ -13,13 +13,13 @@ from .._border.arrays import as_mesh, as_threads
 
 
 class MeshEdges(NamedTuple):
-    """The edges of a mesh, as programs keep them that number edges.
+    """The edges of a mesh, numbered.
 
     Attributes:
         vertices: (edges, 2) int32: each edge once, from its vertex with the lower number to the
             other, in ascending order.
-        corners: (triangles, 3) int32: the edge from each corner to the next one; -1 where both are
-            one vertex.
+        corners: (triangles, 3) int32: the edge from each corner to the next one; -1 if both are the
+            same vertex.
     """
 
     vertices: npt.NDArray[np.int32]
@@ -33,7 +33,7 @@ def mesh_edges(
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> MeshEdges:
-    """The edges of a mesh, and which of them runs from each corner of a triangle.
+    """The edges of a mesh, and the edge that starts at each corner of a triangle.
 
     Args:
         positions: (vertices, 3), in any unit of length.

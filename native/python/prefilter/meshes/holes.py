@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Meshes made ready for voxelizing: their holes closed."""
+"""Closing the holes of meshes for voxelization."""
 
 from dataclasses import dataclass
 
@@ -17,12 +17,12 @@ class ClosedMesh:
     """A mesh and the caps of its holes.
 
     Attributes:
-        positions: (vertices, 3) float64: the mesh's own, and those of the caps; or what was passed
-            if there are no caps.
-        triangles: (triangles, 3) int64: the mesh's own first; likewise.
-        open_edges: Unbalanced edges of the mesh: traversed more often in one direction.
-        holes: Loops of such edges.
-        left_open: Of these loops, those without a cap, which would cancel the surface.
+        positions: (vertices, 3) float64: the mesh's own, then those of the caps; or the argument
+            itself if there are no caps.
+        triangles: (triangles, 3) int64: the mesh's own, then the caps; or the argument itself.
+        open_edges: Number of unbalanced edges, traversed more often in one direction.
+        holes: Number of loops of such edges.
+        left_open: Number of loops without a cap, because it would cancel the surface.
     """
 
     positions: npt.NDArray[np.floating]
@@ -42,24 +42,24 @@ def close_holes(
 ) -> ClosedMesh:
     """The mesh with its holes closed, for `voxelize`.
 
-    `voxelize` takes open meshes, and what a hole does stays close to it; but there, the surface
-    ends in steps. With caps, every edge is traversed as often one way as the other, so winding
-    numbers are whole. Vertices at one place count as one. Faces that are turned against their
-    neighbors are made up for, too.
+    `voxelize` takes open meshes, and a hole affects only its vicinity; but there, the surface ends
+    in steps. With caps, every edge is traversed equally often in both directions, so winding
+    numbers are integers. Vertices at the same position count as one. Caps also compensate for faces
+    that are oriented against their neighbors.
 
-    A hole stays open where its cap would cancel the surface: around a sheet, whose cap would be the
-    sheet turned over; between pieces that are close to each other and together enclose something;
-    and where the cap is inside out.
+    A hole stays open if its cap would cancel the surface: around a sheet, whose cap would be the
+    sheet itself with opposite orientation; between close pieces that together enclose a volume; and
+    if the cap is inside out.
 
     Args:
         positions: (vertices, 3), in any unit of length.
         triangles: (triangles, 3) integer indices of vertices, counter-clockwise from outside.
-        method: "smooth" continues the surface: a patch with triangles as large as the edges around
-            it that leaves the border in the surface's plane and bends as little as possible. Where
-            surface and cap meet at more than 75 degrees, as at the end of a tube, the border is
-            kept as a crease. Holes of up to 6 edges get a fan. "flat" takes the triangles of
-            the smallest area between the vertices of the border. "fan" joins the border to its
-            middle.
+        method: "smooth" continues the surface: a patch, with triangles of the size of the
+            surrounding edges, that leaves the border in the surface's plane and bends as little as
+            possible. Where surface and cap meet at more than 75 degrees, as at the end of a tube,
+            the border stays a crease. Holes of up to 6 edges get a fan. "flat" takes the triangles
+            of the smallest area between the vertices of the border. "fan" joins the border to its
+            center.
         progress: Called with the fraction done; returning False stops the work.
         threads: 0 means all processors.
 

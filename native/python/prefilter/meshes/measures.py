@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The extent of meshes, and where they intersect themselves."""
+"""Measures and self-intersections of meshes."""
 
 from dataclasses import dataclass
 
@@ -14,13 +14,13 @@ from .._border.arrays import as_mesh, as_threads
 
 @dataclass(frozen=True)
 class MeshMeasures:
-    """How large a mesh is.
+    """Size of a mesh.
 
     Attributes:
-        box: (low corner, high corner) of the triangles; other vertices do not count.
-        area: Of the triangles.
-        volume: What the mesh encloses; negative if it is inside out. Of an open mesh, as seen from
-            one of its corners.
+        box: (low corner, high corner) of the triangles; unused vertices do not count.
+        area: Total area of the triangles.
+        volume: The enclosed volume; negative if the mesh is inside out. For an open mesh, relative
+            to one of its corners.
     """
 
     box: tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]
@@ -61,10 +61,10 @@ def self_intersections(
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> npt.NDArray[np.int64]:
-    """The pairs of triangles that meet beyond the vertices and edges that they share by index.
+    """Pairs of triangles that intersect beyond the vertices and edges that they share by index.
 
-    Those are the pairs that cross, overlap or touch, by exact predicates. Triangles without area
-    are left out.
+    These are pairs that cross, overlap or touch, by exact predicates. Triangles of zero area are
+    ignored.
 
     Args:
         positions: (vertices, 3), in any unit of length.

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The points of a mesh nearest to others."""
+"""Nearest points on a mesh."""
 
 from dataclasses import dataclass
 from typing import TypeAlias
@@ -16,7 +16,7 @@ Found: TypeAlias = tuple[npt.NDArray[np.int64], npt.NDArray[np.float64], npt.NDA
 
 
 class NearestPoints:
-    """A mesh made ready for searches, for one that is asked several times.
+    """A mesh prepared for repeated searches.
 
     Args:
         positions: (vertices, 3).
@@ -47,7 +47,7 @@ class NearestPoints:
     def find(
         self, points: npt.ArrayLike, *, progress: ProgressCallback | None = None, threads: int = 0
     ) -> Found:
-        """Where the mesh is nearest to points; see `nearest_points`.
+        """Finds the nearest points on the mesh; see `nearest_points`.
 
         Args:
             points: (points, 3).
@@ -73,9 +73,9 @@ def nearest_points(
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> Found:
-    """Where a mesh is nearest to points: what attributes are carried from surface to surface by.
+    """Nearest points on a mesh, to transfer attributes from one surface to another.
 
-    `NearestPoints` does the same for a mesh that is asked several times.
+    `NearestPoints` does the same for repeated searches.
 
     Args:
         points: (points, 3).
@@ -86,8 +86,8 @@ def nearest_points(
 
     Returns:
         For each point the index of the triangle, (points,) int64; the weights of its corners at the
-        nearest point, (points, 3) float64, which sum to 1; and the distance, (points,) float64. Of
-        several triangles at the same distance it is the one with the lowest index.
+        nearest point, (points, 3) float64, which sum to 1; and the distance, (points,) float64.
+        Among triangles at the same distance, the one with the lowest index is returned.
 
     Raises:
         ValueError: A shape or type is wrong, there is no triangle, an index names no vertex, or a
@@ -104,12 +104,12 @@ def nearest_points(
 
 @dataclass(frozen=True)
 class CornerPoints:
-    """Points of a mesh, and which of them the corners of a surface have.
+    """Points on a mesh, and the assignment of a surface's corners to them.
 
     Attributes:
-        triangles: (points,) int64, the triangle that each point is on. The first points are those
-            of the surface's vertices, one each.
-        weights: (points, 3) float64: of the triangle's corners; they sum to 1.
+        triangles: (points,) int64, the triangle of each point. The first points belong to the
+            surface's vertices, one each.
+        weights: (points, 3) float64: weights of the triangle's corners; they sum to 1.
         corners: (surface triangles, 3) int32, indices of points.
     """
 
@@ -129,16 +129,16 @@ def corner_points(
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> CornerPoints:
-    """What the corners of a surface lie on, of the mesh that it was made of.
+    """Points on a source mesh that correspond to the corners of a surface made from it.
 
-    For each corner it is the nearest point of those triangles of the mesh that have the label of
-    the one that the corner's triangle came from: with a label for each chart of a UV map, no
-    triangle gets UVs of two. A vertex between triangles of several labels has a point for each.
+    Each corner gets the nearest point on the source triangles with the same label as the triangle
+    that the corner's triangle came from: with a label for each chart of a UV map, no triangle gets
+    UVs of two charts. A vertex between triangles of several labels has a point for each.
 
     Args:
         positions: (vertices, 3) of the surface.
         triangles: (triangles, 3) of the surface.
-        origins: (triangles,) integers: the triangle of the mesh that each came from.
+        origins: (triangles,) integers: the source triangle that each came from.
         source_positions: (source vertices, 3).
         source_triangles: (source triangles, 3).
         labels: (source triangles,) integers.

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Any mesh as one that has an inside."""
+"""Making solids of arbitrary meshes."""
 
 from dataclasses import dataclass
 from functools import partial
@@ -31,21 +31,21 @@ _CHECKS: dict[str, Check] = {
 
 @dataclass(frozen=True)
 class SolidMesh:
-    """A mesh that `voxelize` makes a good solid of, and what was done for it.
+    """A mesh suitable for `voxelize`, with statistics of the repairs.
 
     Attributes:
-        positions: (vertices, 3) float64, or what was passed if the mesh is as it was.
-        triangles: (triangles, 3) int64, likewise.
-        origins: (triangles,) int64: the triangle of the mesh that each came from, or -1 for those
-            that fill what the outside does not reach. None if the mesh is as it was.
-        parts: Patches of the mesh: faces that hang together by edges with two of them.
-        welded_vertices: Vertices that count as another one.
-        duplicate_faces: Faces that were there before, and were dropped.
-        turned_faces: Faces that were turned against others of their part.
-        turned_parts: Parts that were turned as a whole.
+        positions: (vertices, 3) float64, or the argument itself if the mesh is unchanged.
+        triangles: (triangles, 3) int64, or the argument itself if the mesh is unchanged.
+        origins: (triangles,) int64: the input triangle that each came from, or -1 for those that
+            bound regions unreachable from outside. None if the mesh is unchanged.
+        parts: Patches of the mesh: faces connected by edges of exactly two faces.
+        welded_vertices: Vertices that were merged into others.
+        duplicate_faces: Duplicates of faces that were dropped.
+        turned_faces: Faces that were flipped to agree with others of their part.
+        turned_parts: Parts that were flipped as a whole.
         thickened_parts: Sheets and parts that were too thin for any cell.
-        filled_parts: Parts whose inside is what the outside does not reach.
-        turned: (n,) int64: the triangles of the mesh that face the other way now.
+        filled_parts: Parts whose inside is the region that the outside does not reach.
+        turned: (n,) int64: the input triangles that were flipped.
     """
 
     positions: npt.NDArray[np.floating]
@@ -62,7 +62,7 @@ class SolidMesh:
 
     @property
     def is_unchanged(self) -> bool:
-        """Whether the mesh is as it was."""
+        """Whether the mesh is unchanged."""
         return self.origins is None
 
 
@@ -78,24 +78,24 @@ def as_solid(
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> SolidMesh:
-    """A mesh that `voxelize` makes a good solid of, from any triangles.
+    """A mesh suitable for `voxelize`, from arbitrary triangles.
 
-    A mesh that is closed, consistently oriented and not too thin is unchanged. In others, vertices
-    along open edges that are close to each other are welded, faces that are there twice count once,
-    faces are turned to go with their neighbors, and parts to have their outside where it is seen
-    from outside. Where the mesh winds around nothing, inside is what the outside does not reach.
-    Sheets and thin parts get a thickness.
+    A mesh that is closed, consistently oriented and not too thin is unchanged. In others, close
+    vertices along open edges are welded, duplicate faces dropped, faces flipped to agree with their
+    neighbors, and parts oriented so that their outside faces outward. Where the orientation
+    encloses nothing, the inside is the region that the outside does not reach. Sheets and thin
+    parts get a thickness.
 
     Args:
         positions: (vertices, 3), in any unit of length.
         triangles: (triangles, 3) integer indices of vertices.
-        cell: The side of the cells that it is going to be voxelized in, in the mesh's unit.
-        weld: In cells: vertices along open edges count as one up to this distance. 0 welds those
-            alone that are at one place.
-        gap: In cells: the outside does not get through gaps up to this width.
-        thickness: In cells: what sheets and thin parts get. 0 leaves them as they are.
-        sheets: What they get it by: "shell", prisms on both sides, or "faces", no more than their
-            faces from both sides, for a `voxelize` with this `thickness`.
+        cell: The side of the cells for voxelization, in the mesh's unit.
+        weld: Cells: vertices along open edges are merged up to this distance. 0 merges only
+            vertices at the same position.
+        gap: Cells: the outside does not reach through gaps up to this width.
+        thickness: Cells: thickness given to sheets and thin parts. 0 leaves them unchanged.
+        sheets: How sheets get it: "shell", by prisms on both sides, or "faces", by duplicating
+            faces in opposite orientation, for a `voxelize` with this `thickness`.
         progress: Called with the fraction done; returning False stops the work.
         threads: 0 means all processors. The result does not depend on it.
 
@@ -120,7 +120,7 @@ def _turned(
     after: npt.NDArray[np.floating],
     origins: npt.NDArray[np.int64],
 ) -> npt.NDArray[np.int64]:
-    """Returns the triangles all of whose successors face the other way."""
+    """Returns the triangles whose successors are all flipped."""
     ways = np.zeros((2, len(before)), bool)
     known = origins >= 0
     own = (_normals(before)[origins[known]] * _normals(after[known])).sum(axis=1)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Surfaces: triangles in space with texture coordinates."""
+"""Textured surfaces: triangles with texture coordinates."""
 
 from collections.abc import Iterable, Sequence
 from functools import partial
@@ -33,26 +33,26 @@ _SUBDIVISION_CHECKS: dict[str, Check] = {
 class Surface(_native.Surface):
     """A textured triangle mesh.
 
-    Triangles of zero area, in space or in the texture, are welcome, as are charts that overlap, are
-    mirrored, or leave the unit square.
+    Triangles of zero area, in space or in the texture, are allowed, and so are charts that overlap,
+    are mirrored, or leave the unit square.
 
     Args:
         positions: (vertices, 3), in any unit of length.
         triangles: (triangles, 3) integer indices of vertices.
         uvs: (triangles, 3, 2) texture coordinates of each triangle's corners, or (vertices, 2) of
             each vertex; the image spans [0, 1], with v = 0 at row 0.
-        weights: Importance, 0 and up: a triangle's area counts times its weight. (vertices,), or
-            (triangles,) or (triangles, 1), or (triangles, 3) for its corners; where there are as
-            many triangles as vertices, one axis means vertices. A triangle's weight is the mean of
-            its corners': inside of it weights do not vary.
+        weights: Importance, 0 and up, which multiplies a triangle's area. (vertices,), or
+            (triangles,) or (triangles, 1), or (triangles, 3) for its corners; if there are as many
+            triangles as vertices, one axis means vertices. A triangle's weight is the mean of its
+            corners' weights, constant over the triangle.
 
     Attributes:
         triangle_count: The number of triangles.
-        area: Their area in space times their weights, squared units of length.
+        area: Total area times weight, in squared units of length.
         positions: (vertices, 3) float64, a copy; so are the others.
         triangles: (triangles, 3) int32.
         uvs: (triangles, 3, 2) float64.
-        areas: (triangles,) float64; of each triangle, times its weight.
+        areas: (triangles,) float64: area of each triangle times its weight.
 
     Raises:
         ValueError: A shape or type is wrong, there is no triangle, an index names no vertex, a
@@ -93,34 +93,34 @@ class Surface(_native.Surface):
     ) -> Self:
         """The limit surface of a subdivision mesh, in triangles.
 
-        Faces are refined `level` times, and the vertices then moved to where infinitely many times
-        would take them, texture coordinates too. Areas approach those of the limit with the square
-        of the triangles' size.
+        Faces are refined `level` times, and the vertices then moved to their limit positions, as
+        are texture coordinates. Areas approach those of the limit with the square of the triangles'
+        size.
 
         Edges of more than two faces, and vertices where sheets meet, are infinitely sharp. Vertices
-        of no face are dropped.
+        without a face are dropped.
 
         Args:
             positions: (vertices, 3).
             face_sizes: (faces,) numbers of corners, 3 and up.
             face_vertices: (corners,) indices of vertices, face by face.
-            face_uvs: (corners, 2) texture coordinates. Corners of a vertex with equal ones are
-                joined; others make a seam.
+            face_uvs: (corners, 2) texture coordinates. Corners of a vertex with equal coordinates
+                are joined; others form a seam.
             level: How often faces are refined, 1 to 10. A face of n corners becomes 2 n 4^(level
-                - 1) triangles ("loop": 4^level), of which 2^25 are allowed in all.
+                - 1) triangles ("loop": 4^level); the total is limited to 2^25.
             creases: Semi-sharp edges, ((creases, 2) vertices, (creases,) sharpness). 0 is smooth,
-                10 and up infinitely sharp; what is sharper than `level` counts as that, too.
+                10 and up infinitely sharp; so is a sharpness above `level`.
             corners: Sharp vertices, ((corners,) vertices, (corners,) sharpness).
             scheme: "catmull-clark", "loop" (triangles only) or "bilinear".
             boundary: "edge-only": boundaries of the mesh are smooth curves. "edge-and-corner": the
-                same, but vertices of one face stay where they are.
+                same, but boundary vertices of a single face do not move.
             uv_smooth: Where texture coordinates stay linear: "smooth-all" nowhere,
                 "preserve-corners", "preserve-corners-and-junctions",
                 "preserve-corners-junctions-and-concave", "preserve-boundaries" along all borders of
                 charts, "none" everywhere.
             weights: As for a `Surface`; (vertices,), interpolated linearly, or (faces,) or
                 (faces, 1).
-            faces: (faces,) booleans: which faces the surface has. The others still shape it.
+            faces: (faces,) booleans: faces to include. The others still shape the surface.
             progress: Called with the fraction done, in [0, 1]; may return False to stop.
 
         Raises:
@@ -144,19 +144,18 @@ class Surface(_native.Surface):
         return cls._take(_native.subdivide(mesh, options, as_progress(progress)))
 
     def placed(self, matrices: npt.ArrayLike) -> Self:
-        """The surface placed in space, once or several times.
+        """The surface transformed by one or several instance matrices.
 
         Args:
             matrices: (4, 4) or (instances, 4, 4), or with the first three rows only: affine maps
-                that take (x, y, z, 1) to a point. Scales may differ by axis and be negative or
-                zero.
+                of (x, y, z, 1) to a point. Scales may differ by axis and be negative or zero.
 
         Returns:
-            A surface whose triangles have the areas of all of their images together. Its positions
-            are those of the first matrix.
+            A surface whose triangles have the total area over all instances. Its positions are
+            those of the first instance.
 
         Raises:
-            ValueError: There is no matrix, or one is no affine map.
+            ValueError: There is no matrix, or one is not affine.
         """
         try:
             maps = np.asarray(matrices, np.float64)
@@ -179,17 +178,17 @@ class Surface(_native.Surface):
     def udim_tile(self, number: int) -> Self | None:
         """The part of the surface in a UDIM tile, moved to the unit square.
 
-        Triangles are cut exactly at the tile's edges; a part has its share of the area.
+        Triangles are cut exactly at the tile's edges, and areas are split accordingly.
 
         Args:
             number: 1001 + column + 10 * row, up to 9999: the tile where u is from column to
                 column + 1 and v from row to row + 1.
 
         Returns:
-            The part, or None where nothing of the surface lies in the tile.
+            The part, or None if nothing of the surface is in the tile.
 
         Raises:
-            ValueError: That is no tile's number.
+            ValueError: The number is no tile's.
         """
         part = super().udim_tile(
             as_int("number", number, "a UDIM tile has a whole number from 1001 to 9999")
@@ -200,19 +199,19 @@ class Surface(_native.Surface):
     def merged(cls, surfaces: Iterable["Surface"]) -> list["Surface"]:
         """Joins surfaces that differ in space only, such as the poses of an animated mesh.
 
-        Surfaces with the same triangles and texture coordinates become one that has the areas of
-        all of them, and the positions of the first. To a filter that is the same as the list, since
-        their weights add up: for the frames of an animation it is the average of equation 7.1's
-        weights that section 7.5 suggests. It takes less time and memory.
+        Surfaces with the same triangles and texture coordinates become one with the sum of their
+        areas, and the positions of the first. Filters treat it like the list, because weights add
+        up: for the frames of an animation it is the average of equation 7.1's weights that section
+        7.5 suggests. It takes less time and memory.
 
         Args:
-            surfaces: Any surfaces; those that are alone in their kind are returned as they are.
+            surfaces: Any surfaces; those without a match are returned unchanged.
 
         Returns:
-            The surfaces in the order of the first of each kind.
+            The joined surfaces, in order of the first of each group.
 
         Raises:
-            ValueError: Something is no Surface.
+            ValueError: An item is no Surface.
         """
         if not isinstance(surfaces, Iterable):
             raise ValueError(f"surfaces: a {type(surfaces).__name__}; a list of Surface is needed")
@@ -231,7 +230,7 @@ class Surface(_native.Surface):
 
     @classmethod
     def _take(cls, native: _native.Surface) -> Self:
-        """Makes one of what the native module has made."""
+        """Wraps a native surface."""
         surface = cls.__new__(cls)
         _native.Surface.__init__(surface, native)
         return surface
@@ -255,7 +254,7 @@ def as_surfaces(surface: Surface | Sequence[Surface] | None) -> list[Surface]:
 def _weights(
     weights: npt.ArrayLike | None, vertices: int, parts: int, noun: str, *, corners: int | None
 ) -> tuple[np.ndarray | None, str]:
-    """Returns weights and what they belong to: vertices, triangles (or faces), or corners."""
+    """Returns weights, and what they belong to: vertices, triangles (or faces), or corners."""
     if weights is None:
         return None, ""
     found = as_array("weights", weights)

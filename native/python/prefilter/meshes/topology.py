@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The parts of meshes, and their handles."""
+"""Connected parts and genus of meshes."""
 
 from dataclasses import dataclass
 
@@ -14,18 +14,19 @@ from .._border.arrays import as_mesh, as_threads
 
 @dataclass(frozen=True)
 class MeshTopology:
-    """How a mesh hangs together.
+    """Connectivity of a mesh.
 
     Attributes:
-        parts: How many there are: triangles that hang together by edges.
-        cavities: How many parts bound one: closed, with faces that agree on a side, and inside out.
-        borders: Loops of edges with a single triangle.
-        genus: The handles of all parts together: 0 for spheres and discs, 1 for a ring. None if
-            more than two triangles share an edge, or a surface has one side.
+        parts: Number of parts: triangles connected by edges.
+        cavities: Number of parts that bound a cavity: closed, consistently oriented, and inside
+            out.
+        borders: Number of loops of edges with a single triangle.
+        genus: Number of handles of all parts together: 0 for spheres and discs, 1 for a ring. None
+            if more than two triangles share an edge, or a surface has one side.
         border_edges: (edges, 2) int32: the edges with a single triangle, each from its vertex with
             the lower number, in ascending order.
         part_of: (triangles,) int32: the part of each, numbered in order of their first triangles;
-            -1 for a triangle of which two corners are one vertex.
+            -1 for a triangle with two equal vertices.
     """
 
     parts: int
@@ -37,7 +38,7 @@ class MeshTopology:
 
     @property
     def solids(self) -> int:
-        """How many parts there are without cavities: what hangs together as a solid."""
+        """Number of parts that are not cavities: connected solids."""
         return self.parts - self.cavities
 
 
@@ -51,12 +52,12 @@ def mesh_topology(
 ) -> MeshTopology:
     """The parts of a mesh, its genus and its borders.
 
-    Parts that meet at a vertex alone are several, each with its own surface around it.
+    Parts that meet only at a vertex are separate, and each has its own surface around it.
 
     Args:
         positions: (vertices, 3), in any unit of length.
         triangles: (triangles, 3) integer indices of vertices.
-        weld: Whether vertices of borders count as one where they are at one place.
+        weld: Whether border vertices at the same position count as one.
         progress: Called with the fraction done; returning False stops the work.
         threads: 0 means all processors. The result does not depend on it.
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What users may set, each option declared once.
+"""Declarations of all options that users can set.
 
-Blender's properties, and the flags of both commands, are made of these declarations.
+Blender's properties and the flags of both command lines derive from them.
 """

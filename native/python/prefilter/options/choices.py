@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a user may choose for an option, and how it is presented."""
+"""Values of options that have a fixed set of them, as users see them."""
 
 from typing import NamedTuple
 

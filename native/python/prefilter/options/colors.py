@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Colors as users of commands write them: #RRGGBB or #RRGGBBAA, in sRGB."""
+"""Colors in command-line notation: #RRGGBB or #RRGGBBAA, in sRGB."""
 
 import re
 from collections.abc import Sequence
@@ -12,11 +12,11 @@ _HEX = re.compile(r"#?([0-9a-fA-F]{6})([0-9a-fA-F]{2})?")
 
 
 def from_hex(text: str) -> Color | None:
-    """Returns the color that a text means; None where it is none."""
+    """Parses a color; None if the text is not one."""
     found = _HEX.fullmatch(text.strip())
     if found is None:
         return None
-    import numpy as np  # Most commands start without it, or end without it.
+    import numpy as np  # Imported late: most commands need no numpy to start.
 
     import prefilter
 

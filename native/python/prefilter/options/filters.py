@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The filters of the library as choices."""
+"""Choices of the library's filters."""
 
 from collections.abc import Mapping
 
@@ -12,7 +12,7 @@ LABELS = {one.name: one.label for one in prefilter.PIXEL_FILTERS}
 
 
 def filters_for(use: str, descriptions: Mapping[str, str]) -> dict[str, Choice]:
-    """Returns the filters for a use, those with a description first, in the order of these."""
+    """Returns the filters for a use, described ones first, in the order of `descriptions`."""
     names = [one.name for one in prefilter.PIXEL_FILTERS if use in one.uses]
     ordered = [*descriptions, *(name for name in names if name not in descriptions)]
     return {

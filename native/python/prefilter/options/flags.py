@@ -27,13 +27,13 @@ def add_flags(
     """Adds the flags of options to a parser.
 
     Args:
-        parser: Gets them; `given` finds what a user gives.
+        parser: The parser that gets the flags; `given` returns their values.
         settings: A dataclass.
         names: The fields; all if none is named.
-        exclusive: Fields of which a user may give one.
-        without_default: Fields that mean something else, or nothing, where no flag gives them.
-        short: For a field, a flag of one letter, which does the same.
-        preferred: What the help adds to the default of an option that follows a preference.
+        exclusive: Fields of which a user may set only one.
+        without_default: Fields whose default does not apply when their flag is absent.
+        short: One-letter aliases of flags, by field.
+        preferred: Note that the help adds to the default of an option that follows a preference.
     """
     group = parser.add_mutually_exclusive_group() if exclusive else parser
     for name, default, flag, found in _flags(settings, names):
@@ -50,7 +50,7 @@ def add_flags(
             elif isinstance(default, tuple) and found.subtype != "COLOR":
                 more["nargs"] = len(default)
             notes = [found.allowed] if found.has_limits else []
-            # What a color is without its flag is another option's to say.
+            # Another option says which color applies without the flag.
             if default != "" and found.subtype != "COLOR" and name not in without_default:
                 follows = preferred if found.preference else ""
                 notes.append(f"default: {found.shown(default)}{follows}")
@@ -62,7 +62,7 @@ def add_flags(
 
 
 def given(options: argparse.Namespace, settings: type) -> dict[str, Any]:
-    """Returns the values of the flags that were given, by the names of the fields."""
+    """Returns the values of the flags that the user gave, by field name."""
     return {
         name: tuple(value) if isinstance(default, tuple) else value
         for name, default, _, _ in _flags(settings, ())
@@ -71,7 +71,7 @@ def given(options: argparse.Namespace, settings: type) -> dict[str, Any]:
 
 
 def tables(settings: type, *names: str) -> list[str]:
-    """Returns what may be chosen for each flag with choices, for the end of a help text."""
+    """Returns the choices of each flag that has any, for the end of a help text."""
     return [
         "\n".join(
             [f"{flag}:", *(f"  {key:<18}{one.description}" for key, one in found.choices.items())]

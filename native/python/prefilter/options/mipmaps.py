@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a user may set for a bake of mipmap levels."""
+"""Settings for baking mipmap levels."""
 
 from dataclasses import dataclass
 
@@ -33,7 +33,7 @@ _COVERED = "-covered"
 
 
 def _kernel_choice(name: str) -> Choice:
-    """Returns how a filter of the library is presented whose kernel weighs texels alike."""
+    """Returns the label and description of a filter that weighs all its texels alike."""
     kernel = name.removesuffix(_COVERED)
     label = LABELS[kernel]
     if name == kernel:
@@ -51,9 +51,9 @@ TEXTURE_SPACE_FILTERS = frozenset(
     one.name for one in prefilter.MIPMAP_FILTERS if not one.needs_surface
 )
 FITTED_FILTERS = frozenset(one.name for one in prefilter.MIPMAP_FILTERS if one.is_fit)
-"""Those that heed how the levels are looked up."""
+"""Filters that depend on how the levels are looked up."""
 SEAM_FILTERS = FITTED_FILTERS - TEXTURE_SPACE_FILTERS
-"""Those that heed seams."""
+"""Filters that take UV seams into account."""
 
 _MODES = {
     "clamp": Choice("Clamp", "Extend edge pixels"),
@@ -156,7 +156,7 @@ TEXTURE_FORMATS = {
     "bc7": Choice(
         "BC7", "Compressed color and alpha, 1 byte per texel; closer to the image than BC1 and BC3"
     ),
-    # These need KTX 2.
+    # Formats from here on need KTX 2.
     "etc2-rgb": Choice(
         "ETC2 RGB", "Phones, even old ones: color without alpha, half a byte per texel"
     ),

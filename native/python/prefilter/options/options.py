@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Options, each declared once, as a field of a dataclass of settings.
+"""Options, each declared once as a field of a settings dataclass.
 
     @dataclass(frozen=True)
     class Settings:
         depth: int = number(8, "Depth", "How often the cube is halved", low=1, high=12)
 
-What the field says makes the property of Blender, the flag of commands (`flags`), the check of a
-value, and the row of the table in docs/ (`table`).
+Blender's property, the flag of commands (`flags`), the check of a value and the row of the table in
+docs/ (`table`) all derive from the field.
 """
 
 import dataclasses
@@ -26,23 +26,23 @@ _ROUNDING = 2.0**-24
 
 @dataclass(frozen=True)
 class Option:
-    """How an option is presented, and what it may be.
+    """Presentation of an option, and the values it may have.
 
     Attributes:
-        label: What a user sees; empty for what only commands have.
-        description: What it does: a sentence without a full stop.
-        choices: What it may be, if that is one of a few things.
-        low: The least number that it may be.
-        high: The greatest.
-        is_above: Whether it has to be above `low`.
+        label: The name that users see; empty if only commands have the option.
+        description: A sentence without a full stop.
+        choices: The allowed values, if there is a fixed set of them.
+        low: The least allowed number.
+        high: The greatest allowed number.
+        is_above: Whether `low` itself is excluded.
         subtype: What a number or a text means, as in bpy.props. An ANGLE is in radians; users see
             degrees. A COLOR is scene-linear, with straight alpha; commands take it as #RRGGBBAA.
-        display: More arguments of the property.
-        flag: What commands call it; None for the field's name with dashes, empty for nothing.
-        metavar: What stands for the value in their help.
-        flag_description: What the flag does, where that is not `description`.
-        preference: The preference of the add-on that it follows until a user sets it; empty for
-            none.
+        display: Further arguments of the Blender property.
+        flag: The flag of commands; None for the field's name with dashes, empty for no flag.
+        metavar: Placeholder for the value in help texts.
+        flag_description: Description of the flag, if it differs from `description`.
+        preference: The preference of the add-on that supplies the value until a user sets it; empty
+            for none.
     """
 
     label: str
@@ -60,7 +60,7 @@ class Option:
 
     @property
     def allowed(self) -> str:
-        """What it may be, in words."""
+        """The allowed values, in words."""
         if self.choices:
             return ", ".join(self.choices)
         if self.subtype == "COLOR":
@@ -72,11 +72,11 @@ class Option:
 
     @property
     def has_limits(self) -> bool:
-        """Whether it is a number that may be too low or too high."""
+        """Whether a number has a lower or an upper limit."""
         return self.low > -math.inf or self.high < math.inf
 
     def allows(self, value: Any) -> bool:
-        """Returns whether it may be a value."""
+        """Returns whether a value is allowed."""
         if self.choices:
             chosen = {value} if isinstance(value, str) else set(value)
             return chosen <= self.choices.keys()
@@ -86,7 +86,7 @@ class Option:
             return all(self.allows(one) for one in value)
         if not isinstance(value, int | float):
             return True
-        # Blender keeps numbers in single precision.
+        # Blender stores numbers in single precision.
         slack = _ROUNDING * abs(value) if isinstance(value, float) else 0
         is_finite = isinstance(value, int) or math.isfinite(value)
         if not is_finite or (self.is_above and value <= self.low):
@@ -116,12 +116,12 @@ def one_of(
 
 
 def number(default: float, label: str, description: str, **more: Any) -> Any:
-    """Declares an option that is a number: whole if the default is."""
+    """Declares a numeric option: an integer if the default is one."""
     return _declared(default, Option(label, description, **more))
 
 
 def numbers(default: tuple[float, ...], label: str, description: str, **more: Any) -> Any:
-    """Declares an option that is as many numbers as the default has."""
+    """Declares an option of as many numbers as the default has."""
     return _declared(default, Option(label, description, **more))
 
 
@@ -136,12 +136,12 @@ def text(default: str, label: str, description: str, **more: Any) -> Any:
 
 
 def rgba(default: Color, label: str, description: str, **more: Any) -> Any:
-    """Declares an option that is a color with alpha, each number from 0 to 1."""
+    """Declares a color with alpha, each component from 0 to 1."""
     return _declared(default, Option(label, description, subtype="COLOR", **more))
 
 
 def threads() -> Any:
-    """Declares how many threads to use, which commands alone let a user say."""
+    """Declares the number of threads, which users set by commands only."""
     return number(
         0,
         "",
@@ -164,7 +164,7 @@ def option(settings: type, name: str) -> tuple[Any, Option]:
 
 
 def check(settings: Any) -> None:
-    """Raises ValueError where a value of settings is not allowed."""
+    """Raises ValueError if a setting has a value that is not allowed."""
     for name, _, declaration in declared(type(settings)):
         value = getattr(settings, name)
         if not declaration.allows(value):
@@ -175,10 +175,10 @@ def check(settings: Any) -> None:
 
 
 def table(settings: type) -> str:
-    """Returns a table in Markdown of the options that a user sees.
+    """Returns a Markdown table of the options that users see.
 
     Args:
-        settings: A dataclass. The options that it inherits are left out.
+        settings: A dataclass; options that it inherits are left out.
     """
     own = inspect.get_annotations(settings)
     rows = ["| Setting | Default | Meaning |", "|---|---|---|"]

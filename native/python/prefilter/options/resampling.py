@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a user may set for images that are resized and resampled."""
+"""Settings for resizing and resampling images."""
 
 import math
 from dataclasses import dataclass
@@ -50,7 +50,7 @@ WARPS = {
     ),
 }
 SUFFIXES = {"affine": "transformed", "corners": "pinned", "rectify": "rectified"}
-"""What is added to the name of a result, by its warp."""
+"""Suffix of a result's name, by its warp."""
 RESULT_SIZES = {
     "fit": Choice("Fit", "Just large enough for the whole result"),
     "image": Choice("Image", "As large as the image"),
@@ -79,7 +79,7 @@ METHODS = {
     ),
 }
 CORNERS = ("lower_left", "lower_right", "upper_right", "upper_left")
-"""The options that are corners, in their order around the image."""
+"""The corners' options, in order around the image."""
 LONGEST_SIDE = 1 << 20
 """The greatest width and height of an image, in pixels."""
 
@@ -131,7 +131,7 @@ def _corner(default: tuple[float, float], label: str) -> Any:
 
 @dataclass(frozen=True)
 class ResizeSettings:
-    """What `prefilter.resize` does, and the size."""
+    """Settings of `prefilter.resize`, including the new size."""
 
     size: str = one_of("percent", "Size", "How to specify the new size", SIZES, flag="")
     percent: float = number(
@@ -190,7 +190,7 @@ class ResizeSettings:
     threads: int = threads()
 
     def new_size(self, width: int, height: int) -> tuple[int, int]:
-        """Returns the new size of an image of this size."""
+        """Returns the new size of an image of the given size."""
         if self.size == "percent":
             return _scaled(width, self.percent / 100.0), _scaled(height, self.percent / 100.0)
         if self.use_aspect:
@@ -200,7 +200,7 @@ class ResizeSettings:
 
 @dataclass(frozen=True)
 class ResampleSettings:
-    """What `prefilter.resample` does, and where the image goes."""
+    """Settings of `prefilter.resample`, including the transform."""
 
     warp: str = one_of("affine", "Warp", "How to transform the image", WARPS, flag="")
     scale_x: float = _factor("Scale X", "Scale factor along x; negative values mirror")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a user may set for the surface of points."""
+"""Settings for reconstructing surfaces from points."""
 
 from dataclasses import dataclass
 
@@ -73,7 +73,7 @@ CLASSES = (
 
 @dataclass(frozen=True)
 class ScanSettings:
-    """What `prefilter.reconstruct` does."""
+    """Settings of `prefilter.reconstruct`."""
 
     resolution: str = one_of(
         "auto", "Resolution", "How to specify the size of the cells", RESOLUTIONS, flag=""
@@ -172,7 +172,7 @@ class ScanSettings:
         "Smooth Shading",
         "Shade the result smooth",
     )
-    # What points of files are read: commands alone, as objects have been imported before.
+    # Which points of files are read: for commands only, as objects are already imported.
     classes: str = text("", "", CLASSES, metavar="N[,N]")
     returns: str = one_of(
         "all", "", "Which echoes of each pulse of the scanner are kept", RETURNS, metavar="NAME"

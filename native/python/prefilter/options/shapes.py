@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a user may set for images of shapes."""
+"""Settings for rasterizing shapes."""
 
 from dataclasses import dataclass
 
@@ -86,7 +86,7 @@ ALPHAS = {
 
 @dataclass(frozen=True)
 class RasterizeSettings:
-    """What `prefilter.rasterize` does."""
+    """Settings of `prefilter.rasterize`."""
 
     source: str = one_of("auto", "Source", "What to rasterize", SOURCES, flag="")
     filepath: str = text(

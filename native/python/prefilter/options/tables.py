@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a user may set for sampling tables."""
+"""Settings for sampling tables."""
 
 from dataclasses import dataclass
 
@@ -23,7 +23,7 @@ TARGETS = {"filter": Choice("Same as Filter", "The filter of the levels"), **TAB
 
 @dataclass(frozen=True)
 class TableSettings:
-    """What `prefilter.SamplingTable.build` does, and what is made of the table."""
+    """Settings of `prefilter.SamplingTable.build`, and the output of the table."""
 
     filter: str = one_of(
         "lanczos2", "Filter", "Filter of the mipmap's levels", TABLE_FILTERS, metavar="FILTER"
@@ -104,7 +104,7 @@ class TableSettings:
 
     @property
     def is_standard(self) -> bool:
-        """Whether the table comes with the package, if it comes at all."""
+        """Whether all settings match the tables that come with the package."""
         standard = TableSettings()
         names = ("grid", "slices", "degree", "ramp_weight", "spectrum", "use_certify")
         return all(getattr(self, name) == getattr(standard, name) for name in names)

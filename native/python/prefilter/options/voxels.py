@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a user may set for voxels."""
+"""Settings for voxelization and Boolean operations."""
 
 import math
 from dataclasses import dataclass
@@ -64,7 +64,7 @@ OPERANDS = {
 
 @dataclass(frozen=True)
 class VoxelSettings:
-    """How to voxelize, and what to make of it."""
+    """Settings that voxelization and Boolean operations share."""
 
     resolution: str = one_of(
         "depth", "Resolution", "How to specify the size of the cells", RESOLUTIONS, flag=""
@@ -177,7 +177,7 @@ class VoxelSettings:
 
 @dataclass(frozen=True)
 class VoxelizeSettings(VoxelSettings):
-    """What `prefilter.voxelize` does."""
+    """Settings of `prefilter.voxelize`."""
 
     output: str = one_of("mesh", "Output", "Type of the result", OUTPUTS, flag="")
     filepath: str = text(
@@ -192,7 +192,7 @@ class VoxelizeSettings(VoxelSettings):
 
 @dataclass(frozen=True)
 class BooleanSettings(VoxelSettings):
-    """What `prefilter.boolean` does."""
+    """Settings of Boolean operations."""
 
     operation: str = one_of(
         "difference", "Operation", "How to combine the objects", OPERATIONS, metavar="OPERATION"

@@ -34,32 +34,32 @@ def sample_anisotropic(
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> FloatArray:
-    """Samples of a mipmap under elliptical Gaussians, from isotropic ones in a row.
+    """Samples of a mipmap under elliptical Gaussians, composed of isotropic samples in a row.
 
     The Jacobian's singular values are the widths of the ellipse. Isotropic samples as wide as the
-    minor one, the probes, lie along the major axis, with Gaussian weights, so that their sum comes
-    close to the ellipse's Gaussian (as in Feline: McCormack, Perry, Farkas and Jouppi 1999). With a
-    ratio r of the widths there are ceil(2 r) - 1 probes, and up to a ratio of 1.1 a single one.
-    Where max_probes is less, they are as wide as a ratio of (max_probes + 1) / 2 asks for. The
-    squared error of an ideal sum is 0.09 of the elliptical Gaussian's norm or less; a table of
-    "gaussian" adds little to it, "trilinear" more. Tables of other filters have their own shape
-    across the major axis, and a blurred one along it. Compare `sample_ewa`.
+    minor axis, the probes, lie along the major axis, with Gaussian weights, so that their sum
+    approximates the ellipse's Gaussian (as in Feline: McCormack, Perry, Farkas and Jouppi 1999). A
+    ratio r of the widths needs ceil(2 r) - 1 probes, and up to a ratio of 1.1 a single one. If
+    max_probes is less, they are as wide as for a ratio of (max_probes + 1) / 2. The squared error
+    of an ideal sum is at most 0.09 of the elliptical Gaussian's norm; a table of "gaussian" adds
+    little to it, "trilinear" more. Tables of other filters have their own shape across the major
+    axis, and a blurred one along it. Compare `sample_ewa`.
 
     Args:
         levels: As for `sample`, filtered by the table's filter; for "trilinear" by "gaussian".
-        table: What to sample with: as for `sample`.
+        table: The table, as for `sample`.
         coordinates: (n, 2), u and v of each sample; the image spans 0 to 1 along both.
-        jacobians: (n, 2, 2), [[dx/di, dx/dj], [dy/di, dy/dj]]: how the place in the image, in
-            texels of level 0, changes from pixel to pixel. Singular values below 1 count as 1, and
-            those wider than a texel of the last level as that.
-        max_probes: How many a sample may have, 1 to 256. With 1 it is isotropic, and as wide as the
-            larger singular value.
+        jacobians: (n, 2, 2), [[dx/di, dx/dj], [dy/di, dy/dj]]: derivatives of the position in the
+            image, in texels of level 0, by pixel coordinates. Singular values are at least 1, and
+            at most the width of a texel of the last level.
+        max_probes: Largest number of probes per sample, 1 to 256. With 1, a sample is isotropic,
+            and as wide as the larger singular value.
         wrap: As for `sample`.
         progress: As for `sample`.
         threads: As for `sample`.
 
     Returns:
-        The samples, float32 (n, channels), or (n,) of levels (height, width).
+        The samples, float32 (n, channels), or (n,) if the levels are (height, width).
 
     Raises:
         ValueError: An argument is out of range, or the levels are known to have another filter.

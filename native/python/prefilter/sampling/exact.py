@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Samples of an image by the filters themselves: what tables and probes approximate."""
+"""Samples of an image by exact filters, which tables and probes approximate."""
 
 from functools import partial
 
@@ -28,24 +28,24 @@ def sample_exact(
     """Samples of an image under a kernel of any scale, from all texels that it covers.
 
     The texels' weights are the kernel's values at their centers, along x times along y, with its
-    unit `scale` texels wide, divided by their sum; "box" is the mean over a square of that side. A
-    sample takes as long as the kernel covers texels, and at most as long as the image has texels.
+    unit `scale` texels wide, divided by their sum; "box" is the mean over a square of that side.
+    The time of a sample is proportional to the texels under the kernel, limited to the whole image.
 
     Args:
-        image: (height, width, channels) of any number, or (height, width), row 0 at v = 0. Bytes
-            (uint8) stand for a 255th each, uint16 for a 65535th. Every channel is filtered as it
-            stands: colors have to be multiplied by their alpha.
+        image: (height, width, channels) of any number, or (height, width), row 0 at v = 0. uint8 is
+            divided by 255, uint16 by 65535. Every channel is filtered as it stands: colors must be
+            multiplied by their alpha.
         coordinates: (n, 2), u and v of each sample; the image spans 0 to 1 along both.
         scales: (n,), or one number for all: the width of the kernel's unit in texels, at least 0. A
             scale below 1 counts as 1.
         filter: A name of `SAMPLING_FILTERS`.
-        wrap: What lies outside of the image: "clamp" (its nearest texel), "repeat" or "border"
-            (zero), or a pair of these for u and v.
+        wrap: Texels outside of the image: "clamp" (the nearest texel), "repeat" or "border" (zero),
+            or a pair of these for u and v.
         progress: Called with the fraction done, in [0, 1]; may return False to stop.
         threads: How many to use; 0 = all processors. Results do not depend on it.
 
     Returns:
-        The samples, float32 (n, channels), or (n,) of an image (height, width).
+        The samples, float32 (n, channels), or (n,) if the image is (height, width).
 
     Raises:
         ValueError: An argument is out of range, or a texel is not finite or beyond 1e30.
@@ -76,22 +76,22 @@ def sample_ewa(
 ) -> FloatArray:
     """Samples of an image under elliptical Gaussians, from all texels that they cover.
 
-    The Gaussian exp(-pi |p|^2) of a pixel p, carried into the image by its Jacobian J, weighs the
+    The Gaussian exp(-pi |p|^2) of a pixel p, mapped into the image by its Jacobian J, weights the
     texels by exp(-pi d^T (J J^T)^-1 d) at a distance of d texels; weights are divided by their sum.
-    Singular values of J below 1 count as 1, and those wider than a texel of the coarsest level as
-    that. The Gaussian ends where |p| is 2 sqrt(2), and it is 1e-11.
+    Singular values of J are at least 1, and at most the width of a texel of the coarsest level. The
+    Gaussian is cut off at |p| = 2 sqrt(2), where it is 1e-11.
 
     Args:
         image: As for `sample_exact`.
         coordinates: As for `sample_exact`.
-        jacobians: (n, 2, 2), [[dx/di, dx/dj], [dy/di, dy/dj]]: how the place in the image, in
-            texels, changes from pixel to pixel.
+        jacobians: (n, 2, 2), [[dx/di, dx/dj], [dy/di, dy/dj]]: derivatives of the position in the
+            image, in texels, by pixel coordinates.
         wrap: As for `sample_exact`.
         progress: As for `sample_exact`.
         threads: As for `sample_exact`.
 
     Returns:
-        The samples, float32 (n, channels), or (n,) of an image (height, width).
+        The samples, float32 (n, channels), or (n,) if the image is (height, width).
 
     Raises:
         ValueError: An argument is out of range, or a texel is not finite or beyond 1e30.

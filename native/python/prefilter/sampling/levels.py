@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Levels of a mipmap that know which filter made them (section 6.2)."""
+"""Levels of a mipmap that store the name of their filter (section 6.2)."""
 
 from collections.abc import Iterable
 from functools import partial
@@ -25,7 +25,7 @@ from .._border.names import Kernel
 from ..images.pixel_filters import names_for
 
 SAMPLING_FILTERS: tuple[Kernel, ...] = names_for("sampling")
-"""The kernels that sampling tables and `sampling_levels` are made for."""
+"""Kernels that sampling tables and `sampling_levels` support."""
 
 _CHECKS: dict[str, Check] = {
     "filter": partial(as_name, "filter"),
@@ -42,7 +42,7 @@ class FilteredLevels(list[npt.NDArray[Value]], Generic[Value]):
     """A list of arrays (height, width, channels) or (height, width), level 0 first.
 
     Attributes:
-        filter: The name of the filter that made them; None where it is not known.
+        filter: The name of the filter that made them; None if unknown.
     """
 
     def __init__(self, levels: Iterable[npt.NDArray[Value]] = (), filter: str | None = None):
@@ -60,33 +60,33 @@ def sampling_levels(
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> FilteredLevels[np.float32]:
-    """The levels that a sampling table of the same filter fits.
+    """Mipmap levels for sampling tables of the same filter.
 
-    Level k is the image under the kernel with its unit as wide as a texel of the level, which is
-    2^k texels of the image: what the exact filter gives at the texels' centers. Level 0 is the
-    image itself where the kernel interpolates ("box", "tent", "lanczos2", "lanczos3"); the others
-    blur it. Nothing is clipped: kernels with negative lobes leave the range of the image.
+    Level k is the image under the kernel with its unit as wide as a texel of the level, that is 2^k
+    texels of the image: the result of the exact filter at the texels' centers. Level 0 is the image
+    itself if the kernel interpolates ("box", "tent", "lanczos2", "lanczos3"); the others blur it.
+    Nothing is clipped: kernels with negative lobes leave the range of the image.
 
     Args:
         image: (height, width, channels) of any number, or (height, width), scene-linear, row 0 at
-            v = 0. Bytes (uint8) stand for a 255th each, uint16 for a 65535th.
+            v = 0. uint8 is divided by 255, uint16 by 65535.
         filter: A name of `SAMPLING_FILTERS`.
-        wrap: What lies outside of the image: "clamp", "repeat" or "border" (zero), or a pair of
-            these for u and v.
-        levels: How many to return, level 0 included; None = down to 1 x 1.
-        premultiplied: Whether the colors of an image of 2 or 4 channels are multiplied by alpha
-            already, or its last channel is no alpha: then every channel is filtered as it stands.
-            Otherwise alpha is clipped to [0, 1] and the colors are multiplied by it, and they stay
-            so in all levels: samples are weighted sums, which are right only of multiplied colors.
+        wrap: Texels outside of the image: "clamp", "repeat" or "border" (zero), or a pair of these
+            for u and v.
+        levels: How many to return, including level 0; None = down to 1 x 1.
+        premultiplied: Whether the colors of an image of 2 or 4 channels are already multiplied by
+            alpha, or its last channel is not alpha: then every channel is filtered as it stands.
+            Otherwise alpha is clipped to [0, 1] and the colors are multiplied by it, and remain
+            multiplied in all levels: samples are weighted sums, which need multiplied colors.
             Divide samples by their alpha.
         progress: Called with the fraction done, in [0, 1]; may return False to stop.
         threads: How many to use; 0 = all processors. Results do not depend on it.
 
     Returns:
         The levels, float32, with as many axes as the image, down to 1 x 1. Each has half the sides
-        of the one before, rounded up: texels nest, and where sides are no powers of two the last
-        ones reach beyond the image. (Those of `mipmaps`, as graphics cards have them, are rounded
-        down; they do not nest, and tables lose by that what they gain.)
+        of the previous one, rounded up: texels nest, and unless sides are powers of two the last
+        ones extend beyond the image. (`mipmaps` rounds down, like graphics cards; texels then do
+        not nest, and tables lose their advantage.)
 
     Raises:
         ValueError: An argument is out of range, or a texel is not finite or beyond 1e30.

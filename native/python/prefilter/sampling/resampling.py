@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Images moved by affine and projective maps (section 6.3)."""
+"""Images under affine and projective transforms (section 6.3)."""
 
 from functools import partial
 from typing import Any, cast
@@ -54,38 +54,37 @@ def resample(
 ) -> FloatArray:
     """The image scaled, rotated, sheared or seen in perspective.
 
-    Each pixel of the result is a sample of the image: where the transform carries the pixel's
-    center, with a filter as wide as the larger singular value of its Jacobian there. A table reads
-    few texels of a mipmap, which is made on the way; "trilinear" interpolates in it; `exact` reads
-    all texels under the filter, and can take long where they are many. Filters are never narrower
-    than a pixel of the image, nor, but for `exact`, wider than one of the coarsest level.
+    Each pixel of the result is a sample of the image at the transformed center of the pixel, with a
+    filter as wide as the larger singular value of the Jacobian there. A table reads few texels of a
+    mipmap, which is made first; "trilinear" interpolates in it; `exact` reads all texels under the
+    filter, which can take long. Filters are never narrower than a pixel of the image, nor, unless
+    `exact`, wider than a pixel of the coarsest level.
 
-    With more than one probe the filter is an ellipse where the transform makes one of a pixel: see
-    `sample_anisotropic`. It is made for "gaussian", which with `exact` is `sample_ewa`.
+    With more than one probe the filter is an ellipse, like the image of a pixel under the
+    transform: see `sample_anisotropic`. This is for "gaussian", which with `exact` is `sample_ewa`.
 
     Args:
         image: (height, width, channels) of any number, or (height, width), scene-linear, row 0 at
-            the bottom. Bytes (uint8) stand for a 255th each, uint16 for a 65535th.
-        transform: (3, 3), carries (x, y, 1) of the result to (x w, y w, w) of the image, both in
-            pixels of their own; pixel i spans [i, i + 1). Or (2, 3): an affine map to (x, y).
-            Pixels of the result whose w is not above 0 look beyond the horizon: they are 0 in all
-            channels.
-        width: Of the result, in pixels, 1 to 2^20.
-        height: Of the result.
-        table: What to sample with; the mipmap is made with its filter. None: the standard one of
-            `filter` with 8 texels. "trilinear": for comparison.
-        filter: A name of `SAMPLING_FILTERS`, where no table brings its own.
-        exact: Whether to use the filter itself. No table can be given then.
-        max_probes: How many isotropic samples a pixel may be made of, 1 to 256.
-        wrap: What lies outside of the image: "clamp" (its nearest pixel), "repeat" or "border"
-            (zero), or a pair of these for x and y.
-        premultiplied: As for `resize`. With the wrap mode "border" images of 2 or 4 channels become
-            transparent outside.
+            the bottom. uint8 is divided by 255, uint16 by 65535.
+        transform: (3, 3), maps (x, y, 1) of the result to (x w, y w, w) of the image, both in their
+            own pixels; pixel i spans [i, i + 1). Or (2, 3): an affine map to (x, y). Pixels of the
+            result with w <= 0 are beyond the horizon: they are 0 in all channels.
+        width: Width of the result in pixels, 1 to 2^20.
+        height: Height of the result.
+        table: The sampling table, whose filter makes the mipmap. None: the standard one of `filter`
+            with 8 texels. "trilinear": for comparison.
+        filter: A name of `SAMPLING_FILTERS`; ignored if a table is given.
+        exact: Whether to use the filter itself; excludes a table.
+        max_probes: Largest number of isotropic samples per pixel, 1 to 256.
+        wrap: Pixels outside of the image: "clamp" (the nearest pixel), "repeat" or "border" (zero),
+            or a pair of these for x and y.
+        premultiplied: As for `resize`. With the wrap mode "border", images of 2 or 4 channels
+            become transparent outside. transparent outside.
         progress: Called with the fraction done, in [0, 1]; may return False to stop.
         threads: How many to use; 0 = all processors. Results do not depend on it.
 
     Returns:
-        A new float32 array, (height, width, channels), or (height, width) for such an image.
+        A new float32 array, (height, width, channels), or (height, width) if the image is.
 
     Raises:
         ValueError: An argument is out of range, or a pixel is not finite or beyond 1e30.

@@ -25,36 +25,35 @@ def sample(
 ) -> FloatArray:
     """Samples of a mipmap under the filter of a table, from few texels each.
 
-    The filter is `scale` times as wide as it is over the texels of level 0. A sample is the sum of
-    as many texels as the table has, from the two levels around the scale and the one below them,
-    weighted by what the table says for the place and the scale (section 6.2). With "trilinear" it
-    is the usual interpolation between two levels instead.
+    The filter is `scale` times as wide as for the texels of level 0. A sample is the weighted sum
+    of the table's number of texels, from the two levels around the scale and the next finer one;
+    the weights depend on position and scale (section 6.2). With "trilinear" it is the usual
+    interpolation between two levels instead.
 
-    Samples of bytes are as exact as those of floats: nothing is rounded on the way. Color that is
-    not multiplied by its alpha must be before it is filtered; see `sampling_levels`.
+    Samples of bytes are as accurate as those of floats: nothing is rounded in between. Colors must
+    be multiplied by alpha before they are filtered; see `sampling_levels`.
 
     Args:
-        levels: Level 0 first, as `sampling_levels` or `mipmaps` returns them: arrays of shape
-            (height, width, channels) or (height, width), floats, uint8 that stand for a 255th each
-            or uint16 for a 65535th. Sides are half of those of the level before, rounded either
-            way.
-        table: What to sample with. The levels must be filtered by its filter; those that know
-            theirs (`FilteredLevels`) are checked. Or "trilinear".
+        levels: Level 0 first, from `sampling_levels` or `mipmaps`: arrays of shape (height, width,
+            channels) or (height, width), floats, uint8 (divided by 255) or uint16 (divided by
+            65535). Each has half the sides of the previous one, rounded up or down.
+        table: The table, or "trilinear". The levels must be made with its filter; levels that store
+            theirs (`FilteredLevels`) are checked.
         coordinates: (n, 2), u and v of each sample; the image spans 0 to 1 along both, row 0 at
             v = 0.
         scales: (n,), or one number for all: the width of the filter's unit in texels of level 0,
-            at least 0. A scale below 1, which magnifies, counts as 1; one beyond the last level as
+            at least 0. Scales below 1, which magnify, count as 1; scales beyond the last level, as
             that level's.
-        wrap: What lies outside of the image: "clamp" (its nearest texel), "repeat" or "border"
-            (zero), or a pair of these for u and v.
+        wrap: Texels outside of the image: "clamp" (the nearest texel), "repeat" or "border" (zero),
+            or a pair of these for u and v.
         progress: Called with the fraction done, in [0, 1]; may return False to stop.
         threads: How many to use; 0 = all processors. Results do not depend on it.
 
     Returns:
-        The samples, float32 (n, channels), or (n,) of levels (height, width).
+        The samples, float32 (n, channels), or (n,) if the levels are (height, width).
 
     Raises:
-        ValueError: An argument is out of range, or the levels are known to have another filter.
+        ValueError: An argument is out of range, or the levels store the name of another filter.
         Cancelled: The progress callback returned False.
     """
     options = set_options(_native.SampleOptions(), SAMPLE_CHECKS, locals())
@@ -74,10 +73,10 @@ def sample(
 def native_table(
     table: SamplingTable | str, levels: Sequence[npt.ArrayLike]
 ) -> _native.SamplingTable | None:
-    """What a function that samples these levels by a table hands on; None for "trilinear".
+    """Returns the native table for sampling these levels; None for "trilinear".
 
     Raises:
-        ValueError: It is no table, or the levels are known to be made with another filter.
+        ValueError: It is no table, or the levels store the name of another filter.
     """
     if isinstance(table, str) and table == "trilinear":
         return None

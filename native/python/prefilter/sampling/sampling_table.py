@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Tables that reproduce a filter with few texels (chapter 6)."""
+"""Sampling tables, which reproduce a filter with few texels (chapter 6)."""
 
 import json
 import os
@@ -30,10 +30,10 @@ from ._shaders import gpu, osl
 from .levels import SAMPLING_FILTERS
 
 STANDARD_TEXELS = (4, 6, 8)
-"""How many texels the tables have that come with the package, one for each filter."""
+"""Numbers of texels of the tables that come with the package, one table for each filter."""
 
 STANDARD_TARGETS = (("tent", "box"),)
-"""Filters of levels and targets of which there are such tables too."""
+"""Pairs of level filter and target that the package has tables for, too."""
 
 _FORMAT = "prefilter sampling table"
 _VERSION = 1
@@ -50,29 +50,29 @@ _CHECKS: dict[str, Check] = {
 
 
 class TableSection(NamedTuple):
-    """The sets of texels and their weights where so many levels are available.
+    """The sets of texels and their weights, for a number of available levels.
 
     A sample lies in a cell, a texel of the coarser one of the two levels around its mip value. Its
-    place (x, y) in the cell is folded by the symmetries of the square to 0 <= y <= x <= 1/2; f is
-    how far the mip value is above the finer level, 0 to 1. The filter is 2^(f - 1) cells wide. With
-    one level only the cell is a texel of level 0, the filter is as wide as that, and f is x y.
+    position (x, y) in the cell is folded by the symmetries of the square to 0 <= y <= x <= 1/2; f
+    is the distance of the mip value from the finer level, 0 to 1. The filter is 2^(f - 1) cells
+    wide. If only one level is available, the cell is a texel of level 0, the filter is one cell
+    wide, and f is x y.
 
-    Subdomain (i, j, k) covers x from i / J, y from j / J and f from k / K on, of subdomains (J, J,
-    K); they are numbered k c (c + 1) / 2 + i (i + 1) / 2 + j with c = (J + 1) // 2 and j <= i < c.
+    Subdomain (i, j, k) begins at x = i / J, y = j / J and f = k / K, for subdomains (J, J, K);
+    they are numbered k c (c + 1) / 2 + i (i + 1) / 2 + j with c = (J + 1) // 2 and j <= i < c.
 
     Attributes:
-        levels: How many levels are available: the cell's and those below it.
-        offsets: (subdomains, texels, 3), whole numbers: of each texel how many levels it is below
-            the cell's, and its column and row there, from the cell's low corner. Texels within the
-            cell have 0 to 2^below - 1.
-        coefficients: (subdomains, texels, terms) of the weights as polynomials in x, y and f: of 1,
-            x, y, f, and for degree 2 also xx, yy, ff, xy, xf, yf.
-        errors: (subdomains): equation 6.3, by the table's `spectrum`, integrated over the
+        levels: Number of available levels: the cell's and finer ones.
+        offsets: (subdomains, texels, 3) integers: for each texel, the number of levels below the
+            cell's, and its column and row there, from the cell's low corner. Texels within the cell
+            have 0 to 2^below - 1.
+        coefficients: (subdomains, texels, terms), coefficients of the weights, polynomials in x, y
+            and f with the terms 1, x, y, f, and for degree 2 also xx, yy, ff, xy, xf, yf.
+        errors: (subdomains): equation 6.3, with the table's `spectrum`, integrated over the
             subdomain.
-        trilinear_errors: The same of trilinear interpolation.
-        gaps: (subdomains): how much lower what `build` minimizes may be for another set, as a
-            share of it; 0 where the set is proven to be the best. None for tables that are not
-            certified.
+        trilinear_errors: The same for trilinear interpolation.
+        gaps: (subdomains): largest relative improvement of the objective of `build` that another
+            set may achieve; 0 if the set is proven optimal. None for tables without certificate.
     """
 
     levels: int
@@ -84,9 +84,9 @@ class TableSection(NamedTuple):
 
 
 class SamplingTable:
-    """Which few texels of a mipmap make up a filter of any place and scale, with which weights.
+    """Sets of few texels, and their weights, that reproduce a filter at any position and scale.
 
-    Made by `build`, `load` or `standard`, not by calling the class.
+    Use `build`, `load` or `standard` to make one, not the constructor.
 
     The levels must be filtered with the same kernel: see `sampling_levels`.
     """
@@ -111,33 +111,33 @@ class SamplingTable:
     ) -> "SamplingTable":
         """Finds the sets of texels and the weights with the least errors (section 6.2).
 
-        The error is the mean square of what samples are off, over images of a spectrum and over a
-        subdomain. For "white" images, whose values have nothing to do with each other, that is the
-        integral over the plane of the squared difference between the filter and the weighted sum of
-        the texels' filters (equation 6.4). In "natural" ones the power falls with the square of the
-        frequency, from 16 to 1/16 of a cell, so that slow differences count more. Sets are
+        The error is the mean square error of samples, over images of a spectrum and over a
+        subdomain. For "white" images, whose values are independent, that is the integral over the
+        plane of the squared difference between the filter and the weighted sum of the texels'
+        filters (equation 6.4). The power of "natural" images falls with the square of the
+        frequency, from 16 to 1/16 of a cell, so that low frequencies have more weight. Sets are
         found by exchanging one texel at a time, from many starts, until no exchange helps. Where
-        the finest of the levels is the image itself, that is, for two levels and for one, integrals
-        are sums over its texels.
+        the finest level is the image itself, that is, with two levels or one, integrals are sums
+        over its texels.
 
         Args:
-            filter: A name of `SAMPLING_FILTERS`: what the levels are filtered with.
-            texels: How many each sample reads, 2 to 16.
+            filter: A name of `SAMPLING_FILTERS`: the filter of the levels.
+            texels: Number of texels per sample, 2 to 16.
             subdomains: Parts of a cell along x, the same along y, and parts from level to level; 1
                 to 16 each.
-            degree: Of the weights, as polynomials of the place and the scale: 1 or 2.
-            ramp_weight: How much it counts that ramps come out as they are, 0 to 10^6: the squared
-                distance, in cells, between a sample and the weighted center of its texels is
-                multiplied by it and added to what is minimized. With 0, that is the error alone,
-                and samples of smooth images step where the set of texels changes.
-            spectrum: "natural": what images are like, with edges and gradients. "white": noise, as
-                in the dissertation.
-            target: What samples are to be, a name of `SAMPLING_FILTERS`; None: the levels' filter.
-                "box" is the mean over a pixel, to which tables with levels of "tent" come closer
-                than those with levels of "box".
-            certify: Whether to prove how far from the best the sets are at most, by branch and
-                bound; `TableSection.gaps` then says so. Takes a second for the tent, minutes for
-                Lanczos 2 with 8 texels, and up to half an hour where there is no proof in the end.
+            degree: Degree of the weights, polynomials of position and scale: 1 or 2.
+            ramp_weight: Weight of the reproduction of ramps, 0 to 10^6: multiplies the squared
+                distance, in cells, between a sample and the weighted center of its texels, which is
+                added to the objective. With 0, the objective is the error alone, and samples of
+                smooth images jump where the set of texels changes.
+            spectrum: "natural": images with edges and gradients. "white": noise, as in the
+                dissertation.
+            target: The filter to reproduce, a name of `SAMPLING_FILTERS`; None: the levels' filter.
+                "box" is the mean over a pixel, which tables with levels of "tent" approximate
+                better than tables with levels of "box".
+            certify: Whether to bound the distance of the sets from the optimum, by branch and
+                bound; see `TableSection.gaps`. Takes a second for the tent, minutes for Lanczos 2
+                with 8 texels, and up to half an hour if there is no proof in the end.
             progress: Called with the fraction done; may return False to stop.
             threads: How many to use; 0 = all processors. Results do not depend on it.
 
@@ -157,7 +157,7 @@ class SamplingTable:
     def standard(
         cls, filter: Kernel = "lanczos2", texels: int = 8, *, target: str | None = None
     ) -> "SamplingTable":
-        """A table that comes with the package: `build` with its defaults has made it.
+        """A table that comes with the package, made by `build` with its defaults.
 
         Args:
             filter: A name of `SAMPLING_FILTERS`.
@@ -185,10 +185,10 @@ class SamplingTable:
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> "SamplingTable":
-        """Reads a table that `save` has written.
+        """Reads a table written by `save`.
 
         Raises:
-            ValueError: The file holds no table, or one that no sample can be taken with.
+            ValueError: The file holds no valid table.
             OSError: The file cannot be read.
         """
         source = as_path(path)
@@ -200,15 +200,15 @@ class SamplingTable:
             raise ValueError(f"path: '{source}' holds no sampling table: {error}") from error
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the table as a JSON file, in place of one that may be there.
+        """Writes the table as a JSON file, replacing an earlier one.
 
-        The object in it has the members "format" ("prefilter sampling table"), "version" (1),
-        "filter", "texels", "subdomains", "degree", "ramp_weight", "spectrum" ("white" where it is
-        absent), "target" (null: the filter itself), and "sections", a list of objects with the
-        attributes of `TableSection`, for 3, 2 and 1 levels; "gaps" is null without a certificate.
+        Its object has the members "format" ("prefilter sampling table"), "version" (1), "filter",
+        "texels", "subdomains", "degree", "ramp_weight", "spectrum" ("white" if absent), "target"
+        (null: the filter itself), and "sections", a list of objects with the attributes of
+        `TableSection`, for 3, 2 and 1 levels; "gaps" is null without a certificate.
 
         Raises:
-            ValueError: That is no path.
+            ValueError: The argument is no path.
             OSError: The file cannot be written.
         """
         target = as_target(path)
@@ -221,17 +221,17 @@ class SamplingTable:
 
     @property
     def filter(self) -> str:
-        """The name of the filter that the levels are to be made with."""
+        """The name of the filter of the levels."""
         return self._native.shape.filter
 
     @property
     def target(self) -> str:
-        """The name of the filter that it reproduces: that of the levels, or another one."""
+        """The name of the filter that is reproduced, which may differ from that of the levels."""
         return self._native.shape.target or self.filter
 
     @property
     def texels(self) -> int:
-        """How many each sample reads."""
+        """Number of texels per sample."""
         return self._native.shape.texels
 
     @property
@@ -242,61 +242,61 @@ class SamplingTable:
 
     @property
     def degree(self) -> int:
-        """Of the weights, as polynomials of the place and the scale."""
+        """Degree of the weights, polynomials of position and scale."""
         return self._native.shape.degree
 
     @property
     def ramp_weight(self) -> float:
-        """How much it counted, when it was built, that ramps come out as they are."""
+        """Weight of the reproduction of ramps when it was built."""
         return self._native.shape.ramp_weight
 
     @property
     def spectrum(self) -> str:
-        """What it took images to be when it was built: "natural" or "white"."""
+        """Spectrum of images assumed when it was built: "natural" or "white"."""
         return self._native.shape.spectrum
 
     @property
     def error_ratio(self) -> float:
-        """The error as a share of trilinear interpolation's, where three levels are available.
+        """The error divided by that of trilinear interpolation, with three levels available.
 
-        Both are integrals of equation 6.3, by the `spectrum`, over all places and scales, of
+        Both are integrals of equation 6.3, with the `spectrum`, over all positions and scales, for
         filters of integral 1.
         """
         return self._native.error_ratio(3)
 
     @property
     def error_ratios(self) -> dict[int, float]:
-        """`error_ratio` where three, two and one levels are available.
+        """`error_ratio` with three, two and one levels available.
 
-        Infinite where trilinear interpolation has no error and the table has one.
+        Infinite if only trilinear interpolation has no error.
         """
         return {levels: self._native.error_ratio(levels) for levels in _LEVELS}
 
     @property
     def largest_jump(self) -> float:
-        """The largest step of a sample across a border of subdomains, with three levels available.
+        """The largest jump of a sample across a border of subdomains, with three levels available.
 
-        Sets of texels change from subdomain to subdomain, so samples are not quite continuous. This
-        is the largest step there is for any image with values from 0 to 1: for the image that fits
-        the difference of both sets' filters best. In photographs steps are far smaller.
+        The set of texels changes between subdomains, so samples are not quite continuous. This is
+        the largest jump for any image with values from 0 to 1, that is for the image that matches
+        the difference of both sets' filters. In photographs jumps are far smaller.
         """
         return self._native.largest_jump(3)
 
     @property
     def largest_jumps(self) -> dict[int, float]:
-        """`largest_jump` where three, two and one levels are available.
+        """`largest_jump` with three, two and one levels available.
 
-        The borders where one level more becomes available count for the fewer ones.
+        Borders where the number of levels changes count for the smaller number.
         """
         return {levels: self._native.largest_jump(levels) for levels in _LEVELS}
 
     @property
     def gaps(self) -> npt.NDArray[np.float64] | None:
-        """`TableSection.gaps` where three levels are available."""
+        """`TableSection.gaps` with three levels available."""
         return self.section(3).gaps
 
     def section(self, levels: int) -> TableSection:
-        """The texels and weights where so many levels are available.
+        """The texels and weights for a number of available levels.
 
         Raises:
             ValueError: `levels` is not 1, 2 or 3.
@@ -308,18 +308,18 @@ class SamplingTable:
         return TableSection(levels, offsets, coefficients, errors, trilinear_errors, certified)
 
     def glsl(self, *, name: str = "prefilter") -> str:
-        """GLSL source that samples textures by this table, to be included in shaders.
+        """GLSL source that samples textures by this table, for inclusion in shaders.
 
         For GLSL 3.30 and ES 3.00, and later. It declares functions (`prefilter_sample`,
         `prefilter_mip_value`, `prefilter_pick`), constants and macros, and neither a version nor
         uniforms; a comment at its beginning describes them. Its use is free of any conditions.
 
         Args:
-            name: What all its names begin with, macros in upper case, so that a shader can hold
+            name: Prefix of all its names, macros in upper case, so that a shader can include
                 several tables. Letters, digits and single underscores, beginning with a letter.
 
         Raises:
-            ValueError: That is no such name.
+            ValueError: The name is not allowed.
         """
         return gpu.glsl(self, name)
 
@@ -328,18 +328,18 @@ class SamplingTable:
         return gpu.hlsl(self, name)
 
     def osl(self, *, name: str = "prefilter") -> str:
-        """The source of an OSL shader, called `name`, that samples picture files by this table.
+        """OSL source of a shader, called `name`, that samples picture files by this table.
 
         One file holds one level; a comment at its beginning describes the shader's parameters. Its
         use is free of any conditions.
 
         Raises:
-            ValueError: `name` is no name as `glsl` takes it.
+            ValueError: The name is not allowed; see `glsl`.
         """
         return osl.osl(self, name)
 
     def __repr__(self) -> str:
-        """What tells it from other tables."""
+        """The parameters of the table."""
         of = self.filter if self.target == self.filter else f"{self.target} from {self.filter}"
         return (
             f"<SamplingTable {of}, {self.texels} texels, subdomains {self.subdomains}, "
@@ -360,7 +360,7 @@ def _as_subdomains(subdomains: tuple[int, int, int]) -> tuple[int, int]:
 
 
 def _formatted(table: SamplingTable) -> str:
-    """JSON with a line for each subdomain."""
+    """Returns JSON with a line for each subdomain."""
 
     def rows(array: np.ndarray) -> str:
         lines = ",\n".join(f"   {json.dumps(row)}" for row in array.tolist())
@@ -395,7 +395,7 @@ def _formatted(table: SamplingTable) -> str:
 
 
 def _parsed(data: bytes) -> _native.SamplingTable:
-    """The table of a file's contents. Raises ValueError where they are none."""
+    """Parses a file's contents. Raises ValueError if they are no table."""
     try:
         found = json.loads(data)
     except json.JSONDecodeError as error:
@@ -414,7 +414,7 @@ def _parsed(data: bytes) -> _native.SamplingTable:
     shape.degree = _count(found, "degree")
     shape.grid, shape.slices = _as_subdomains(_member(found, "subdomains", list))
     shape.ramp_weight = as_number("ramp_weight", _member(found, "ramp_weight", int, float))
-    # Files of before there was a choice have neither.
+    # Absent in files from before these parameters existed.
     shape.spectrum = _member({"spectrum": "white", **found}, "spectrum", str)
     shape.target = _member({"target": None, **found}, "target", str, type(None)) or ""
     sections = _member(found, "sections", list)

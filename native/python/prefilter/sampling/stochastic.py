@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Samples of a single texel each, right on average, for renderers that take many."""
+"""Stochastic samples of one texel each, correct on average, for renderers with many samples."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -17,13 +17,13 @@ from .sampling_table import SamplingTable
 
 
 class PickedTexels(NamedTuple):
-    """A texel of each sample.
+    """One texel for each sample.
 
     Attributes:
-        texels: (n, 3), whole numbers: level, column and row. Column or row are -1 outside of the
-            image with the wrap mode "border", where texels are zero.
-        weights: (n,): what the texel's value is to be multiplied by; negative for some texels of
-            filters with negative lobes.
+        texels: (n, 3) integers: level, column and row. Column or row are -1 outside of the image
+            with the wrap mode "border", where texels are zero.
+        weights: (n,): factors for the texels' values; negative for some texels of filters with
+            negative lobes.
     """
 
     texels: npt.NDArray[np.int32]
@@ -41,29 +41,29 @@ def sample_stochastic(
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> FloatArray:
-    """Samples of a mipmap that read one texel each, whose mean is what `sample` returns.
+    """Samples of a mipmap that read one texel each, with the result of `sample` as their mean.
 
-    Of the texels that a table has for a place and a scale, one is picked with a probability
-    proportional to the magnitude of its weight, and multiplied by the sum of all magnitudes, with
-    the sign of its weight. Negative weights make for noise in proportion to the values: subtract
-    something near their mean from the levels, the same everywhere, and add it to the samples.
+    One of the table's texels for a position and scale is chosen with a probability proportional to
+    the magnitude of its weight, and multiplied by the sum of all magnitudes, with the sign of its
+    weight. Negative weights cause noise proportional to the values: subtract a constant near their
+    mean from the levels, and add it to the samples.
 
     Args:
         levels: As for `sample`.
         table: As for `sample`; also "bilinear": interpolation in the level next to the scale.
         coordinates: As for `sample`.
         scales: As for `sample`.
-        numbers: (n,), random numbers in [0, 1), one a sample. Evenly spread ones, such as
-            stratified ones, make for less noise.
+        numbers: (n,), random numbers in [0, 1), one per sample. Evenly distributed numbers, such as
+            stratified ones, reduce noise.
         wrap: As for `sample`.
         progress: As for `sample`.
         threads: As for `sample`.
 
     Returns:
-        The samples, float32 (n, channels), or (n,) of levels (height, width).
+        The samples, float32 (n, channels), or (n,) if the levels are (height, width).
 
     Raises:
-        ValueError: An argument is out of range, or the levels are known to have another filter.
+        ValueError: An argument is out of range, or the levels store the name of another filter.
         Cancelled: The progress callback returned False.
     """
     options = set_options(_native.SampleOptions(), SAMPLE_CHECKS, locals())
@@ -83,9 +83,9 @@ def pick_texels(
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> PickedTexels:
-    """The texels that `sample_stochastic` reads, for renderers that filter after shading.
+    """Returns the texels that `sample_stochastic` reads, for renderers that filter after shading.
 
-    Such a renderer shades with the texel as it is, and multiplies the result by the weight.
+    Such a renderer shades with the unmodified texel, and multiplies the result by the weight.
 
     Args:
         levels: As for `sample_stochastic`; only their sizes count.
@@ -98,7 +98,7 @@ def pick_texels(
         threads: As for `sample_stochastic`.
 
     Raises:
-        ValueError: An argument is out of range, or the levels are known to have another filter.
+        ValueError: An argument is out of range, or the levels store the name of another filter.
         Cancelled: The progress callback returned False.
     """
     options = set_options(_native.SampleOptions(), SAMPLE_CHECKS, locals())
@@ -123,7 +123,7 @@ def _places(
     scales: npt.ArrayLike,
     numbers: npt.ArrayLike,
 ) -> _Places:
-    """As the native functions take them."""
+    """Returns the checked arguments of the native functions."""
     pyramid = as_pyramid(levels)
     places = as_coordinates(coordinates)
     bilinear = isinstance(table, str) and table == "bilinear"

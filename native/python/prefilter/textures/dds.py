@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The DDS container: Microsoft's programming guide for DDS, with both kinds of header.
+"""The DDS container, after Microsoft's programming guide for DDS, with both kinds of header.
 
-The header of Direct3D 9 has a code or masks for the layout, and no word for sRGB; what Direct3D 10
-adds says all, and older readers stop there. So that is added only where something would be lost.
+The Direct3D 9 header describes the layout by a code or masks, and cannot express sRGB. The
+Direct3D 10 extension expresses everything, but older readers reject it, so it is added only where
+information would be lost.
 """
 
 import struct
@@ -24,7 +25,7 @@ _TEXTURE_2D = 3
 _ALPHA_MODES = {"straight": 1, "premultiplied": 2, None: 3, "independent": 4}
 
 _DX10 = struct.pack("<2I4s20x", 32, _FOUR_CC, b"DX10")
-_HALF_FLOATS, _FLOATS = struct.pack("<I", 113), struct.pack("<I", 116)  # codes of Direct3D 9
+_HALF_FLOATS, _FLOATS = struct.pack("<I", 113), struct.pack("<I", 116)  # Direct3D 9 format codes.
 _FOUR_CCS = {
     "bc1": b"DXT1",
     "bc1-rgb": b"DXT1",
@@ -36,14 +37,14 @@ _FOUR_CCS = {
 }
 _MASKS = {
     "r8": (_LUMINANCE, 8, 0xFF, 0, 0, 0),
-    # The order of Direct3D 9, B8G8R8A8; few readers know another one.
+    # Byte order of Direct3D 9, B8G8R8A8; few readers support others.
     "rgba8": (_RGB, 32, 0xFF0000, 0xFF00, 0xFF, 0xFF000000),
 }
 _SWAPPED = [2, 1, 0, 3]
 
 
 def container(header: str) -> Container:
-    """DDS with one of `HEADERS`; "auto" takes the legacy one where it says all there is to say."""
+    """Returns DDS with one of `HEADERS`; "auto" uses the legacy one if it loses nothing."""
     if header == "legacy":
         return Container("legacy DDS", _legacy_codes, partial(_parts, header=header))
     return Container("DDS", lambda texel_format: texel_format.dxgi, partial(_parts, header=header))
@@ -89,9 +90,9 @@ def _parts(texture: Texture, *, header: str) -> Iterator[bytes]:
 
 
 def _legacy_suffices(texture: Texture) -> bool:
-    """Whether the legacy header loses nothing, and more programs read it."""
+    """Whether the legacy header, which more programs read, loses nothing."""
     texel_format = texture.texel_format
-    # Luminance is not quite red, and crates of Rust read no luminance.
+    # Luminance is not the same as red, and Rust's readers do not support it.
     is_known = texel_format.name in _FOUR_CCS | _MASKS and texel_format.name != "r8"
     is_plain = not texture.is_srgb and texture.alpha in ("straight", None)
     return is_known and is_plain and not texel_format.is_float

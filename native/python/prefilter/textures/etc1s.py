@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Levels in ETC1S, which share codebooks (KTX 2.0, section 4.1, BasisLZ)."""
+"""Compression of levels to ETC1S with common codebooks (KTX 2.0, section 4.1, BasisLZ)."""
 
 import struct
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ _WORST, _BEST = 1, 255
 
 
 def as_quality(quality: int) -> int:
-    """The argument, checked."""
+    """Returns the checked argument."""
     allowed = f"{_WORST} to {_BEST} are allowed"
     number = as_int("quality", quality, allowed)
     if not _WORST <= number <= _BEST:
@@ -33,16 +33,16 @@ def compressed(
     report: ProgressCallback | None,
     threads: int,
 ) -> tuple[list[bytes], bytes]:
-    """The levels, and what they share, as a file has them.
+    """Returns the compressed levels, and their common global data, as stored in a file.
 
     Args:
         images: The levels, each uint8 or float32.
-        is_encoded: Whether bytes are sRGB-encoded, so that errors count as eyes see them.
-        has_alpha: Whether the fourth channel is kept.
-        quality: As of `as_quality`.
-        effort: As of `write_ktx2`.
-        report: As of `write_ktx2`.
-        threads: As of `write_ktx2`.
+        is_encoded: Whether bytes are sRGB-encoded, so that errors are weighted perceptually.
+        has_alpha: Whether the fourth channel is stored.
+        quality: See `as_quality`.
+        effort: See `write_ktx2`.
+        report: The progress callback of `write_ktx2`.
+        threads: See `write_ktx2`.
     """
     texels = [rgba_bytes(image, is_encoded, threads) for image in images]
     codebooks, parts = _native.compress_etc1s(
@@ -50,8 +50,8 @@ def compressed(
     )
     endpoint_count, selector_count, *books = codebooks
     shared = struct.pack("<2H", endpoint_count, selector_count)
-    shared += struct.pack("<4I", *map(len, books), 0)  # nothing is extended
+    shared += struct.pack("<4I", *map(len, books), 0)  # No extended data.
     for color, alpha in parts:
-        # No flags, then where each begins, and how long it is.
+        # No flags; then offset and length of both slices.
         shared += struct.pack("<5I", 0, 0, len(color), len(color) if alpha else 0, len(alpha))
     return [color + alpha for color, alpha in parts], shared + b"".join(books)

@@ -41,26 +41,26 @@ def write_exr(
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> None:
-    """Writes levels as a tiled, mip-mapped OpenEXR file, as renderers read textures.
+    """Writes levels as a tiled, mip-mapped OpenEXR file for renderers.
 
     Texels are scene-linear, with associated alpha, in tiles of 64 x 64, compressed without loss
-    (ZIP). The file is written beside `path` and renamed, so a failure leaves what was there. Hardly
-    any memory is needed besides the levels.
+    (ZIP). The file is staged beside `path` and renamed, so a failure leaves an earlier file intact.
+    Hardly any memory is needed besides the levels.
 
     Args:
-        path: The file; its folder must exist. Or one that is open to write bytes, at its start.
+        path: The file, in an existing folder; or a file object open to write bytes, at its start.
         levels: (height, width, 1 to 4 channels) each, level 0 first, down to 1 x 1, row 0 at v = 0,
-            the bottom; each has half the sides of the one before, rounded down. Floats are
-            scene-linear. Some may be uint8 or uint16, such as an image of bytes whose other levels
-            are floats.
+            the bottom; each has half the sides of the previous one, rounded down. Floats are
+            scene-linear. Levels may have different types, such as an image of bytes with other
+            levels of floats; uint8 is divided by 255, uint16 by 65535.
         format: "half" for 16-bit floats, "float" for 32-bit ones. Values beyond the range of halves
             are clipped to it.
-        encoding: How integers stand for colors: "linear" or "srgb". Alpha is linear always.
-        alpha: What the last of two or four channels is: "straight" (colors are multiplied by it),
-            "premultiplied" (they are already) or "independent" (no alpha). In halves alpha is
-            clipped to [0, 1].
+        encoding: Encoding of integer colors: "linear" or "srgb". Alpha is always linear.
+        alpha: Meaning of the last of two or four channels: "straight" (colors will be multiplied by
+            it), "premultiplied" (colors are already multiplied) or "independent" (no alpha). In
+            halves alpha is clipped to [0, 1].
         attributes: Texts for the file's header, such as {"wrapmodes": "periodic,periodic"}.
-        chromaticities: x and y of red, green, blue and white, for the header; None says nothing.
+        chromaticities: x and y of red, green, blue and white, for the header; None to omit them.
         progress: Called with the fraction done, in [0, 1]; may return False to stop.
         threads: How many to use; 0 = all processors. The file does not depend on it.
 
@@ -95,7 +95,7 @@ def write_exr_picture(
     chromaticities: Sequence[float] | None = None,
     threads: int = 0,
 ) -> None:
-    """Writes a picture of one level as `write_exr` writes all of them, into tiles.
+    """Writes a picture of one level, in the same form as `write_exr`.
 
     Args:
         path: As for `write_exr`.
@@ -164,7 +164,7 @@ def _write_parts(
     tiles: Callable[..., tuple[np.ndarray, Sequence[int]]],
     report: ProgressCallback | None,
 ) -> None:
-    """Writes the header, the table of offsets, and all tiles, some rows of them at a time."""
+    """Writes the header, the table of offsets, and all tiles, a few rows of tiles at a time."""
     counts = [tuple(-(-side // _TILE_SIDE) for side in image.shape[1::-1]) for image in images]
     tile_count = sum(columns * rows for columns, rows in counts)
     file.write(header)
@@ -186,7 +186,7 @@ def _write_parts(
 
 
 def _as_all_levels(levels: Sequence[npt.ArrayLike], srgb: bool) -> list[np.ndarray]:
-    """The levels, each uint8 or float32; raises ValueError unless they go down to 1 x 1."""
+    """Returns the levels, each uint8 or float32; raises ValueError unless they end at 1 x 1."""
     images = halving_levels(levels, srgb)
     height, width, _ = images[-1].shape
     if (height, width) != (1, 1):
@@ -233,7 +233,7 @@ def _as_texts(attributes: Mapping[str, str] | None) -> "_Attributes":
 
 
 _Attributes = dict[bytes, tuple[bytes, bytes]]
-"""Types and values, by names."""
+"""Types and values by name."""
 
 _REQUIRED = frozenset(
     b"channels chromaticities compression dataWindow displayWindow lineOrder pixelAspectRatio "

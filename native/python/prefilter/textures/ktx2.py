@@ -24,7 +24,7 @@ _SCHEMES = {"none": 0, "basislz": 1, "zstd": 2}
 
 def _parts(texture: Texture) -> Iterator[bytes]:
     descriptor = _descriptor(texture)
-    # Rows go down, as most tools have them.
+    # Rows from the top, as most tools expect.
     own = (("KTXorientation", "rd"), ("KTXwriter", f"prefilter {VERSION}"))
     metadata = b"".join(
         _entry(key, value)
@@ -54,7 +54,7 @@ def _parts(texture: Texture) -> Iterator[bytes]:
     yield _IDENTIFIER
     channel_type = np.uint8 if texture.texel_format.is_block else texture.texel_format.channel_type
     channel_bytes = np.dtype(channel_type).itemsize
-    counts = (0, 0, 1, len(texture.levels), scheme)  # the first are depth, layers and faces
+    counts = (0, 0, 1, len(texture.levels), scheme)  # Depth, layers and faces come first.
     yield struct.pack("<9I", texture.code, channel_bytes, texture.width, texture.height, *counts)
     yield struct.pack("<4I", descriptor_offset, len(descriptor), metadata_offset, len(metadata))
     yield struct.pack("<2Q", shared_offset, len(texture.shared))
@@ -89,7 +89,7 @@ def _descriptor(texture: Texture) -> bytes:
 
 
 def _primaries(texture: Texture) -> int:
-    # KHR_texture_basisu of glTF: what is no color has none.
+    # KHR_texture_basisu of glTF: textures other than color have no primaries.
     is_data = texture.texel_format.is_transcoded and not texture.is_srgb
     return _PRIMARIES_UNSPECIFIED if is_data else _PRIMARIES_BT709
 
@@ -117,7 +117,7 @@ def _entry(key: str, value: str) -> bytes:
 
 
 def as_metadata(metadata: Mapping[str, str] | None) -> tuple[tuple[str, str], ...]:
-    """The argument, checked."""
+    """Returns the checked argument as key-value pairs."""
     if metadata is None:
         return ()
     if not isinstance(metadata, Mapping):

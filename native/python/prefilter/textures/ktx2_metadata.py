@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The texts that KTX 2.0 files keep by keys, and the parts of such files."""
+"""Metadata of KTX 2.0 files, and access to parts of them."""
 
 import os
 import struct
@@ -13,11 +13,11 @@ _MOST_METADATA = 1 << 20
 
 
 class RefusedError(ValueError):
-    """The message goes on from the name of the file."""
+    """A refusal whose message continues after the name of the file."""
 
 
 def read_metadata(path: str | os.PathLike[str]) -> dict[str, str]:
-    """Reads the texts that a KTX 2.0 file keeps by keys, and nothing else of it.
+    """Reads only the key-value metadata of a KTX 2.0 file.
 
     Raises:
         ValueError: The file is no KTX 2 file, or damaged.

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""KTX 2.0 files read back: what is written here, and what other tools write for glTF."""
+"""Reader of KTX 2.0 files, written by this package or by other tools for glTF."""
 
 import math
 import os
@@ -23,7 +23,7 @@ _NONE, _BASIS_LZ, _ZSTD = 0, 1, 2
 _SCHEMES = {_NONE: "none", _BASIS_LZ: "basislz", _ZSTD: "zstd"}
 _MOST_SIDE = 1 << 16
 _MOST_ETC1S_TEXELS = 1 << 28
-"""1 GiB when decoded: a few bytes of it can stand for any number of texels."""
+"""1 GiB when decoded: a few bytes of ETC1S may decode to any number of texels."""
 _ETC1S, _UASTC = 163, 166
 _TRANSFER_SRGB = 2
 _FLAG_PREMULTIPLIED = 1
@@ -40,17 +40,17 @@ _CHANNELS: dict[tuple[int, tuple[int, ...]], tuple[int, ...]] = {
     (_ETC1S, (3,)): (0,),
     (_ETC1S, (3, 4)): (0, 3),
 }
-"""Which of the decoded channels a texture has, by its color model and the channels it names."""
+"""The decoded channels that a texture has, by its color model and the channels it names."""
 
 
 class _Stored(NamedTuple):
-    """How texels are stored, of what a VkFormat says."""
+    """The storage of texels, from a VkFormat."""
 
     name: str
     is_srgb: bool
     channels: int
     dtype: Any
-    """None where they are blocks."""
+    """None for blocks."""
 
 
 def _stored() -> dict[int, _Stored]:
@@ -75,16 +75,16 @@ _STORED = _stored()
 
 @dataclass(frozen=True)
 class Ktx2Info:
-    """What a KTX 2 file says of its levels.
+    """Properties of a KTX 2 file.
 
     Attributes:
-        format: How texels are stored: a name of `TEXEL_FORMATS`, "etc1s", or "r16", "rgb8" and the
+        format: Storage of texels: a name of `TEXEL_FORMATS`, "etc1s", or "r16", "rgb8" and the
             like.
-        encoding: How bytes stand for colors: "linear" or "srgb".
-        alpha: What the fourth channel of four is, "straight" or "premultiplied"; None where there
-            is none.
-        supercompression: How levels are compressed once more: "none", "zstd" or "basislz".
-        metadata: Texts that the file holds, such as that of "KTXwriter".
+        encoding: Encoding of colors in bytes: "linear" or "srgb".
+        alpha: Kind of alpha in the fourth channel, "straight" or "premultiplied"; None if there is
+            no fourth channel.
+        supercompression: Additional compression of levels: "none", "zstd" or "basislz".
+        metadata: Texts stored in the file, by key, such as "KTXwriter".
     """
 
     format: str
@@ -100,25 +100,25 @@ def read_ktx2(
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> tuple[list[np.ndarray], Ktx2Info]:
-    """Reads a KTX 2.0 file: all its levels, decoded.
+    """Reads all levels of a KTX 2.0 file, decoded.
 
-    Every format that `write_ktx2` has is read, with or without zstd; UASTC and ETC1S (BasisLZ) with
-    any channels, as glTF's KHR_texture_basisu has them; and bytes, 16-bit numbers, half floats and
-    floats of one to four channels.
+    Supported are all formats of `write_ktx2`, with or without zstd; UASTC and ETC1S (BasisLZ) with
+    any channels, as in glTF's KHR_texture_basisu; and uint8, uint16, half floats and floats with
+    one to four channels.
 
     Args:
-        path: The file. Or one that is open to read bytes.
+        path: The file, or a file object open to read bytes.
         progress: Called with the fraction done, in [0, 1]; may return False to stop.
         threads: How many to use; 0 = all processors. The result does not depend on it.
 
     Returns:
         The levels, (height, width, channels) each, level 0 first, row 0 at v = 0, the bottom: uint8
-        or uint16, which stand for a 255th and a 65535th each, or float32; and what the file says of
-        them. Red and alpha, where a file has just these, are two channels.
+        or uint16, to be divided by 255 and 65535, or float32; and the file's properties. A file
+        with red and alpha only has two channels.
 
     Raises:
-        ValueError: The file is no KTX 2 file, damaged, in another format, or it has several images
-            a level (an array, a cube map, a volume).
+        ValueError: The file is no KTX 2 file, damaged, in another format, or has several images per
+            level (an array, a cube map, a volume).
         OSError: The file cannot be read.
         Cancelled: The progress callback returned False.
     """
@@ -145,10 +145,10 @@ def _read(path: Any) -> tuple[str, bytes]:
 
 
 class _File(NamedTuple):
-    """The parts of a file, unpacked."""
+    """The parts of a file, without supercompression."""
 
     stored: _Stored | None
-    """None for UASTC and ETC1S, which the descriptor tells."""
+    """None for UASTC and ETC1S, which only the descriptor identifies."""
     model: int
     channel_names: tuple[int, ...]
     width: int
@@ -253,7 +253,7 @@ def _parsed(data: bytes) -> _File:
 
 
 def _descriptor(data: bytes) -> tuple[int, tuple[int, ...], bool, bool]:
-    """The color model, the channels of the samples, and whether sRGB and premultiplied."""
+    """Returns color model, sample channels, and whether sRGB and premultiplied."""
     model, _, transfer, flags = struct.unpack_from("<4B", data, 12)
     (size,) = struct.unpack_from("<H", data, 10)
     samples = max(0, min(size - 24, len(data) - 28)) // 16
@@ -268,7 +268,7 @@ def _of_level(
     report: ProgressCallback | None,
     threads: int,
 ) -> np.ndarray:
-    """A level that is not in ETC1S, as stored: its first row first."""
+    """Returns a level that is not in ETC1S, in the file's row order."""
     width, height = size
     stored = file.stored
     if stored is not None and stored.dtype is not None:
@@ -294,7 +294,7 @@ def _of_level(
 def _of_etc1s(
     file: _File, sizes: Sequence[tuple[int, int]], report: ProgressCallback | None
 ) -> list[np.ndarray]:
-    """All levels of a file in ETC1S, as stored."""
+    """Returns all levels of a file in ETC1S, in the file's row order."""
     if math.prod(sizes[0]) > _MOST_ETC1S_TEXELS:
         raise RefusedError(
             f"is {file.width} x {file.height} texels large; {_MOST_ETC1S_TEXELS} texels of ETC1S "

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""How the texels of texture files for engines are laid out: all there is to know of a format."""
+"""Table of the texel formats of texture files for engines."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -12,28 +12,28 @@ from .. import _native
 
 Channel = type[np.uint8] | type[np.float16] | type[np.float32]
 Codes = tuple[int | None, int | None]
-"""What a container calls a format with linear and with sRGB colors; None where it has no word."""
+"""A container's codes for a format with linear and with sRGB colors; None if it has no code."""
 
 
 @dataclass(frozen=True)
 class TexelFormat:
-    """A layout of texels, and what the containers call it.
+    """A layout of texels, and its codes in the containers.
 
     Attributes:
-        name: As `write_dds` and `write_ktx2` take it.
-        channels: How many a texel has.
-        unit_bytes: Of a texel, or of a block of texels.
-        block: The columns and rows of a block that is compressed; None where texels are not.
-        channel_type: Of a channel; of what is compressed for blocks.
-        dxgi: The DXGI_FORMAT of linear and of sRGB colors; None where there is none.
-        vulkan: The VkFormat of the same.
-        khronos: The color model of Khronos' data format descriptor, and the channels that it names,
-            which have the same number of bits.
-        opaque_khronos: The channels of textures without alpha, where that matters.
+        name: The name that `write_dds` and `write_ktx2` take.
+        channels: Number of channels of a texel.
+        unit_bytes: Bytes of a texel, or of a block of texels.
+        block: Columns and rows of a compressed block; None if texels are not compressed.
+        channel_type: Type of a channel; for blocks, of the uncompressed texels.
+        dxgi: The DXGI_FORMAT for linear and for sRGB colors; None if there is none.
+        vulkan: The VkFormat for linear and for sRGB colors; None if there is none.
+        khronos: The color model of Khronos' data format descriptor, and its channels, which have
+            equally many bits.
+        opaque_khronos: The channels for textures without alpha, if they differ.
         alpha: "full", "cut-out" (0 or 1), or "none".
         has_sign: Whether its type has negative values; see `keeps_negatives`.
-        is_coarse: Whether the colors that a block mixes are rounded to 4 to 6 bits a channel.
-        is_shared: Whether all levels share codebooks, and so are compressed together.
+        is_coarse: Whether colors in a block are rounded to 4 to 6 bits per channel.
+        is_shared: Whether all levels share codebooks, and are thus compressed together.
     """
 
     name: str
@@ -52,7 +52,7 @@ class TexelFormat:
 
     @property
     def texel_bytes(self) -> float:
-        """Of a texel, on average over a block."""
+        """Bytes of a texel, averaged over a block."""
         columns, rows = self.block or (1, 1)
         return self.unit_bytes / (columns * rows)
 
@@ -66,36 +66,36 @@ class TexelFormat:
 
     @property
     def is_in_dds(self) -> bool:
-        """Whether DDS files have it; KTX 2 files have all."""
+        """Whether DDS files support it; KTX 2 files support all."""
         return self.dxgi != (None, None)
 
     @property
     def is_transcoded(self) -> bool:
-        """Whether it becomes another where it is used, so Vulkan has no word for it."""
+        """Whether loaders transcode it to another format, so that Vulkan has no code for it."""
         return self.vulkan[0] == _UNDEFINED
 
     @property
     def keeps_negatives(self) -> bool:
-        """Whether negative values stay; in blocks of floats they become 0."""
+        """Whether negative values are preserved; in blocks of floats they become 0."""
         return self.has_sign and not self.is_block
 
 
 @dataclass(frozen=True)
 class Texture:
-    """What a container holds.
+    """The contents of a container file.
 
     Attributes:
-        texel_format: Of every level.
-        code: What the container calls it.
+        texel_format: The format of every level.
+        code: The container's code for it.
         is_srgb: Whether its colors are sRGB-encoded.
-        width: Of level 0, in texels.
-        height: Of level 0, in texels.
-        levels: Their texels or blocks, level 0 first, the top row first.
-        alpha: What the fourth channel is: one of `ALPHAS`; None where there is none.
-        supercompression: How the levels are compressed once more, one of `SUPERCOMPRESSIONS`.
-        level_bytes: How many each level had before that; 0 where a reader does not ask.
-        shared: What the levels share, as BasisLZ has it.
-        metadata: More texts by keys, where the container has a place for them.
+        width: Width of level 0, in texels.
+        height: Height of level 0, in texels.
+        levels: Texels or blocks of each level, level 0 first, the top row first.
+        alpha: Meaning of the fourth channel: one of `ALPHAS`; None if there is none.
+        supercompression: Additional compression of the levels, one of `SUPERCOMPRESSIONS`.
+        level_bytes: Size of each level before that; 0 if readers do not need it.
+        shared: Global data of all levels, for BasisLZ.
+        metadata: Key-value pairs to store, if the container supports that.
     """
 
     texel_format: TexelFormat
@@ -112,12 +112,12 @@ class Texture:
 
 
 class Container(NamedTuple):
-    """A kind of file."""
+    """A file format."""
 
     name: str
     codes: Callable[[TexelFormat], Codes]
     parts: Callable[[Texture], Iterator[bytes]]
-    """The file, piece by piece."""
+    """Yields the file in pieces."""
 
 
 ALPHAS = ("straight", "premultiplied", "independent")
@@ -125,7 +125,7 @@ SUPERCOMPRESSIONS = ("none", "zstd")
 EFFORTS = ("fast", "normal", "best")
 
 RED, GREEN, BLUE, ALPHA = 0, 1, 2, 15
-"""Khronos' channels, of texels and of blocks of one or two channels."""
+"""Channel numbers of Khronos, for texels and for blocks of one or two channels."""
 _COLOR, _COLOR_AND_CUT_OUT, _ETC2_COLOR = 0, 1, 2
 _UASTC_RGB, _UASTC_RGBA = 0, 3
 _RGBSDA, _ETC2, _ASTC, _ETC1S, _UASTC = 1, 161, 162, 163, 166

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Levels as arrays, checked and brought into the layout of a format."""
+"""Checks of levels, and their conversion to a texel format."""
 
 from collections.abc import Sequence
 
@@ -15,9 +15,9 @@ from .texel_formats import TEXEL_FORMATS, TexelFormat
 
 
 def halving_levels(levels: Sequence[npt.ArrayLike], srgb: bool) -> list[np.ndarray]:
-    """The levels, each uint8 or float32; raises ValueError unless each halves the one before.
+    """Returns levels, each uint8 or float32; raises ValueError unless each halves the previous one.
 
-    Those of uint16 become floats, decoded where they are sRGB.
+    uint16 becomes float32, decoded from sRGB if `srgb` is set.
     """
     if not isinstance(levels, Sequence) or isinstance(levels, str | bytes) or not levels:
         found = "an empty list" if isinstance(levels, list) else f"a {type(levels).__name__}"
@@ -50,7 +50,7 @@ def halving_levels(levels: Sequence[npt.ArrayLike], srgb: bool) -> list[np.ndarr
 
 
 def as_levels(levels: Sequence[npt.ArrayLike], srgb: bool) -> list[np.ndarray]:
-    """The same, all uint8 or all float32 and finite."""
+    """Returns levels as `halving_levels` does, all uint8 or all float32 and finite."""
     images = halving_levels(levels, srgb)
     for number, image in enumerate(images):
         who = f"levels: level {number}"
@@ -65,7 +65,7 @@ def as_levels(levels: Sequence[npt.ArrayLike], srgb: bool) -> list[np.ndarray]:
 
 
 def as_format(name: str, level: np.ndarray, *, needs_srgb: bool) -> TexelFormat:
-    """The format of that name; for "auto" the one that holds all of a level."""
+    """Returns the format with a name; for "auto", one that preserves all of a level."""
     if name == "auto":
         if level.dtype != np.uint8:
             return TEXEL_FORMATS["rgba16f"]
@@ -88,7 +88,7 @@ def encoded(
     progress: ProgressCallback | None,
     threads: int,
 ) -> bytes:
-    """A level as a file holds it, the top row first."""
+    """Returns a level as bytes for a file, the top row first."""
     if texel_format.is_float:
         flipped = np.ascontiguousarray(level[::-1])
         texels = _linear_floats(flipped, srgb, texel_format, threads)
@@ -105,7 +105,7 @@ def encoded(
 
 
 def rgba_bytes(level: np.ndarray, srgb: bool, threads: int) -> np.ndarray:
-    """A level as four channels of bytes, the top row first."""
+    """Returns a level as four channels of bytes, the top row first."""
     return _with_channels(_as_bytes(level, srgb, threads), 4)
 
 
@@ -137,7 +137,7 @@ def _linear_floats(
 
 
 def _with_channels(texels: np.ndarray, channels: int) -> np.ndarray:
-    """The first channels; for four, gray becomes a color, and what lacks is 0, but alpha 1."""
+    """Returns a number of channels: gray is repeated, missing colors are 0, missing alpha is 1."""
     found = texels.shape[2]
     if found >= channels:
         return np.ascontiguousarray(texels[..., :channels])

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Texture files that engines and viewers read: DDS and KTX 2, with all levels."""
+"""Writers of texture files for engines: DDS and KTX 2, with all levels."""
 
 from collections.abc import Mapping, Sequence
 from typing import BinaryIO
@@ -44,45 +44,44 @@ def write_dds(
 ) -> None:
     """Writes levels as a DDS file (DirectDraw Surface).
 
-    The file is written beside `path` and renamed, so a failure leaves what was there.
+    The file is staged beside `path` and renamed, so a failure leaves an earlier file intact.
 
     Args:
-        path: The file; its folder must exist. Or one that is open to write bytes.
+        path: The file, in an existing folder; or a file object open to write bytes.
         levels: (height, width, 1 to 4 channels) or (height, width) each, level 0 first, row 0 at
-            v = 0, the bottom (the file holds the top row first); each has half the sides of the one
-            before, rounded down. The last ones may be left out. Either uint8 or uint16, which stand
-            for a 255th and a 65535th each, or floats that are scene-linear.
-        format: How texels are stored: "r8", "rg8", "rgba8" in bytes, "rgba16f", "rgba32f" in
+            v = 0, the bottom (the file has the top row first); each has half the sides of the
+            previous one, rounded down. The last ones may be omitted. uint8 (divided by 255), uint16
+            (divided by 65535), or scene-linear floats.
+        format: How texels are stored: "r8", "rg8", "rgba8" as bytes, "rgba16f", "rgba32f" as
             floats; in blocks of 4 x 4, "bc1", "bc1-rgb", "bc3", "bc4", "bc5" and "bc7" compressed
-            from bytes, and "bc6h" from half floats. "auto" keeps bytes and channels of bytes, and
-            stores others as "rgba16f". "r8" and "bc4" take the first channel, "rg8" and "bc5" two,
-            "bc1-rgb" and "bc6h" three; in the others alpha is 1 where there is none. Where three or
-            four are stored, a single channel is gray. "bc1" knows an alpha of 0 or 1 only: below
-            one half, texels become black and transparent. "bc6h" has no negative values: they
-            become 0.
-        encoding: How bytes stand for colors: "linear" or "srgb". It holds for levels of uint8 and
-            uint16 and for formats in bytes and blocks: levels of floats are encoded (values beyond
-            [0, 1] are clipped), and formats in floats and "bc6h" get decoded, linear values. The
-            fourth channel is linear always.
-        alpha: What the fourth channel of four is: "straight", "premultiplied" (colors are
-            multiplied by it) or "independent" (no alpha). Values are stored as they are; the file
-            says it, but for "independent" in KTX 2, which has no word for that. Colors that
-            straight alpha hides count little in the blocks of "bc3".
-        effort: How long a search for closer blocks may take: "fast" (BC7 in a thirtieth of the time
-            of "normal"), "normal" or "best" (BC7 in ten times the time). Levels of up to 64 x 64
-            texels get the effort above. Sizes are the same.
-        header: "dx10", the header of Direct3D 10 and later, says all of this. "legacy", that of
-            Direct3D 9, is read by more programs. It knows all formats but "rg8", "bc6h" and "bc7",
-            and says neither that colors are sRGB nor which kind alpha is of; bytes are in the order
-            blue, green, red, and "r8" is luminance. "auto" takes it where nothing is lost: for
-            linear levels in "rgba8", "bc1", "bc1-rgb", "bc3", "bc4" and "bc5", with straight alpha
-            or none.
+            from bytes, and "bc6h" from half floats. "auto" keeps bytes and their channels, and
+            stores other types as "rgba16f". "r8" and "bc4" take the first channel, "rg8" and "bc5"
+            two, "bc1-rgb" and "bc6h" three; in the others, missing alpha is 1. If three or four
+            channels are stored, a single channel is gray. "bc1" has only alpha 0 and 1: texels
+            below one half become black and transparent. "bc6h" has no negative values: they become
+            0.
+        encoding: Encoding of colors: "linear" or "srgb". It applies to levels of uint8 and uint16,
+            and to formats in bytes and blocks: levels of floats are encoded (values beyond [0, 1]
+            are clipped), and formats in floats and "bc6h" get decoded, linear values. The fourth
+            channel is always linear.
+        alpha: Meaning of a fourth channel: "straight", "premultiplied" (colors are multiplied by
+            it) or "independent" (no alpha). Values are stored unchanged, and the file declares
+            this, except "independent" in KTX 2, which cannot express it. Colors that straight alpha
+            hides have little weight in the blocks of "bc3".
+        effort: How long to search for closer blocks: "fast" (for BC7, a thirtieth of the time of
+            "normal"), "normal" or "best" (for BC7, ten times the time). Levels of up to 64 x 64
+            texels get the next higher effort. File sizes are the same.
+        header: "dx10", the header of Direct3D 10 and later, can express all of this. "legacy", that
+            of Direct3D 9, is read by more programs. It supports all formats except "rg8", "bc6h"
+            and "bc7", and declares neither sRGB nor the kind of alpha; bytes are in the order blue,
+            green, red, and "r8" is luminance. "auto" uses it if nothing is lost: for linear levels
+            in "rgba8", "bc1", "bc1-rgb", "bc3", "bc4" and "bc5", with straight alpha or none.
         progress: Called with the fraction done, in [0, 1]; may return False to stop.
         threads: How many to use; 0 = all processors. The file does not depend on it.
 
     Raises:
         ValueError: An argument is out of range, a value is not finite or too large for half floats,
-            or the format has no sRGB form in such files.
+            or the format has no sRGB variant in such files.
         OSError: The file cannot be written.
         Cancelled: The progress callback returned False.
     """
@@ -109,29 +108,28 @@ def write_ktx2(
 ) -> None:
     """Writes levels as a KTX 2.0 file (Khronos texture).
 
-    "r8" and "rg8" have an sRGB form here, which some graphics cards lack; "auto" stores such levels
-    as "rgba8". The rest is as for `write_dds`.
+    "r8" and "rg8" have an sRGB variant here, which some graphics cards lack; "auto" stores such
+    levels as "rgba8". Otherwise it works like `write_dds`.
 
     Args:
         path: As for `write_dds`.
         levels: As for `write_dds`.
-        format: Also those of mobile devices, compressed from bytes: "etc2-rgb", "etc2-rgba",
+        format: Also the formats of mobile devices, compressed from bytes: "etc2-rgb", "etc2-rgba",
             "eac-r11" (the first channel) and "eac-rg11" (two) in blocks of 4 x 4;
             "astc-4x4", "astc-6x6", "astc-8x8" in blocks of that size, by astcenc. "astc-4x4-hdr"
-            and "astc-6x6-hdr" are compressed from half floats; negative values become 0, and an
-            alpha beyond 1 becomes 1. "uastc" and "etc1s", by Basis Universal, are turned into what
-            a device has when they are loaded; in "etc1s" all levels share codebooks, and files are
-            several times smaller than in any other format.
+            and "astc-6x6-hdr" are compressed from half floats; negative values become 0, and alpha
+            above 1 becomes 1. "uastc" and "etc1s", by Basis Universal, are transcoded by loaders to
+            a format of the device; in "etc1s" all levels share codebooks, and files are several
+            times smaller than in any other format.
         encoding: As for `write_dds`.
-        alpha: As for `write_dds`; it counts in the blocks of ASTC as in those of "bc3".
-        effort: As for `write_dds`; "etc1s" takes it as a whole.
-        supercompression: "zstd" compresses every level once more, without loss; most loaders know
-            it, and undo it before they upload a level. "none" does not; "etc1s" has to have it, and
-            is compressed by BasisLZ.
-        quality: Of "etc1s", 1 to 255: from the smallest file to the best picture. No other format
-            uses it.
-        metadata: More texts that the file keeps, by keys; those that begin with "KTX" are the
-            format's own.
+        alpha: As for `write_dds`; it affects the blocks of ASTC like those of "bc3".
+        effort: As for `write_dds`; in "etc1s" it applies to all levels alike.
+        supercompression: "zstd" compresses every level again, without loss; most loaders support
+            it, and decompress a level before they upload it. "none" does not; "etc1s" requires
+            "none", as it is always compressed by BasisLZ.
+        quality: For "etc1s" only, 1 to 255: from the smallest file to the best picture.
+        metadata: More texts to store, by key; keys that begin with "KTX" are reserved by the
+            format.
         progress: As for `write_dds`.
         threads: As for `write_dds`. In "etc1s" the file may depend on the C++ standard library.
 
@@ -222,7 +220,7 @@ def _write(
 
 
 def _code(container: Container, texel_format: TexelFormat, srgb: bool) -> int:
-    """What a container calls a format."""
+    """Returns the container's code for a format."""
     codes = container.codes(texel_format)
     if codes == (None, None):
         raise ValueError(f"format: {container.name} files have no '{texel_format.name}'")
@@ -245,7 +243,7 @@ def _payloads(
     report: ProgressCallback | None,
     threads: int,
 ) -> tuple[list[bytes], list[int]]:
-    """The levels as a file has them, and their sizes before they were supercompressed."""
+    """Returns the levels' bytes for a file, and their sizes before supercompression."""
     texels = sum(image.shape[0] * image.shape[1] for image in images)
     payloads: list[bytes] = []
     sizes: list[int] = []

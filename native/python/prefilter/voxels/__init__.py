@@ -1,3 +1,3 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Occupancy octrees and grids: what they are made of, their files, and surfaces of them."""
+"""Occupancy octrees and grids: voxelization, files, and surfaces."""

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Contours: grids of samples to outlines and closed meshes."""
+"""Contouring of sample grids: outlines and closed meshes."""
 
 from functools import partial
 
@@ -34,7 +34,7 @@ CLEANUP_CHECKS: dict[str, Check] = {
     "adaptivity": partial(as_number, "adaptivity"),
     "threads": as_threads,
 }
-"""Of what all contours have."""
+"""Checks of the arguments that all contour functions share."""
 _CHECKS: dict[str, Check] = {
     **CLEANUP_CHECKS,
     "interpolant": partial(as_name, "interpolant"),
@@ -57,34 +57,34 @@ def contour(
     """The surface of a 3D grid, or the outlines of a 2D one (chapter 5).
 
     Cell (i, j, k) spans origin + spacing x [i, i + 1) x [j, j + 1) x [k, k + 1), and its sample is
-    at its center. What is outside of the grid is empty, so surfaces and outlines are closed. A
-    surface is two-manifold, whatever the samples.
+    at its center. Outside of the grid everything is empty, so surfaces and outlines are closed. A
+    surface is two-manifold for any samples.
 
     Args:
         grid: (x, y, z), or (x, y) for outlines; 1 to 4096 samples along each axis.
-        interpolant: Where a vertex lies between two samples. "occupancy" takes them for the shares
-            of two cells that are inside, and leaves each its share of a half-space (section 5.2);
-            "plane" fits the surface to the cells around, and reproduces planes; "linear" takes them
-            for a smooth function, as marching cubes does. Samples out of [0, 1], or another
-            iso-value than 0.5, are interpolated linearly.
+        interpolant: How a vertex is placed between two samples. "occupancy" interprets them as the
+            filled shares of two cells, and preserves the share of each (section 5.2); "plane" fits
+            the surface to the surrounding cells, and reproduces planes; "linear" interprets them as
+            a smooth function, as marching cubes does. Samples out of [0, 1], or another iso-value
+            than 0.5, are interpolated linearly.
         isovalue: Samples of at least this are inside.
-        spacing: Size of a cell, above 0: one number, or one an axis.
-        origin: The low corner of cell (0, 0, 0): one number, or one an axis.
-        cleanup: Remove narrow triangles of a surface; there are fewer then.
-        adaptivity: How far a surface may be from the full contour, in cells along their shortest
-            side, where larger triangles take its place. 0 is the full contour.
+        spacing: Size of a cell, above 0: one number, or one per axis.
+        origin: The low corner of cell (0, 0, 0): one number, or one per axis.
+        cleanup: Remove narrow triangles of a surface, which also reduces their number.
+        adaptivity: Largest distance of the surface from the full contour, in cells along their
+            shortest side, by which triangles may grow. 0 is the full contour.
         progress: Called with the fraction done; returning False stops the work.
         threads: 0 means all processors. The result does not depend on it.
 
     Returns:
         For a 3D grid positions (vertices, 3) float64 and triangles (triangles, 3) int32,
         counter-clockwise seen from outside. For a 2D grid a list of closed outlines, each
-        (points, 2) float64, the last point joined to the first, with the inside to their left.
+        (points, 2) float64, the last point connected to the first, with the inside to the left.
 
     Raises:
-        ValueError: A shape or type is wrong, a sample is not finite, `interpolant` is no such name,
-            `adaptivity` is out of range, `spacing` is not above 0, or cells have no volume where
-            `origin` puts them.
+        ValueError: A shape or type is wrong, a sample is not finite, `interpolant` is unknown,
+            `adaptivity` is out of range, `spacing` is not above 0, or cells have no volume because
+            of rounding at `origin`.
         MemoryError: The surface would not fit into memory.
         Cancelled: `progress` returned False.
     """

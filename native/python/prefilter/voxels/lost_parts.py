@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Which parts of a mesh left nothing in its voxels."""
+"""Detection of mesh parts that vanish in voxelization."""
 
 import numpy as np
 import numpy.typing as npt
@@ -9,11 +9,11 @@ from .. import _native
 from .._border.arguments import as_progress
 
 _STEPS = (0.0, -0.5, 0.5, -1.0, 1.0)
-"""Where leaves are looked up, in cells along the normal."""
+"""Distances at which leaves are probed, in cells along the normal."""
 _SPACING = 0.25
-"""Of points on parts that may be lost, in cells."""
+"""Distance between sample points on parts that may be lost, in cells."""
 _MOST_STEPS = 64
-"""Along a side of a triangle."""
+"""Largest number of sample steps along a triangle's side."""
 _INSIDE = 0.5
 
 
@@ -24,16 +24,16 @@ def find_lost_parts(
     part_of: npt.NDArray[np.int32],
     threads: int,
 ) -> npt.NDArray[np.int64]:
-    """Returns the parts that have no triangle within a cell of an octree's contour, or inside."""
+    """Returns the parts without a triangle inside of an octree's shape or within a cell of it."""
     low, high = (np.array(corner) for corner in octree.bounds)
     cell = float(((high - low) / 2.0**octree.depth).max())
-    # Most parts are decided by their first triangles.
+    # The first triangles suffice to decide most parts.
     highest = np.maximum.accumulate(part_of)
     first = np.flatnonzero(highest[1:] > highest[:-1]) + 1
     if len(part_of) and part_of[0] >= 0:
         first = np.insert(first, 0, 0)
     count = int(highest[-1]) + 1 if len(highest) else 0
-    is_open = np.ones(max(count, 1), bool)  # Not known to be kept.
+    is_open = np.ones(max(count, 1), bool)  # Parts that are not known to be preserved.
     if len(first) < max(count, 1):
         is_open[:] = False
         is_open[part_of[part_of >= 0]] = True
@@ -43,7 +43,7 @@ def find_lost_parts(
         points = _probes(corners, cell)
         values = _native.values_at(octree, points.reshape(-1, 3), threads)
         is_kept = (values.reshape(len(chosen), len(_STEPS)) >= _INSIDE).any(axis=1)
-        # What is beyond the bounds was cut off.
+        # Triangles beyond the bounds were cut off, not lost.
         is_kept |= ((corners.max(axis=1) < low) | (corners.min(axis=1) > high)).any(axis=1)
         is_open[part_of[chosen[is_kept]]] = False
         if not is_open.any():
@@ -58,19 +58,19 @@ def find_lost_parts(
 def _triangles_of(
     is_chosen: npt.NDArray[np.bool_], part_of: npt.NDArray[np.int32]
 ) -> npt.NDArray[np.int64]:
-    """Returns the triangles of chosen parts."""
+    """Returns the triangles of the chosen parts."""
     return np.flatnonzero((part_of >= 0) & is_chosen[part_of])
 
 
 def _lengths(vectors: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """Returns how long vectors are, along the last axis."""
+    """Returns the lengths of vectors along the last axis."""
     x, y, z = np.moveaxis(vectors, -1, 0)
     lengths: npt.NDArray[np.float64] = np.sqrt(x * x + y * y + z * z)
     return lengths
 
 
 def _probes(corners: npt.NDArray[np.float64], cell: float) -> npt.NDArray[np.float64]:
-    """Returns points around the middles of triangles: (triangles, steps, 3)."""
+    """Returns points around the centroids of triangles: (triangles, steps, 3)."""
     a, b, c = np.moveaxis(corners, 1, 0)
     normals = np.cross(b - a, c - a)
     lengths = _lengths(normals)[:, None]
@@ -82,7 +82,7 @@ def _probes(corners: npt.NDArray[np.float64], cell: float) -> npt.NDArray[np.flo
 def _nearest(
     octree: _native.Octree, corners: npt.NDArray[np.float64], cell: float, threads: int
 ) -> npt.NDArray[np.float64]:
-    """Returns how far triangles are from a contour."""
+    """Returns the distances of triangles from a contour."""
     options = _native.ContourOptions()
     options.interpolant = "plane"
     options.cleanup = False

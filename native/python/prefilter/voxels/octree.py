@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Voxels: how much of each cell of a grid is inside of a shape."""
+"""Occupancy octrees: the share of each cell that is inside of a shape."""
 
 import os
 from collections.abc import Sequence
@@ -55,36 +55,36 @@ _QUAD_CHECKS: dict[str, Check] = {
 
 
 class Octree(_native.Octree):
-    """The occupancies of the cells of a box, finely along the surface of a shape.
+    """Occupancies of the cells of a box, refined along the surface of a shape.
 
     Cells of depth k are the 2^k x 2^k x 2^k parts of the box; a leaf's value is the share of it
     that is inside of the shape, from 0 to 1. Made by `voxelize`, `load`, and the set operations.
 
     Attributes:
-        depth: 2^depth cells along an axis are the finest that there may be.
+        depth: The finest cells are 2^depth along an axis.
         bounds: (low corner, high corner) of the box.
-        volume: Of the shape, in cubed units of length.
-        node_count: Cells of all depths, the root included.
-        nbytes: What the octree takes in memory.
+        volume: Volume of the shape, in cubed units of length.
+        node_count: Number of cells of all depths, including the root.
+        nbytes: Memory of the octree in bytes.
     """
 
     def __init__(self, octree: _native.Octree) -> None:
-        """Another name for an octree: both share the cells, which never change."""
+        """Wraps an octree; both share the cells, which never change."""
         if not isinstance(octree, _native.Octree):
             raise ValueError(f"octree: a {type(octree).__name__}; an Octree is needed")
         super().__init__(octree)
 
     @property
     def thin_places(self) -> ThinPlaces:
-        """Where the mesh was thinner than the `thickness` of `voxelize`, which made this octree."""
+        """Places where the mesh was thinner than the `thickness` that was passed to `voxelize`."""
         return ThinPlaces(*_native.thin_triangles(self, False))
 
     @property
     def thin_walls(self) -> ThinPlaces:
-        """Those of `thin_places` whose faces are within 10 degrees of parallel.
+        """The `thin_places` between faces that are parallel within 10 degrees.
 
-        Wedges and tips end in nothing, so that finer cells never keep all of them. Of each triangle
-        the thickness is that which nine tenths of the wall below it have at least.
+        This excludes wedges and tips, which no cell size preserves entirely. The thickness of a
+        triangle is the one that nine tenths of the wall below it have at least.
         """
         return ThinPlaces(*_native.thin_triangles(self, True))
 
@@ -98,8 +98,8 @@ class Octree(_native.Octree):
         """The occupancies of all cells of a depth.
 
         Args:
-            depth: 0 to 12; None stands for the octree's own. Means where the tree is finer, and the
-                leaf's value where it is coarser.
+            depth: 0 to 12; None for the octree's own. Values are means where the tree is finer, and
+                the leaf's value where it is coarser.
             progress: Called with the fraction done; returning False stops the work.
             threads: 0 means all processors.
 
@@ -128,8 +128,8 @@ class Octree(_native.Octree):
     ) -> npt.NDArray[np.int8]:
         """Whether points are inside (1), outside (-1) or near the surface (0).
 
-        Near is where a leaf's occupancy is further than `tolerance` from both 0 and 1: the surface
-        passes through it, or the mesh is open close by.
+        A point is near the surface if its leaf's occupancy differs from both 0 and 1 by more than
+        `tolerance`: the surface passes through it, or the mesh is open close by.
 
         Args:
             points: (points, 3).
@@ -142,23 +142,23 @@ class Octree(_native.Octree):
         return _native.classify(self, _as_points(points), limit, as_threads(threads))
 
     def box_occupancy(self, low: Corner, high: Corner) -> float:
-        """The share of a box that is inside of the shape: the exact integral over the cells.
+        """The share of a box that is inside of the shape, as the exact integral over the cells.
 
         Args:
             low: The low corner, (3,).
-            high: The high corner, above it along each axis. The box may leave the bounds; nothing
-                is inside there.
+            high: The high corner, above it along each axis. The box may leave the bounds, where
+                everything is empty.
         """
         return _native.box_occupancy(self, _as_box("box", (low, high)))
 
     def union(
         self, other: "Octree", *, progress: ProgressCallback | None = None, threads: int = 0
     ) -> "Octree":
-        """What is inside of either: max(a, b), cell by cell.
+        """The union of two shapes: max(a, b), cell by cell.
 
-        Depths and bounds may differ. Where bounds do, the other's cells are carried over to this
-        one's, exactly where the two grids have corners in common and as means elsewhere, and the
-        box is doubled until it holds both.
+        Depths and bounds may differ. If bounds differ, the other's cells are resampled to this
+        one's grid, exactly if the two grids share corners and as means otherwise, and the box is
+        doubled until it holds both.
 
         Raises:
             ValueError: `other` is no Octree, or the box would need a depth of more than 12.
@@ -169,13 +169,13 @@ class Octree(_native.Octree):
     def intersection(
         self, other: "Octree", *, progress: ProgressCallback | None = None, threads: int = 0
     ) -> "Octree":
-        """What is inside of both: min(a, b), cell by cell, in this one's bounds. See `union`."""
+        """The intersection: min(a, b), cell by cell, in this one's bounds. See `union`."""
         return _combined(self, other, "intersection", progress, threads)
 
     def difference(
         self, other: "Octree", *, progress: ProgressCallback | None = None, threads: int = 0
     ) -> "Octree":
-        """What is inside of this one alone: min(a, 1 - b), in this one's bounds. See `union`."""
+        """The difference: min(a, 1 - b), cell by cell, in this one's bounds. See `union`."""
         return _combined(self, other, "difference", progress, threads)
 
     def contour(
@@ -191,39 +191,37 @@ class Octree(_native.Octree):
     ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]:
         """The surface of the shape: marching cubes on the dual grid of the leaves (chapter 5).
 
-        The mesh is closed and two-manifold whatever the octree, and leaves of different sizes leave
-        no cracks. What is outside of the bounds is empty.
+        The mesh is closed and two-manifold for any octree, and leaves of different sizes cause no
+        cracks. Everything outside of the bounds is empty.
 
         Args:
-            interpolant: Where a vertex lies between the centers of two leaves. "occupancy" leaves
-                each of the two its share of a half-space (section 5.2); "plane" fits the surface to
-                the leaves around, and reproduces planes; "linear" is marching cubes; "sharp", the
-                default, is "plane" with the edges and corners of the shape.
-            isovalue: Above 0 and up to 1. Leaves of at least that are inside. For other values than
-                0.5, interpolation is linear.
+            interpolant: How a vertex is placed between the centers of two leaves. "occupancy"
+                preserves the filled share of each of the two (section 5.2); "plane" fits the
+                surface to the surrounding leaves, and reproduces planes; "linear" is marching
+                cubes; "sharp", the default, is "plane" with the edges and corners of the shape.
+            isovalue: Above 0 and up to 1. Leaves of at least this occupancy are inside. For values
+                other than 0.5, interpolation is linear.
             sources: The meshes that the shape was made of, each (positions, triangles) or
-                (positions, triangles, groups), for "sharp": vertices are placed on their edges and
-                corners, and where one meets another; no triangle runs across an edge, or from one
-                group, (triangles,) whole numbers, to another. Without them edges are those that the
-                occupancies fix by themselves: where flat or gently curved faces of a few cells
-                meet.
-            cleanup: Remove narrow triangles; there are fewer then.
-            adaptivity: How far from the full contour the surface may be, in cells of the finest
-                depth, where larger triangles take its place: on flat and gently curved parts. 0.1
-                is hardly seen, and leaves a fifth of the triangles of a statue, and a twentieth of
+                (positions, triangles, groups), for "sharp": vertices are placed on their edges,
+                corners and intersections; no triangle crosses an edge, or a border between groups,
+                (triangles,) integers. Without sources, edges are derived from the occupancies,
+                where flat or gently curved faces of a few cells meet.
+            cleanup: Remove narrow triangles, which also reduces their number.
+            adaptivity: Largest distance of the surface from the full contour, in cells of the
+                finest depth, by which triangles may grow on flat and gently curved parts. 0.1 is
+                hardly visible, and leaves a fifth of the triangles of a statue, and a twentieth of
                 those of a machine part. 0 is the full contour.
             progress: Called with the fraction done; returning False stops the work.
             threads: 0 means all processors. The result does not depend on it.
 
         Returns:
             Positions (vertices, 3) float64, in the units of the bounds, and triangles
-            (triangles, 3) int32, counter-clockwise seen from outside. Before positions are rounded
-            to float32, subtract a point of the bounds: far from the origin float32 cannot tell
-            vertices apart.
+            (triangles, 3) int32, counter-clockwise seen from outside. Before rounding positions
+            to float32, subtract a point of the bounds: far from the origin, float32 cannot
+            distinguish vertices.
 
         Raises:
-            ValueError: `interpolant` is no such name, or `isovalue` or `adaptivity` is out of
-                range.
+            ValueError: `interpolant` is unknown, or `isovalue` or `adaptivity` is out of range.
             MemoryError: The surface would not fit into memory.
             Cancelled: `progress` returned False.
         """
@@ -239,10 +237,10 @@ class Octree(_native.Octree):
         progress: ProgressCallback | None = None,
         threads: int = 0,
     ) -> "TracedContour":
-        """The contour by "sharp", and which part of the sources each of its triangles shows.
+        """The contour by "sharp", and the source triangle that each of its triangles shows.
 
-        What surfaces carry, such as materials and UV maps, can so be carried over without running
-        across an edge, a rim or a seam. See `contour`.
+        This allows transferring attributes such as materials and UV maps without crossing an edge,
+        a rim or a seam. See `contour`.
 
         Args:
             sources: As for `contour`, at least one.
@@ -269,21 +267,21 @@ class Octree(_native.Octree):
         progress: ProgressCallback | None = None,
         threads: int = 0,
     ) -> "QuadContour":
-        """The surface of the shape as quads alone: dual contouring (Ju et al. 2002).
+        """The surface of the shape as quads only: dual contouring (Ju et al. 2002).
 
-        The mesh is closed and two-manifold whatever the octree: a vertex for each part of the
-        surface in a cell of the dual grid, and a quad for each two neighbors inside and outside,
-        about half as many as `contour` makes triangles. What is outside of the bounds is empty.
+        The mesh is closed and two-manifold for any octree: a vertex for each part of the surface in
+        a cell of the dual grid, and a quad for each pair of neighbors inside and outside, about
+        half as many as `contour` makes triangles. Everything outside of the bounds is empty.
 
         Args:
-            interpolant: As for `contour`. By "sharp", vertices are on edges and corners.
-            sources: As for `contour`; no quad runs across an edge of theirs, or from one group to
-                another.
+            interpolant: As for `contour`. With "sharp", vertices are on edges and corners.
+            sources: As for `contour`; no quad crosses an edge of theirs, or a border between
+                groups.
             progress: Called with the fraction done; returning False stops the work.
             threads: 0 means all processors. The result does not depend on it.
 
         Raises:
-            ValueError: `interpolant` is no such name, or a source is no mesh.
+            ValueError: `interpolant` is unknown, or a source is no mesh.
             MemoryError: The surface would not fit into memory.
             Cancelled: `progress` returned False.
         """
@@ -301,20 +299,20 @@ class Octree(_native.Octree):
         *,
         threads: int = 0,
     ) -> npt.NDArray[np.int64]:
-        """The parts of a mesh of which nothing is left.
+        """The parts of a mesh that vanished in voxelization.
 
-        No triangle of theirs is inside of the shape, nor within a cell of its contour. Parts beyond
-        the bounds are not lost.
+        A part is lost if none of its triangles is inside of the shape or within a cell of its
+        contour. Parts beyond the bounds do not count as lost.
 
         Args:
-            positions: (vertices, 3): of the mesh that the octree was made of.
+            positions: (vertices, 3), of the mesh that the octree was made of.
             triangles: (triangles, 3) integer indices of vertices.
-            part_of: (triangles,) whole numbers from 0 on: the part of each, as `mesh_topology` says
-                it; negative for none.
+            part_of: (triangles,) integers from 0: the part of each, as from `mesh_topology`;
+                negative for none.
             threads: 0 means all processors.
 
         Returns:
-            (lost,) int64: their numbers, in ascending order.
+            (lost,) int64: the numbers of the lost parts, in ascending order.
 
         Raises:
             ValueError: A shape or type is wrong, or an index names no vertex.
@@ -328,14 +326,14 @@ class Octree(_native.Octree):
         return find_lost_parts(self, points, indices, parts, as_threads(threads))
 
     def coarsened(self, depth: int) -> "Octree":
-        """The octree down to a depth of 0 to 12: means of what was finer."""
+        """The octree limited to a depth of 0 to 12; finer cells are averaged."""
         return Octree(_native.coarsened(self, _as_depth(depth, 0)))
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the octree as a compressed NumPy archive (.npz).
 
-        It is written beside `path` and renamed, so a failure leaves what was there. A symbolic link
-        stays; the file that it leads to is replaced.
+        The file is staged beside `path` and renamed, so a failure leaves an earlier file intact. A
+        symbolic link is followed, and its target replaced.
 
         Raises:
             ValueError: `path` is no path.
@@ -347,11 +345,11 @@ class Octree(_native.Octree):
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Self:
-        """Reads what `save` wrote.
+        """Reads a file written by `save`.
 
         Raises:
             OSError: The file can't be read.
-            ValueError: It is no octree, or a damaged one.
+            ValueError: The file holds no octree, or is damaged.
             MemoryError: The octree would not fit into memory.
         """
         from .octree_files import read_octree
@@ -371,13 +369,13 @@ def _combined(
 
 @dataclass(frozen=True)
 class TracedContour:
-    """A contour, and where its triangles come from.
+    """A contour, and the origins of its triangles.
 
     Attributes:
         positions: (vertices, 3) float64.
         triangles: (triangles, 3) int32, counter-clockwise seen from outside.
-        origins: (triangles,) int64: for each a triangle of the sources, numbered through all of
-            them, of the same source, group and smooth region. It need not be the nearest one.
+        origins: (triangles,) int64: a source triangle for each, numbered across all sources, from
+            the same source, group and smooth region. It need not be the nearest one.
     """
 
     positions: npt.NDArray[np.float64]
@@ -391,10 +389,10 @@ class QuadContour:
 
     Attributes:
         positions: (vertices, 3) float64.
-        quads: (quads, 4) int32, counter-clockwise seen from outside. They are flat along the
-            diagonal from the first corner to the third, or next to that.
-        origins: (quads,) int64: as of `TracedContour`; None without sources, or for another
-            interpolant than "sharp".
+        quads: (quads, 4) int32, counter-clockwise seen from outside. They are flat, or nearly so,
+            along the diagonal from the first corner to the third.
+        origins: (quads,) int64: as for `TracedContour`; None without sources, or for interpolants
+            other than "sharp".
     """
 
     positions: npt.NDArray[np.float64]
@@ -412,23 +410,23 @@ def voxelize(
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> Octree:
-    """The occupancy of every cell of a grid: how much of it is inside of a mesh.
+    """The occupancy of every cell of a grid: the share of it that is inside of a mesh.
 
     Values are exact (Haar wavelet coefficients by integrals over the surface, section 3.2.3), in
-    memory and time proportional to the surface. The mesh may be anything: open, leaky, intersecting
-    itself; inside is where it winds around at least once. A hole disturbs the cells around it
-    alone. A mesh that is inside out encloses nothing.
+    memory and time proportional to the surface. The mesh may be open, leaky, or self-intersecting;
+    points with a winding number of at least 1 are inside. A hole affects only the cells around it.
+    A mesh that is inside out encloses nothing.
 
     Args:
         positions: (vertices, 3), in any unit of length.
         triangles: (triangles, 3) integer indices of vertices, counter-clockwise from outside.
         depth: 1 to 12; the grid has 2^depth cells along each axis.
-        bounds: (low corner, high corner) of the grid; its cells need not be cubes. What is outside
-            of it is cut off. None stands for `cube_around` the mesh.
-        thickness: In cells: where the solid is thinner, it is made as thick as this, and rods a
-            quarter more, so that a contour is whole. From 1.5 on it always is. Parts that touch or
-            overlap are one solid; edges of more than 45 degrees stay. In these cells a contour has
-            no edges of its sources, and no origins. 0: all occupancies are exact.
+        bounds: (low corner, high corner) of the grid; its cells need not be cubes. Parts outside of
+            it are cut off. None for `cube_around` the mesh.
+        thickness: Cells: thinner parts of the solid are thickened to this, and rods by a quarter
+            more, so that a contour stays connected, always from 1.5 on. Parts that touch or overlap
+            count as one solid; edges of more than 45 degrees are preserved. In these cells a
+            contour has no edges of its sources, and no origins. 0: all occupancies are exact.
         progress: Called with the fraction done; returning False stops the work.
         threads: 0 means all processors. The result does not depend on it.
 
@@ -455,10 +453,10 @@ def voxelize(
 
 
 def cube_around(bounds: Box, *, depth: int = 8) -> tuple[np.ndarray, np.ndarray]:
-    """The cube that `voxelize` takes for a mesh in a box: (low corner, high corner).
+    """The default bounds of `voxelize` for a mesh in a box: (low corner, high corner) of a cube.
 
-    It leaves two cells on all sides of the box where that is longest, or an eighth of the cells
-    where they are fewer than 16 along an axis.
+    Along the box's longest axis two cells stay free on both sides, or an eighth of the cells if
+    there are fewer than 16 along an axis.
 
     Args:
         bounds: (low corner, high corner) of the box.

@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 
 _FORMAT = "prefilter octree 2"
 _LONGEST_HEADER = 256
-_NO_FAULT_OF_THE_DISK = (None, errno.EINVAL)  # Such as a seek to before the start.
+_NO_FAULT_OF_THE_DISK = (None, errno.EINVAL)  # EINVAL: a damaged file may cause an invalid seek.
 
 _Levels = list[tuple[npt.NDArray[np.float32], npt.NDArray[np.uint8]]]
 
 
 def write_octree(path: str | os.PathLike[str], octree: _native.Octree) -> None:
-    """Writes an octree in place of the file that a path stands for; see `Octree.save`."""
+    """Writes an octree to a file, replacing an earlier one; see `Octree.save`."""
     levels = _native.levels_of(octree)
     arrays: dict[str, Any] = {
         "format": np.array(_FORMAT),
@@ -46,14 +46,14 @@ def write_octree(path: str | os.PathLike[str], octree: _native.Octree) -> None:
 
 
 def read_octree(path: str | os.PathLike[str]) -> _native.Octree:
-    """Reads an octree that `write_octree` has written; see `Octree.load`."""
+    """Reads an octree written by `write_octree`; see `Octree.load`."""
     source = as_path(path)
     with open_file(source) as file:
         try:
             return _native.make_octree(*_contents(file))
         except MemoryError:
             raise
-        except Exception as error:  # Damage can make zipfile and zlib raise almost anything.
+        except Exception as error:  # zipfile and zlib may raise almost anything for damaged files.
             if isinstance(error, OSError) and error.errno not in _NO_FAULT_OF_THE_DISK:
                 raise OSError(error.errno, error.strerror, source) from error
             raise ValueError(f"path: '{source}' holds no octree: {error}") from error
@@ -89,7 +89,7 @@ def _contents(
 def _array(
     archive: "zipfile.ZipFile", name: str, dtype: np.dtype, shape: tuple[int, ...]
 ) -> np.ndarray:
-    """An array of the archive; nothing is unpacked unless it takes as many bytes as it should."""
+    """Returns an array of the archive, unpacked only if its size is as expected."""
     try:
         member = archive.getinfo(f"{name}.npy")
     except KeyError:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Where a mesh is thinner than it was to be."""
+"""Places where a mesh was thinner than requested."""
 
 from dataclasses import dataclass
 
@@ -10,16 +10,16 @@ import numpy.typing as npt
 
 @dataclass(frozen=True)
 class ThinPlaces:
-    """The triangles below which `voxelize` made a solid thicker, in ascending order.
+    """Triangles below which `voxelize` thickened a solid, in ascending order.
 
-    Lengths are cells. The thickness at a point is the diameter of the ball that touches the surface
-    there from within, and what faces the other way.
+    Lengths are in cells. The thickness at a point is the diameter of the largest inner ball that
+    touches the surface there and the opposite side.
 
     Attributes:
-        triangles: (n,) int64: their numbers in the mesh.
-        thickness: (n,) float64: of the solid where it is thinnest below each; 0 for sheets.
-        made: (n,) float64: what it became there.
-        areas: (n,) float64: of each triangle, as far as it is thin.
+        triangles: (n,) int64: their indices in the mesh.
+        thickness: (n,) float64: smallest thickness of the solid below each; 0 for sheets.
+        made: (n,) float64: the thickness that it was given there.
+        areas: (n,) float64: the thin area of each triangle.
     """
 
     triangles: npt.NDArray[np.int64]
@@ -28,24 +28,24 @@ class ThinPlaces:
     areas: npt.NDArray[np.float64]
 
     def thickness_of(self, share: float = 1.0) -> float:
-        """The thickness that this share of the thin area has at least, by triangles.
+        """The thickness that at least this share of the thin area has, by triangles.
 
         Args:
-            share: Above 0, up to 1; of 1 it is the smallest thickness, of 0.5 the median.
+            share: Above 0, up to 1; 1 gives the smallest thickness, 0.5 the median.
 
         Returns:
-            In cells; infinity where nothing is thin.
+            Cells; infinity if nothing is thin.
         """
         return self._reached(self.thickness, share)
 
     def refinement(self, share: float = 1.0) -> float:
-        """How many times smaller cells have to be for this share of the thin area to stay as it is.
+        """Factor by which cells must shrink so that this share of the thin area is unchanged.
 
         Args:
             share: Above 0, up to 1.
 
         Returns:
-            1 where nothing is thin; infinity where sheets are more than the rest.
+            1 if nothing is thin; infinity if sheets make up more than the rest.
         """
         least = self._reached(self.thickness / self.made, share)
         return 1.0 if least == np.inf else (1.0 / least if least > 0.0 else np.inf)

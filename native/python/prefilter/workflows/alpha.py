@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Straight and associated alpha of (..., 4) texels; the fourth channel stays as it is."""
+"""Straight and associated alpha of (..., 4) texels; the fourth channel is unchanged."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,7 @@ def associated(texels: FloatArray) -> FloatArray:
 
 
 def unassociated(texels: FloatArray) -> FloatArray:
-    """Returns texels whose colors are divided by alpha; where that is 0, colors stay."""
+    """Returns texels whose colors are divided by alpha; unchanged where that is 0."""
     straight = texels.copy()
     alpha = texels[..., 3:]
     np.divide(texels[..., :3], alpha, out=straight[..., :3], where=alpha > 0)
@@ -22,6 +22,6 @@ def unassociated(texels: FloatArray) -> FloatArray:
 
 
 def at_most_opaque(texels: FloatArray) -> FloatArray:
-    """Returns associated texels whose alpha is at most 1, of the same straight colors."""
+    """Returns associated texels with alpha limited to 1, keeping their straight colors."""
     divisor: FloatArray = np.maximum(texels[..., 3:], 1.0)
     return texels / divisor

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Color spaces of picture files: their curves, and matrices to linear Rec. 709."""
+"""Color spaces of picture files: transfer functions, and matrices to linear Rec. 709."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -24,28 +24,28 @@ _BRADFORD = np.array(
     [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]]
 )
 _D50 = np.array([0.9642, 1.0, 0.8249])
-"""The white of ICC profiles, XYZ."""
+"""XYZ of the white point of ICC profiles."""
 _LEAST_DETERMINANT = 1e-9
 _SAME_MATRIX = 1 / 2048
 _SAME_CODE = 0.25
-"""Largest difference from sRGB of a curve that counts as that of sRGB, in steps of 8 bits."""
+"""Largest deviation from sRGB, in 8-bit steps, of a curve that still counts as sRGB."""
 
 
 class Curve(Protocol):
-    """A transfer function; values beyond [0, 1] go through it as well."""
+    """A transfer function; values beyond [0, 1] are allowed."""
 
     def decode(self, values: Any) -> NDArray[np.float64]:
         """Returns light."""
 
     def encode(self, light: Any) -> NDArray[np.float64]:
-        """Returns the values that stand for light."""
+        """Returns encoded values of light."""
 
 
 @dataclass(frozen=True)
 class Parametric:
-    """(a x + b) ** g + e from x = d on, else c x + f; odd, so that negative values have one, too.
+    """(a x + b) ** g + e for x >= d, else c x + f; extended as an odd function to negative values.
 
-    ICC profiles name the parameters like that.
+    The parameters have the names of the ICC specification.
     """
 
     g: float = 1.0
@@ -65,7 +65,7 @@ class Parametric:
         return signed
 
     def encode(self, light: Any) -> NDArray[np.float64]:
-        """Returns the values that stand for light."""
+        """Returns encoded values of light."""
         y = np.abs(np.asarray(light, np.float64))
         border = _power(self.a * self.d + self.b, self.g) + self.e
         power = (_power(y - self.e, 1.0 / self.g) - self.b) / self.a
@@ -77,23 +77,23 @@ class Parametric:
 
 @dataclass(frozen=True)
 class Sampled:
-    """Values between which the curve is a line, at equal steps from 0 to 1; they do not fall."""
+    """A nondecreasing curve, linear between samples at equal steps from 0 to 1."""
 
     samples: tuple[float, ...]
 
     def decode(self, values: Any) -> NDArray[np.float64]:
-        """Returns light, of values that are cut off at 0 and 1."""
+        """Returns light; values are clamped to [0, 1]."""
         at = np.linspace(0.0, 1.0, len(self.samples))
         return np.interp(np.asarray(values, np.float64), at, self.samples)
 
     def encode(self, light: Any) -> NDArray[np.float64]:
-        """Returns the values that stand for light, which is cut off at what the curve has."""
+        """Returns encoded values of light, which is clamped to the curve's range."""
         at = np.linspace(0.0, 1.0, len(self.samples))
         return np.interp(np.asarray(light, np.float64), self.samples, at)
 
 
 def _power(base: Any, exponent: float) -> NDArray[np.float64]:
-    """Returns a power of numbers, and 0 where they are negative."""
+    """Returns powers of numbers; 0 for negative ones."""
     positive = np.maximum(np.asarray(base, np.float64), 0.0)
     return powers(positive, exponent)
 
@@ -109,11 +109,11 @@ class Space:
     """A color space.
 
     Attributes:
-        name: What users know it by.
-        curves: One, or one each of red, green and blue.
-        to_rec709: From linear colors of its primaries to those of Rec. 709.
-        chunks: What a PNG file says to be in this space: kinds of chunks, and what they hold.
-        is_for_gray: Whether `chunks` are for gray pictures, and not for those in color.
+        name: The name that users know.
+        curves: One transfer function, or one each for red, green and blue.
+        to_rec709: The matrix from linear colors of its primaries to Rec. 709.
+        chunks: The chunks, as type and content, by which a PNG file declares this space.
+        is_for_gray: Whether `chunks` are for gray pictures only; otherwise for color only.
     """
 
     name: str
@@ -124,28 +124,28 @@ class Space:
 
     @property
     def is_rec709(self) -> bool:
-        """Whether its primaries are those of Rec. 709."""
+        """Whether it has the primaries of Rec. 709."""
         return bool(np.abs(np.subtract(self.to_rec709, _IDENTITY)).max() <= _SAME_MATRIX)
 
     @property
     def is_linear(self) -> bool:
-        """Whether its values are light."""
+        """Whether values are proportional to light."""
         return self.curves == (LINE,)
 
     @property
     def is_srgb(self) -> bool:
-        """Whether it is sRGB, as closely as 8 bits tell."""
+        """Whether it is sRGB, within 8-bit precision."""
         codes = np.arange(256) / 255.0
         same = (np.abs(SRGB_CURVE.encode(one.decode(codes)) - codes) for one in self.curves)
         return self.is_rec709 and all(float(one.max()) * 255 <= _SAME_CODE for one in same)
 
     def can_be_kept(self, *, is_gray: bool) -> bool:
-        """Tells whether a PNG file, gray or not, can say to be in this space."""
+        """Tells whether a PNG file, gray or not, can declare this space."""
         has_profile = any(kind == b"iCCP" for kind, _ in self.chunks)
         return bool(self.chunks) and (not has_profile or is_gray == self.is_for_gray)
 
     def agrees(self, other: "Space") -> bool:
-        """Tells whether another space is the same but for its name."""
+        """Tells whether another space is the same apart from its name."""
         codes = np.arange(256) / 255.0
         mine, others = (
             np.array([(one.curves * 3)[index].decode(codes) for index in range(3)])
@@ -155,7 +155,7 @@ class Space:
         return bool(apart <= _SAME_MATRIX and np.abs(mine - others).max() <= _SAME_MATRIX)
 
     def decoded(self, colors: FloatArray) -> FloatArray:
-        """Returns (..., 3) colors as light, of the same primaries."""
+        """Returns (..., 3) colors as light, with the same primaries."""
         if self.is_linear:
             return colors
         if self.curves == (SRGB_CURVE,):
@@ -163,7 +163,7 @@ class Space:
         return self._through(colors, [one.decode for one in self.curves])
 
     def encoded(self, light: FloatArray) -> FloatArray:
-        """Returns (..., 3) light as the values of colors."""
+        """Returns (..., 3) light as encoded colors."""
         if self.is_linear:
             return light
         if self.curves == (SRGB_CURVE,):
@@ -171,21 +171,21 @@ class Space:
         return self._through(light, [one.encode for one in self.curves])
 
     def in_rec709(self, light: FloatArray) -> FloatArray:
-        """Returns (..., 3) linear colors, of the primaries of Rec. 709 now."""
+        """Returns (..., 3) linear colors converted to the primaries of Rec. 709."""
         return light if self.is_rec709 else _multiplied(light, self.to_rec709)
 
     def _through(self, colors: FloatArray, curves: Sequence[Any]) -> FloatArray:
         made = np.empty_like(colors)
         for channel in range(colors.shape[-1]):
             curve = curves[channel % len(curves)]
-            # In rows, as these take more memory in 64 bits.
+            # Row by row, to bound the memory for 64-bit values.
             for row, values in zip(made, colors, strict=True):
                 row[..., channel] = curve(values[..., channel])
         return made
 
 
 def _multiplied(colors: FloatArray, matrix: Matrix) -> FloatArray:
-    """Returns colors times a matrix, added up in one order: that of a library may differ."""
+    """Returns colors times a matrix, summed in a fixed order; that of a library may vary."""
     made = np.empty_like(colors)
     red, green, blue = (colors[..., channel] for channel in range(3))
     for channel, (by_red, by_green, by_blue) in enumerate(np.asarray(matrix, np.float32)):
@@ -194,7 +194,7 @@ def _multiplied(colors: FloatArray, matrix: Matrix) -> FloatArray:
 
 
 def named(name: str) -> Space | None:
-    """Returns the space of a name; None where the name is of no known one."""
+    """Returns the color space with a name; None if the name is unknown."""
     found = space_names.parts(name)
     if found is None:
         return None
@@ -207,7 +207,7 @@ def named(name: str) -> Space | None:
 
 
 def srgb_bytes(light: FloatArray) -> NDArray[np.uint8]:
-    """Returns linear Rec. 709, with straight alpha where there is one, as bytes in sRGB."""
+    """Converts linear Rec. 709, with optional straight alpha, to sRGB bytes."""
     rounded: NDArray[np.uint8] = np.rint(to_srgb(light).clip(0, 1) * np.float32(255)).astype(
         np.uint8
     )
@@ -228,7 +228,7 @@ def matrix_of(chromaticities: tuple[float, ...]) -> Matrix:
         chromaticities: x and y of red, green, blue and white.
 
     Raises:
-        ValueError: They are those of no color space.
+        ValueError: They do not define a color space.
     """
     if chromaticities == REC709:
         return _IDENTITY
@@ -236,13 +236,13 @@ def matrix_of(chromaticities: tuple[float, ...]) -> Matrix:
 
 
 def from_d50(to_xyz: NDArray[np.float64]) -> Matrix:
-    """Returns the matrix to Rec. 709 for one to XYZ that has D50 for its white, as ICC has."""
+    """Returns the matrix to Rec. 709 for a matrix to XYZ with white D50, as in ICC profiles."""
     rows = product(inverse(_xyz_d50(REC709)), to_xyz).tolist()
     return tuple((row[0], row[1], row[2]) for row in rows)
 
 
 def is_regular(matrix: NDArray[np.float64]) -> bool:
-    """Tells whether a (3, 3) matrix has an inverse."""
+    """Tells whether a (3, 3) matrix is invertible."""
     return bool(np.isfinite(matrix).all() and abs(_determinant(matrix)) > _LEAST_DETERMINANT)
 
 
@@ -251,7 +251,7 @@ def _determinant(rows: NDArray[np.float64]) -> float:
 
 
 def _xyz_d50(chromaticities: Sequence[float]) -> NDArray[np.float64]:
-    """Returns the matrix to XYZ, adapted to the white of ICC profiles."""
+    """Returns the matrix from linear colors to XYZ, adapted to the white D50."""
     points = np.asarray(chromaticities, np.float64).reshape(4, 2)
     heights = points[:, 1]
     if np.isfinite(points).all() and np.abs(heights).min() > _LEAST_DETERMINANT:

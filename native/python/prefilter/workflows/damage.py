@@ -1,30 +1,30 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Why files cannot be read, in our own words, and whose words an error has."""
+"""Explanations of unreadable files in our own words, and the origin of errors."""
 
 import os
 from contextlib import suppress
 from json import JSONDecodeError
 
 DEBUG = "PREFILTER_DEBUG"
-"""The environment variable that has tracebacks printed, and what libraries say, if not empty."""
+"""Environment variable: if not empty, tracebacks and messages of libraries are printed."""
 _OF_ENCODINGS = ("charset_normalizer", "chardet")
-"""Packages that libraries ask for where text is not in UTF-8."""
+"""Packages that libraries import to read text that is not UTF-8."""
 _EMPTY = "it is empty"
 _DAMAGED = "it is damaged, or not what its extension says"
 
 
 def is_debugging() -> bool:
-    """Tells whether whoever runs this wants to know where errors come from."""
+    """Tells whether debugging output is on."""
     return bool(os.environ.get(DEBUG))
 
 
 def damaged(path: str | os.PathLike[str], detail: str) -> str:
-    """Returns what is wrong with a file that a library cannot read.
+    """Returns the reason why a library cannot read a file.
 
     Args:
         path: The file.
-        detail: What the library says, for those who debug.
+        detail: The library's own message, shown when debugging.
     """
     reason = _DAMAGED
     with suppress(OSError):
@@ -34,7 +34,7 @@ def damaged(path: str | os.PathLike[str], detail: str) -> str:
 
 
 def why_unreadable(error: BaseException, path: str | os.PathLike[str]) -> str:
-    """Returns why another library could not read a file; what Prefilter says of it stays."""
+    """Returns why a library could not read a file; Prefilter's own messages stay as they are."""
     if isinstance(error, OSError) and error.strerror:
         other = error.filename
         is_other = other is not None and os.path.basename(os.fsdecode(other)) != os.path.basename(
@@ -57,7 +57,7 @@ def why_unreadable(error: BaseException, path: str | os.PathLike[str]) -> str:
 
 
 def is_own(error: BaseException) -> bool:
-    """Tells whether Prefilter raised an error itself, for a reason that it names."""
+    """Tells whether Prefilter itself raised an error, with its own reason."""
     if not isinstance(error, ValueError | OSError | MemoryError) or isinstance(error, UnicodeError):
         return False
     trace = error.__traceback__

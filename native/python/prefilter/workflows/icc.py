@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""ICC profiles of pictures: those of a matrix and curves, and of gray, become color spaces."""
+"""Color spaces from ICC profiles: those with a matrix and curves, or with a gray curve."""
 
 import struct
 import zlib
@@ -18,10 +18,10 @@ _KINDS = {b"CMYK": "CMYK", b"Lab ": "Lab", b"XYZ ": "XYZ", b"GRAY": "gray", b"RG
 
 
 def space_of(profile: bytes) -> Space:
-    """Returns the color space that a profile describes; a PNG file can keep the profile itself.
+    """Returns the color space of a profile; PNG files can embed the profile itself.
 
     Raises:
-        ValueError: It is damaged, or it has tables in place of a matrix and curves.
+        ValueError: The profile is damaged, or has lookup tables instead of a matrix and curves.
     """
     try:
         return _space_of(profile)

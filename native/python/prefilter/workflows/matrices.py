@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Products and inverses of small matrices, with the same bits everywhere.
+"""Products and inverses of small matrices, with identical bits on every machine.
 
-NumPy asks BLAS and LAPACK for them, whose order of sums is that of the processor.
+NumPy delegates to BLAS and LAPACK, whose order of summation depends on the processor.
 """
 
 import numpy as np
@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 
 def product(first: ArrayLike, second: ArrayLike) -> NDArray[np.float64]:
-    """Returns a product of matrices; its sums run upwards.
+    """Returns a matrix product, summed in ascending order.
 
     Args:
         first: (..., n, k).

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Mesh files, as triangles. trimesh reads STL files and writes all; it is imported if needed."""
+"""Reading and writing mesh files as triangles; trimesh reads STL and writes, if installed."""
 
 import os
 from collections.abc import Callable, Mapping, Sequence
@@ -29,15 +29,15 @@ from .wording import counted, listed
 
 @dataclass(frozen=True)
 class Part:
-    """A mesh of a file, in its place.
+    """A mesh of a file, in world coordinates.
 
     Attributes:
-        name: What the file calls it; the name of the file where it has one mesh.
+        name: Its name in the file; the file's name if there is only one mesh without a name.
         positions: (vertices, 3) float64.
         triangles: (triangles, 3) integers.
         uvs: (triangles, 3, 2) float64 of the triangles' corners, NaN for one without, or
             (vertices, 2); None for a mesh without a UV map.
-        bare: (triangles,) whether a triangle has corners without UVs; None if none has.
+        bare: (triangles,) whether a triangle has corners without UVs; None if no triangle has.
     """
 
     name: str
@@ -47,7 +47,7 @@ class Part:
     bare: NDArray[np.bool_] | None = None
 
     def mapped(self) -> tuple[NDArray[np.integer], NDArray[np.float64]]:
-        """Returns the triangles that have UVs, and those of their corners, (triangles, 3, 2)."""
+        """Returns the triangles with UVs, and UVs of their corners, (triangles, 3, 2)."""
         assert self.uvs is not None
         uvs = self.uvs if self.uvs.ndim == 3 else self.uvs[self.triangles]
         if self.bare is None:
@@ -56,24 +56,24 @@ class Part:
 
 
 def read(argument: str, paths: Sequence[str]) -> list[Part]:
-    """Reads the meshes of files, in the order of their names within each.
+    """Reads the meshes of files, sorted by name within each.
 
     Args:
-        argument: What a path is called in messages.
+        argument: The path's name in messages.
         paths: The files.
 
     Raises:
         OSError: A file cannot be read, or trimesh is missing.
-        ValueError: There is no triangle in one of them.
+        ValueError: A file has no triangle.
     """
     return [part for path in paths for part in _parts(argument, path)]
 
 
 def chosen(parts: Sequence[Part], names: Sequence[str]) -> list[Part]:
-    """Returns those of some names; all where none is given.
+    """Returns the meshes with the given names; all if no name is given.
 
     Raises:
-        ValueError: There is none of a name.
+        ValueError: No mesh has one of the names.
     """
     for name in names:
         if all(part.name != name for part in parts):
@@ -83,13 +83,13 @@ def chosen(parts: Sequence[Part], names: Sequence[str]) -> list[Part]:
 
 
 def name_of(path: str) -> str:
-    """Returns what a mesh is called after its file; names that are no text become some."""
+    """Returns a mesh name from a file's name, made portable if it is no valid text."""
     stem = os.path.splitext(os.path.basename(path))[0]
     return stem if is_text(stem) else portable(stem)
 
 
 def without_seams(part: Part) -> Part:
-    """Returns a mesh in which vertices of one place are one: files have several where UVs part."""
+    """Merges vertices of equal position, which files split along UV seams."""
     places, numbers = np.unique(part.positions, axis=0, return_inverse=True)
     triangles = numbers.reshape(-1)[part.triangles]
     return Part(part.name, places, np.asarray(triangles, np.int64), None)
@@ -98,13 +98,12 @@ def without_seams(part: Part) -> Part:
 def stage(
     target: Path, parts: Sequence[Part], metadata: Mapping[str, str] | None = None
 ) -> StagedFile:
-    """Writes positions and triangles, in a format that the ending of the target says.
+    """Stages positions and triangles in the format of the target's extension.
 
     Args:
         target: The file.
         parts: The meshes.
-        metadata: What the file is to keep, by keys; see `with_note`.
-
+        metadata: Key-value pairs to store; see `with_note`.
     Raises:
         OSError: The file cannot be written.
     """
@@ -127,10 +126,10 @@ def stage(
 
 
 def surfaces(parts: Sequence[Part]) -> tuple[list[prefilter.Surface], list[str], list[str]]:
-    """Returns the surfaces of meshes with UV maps, their names, and warnings of those without.
+    """Returns the surfaces of meshes with UV maps, their names, and warnings about the others.
 
     Raises:
-        ValueError: None has a UV map, or one holds numbers that are not finite.
+        ValueError: No mesh has a UV map, or a number is not finite.
     """
     found: list[prefilter.Surface] = []
     names: list[str] = []
@@ -163,7 +162,7 @@ def _parts(argument: str, path: str) -> list[Part]:
         meshes = reader(path)
     except MissingModuleError:
         raise
-    except Exception as error:  # Readers raise whatever goes wrong in them.
+    except Exception as error:  # Readers may raise anything.
         reason = why_unreadable(error, path)
         raise OSError(f"{argument}: '{path}' cannot be read as a mesh: {reason}") from error
     parts = [_part(mesh) for mesh in sorted(meshes, key=lambda mesh: mesh.name)]
@@ -219,7 +218,7 @@ _READERS: dict[str, Callable[[str], list[PolygonMesh]]] = {
 
 
 class MissingModuleError(OSError):
-    """A module of Python that files need is missing."""
+    """A Python module that a file format needs is missing."""
 
 
 def _trimesh() -> Any:

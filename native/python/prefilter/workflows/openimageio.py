@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""OpenImageIO's own Python module, as far as pictures need it; imported when it is needed."""
+"""Reading and writing pictures with OpenImageIO's Python module, which is imported on demand."""
 
 import itertools
 import re
@@ -27,36 +27,36 @@ FloatArray = NDArray[np.float32]
 TILE_SIZE = 64
 
 Check = Callable[[], None]
-"""Called between the steps of long work; raises to end it."""
+"""Called between stages of long work; raises to cancel it."""
 
 _MOST_CHANNELS = 4
 _MOST_NAMES = 6
-"""Of channels that a warning lists."""
+"""Largest number of channels that a warning lists."""
 _PIXELS_A_BAND = 1 << 20
 _PATH_SEPARATOR = ";"
 _PLACEHOLDER = "%"
 _CUT_OFF = "Premature end of JPEG"
-"""What is said of a JPEG file whose rest, which is missing, was read as gray."""
+"""Error of a truncated JPEG file, whose missing rest is read as gray."""
 _PNG = b"\x89PNG\r\n\x1a\n"
 _MOST_ORIENTATIONS = 8
 _RGB_MODELS = frozenset({"", "RGB", "YCbCr", "Grayscale", "gray", "palette"})
 _DESCRIBED_SPACE = re.compile(r"\bcolorInteropID=(\w+)")
-"""What is said in TIFF files of levels."""
+"""The color space in the description of TIFF files of levels."""
 _EXIF_ADOBE_RGB, _ADOBE_RGB_RULE = 2, "R03"
 
 
 class Stated(NamedTuple):
-    """What a picture file says of its colors and of how it is shown.
+    """Metadata of a picture file about its colors and orientation.
 
     Attributes:
-        format: The name of its format.
-        orientation: That of EXIF, 1 to 8; 1 is upright.
-        model: What its colors are where they are no RGB and not gray, such as "CMYK"; else empty.
-        interop_id: The Color Interop Forum's name of its color space; empty where none.
-        color_space: What OpenImageIO calls that; empty where it calls it nothing.
-        gamma: The exponent of light that `color_space` leaves open.
-        icc: An ICC profile; empty where none.
-        chromaticities: x and y of red, green, blue and white; None where none.
+        format: Name of the file format.
+        orientation: Orientation by EXIF, 1 to 8; 1 is upright.
+        model: Color model if neither RGB nor gray, such as "CMYK"; else empty.
+        interop_id: The Color Interop Forum's name of the color space; empty if absent.
+        color_space: OpenImageIO's name of the color space; empty if it has none.
+        gamma: The exponent, if `color_space` leaves that open.
+        icc: The ICC profile; empty if absent.
+        chromaticities: x and y of red, green, blue and white; None if absent.
         is_adobe_rgb: Whether EXIF names Adobe RGB.
     """
 
@@ -72,13 +72,13 @@ class Stated(NamedTuple):
 
 
 class Pixels(NamedTuple):
-    """What a picture file holds.
+    """Pixels and metadata of a picture file.
 
     Attributes:
         values: (h, w, c) array of uint8, uint16 or float32, rows from the top.
         is_straight: Whether colors are not multiplied by alpha.
-        stated: What the file says of them.
-        left_out: What else the file holds, such as "the channels 'Z', 'mask'"; empty for nothing.
+        stated: Metadata about the colors.
+        left_out: Unread contents, such as "the channels 'Z', 'mask'"; empty for none.
     """
 
     values: NDArray[Any]
@@ -91,18 +91,18 @@ def module() -> ModuleType:
     """Returns the module.
 
     Raises:
-        OSError: It is missing.
+        OSError: It is not installed.
     """
     return _finder()
 
 
 def said(source: Any) -> str:
-    """Returns what the module, or something of it, says of its last failure, in one line."""
+    """Returns the last error message of the module, or of an object of it, in one line."""
     return " ".join(source.geterror().split())
 
 
 def find_by(finder: Callable[[], ModuleType]) -> None:
-    """Has another function find the module for this process; it raises OSError where it cannot."""
+    """Sets the function that finds the module in this process; it raises OSError on failure."""
     global _finder
     _finder = finder
 
@@ -126,13 +126,13 @@ def color_convert(
 
     Args:
         colors: The colors.
-        source: The space that they are in.
+        source: The name of the colors' space.
         target: The space to convert them to.
         config: Path of the configuration.
         check: Called between bands of rows.
 
     Raises:
-        ValueError: A space is unknown to the configuration, or it cannot be read.
+        ValueError: A space is unknown, or the configuration cannot be read.
     """
     oiio = module()
     converted = np.empty_like(colors)
@@ -150,11 +150,11 @@ def color_convert(
 
 
 class Contents(NamedTuple):
-    """What values a picture file has.
+    """Kind of values in a picture file.
 
     Attributes:
-        is_integer: Whether they are integers; False where that cannot be found out.
-        is_gray: Whether one channel stands for all colors; likewise.
+        is_integer: Whether they are integers; False if unknown.
+        is_gray: Whether one channel stands for all colors; False if unknown.
     """
 
     is_integer: bool
@@ -162,7 +162,7 @@ class Contents(NamedTuple):
 
 
 def contents(path: str) -> Contents:
-    """Returns what values a picture file has, as far as that can be found out."""
+    """Returns the kind of values in a picture file, as far as that can be determined."""
     try:
         oiio = module()
     except OSError:
@@ -190,12 +190,12 @@ def _is_png(path: str) -> bool:
 
 @reads_any_name
 def read_pixels(path: Path) -> Pixels:
-    """Reads a picture file as it is, without a conversion of alpha or color.
+    """Reads a picture file without converting alpha or colors.
 
     Raises:
-        ValueError: It has neither one, two, three nor four channels, nor those of an RGB image.
-        MemoryError: It is larger than the memory that is free, by the size in its header.
-        OSError: It is no picture that OpenImageIO reads, or it is damaged.
+        ValueError: The channels are neither gray nor RGB, with or without alpha.
+        MemoryError: By the size in its header, it is larger than the free memory.
+        OSError: OpenImageIO cannot read it, or it is damaged.
     """
     oiio = module()
     reader = _opened(path)
@@ -212,7 +212,7 @@ def read_pixels(path: Path) -> Pixels:
         stated = _stated(reader.format_name(), spec)
         values = reader.read_image(read_as)
         failure = said(reader)
-        # Readers of JPEG files also tell of what does no harm.
+        # Readers of JPEG files also report harmless problems.
         if values is None or (_CUT_OFF in failure if stated.format == "jpeg" else failure):
             raise OSError(_unreadable(path, failure))
         is_straight = bool(spec.get_int_attribute("oiio:UnassociatedAlpha", 0))
@@ -224,7 +224,7 @@ def read_pixels(path: Path) -> Pixels:
 
 
 def _left_out(reader: Any, spec: Any, channels: Sequence[int]) -> str:
-    """Returns what a file holds beside some channels of its first image, in words."""
+    """Returns a text about unread channels and images of a file; empty if there are none."""
     found = []
     names = [name for k, name in enumerate(spec.channelnames) if k not in channels]
     if names:
@@ -237,10 +237,10 @@ def _left_out(reader: Any, spec: Any, channels: Sequence[int]) -> str:
 
 @reads_any_name
 def read_stated(path: Path) -> tuple[Stated, int, bool]:
-    """Returns what a picture file says of itself, and reads no pixels.
+    """Reads the metadata of a picture file, but no pixels.
 
     Returns:
-        What it says, the number of channels that count, and whether they are floats.
+        The metadata, the number of channels that count, and whether they are floats.
 
     Raises:
         MemoryError: As for `read_pixels`.
@@ -268,10 +268,10 @@ def _opened(path: Path) -> Any:
 
 
 def _check_memory(spec: Any, read_as: str) -> None:
-    """Raises MemoryError where a picture cannot be held, before anything of it is decoded."""
+    """Raises MemoryError if a picture would not fit into memory, before any of it is decoded."""
     size = np.dtype(read_as.replace("float", "float32")).itemsize
     read = spec.width * spec.height * spec.nchannels * size
-    # With the rows in our order; more bits than 8 become floats.
+    # A copy in our row order; integers of more than 8 bits become floats.
     kept = spec.full_width * spec.full_height * min(max(spec.nchannels, 3), _MOST_CHANNELS)
     needed = read + kept * (1 if size == 1 else 8)
     free, why = free_memory()
@@ -308,10 +308,10 @@ def _unreadable(path: Path, reason: str) -> str:
 
 
 def _channels(names: list[str]) -> list[int]:
-    """Returns which channels are gray, or red, green and blue, each with or without alpha."""
+    """Returns the indices of the channels: gray, or red, green and blue, then alpha if present."""
     by_name = {name.upper(): index for index, name in enumerate(names)}
     if "RY" in by_name or "BY" in by_name:
-        return []  # Luminance, with colors of fewer pixels.
+        return []  # Luminance with subsampled chroma.
     for colors in (("R", "G", "B"), ("Y",)):
         if all(name in by_name for name in colors):
             return [by_name[name] for name in (*colors, "A") if name in by_name]
@@ -319,7 +319,7 @@ def _channels(names: list[str]) -> list[int]:
 
 
 def _on_canvas(values: NDArray[Any], spec: Any) -> NDArray[Any]:
-    """Returns the whole picture of a file that holds a part of it, or more; 0 elsewhere."""
+    """Returns the full display window, where the file's data window differs; 0 elsewhere."""
     left, top = spec.x - spec.full_x, spec.y - spec.full_y
     height, width = spec.full_height, spec.full_width
     if (left, top, height, width) == (0, 0, *values.shape[:2]):
@@ -335,10 +335,10 @@ def _on_canvas(values: NDArray[Any], spec: Any) -> NDArray[Any]:
 
 @reads_any_name
 def text_attribute(path: Path, name: str) -> str:
-    """Returns a text that a picture file says of itself; empty where it says none.
+    """Returns a text attribute of a picture file; empty if absent.
 
     Raises:
-        OSError: It cannot be read.
+        OSError: The file cannot be read.
     """
     reader = module().ImageInput.open(str(path))
     if reader is None:
@@ -351,15 +351,15 @@ def text_attribute(path: Path, name: str) -> str:
 
 @reads_any_name
 def check_whole(path: Path, levels: int = 1) -> None:
-    """Reads a file that was written, band by band: writers say nothing of what fails at the end.
+    """Reads a written file back, band by band: writers do not report failures at the end.
 
     Args:
         path: The file.
-        levels: How many it has, at least: where the end of a TIFF file is cut off, the last ones
-            are not missed.
+        levels: Its least number of levels: a truncated TIFF file may lack the last ones without an
+            error.
 
     Raises:
-        OSError: It cannot be read as a whole.
+        OSError: It cannot be read completely.
     """
     reader = module().ImageInput.open(str(path))
     if reader is None:
@@ -375,7 +375,7 @@ def check_whole(path: Path, levels: int = 1) -> None:
 
 
 def _levels_read(reader: Any) -> int:
-    """Returns how many levels a file has; 0 where not all of it can be read."""
+    """Returns the number of levels of a file; 0 if it cannot be read completely."""
     found = set()
     for image, level, first, end in _bands(reader):
         if not _is_read(reader, image, level, first, end):
@@ -385,9 +385,9 @@ def _levels_read(reader: Any) -> int:
 
 
 def _bands(reader: Any) -> Iterator[tuple[int, int, int, int]]:
-    """Yields each image of a file, in bands: the number of it and of its level, first and last row.
+    """Yields bands of all images of a file: numbers of image and level, first and end row.
 
-    Levels are parts of an image in some formats, and images in others.
+    Some formats store levels as parts of an image, others as images.
     """
     for image in itertools.count():
         for level in itertools.count():
@@ -427,18 +427,17 @@ def write_texture(
 ) -> None:
     """Writes levels, rows from the top, as a tiled mip-mapped TIFF file.
 
-    The levels go through OpenImageIO's own texture maker, which takes the images of all levels, so
-    that a file is what renderers know.
-
+    OpenImageIO's own texture maker writes the file, from images of all levels, so that renderers
+    accept it.
     Args:
-        path: The file; replaced where it exists. A failure may leave a part of it.
+        path: The file; replaced if it exists. A failure may leave an incomplete file.
         levels: (h, w, c) arrays of floats, or bytes, from the full size down to 1 x 1.
         pixel_type: "uint8" or "float".
-        color_space: What to say in `oiio:ColorSpace`.
-        wrap_modes: What to say in `wrapmodes`, such as "periodic,clamp".
+        color_space: Value of `oiio:ColorSpace`.
+        wrap_modes: Value of `wrapmodes`, such as "periodic,clamp".
         has_alpha: Whether a fourth channel is alpha, or one more independent channel.
         check: Called before each level.
-        description: What to say in `ImageDescription`.
+        description: Value of `ImageDescription`.
 
     Raises:
         OSError: The file cannot be written.
@@ -476,9 +475,9 @@ def write_texture(
 
 
 def _work_folder(path: Path) -> str:
-    """Returns a folder for temporary files whose path the texture maker does not misread.
+    """Returns a temporary folder whose path the texture maker does not misread.
 
-    It gets the paths of all levels in one string, and puts digits for the '%' in a path.
+    The texture maker gets the paths of all levels in one string, and replaces '%' by digits.
     """
     folders = (tempfile.gettempdir(), str(path.parent))
     for folder in folders:
@@ -491,7 +490,7 @@ def _work_folder(path: Path) -> str:
 
 
 def _write_level(path: str, buffer: Any, number: int) -> None:
-    """Writes a level and opens it again: the texture maker aborts the process if it cannot."""
+    """Writes a level and reads it back: the texture maker aborts the process if it cannot."""
     if not buffer.write(path):
         raise OSError(f"cannot write level {number} to '{path}': {said(buffer)}")
     reader = module().ImageInput.open(path)
@@ -501,7 +500,7 @@ def _write_level(path: str, buffer: Any, number: int) -> None:
 
 
 def _buffer(pixels: NDArray[Any], has_alpha: bool) -> Any:
-    """Returns an ImageBuf that says what is alpha."""
+    """Returns an ImageBuf whose alpha channel is marked."""
     buffer = module().ImageBuf(pixels)
     spec = buffer.specmod()
     if pixels.shape[2] < 3:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Pictures that are stored turned or mirrored, as EXIF says."""
+"""Orientation of pictures by EXIF."""
 
 from typing import Any
 
@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 
 def turned(values: NDArray[Any], orientation: int) -> NDArray[Any]:
-    """Returns a picture upright: rows from the top, as they are stored with an orientation."""
+    """Returns an upright picture, rows from the top, of one stored with an EXIF orientation."""
     if orientation in {5, 6, 7, 8}:
         values = values.swapaxes(0, 1)
     if orientation in {2, 3, 6, 7}:

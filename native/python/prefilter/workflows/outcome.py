@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What work ends with."""
+"""Results of work, and reasons of failures."""
 
 import os
 from collections.abc import Iterable
@@ -10,11 +10,11 @@ from pathlib import Path
 from .wording import listed
 
 FAILURES = (ValueError, OSError, MemoryError)
-"""What work raises for a reason that the user can act on."""
+"""Exceptions that work raises for reasons that the user can act on."""
 
 
 def reason(error: BaseException) -> str:
-    """Returns what an error says: one of the system without its number."""
+    """Returns the text of an error; system errors without their number."""
     if isinstance(error, MemoryError):
         return f"there is not enough memory{f': {error}' if str(error) else ''}"
     if not isinstance(error, OSError) or error.strerror is None:
@@ -25,15 +25,15 @@ def reason(error: BaseException) -> str:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What was written, and what the user should know about it.
+    """A summary of what work has produced, with warnings and notes for the user.
 
     Attributes:
         summary: One line.
-        images: The names of the images that were made.
-        objects: The names of the objects that show the results.
-        files: The files that were written.
-        warnings: What was left out or went less than well, and why.
-        notes: More that is good to know.
+        images: Names of the images that were made.
+        objects: Names of the objects that show the results.
+        files: Files that were written.
+        warnings: Omissions and problems, with their reasons.
+        notes: Further information.
     """
 
     summary: str
@@ -45,5 +45,5 @@ class Outcome:
 
 
 def up_to_date(targets: Iterable[Path]) -> str:
-    """Returns what is told of files that need not be made again."""
+    """Returns the message about files that are up to date."""
     return f"Up to date: {listed(map(str, targets))}"

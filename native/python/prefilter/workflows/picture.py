@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Pictures as arrays, and the light that their texels stand for."""
+"""Pictures as arrays, and their conversion from and to scene-linear light."""
 
 from dataclasses import dataclass, replace
 from enum import Enum
@@ -17,12 +17,12 @@ from .openimageio import Check
 
 FloatArray = NDArray[np.float32]
 Texels = NDArray[Any]
-"""Of floats or of bytes."""
+"""Floats or bytes."""
 
 _INDEPENDENT = frozenset({"CHANNEL_PACKED", "NONE"})
 _VALUES_A_BAND = 1 << 20
 LINEAR_REC709_NAMES = frozenset({"Linear", "Linear Rec.709"})
-"""The scene-linear spaces whose colors the curve of sRGB encodes."""
+"""Names of scene-linear spaces with the primaries of Rec. 709."""
 
 
 class Encoding(Enum):
@@ -36,29 +36,29 @@ class Encoding(Enum):
 
 @dataclass(frozen=True)
 class Picture:
-    """The pixels of an image, and what is needed to read them as light.
+    """The pixels of an image, with the information needed to interpret their colors.
 
     Attributes:
-        name: What it is called.
+        name: The image's name.
         full_name: The name, and the file that Blender's datablock is linked from.
-        texels: (height, width, 3 or 4) values as Blender keeps them, floats or bytes, row 0 at the
-            bottom. An alpha that is 1 everywhere is left out.
+        texels: (height, width, 3 or 4) values as Blender stores them, floats or bytes, row 0 at the
+            bottom. An alpha of 1 everywhere is omitted.
         is_float: Whether they are floats instead of bytes.
-        is_integer: Whether the values come from integers, of bytes or of a file of more bits.
+        is_integer: Whether the values come from integers, of any number of bits.
         encoding: How `texels` relate to scene-linear values.
         colorspace: The name of its color space.
-        is_data: Whether the color space says that the values are no colors.
-        alpha_mode: What alpha means, as Blender names it: STRAIGHT, PREMUL, CHANNEL_PACKED or NONE.
+        is_data: Whether the color space says that the values are not colors.
+        alpha_mode: Meaning of alpha, in Blender's terms: STRAIGHT, PREMUL, CHANNEL_PACKED or NONE.
         linear_space: The name of the scene-linear space.
         ocio_config: Path of the OpenColorIO configuration.
-        covers: Whether alpha is known to be coverage, whatever the alpha mode.
+        covers: Whether alpha is coverage, whatever the alpha mode.
         is_gray: Whether the file has one channel for all colors.
-        space: The color space that `Encoding.SPACE` encodes in, and whose primaries the light has;
-            None for `linear_space`.
-        outside: The share of texels whose colors are beyond the range of sRGB, although they are
-            within that of their own color space.
-        orientation: That of EXIF, where it was not heeded; 1 is upright.
-        left_out: What else its file holds, in words; empty for nothing.
+        space: The color space that `Encoding.SPACE` encodes, which also defines the primaries; None
+            for `linear_space`.
+        outside: The share of texels whose colors are outside of sRGB's range, but inside that of
+            their own color space.
+        orientation: EXIF orientation that was not applied; 1 is upright.
+        left_out: Unread contents of its file, in words; empty for none.
     """
 
     name: str
@@ -81,7 +81,7 @@ class Picture:
 
     @property
     def reading_warnings(self) -> list[str]:
-        """Warnings of what its file holds, and was not read."""
+        """Warnings about unread contents of its file."""
         return [f"'{self.name}' also has {self.left_out}: not read"] if self.left_out else []
 
     @property
@@ -92,14 +92,14 @@ class Picture:
 
     @property
     def stored(self) -> FloatArray:
-        """The texels as floats, as Blender gives them out; made anew of bytes."""
+        """The texels as floats, as Blender returns them; converted if stored as bytes."""
         if self.texels.dtype == np.uint8:
             return _looked_up(self.texels, _BYTE_VALUES, _BYTE_VALUES)
         return self.texels
 
     @property
     def alpha_is_coverage(self) -> bool:
-        """Whether there is an alpha channel that says how much of a texel is covered."""
+        """Whether there is an alpha channel that holds coverage."""
         known = self.covers or self.alpha_mode not in _INDEPENDENT
         return self.shape[2] == 4 and known and not self.is_data
 
@@ -110,21 +110,21 @@ class Picture:
 
     @property
     def alpha_is_straight(self) -> bool:
-        """Whether colors have to be multiplied by alpha before they are filtered."""
+        """Whether colors must be multiplied by alpha before they are filtered."""
         return self.alpha_is_coverage and (not self.is_float or self.alpha_mode in _INDEPENDENT)
 
 
-# Blender's own way from bytes to floats.
+# Blender converts bytes to floats like this.
 _BYTE_VALUES = np.arange(256, dtype=np.float32) * np.float32(1 / 255)
 _DECODED_BYTES = prefilter.to_linear(_BYTE_VALUES[:, None, None])[:, 0, 0]
 
 
-# A large image leaves no memory for a second one of floats: a band is copied, and written to memory
-# that was read before.
+# A large image may leave no memory for a second one of floats: bands are copied into memory that
+# has already been read.
 
 
 def without_fourth(texels: Texels) -> Texels:
-    """Returns texels of one axis without the fourth of their channels, in the same memory."""
+    """Removes the fourth channel of flat texels in place, and returns the shortened array."""
     count = len(texels) // 4
     for start in range(0, count, _VALUES_A_BAND):
         end = min(start + _VALUES_A_BAND, count)
@@ -136,7 +136,7 @@ def without_fourth(texels: Texels) -> Texels:
 def _looked_up(
     texels: NDArray[np.uint8], colors: FloatArray, alphas: FloatArray, check: Check = lambda: None
 ) -> FloatArray:
-    """Returns the values that bytes stand for, by two tables."""
+    """Converts bytes by one lookup table for colors and one for alpha."""
     values = np.empty(texels.shape, np.float32)
     rows = max(1, _VALUES_A_BAND // (texels.shape[1] * texels.shape[2]))
     for start in range(0, len(texels), rows):
@@ -149,7 +149,7 @@ def _looked_up(
 
 
 def with_coverage(picture: Picture) -> Picture:
-    """Returns the picture with an alpha of 1, unless it has one or its channels are independent."""
+    """Adds an alpha of 1, unless the picture has alpha or its channels are independent."""
     height, width, channels = picture.shape
     if channels == 4 or picture.is_data or picture.alpha_mode in _INDEPENDENT:
         return picture
@@ -160,15 +160,15 @@ def with_coverage(picture: Picture) -> Picture:
 
 
 def scene_linear(picture: Picture, check: Check = lambda: None) -> FloatArray:
-    """Returns the picture's values as light, with alpha as it is stored.
+    """Returns the picture's values as light; alpha is unchanged.
 
     Args:
         picture: The picture.
-        check: Called between the parts of a conversion that takes long.
+        check: Called between stages of a slow conversion.
 
     Raises:
         ValueError: The color space cannot be decoded.
-        OSError: It needs OpenImageIO's Python module, which is missing.
+        OSError: OpenImageIO's Python module is needed and missing.
     """
     texels = picture.texels
     if texels.dtype == np.uint8 and picture.encoding is Encoding.SRGB:
@@ -177,7 +177,7 @@ def scene_linear(picture: Picture, check: Check = lambda: None) -> FloatArray:
 
 
 def light_or_bytes(picture: Picture, check: Check = lambda: None) -> tuple[Texels, str]:
-    """Returns what `prefilter` takes for the picture, and its `encoding`: bytes where it can.
+    """Returns texels for `prefilter`'s filters, and their `encoding`: bytes where possible.
 
     Args:
         picture: The picture.
@@ -196,29 +196,29 @@ def encoded(picture: Picture, linear: FloatArray, check: Check = lambda: None) -
     """Returns scene-linear values as `picture` stores them: the inverse of `scene_linear`.
 
     Args:
-        picture: What says how.
+        picture: The picture that defines the encoding.
         linear: The values.
-        check: Called between the parts of a conversion that takes long.
+        check: Called between stages of a slow conversion.
 
     Raises:
         ValueError: The color space cannot be encoded.
-        OSError: It needs OpenImageIO's Python module, which is missing.
+        OSError: OpenImageIO's Python module is needed and missing.
     """
     return _convert(picture, linear, check, decode=False)
 
 
 def as_srgb(picture: Picture) -> Picture:
-    """Returns the picture with its values taken for sRGB-encoded colors."""
+    """Returns the picture with its values interpreted as sRGB-encoded colors."""
     if picture.linear_space in LINEAR_REC709_NAMES:
         return replace(picture, encoding=Encoding.SRGB)
     return replace(picture, encoding=Encoding.OCIO, colorspace="sRGB")
 
 
 def in_rec709(picture: Picture, light: FloatArray, check: Check = lambda: None) -> FloatArray:
-    """Returns scene-linear values, of the primaries of Rec. 709 now.
+    """Converts scene-linear values to the primaries of Rec. 709.
 
     Args:
-        picture: What says which primaries they have; data are returned as they are.
+        picture: The picture that defines the primaries; data are returned unchanged.
         light: The values, with alpha as it is stored.
         check: As for `scene_linear`.
 
@@ -239,17 +239,17 @@ def in_rec709(picture: Picture, light: FloatArray, check: Check = lambda: None) 
 def automatic_bounds(
     linear: FloatArray, *, is_associated: bool = False
 ) -> tuple[float, float | None]:
-    """Returns the range of levels: 0 to 1, and wider where the image is.
+    """Returns the value range of levels: 0 to 1, extended to the image's own range.
 
-    Colors that are multiplied by alpha are solved for without a limit above, which would tear them
-    from alpha; then `capped` sets one.
+    Associated colors get no upper limit, because a solver's limit would change their ratio to
+    alpha; `capped` limits them afterwards.
     """
     low = linear.min(where=np.isfinite(linear), initial=0.0)
     return float(low), None if is_associated else _highest(linear)
 
 
 def capped(level: FloatArray, linear: FloatArray) -> FloatArray:
-    """Returns a level with associated alpha: neither that nor colors are above the image's."""
+    """Limits alpha and colors of an associated level to the image's highest values."""
     divisor = np.maximum(level[..., 3:] / np.float32(_highest(linear[..., 3:])), 1)
     made: FloatArray = level / divisor
     np.minimum(made[..., :3], _highest(linear[..., :3]), out=made[..., :3])

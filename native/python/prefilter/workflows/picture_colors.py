@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The color space of a picture file, by all that the file says of it."""
+"""The color space of a picture file, from all its metadata."""
 
 import struct
 from collections.abc import Iterator, Mapping
@@ -15,7 +15,7 @@ _CICP_PRIMARIES = {1: "rec709", 9: "rec2020", 12: "p3d65"}
 _CICP_CURVES = {4: "g22", 8: "lin", 13: "srgb"}
 _PNG_UNIT = 100000
 _UNKNOWN = frozenset({"", "unknown"})
-# What readers say of files that say nothing.
+# Names that readers report for files without color metadata.
 _TAKEN_FOR_GRANTED = {
     "openexr": frozenset({"Linear", "lin_rec709", "lin_srgb", "linear", "scene_linear"}),
     "pnm": frozenset({"Rec709"}),
@@ -25,7 +25,7 @@ _WAY_OUT = "--colorspace says which color space to take it for"
 
 
 def orientation_of(stated: Stated, embedded: Embedded) -> int:
-    """Returns the orientation of EXIF: 1 to 8, of which 1 is upright."""
+    """Returns the EXIF orientation, 1 to 8; 1 is upright."""
     if stated.orientation != 1:
         return stated.orientation
     return exif_of(embedded.exif).orientation
@@ -39,18 +39,18 @@ def space_of(
     is_gray: bool,
     colorspace: str = space_names.AUTO,
 ) -> Space | None:
-    """Returns the color space of a picture; None where its values are no colors.
+    """Returns the color space of a picture; None if its values are not colors.
 
     Args:
-        stated: What OpenImageIO reads of it.
-        embedded: What is read by itself.
-        is_integer: Whether it holds integers, which are sRGB where nothing is said; floats are
-            linear Rec. 709.
+        stated: Metadata read by OpenImageIO.
+        embedded: Metadata read by our own parsers.
+        is_integer: Whether values are integers, which default to sRGB; floats default to linear
+            Rec. 709.
         is_gray: Whether it has one channel for all colors.
-        colorspace: The name of a space that counts whatever the file says, or `AUTO`.
+        colorspace: The name of a space that overrides the file's metadata, or `AUTO`.
 
     Raises:
-        ValueError: The space is of no known kind, or the file contradicts itself.
+        ValueError: The kind of space is unknown, or the metadata contradict one another.
     """
     if stated.model:
         raise ValueError(
@@ -61,7 +61,7 @@ def space_of(
         return color_spaces.named(colorspace)
     if space_names.is_data_name(stated.interop_id):
         return None
-    # The first claim counts: the order is that of the PNG specification, after the name.
+    # The first claim counts. The name comes first, then the order of the PNG specification.
     claims = list(_claims(stated, embedded))
     if not claims:
         if space_names.is_data_name(stated.color_space):
@@ -77,7 +77,7 @@ def space_of(
 
 
 def _check_agreement(claims: list[tuple[str, Space]]) -> None:
-    """Raises ValueError where a name and something else say different things."""
+    """Raises ValueError if the name contradicts the other metadata."""
     (first, space), *others = claims
     for other, found in others:
         if first.startswith("colorInteropID") and not space.agrees(found):
@@ -85,7 +85,7 @@ def _check_agreement(claims: list[tuple[str, Space]]) -> None:
 
 
 def _claims(stated: Stated, embedded: Embedded) -> Iterator[tuple[str, Space]]:
-    """Yields what says which space, and the space; nothing where nothing is said."""
+    """Yields each source of color metadata, in words, with the space that it names."""
     if stated.interop_id not in _UNKNOWN:
         what = f"colorInteropID '{stated.interop_id}'"
         yield what, _named(stated.interop_id, what)
@@ -103,7 +103,7 @@ def _claims(stated: Stated, embedded: Embedded) -> Iterator[tuple[str, Space]]:
     name = stated.color_space
     found = None if name in _UNKNOWN else color_spaces.named(name)
     if chunks and found is not None and not found.is_rec709:
-        # OpenImageIO before 3.1 keeps the name in a text.
+        # OpenImageIO before 3.1 stores the name in a text attribute.
         yield f"its color space '{name}'", found
         return
     if b"gAMA" in chunks:

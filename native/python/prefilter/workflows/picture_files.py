@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Picture files as pictures, with the values that Blender has of them."""
+"""Reading picture files, with the same values as Blender has of them."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -23,7 +23,7 @@ from .space_names import AUTO
 
 _LINEAR, _DATA, _SRGB = "Linear Rec.709", "Non-Color", "sRGB"
 _UNSEEN = np.float32(1 / 2048)
-"""How far colors may be beyond a range whose ends they become."""
+"""Tolerance for colors slightly beyond a range, which are clipped to it."""
 
 
 def read(
@@ -38,21 +38,21 @@ def read(
 ) -> Picture:
     """Reads a picture file.
 
-    Bytes in sRGB stay bytes, with straight alpha. Of more bits than 8 become floats as light, with
-    associated alpha, as floats are. Colors of other spaces become linear Rec. 709.
+    sRGB bytes stay bytes, with straight alpha. Deeper integers become floats of light with
+    associated alpha, like floats. Colors of other spaces become linear Rec. 709.
 
     Args:
-        argument: What the path is called in messages.
+        argument: The path's name in messages.
         path: The file.
-        is_data: Whether its values are no colors: they are then taken as they are.
-        colorspace: The color space that it is taken for; `AUTO` for what the file says.
-        keeps_chunks: Whether it becomes a PNG file, which can say to be in a space of its own.
-        keeps_bytes: Whether bytes of other spaces become bytes in sRGB.
-        turns: Whether it is turned upright as EXIF says.
+        is_data: Whether its values are not colors, and stay as they are.
+        colorspace: The color space to assume; `AUTO` for the one that the file declares.
+        keeps_chunks: Whether the result becomes a PNG file, which can declare the same space.
+        keeps_bytes: Whether bytes of other spaces become sRGB bytes.
+        turns: Whether to apply the EXIF orientation.
 
     Raises:
-        ValueError: Its channels are no image's, or its color space cannot be converted.
-        MemoryError: It is too large for the memory that is free.
+        ValueError: Its channels do not form an image, or its color space cannot be converted.
+        MemoryError: It is too large for the free memory.
         OSError: It cannot be read.
     """
     try:
@@ -99,10 +99,10 @@ def read(
 
 @dataclass(frozen=True)
 class Look:
-    """What a picture file says, before its pixels are read.
+    """Metadata of a picture file, known before its pixels are read.
 
     Attributes:
-        is_plain: Whether it is upright and its colors are those that readers take for granted.
+        is_plain: Whether it is upright and its colors are in the format's default space.
         is_gray: Whether it has one channel for all colors.
     """
 
@@ -111,15 +111,15 @@ class Look:
 
 
 def look(argument: str, path: str, *, is_data: bool) -> Look | None:
-    """Returns what a picture file says; None where OpenImageIO is missing, or does not read it.
+    """Returns metadata of a picture file; None if OpenImageIO is missing or cannot read it.
 
     Args:
-        argument: What the path is called in messages.
+        argument: The path's name in messages.
         path: The file.
-        is_data: Whether its values are no colors.
+        is_data: Whether its values are not colors.
 
     Raises:
-        MemoryError: It is too large for the memory that is free.
+        MemoryError: It is too large for the free memory.
     """
     try:
         stated, channels, is_float = openimageio.read_stated(Path(path))
@@ -149,7 +149,7 @@ def _read_in(
     keeps_chunks: bool,
     keeps_bytes: bool,
 ) -> Picture:
-    """Returns a picture without a name, of values that are in a space; None for data."""
+    """Returns an unnamed picture of values in a color space; None for data."""
     is_byte, is_integer = values.dtype == np.uint8, values.dtype != np.float32
     picture = Picture(
         name="",
@@ -174,7 +174,7 @@ def _read_in(
             texels = values if is_straight else _straight_bytes(values)
             return replace(picture, texels=texels, encoding=Encoding.SPACE, space=space)
         return replace(picture, texels=_light(values, space, is_straight), space=space)
-    # Bytes keep the colors that a straight alpha of 0 hides, as light would not.
+    # Bytes preserve colors where straight alpha is 0; linear light would lose them.
     stays_straight = is_byte and keeps_bytes
     light = _light(values, space, is_straight, is_associated=not stays_straight)
     if not space.is_rec709:
@@ -188,7 +188,7 @@ def _read_in(
 
 
 def _share_outside(light: FloatArray, converted: FloatArray, *, is_associated: bool) -> float:
-    """Returns the share of texels that were within [0, 1], and are no more; hidden ones are not.
+    """Returns the share of visible texels that leave the range [0, 1] by the conversion.
 
     Args:
         light: Colors of one space, and alpha.
@@ -205,7 +205,7 @@ def _share_outside(light: FloatArray, converted: FloatArray, *, is_associated: b
 
 
 def _with_colors(values: NDArray[Any]) -> NDArray[Any]:
-    """Returns three channels, or four with alpha; gray is given to all colors."""
+    """Returns three channels, or four with alpha; gray is repeated."""
     if values.shape[2] > 2:
         return values
     return values[..., [0, 0, 0, 1][: values.shape[2] + 2]]
@@ -230,7 +230,7 @@ def _as_floats(values: NDArray[Any]) -> FloatArray:
 def _light(
     values: NDArray[Any], space: Space, is_straight: bool, *, is_associated: bool = True
 ) -> FloatArray:
-    """Returns values of a space as light of its primaries, with associated or straight alpha."""
+    """Converts values of a color space to light, with associated or straight alpha."""
     floats = _as_floats(values)
     has_alpha = floats.shape[2] == 4
     if space.is_linear and has_alpha and is_straight != is_associated:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Work that tells how much of it is done, and that can be stopped."""
+"""Work that reports its progress and can be canceled."""
 
 from collections.abc import Callable
 from typing import Protocol
@@ -13,29 +13,29 @@ Progress = Callable[[float], bool]
 
 
 class Work(Protocol):
-    """Work on what was read."""
+    """Work on inputs that have been read."""
 
     def compute(self, progress: Progress) -> None:
-        """Computes everything, and writes nothing; may run in another thread."""
+        """Computes the results and writes none; may run in another thread."""
 
     def write(self) -> Outcome:
         """Writes the results."""
 
     def discard(self) -> None:
-        """Removes what is left of results that were not written."""
+        """Removes temporary files of results that were not written."""
 
 
 def go_on(progress: Progress, fraction: float) -> None:
-    """Tells how much is done; raises prefilter.Cancelled if that was to be the end."""
+    """Reports progress; raises prefilter.Cancelled if the work should stop."""
     if not progress(fraction):
         raise _native.Cancelled("cancelled")
 
 
 def share(progress: Progress, start: float, end: float) -> Progress:
-    """Returns what reports the progress of a part of the work, from one fraction to another."""
+    """Returns a callback for a part of the work, from fraction `start` to `end`."""
     return lambda fraction: progress(start + (end - start) * fraction)
 
 
 def parts(progress: Progress, count: int) -> list[Progress]:
-    """Returns what reports the progress of each of several equal parts of the work."""
+    """Returns callbacks for equal parts of the work."""
     return [share(progress, i / count, (i + 1) / count) for i in range(count)]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The surface of scans: settings as the library takes them, what is told of it, file to file."""
+"""Surface reconstruction from scans: settings, reports, and work from files to a file."""
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -40,14 +40,14 @@ _DROPPED = {
     "normalless": Sentence("left out, because they have no normal: {}"),
 }
 _MOST_PLACES = 3
-"""So many positions of phantoms are named."""
+"""Largest number of positions of phantom points to list."""
 _LAST_CLASS = 255
 _FEW = 1e-3
-"""The share of outliers that every scan may have."""
+"""Share of outliers that is normal in any scan."""
 
 
 class Streaming:
-    """Files of points to a file of their surface, without loading either."""
+    """Reconstructs a surface from files of points to a file, without loading either."""
 
     def __init__(
         self,
@@ -57,9 +57,9 @@ class Streaming:
         length: Callable[[float], str],
         viewpoint: Sequence[Sequence[float]] | None = None,
     ) -> None:
-        """Takes what to read, what to write, and how; and what tells a length in words.
+        """Takes the inputs.
 
-        `viewpoint`: see `prefilter.reconstruct`.
+        `length` formats a length for messages. `viewpoint`: see `prefilter.reconstruct`.
         """
         self._viewpoint = viewpoint
         self._sources = sources
@@ -85,21 +85,21 @@ class Streaming:
             )
 
     def write(self) -> Outcome:
-        """Returns what was done."""
+        """Returns the outcome."""
         assert self._report is not None
         return outcome(self._sources, self._target, self._report, self._length)
 
     def discard(self) -> None:
-        """Does nothing: the library leaves nothing beside the target."""
+        """Does nothing: the library leaves no temporary files."""
 
 
 class Step:
-    """One run of a step of the surface of files of points; see `Steps`."""
+    """One run of a step of a reconstruction that is split into steps; see `Steps`."""
 
     def __init__(
         self, steps: Steps, name: str, number: int, target: Path, length: Callable[[float], str]
     ) -> None:
-        """Takes what to do: which run of which step; and the file of the last one."""
+        """Takes the step, the number of its run, and the file that the last step writes."""
         self._steps = steps
         self._name = name
         self._number = number
@@ -116,7 +116,7 @@ class Step:
                 self._steps.run(self._name, self._number, progress)
 
     def write(self) -> Outcome:
-        """Returns what was done."""
+        """Returns the outcome."""
         if self._report is not None:
             return outcome(self._steps.sources, self._target, self._report, self._length)
         path = self._steps.file(self._name, self._number)
@@ -125,12 +125,12 @@ class Step:
         return Outcome(done, files=[str(path)])
 
     def discard(self) -> None:
-        """Does nothing: the library leaves nothing beside what it writes."""
+        """Does nothing: the library leaves no temporary files."""
 
 
 @contextmanager
 def labeled() -> Iterator[None]:
-    """Calls the settings in messages what panels call them."""
+    """A context in which error messages call settings by their labels in panels."""
     try:
         yield
     except ValueError as error:
@@ -141,7 +141,7 @@ def labeled() -> Iterator[None]:
 
 
 def options(settings: ScanSettings) -> dict[str, Any]:
-    """Returns the settings that the library has too."""
+    """Returns the settings as keyword arguments of the library."""
     custom = settings.isovalue == "custom"
     size = settings.voxel_size if settings.resolution == "size" else None
     depth = settings.depth if settings.resolution == "depth" else None
@@ -166,12 +166,12 @@ def options(settings: ScanSettings) -> dict[str, Any]:
 
 
 def has_connections(path: Path) -> bool:
-    """Returns whether a file is of a kind that may say how its points are connected."""
+    """Returns whether a file's format may hold connections between points."""
     return is_ply(path)
 
 
 def as_classes(text: str) -> list[int] | None:
-    """Returns the numbers of classes in a text, None for none; raises ValueError for others."""
+    """Parses numbers of classes; None for an empty text. Raises ValueError for other text."""
     words = text.replace(",", " ").split()
     if not all(word.isdecimal() and int(word) <= _LAST_CLASS for word in words):
         raise ValueError(
@@ -182,11 +182,11 @@ def as_classes(text: str) -> list[int] | None:
 
 
 def told(report: "prefilter.ReconstructionReport", length: Callable[[float], str]) -> str:
-    """Returns numbers about a surface, in words.
+    """Returns a summary of a reconstruction's numbers.
 
     Args:
-        report: About the surface.
-        length: Returns a length in words.
+        report: The report on the surface.
+        length: Formats a length for messages.
     """
     points, triangles = amount(report.points, "point"), amount(report.triangles, "triangle")
     cell = length(report.cell)
@@ -194,7 +194,7 @@ def told(report: "prefilter.ReconstructionReport", length: Callable[[float], str
 
 
 def merged(length: str) -> str:
-    """Returns that coordinates have been rounded to a length, as a warning."""
+    """Returns a warning that coordinates have been rounded to a length."""
     return Sentence(
         "coordinates were rounded to {} before they were read, as single precision does far from "
         "the origin: points are merged. Export the scan in double precision, or nearer the origin",
@@ -203,7 +203,7 @@ def merged(length: str) -> str:
 
 
 def _phantoms(report: "prefilter.ReconstructionReport", origin: Sequence[float]) -> Iterator[str]:
-    """Yields which points were left out as they are at one place."""
+    """Yields warnings about points left out because many share one position."""
     for position, count in report.phantoms[:_MOST_PLACES]:
         place = ", ".join(f"{x + o + 0.0:.6g}" for x, o in zip(position, origin, strict=True))
         text = (
@@ -218,7 +218,7 @@ def _phantoms(report: "prefilter.ReconstructionReport", origin: Sequence[float])
 
 
 def _contradiction(report: "prefilter.ReconstructionReport") -> Iterator[str]:
-    """Yields what became of given normals that contradict each other."""
+    """Yields warnings about given normals that contradict one another."""
     if report.is_contradictory:
         share = f"{report.contradiction:.2f}"
         if report.is_reoriented:
@@ -239,12 +239,12 @@ def oddities(
     length: Callable[[float], str],
     origin: Sequence[float] = (0.0, 0.0, 0.0),
 ) -> list[str]:
-    """Returns what is odd about the points, as warnings.
+    """Returns warnings about the points.
 
     Args:
-        report: About the surface.
-        length: Returns a length in words.
-        origin: Where the origin of the points' coordinates is.
+        report: The report on the surface.
+        length: Formats a length for messages.
+        origin: Position of the origin of the points' coordinates.
     """
     found: list[str] = [*report.warnings, *_phantoms(report, origin)]
     for cause, dropped in _DROPPED.items():
@@ -276,7 +276,7 @@ def oddities(
 
 
 def directions(report: "prefilter.ReconstructionReport") -> list[str]:
-    """Returns where normals point, as notes."""
+    """Returns notes about the direction of normals."""
     found: list[str] = [_DIRECTIONS[direction] for direction in report.directions]
     if report.estimated:
         text = "normals that are zero or no numbers were estimated: those of {}"
@@ -299,7 +299,7 @@ def directions(report: "prefilter.ReconstructionReport") -> list[str]:
 
 
 def openings(report: "prefilter.ReconstructionReport") -> list[str]:
-    """Returns where the surface is open, as notes."""
+    """Returns notes about openings of the surface."""
     found: list[str] = []
     if report.cut:
         cut = f"{100.0 * report.cut:.2g} %"
@@ -319,7 +319,7 @@ def outcome(
     length: Callable[[float], str],
     objects: Sequence[str] = (),
 ) -> Outcome:
-    """Returns what was done, as users read it."""
+    """Returns the outcome for the user."""
     several = len(sources) > 1
     notes = [f"read {listed(path.name for path in sources)}"] if several else []
     if report.alignment is not None:

@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Names of color spaces. Commands that find all up to date need no more, so this loads no numpy.
+"""Names of color spaces. Loads no numpy, so that commands that find all up to date start fast.
 
-They are those of the ASWF Color Interop Forum, such as "lin_ap1_scene": curve, primaries, and
-whether values are relative to a scene or to a display; and what Blender and others call these.
+Canonical names are those of the ASWF Color Interop Forum, such as "lin_ap1_scene": curve,
+primaries, and whether values are scene- or display-referred. Blender and others use aliases.
 """
 
 import re
 
 AUTO = "auto"
-"""The color space that a file says it has."""
+"""The color space that a file declares."""
 DATA = "data"
-"""Values that are no colors."""
+"""Values that are not colors."""
 REC709_LINEAR = "lin_rec709_scene"
 SRGB = "srgb_rec709_scene"
 
@@ -60,22 +60,22 @@ _ALIASES = {
 }
 _GAMMA = re.compile(r"Gamma(\d+(?:\.\d+)?)")
 EXAMPLES = ("sRGB", "Linear Rec.709", "ACEScg", "Display P3", "Adobe RGB", "data")
-"""Names for the help of commands."""
+"""Names shown in the help of commands."""
 
 
 _PATTERN = re.compile(r"(lin|srgbe?|g[1-9]\d)_(\w+?)(?:_(?:scene|display))?")
 
 
 def canonical(name: str) -> str:
-    """Returns the Color Interop Forum's name for what others call a space; else the name."""
+    """Returns the Color Interop Forum's name for an alias; other names unchanged."""
     return _ALIASES.get(name.strip().lower(), name.strip())
 
 
 def parts(name: str) -> tuple[str, str] | None:
-    """Returns the names of the curve and of the primaries of a space; None where unknown.
+    """Returns the names of a space's curve and primaries; None if unknown.
 
-    A curve is "lin", "srgb", "srgbe" or, such as "g22", ten times an exponent; or "Gamma" with the
-    exponent itself.
+    A curve is "lin", "srgb" or "srgbe"; "g22" and the like for ten times an exponent; or "Gamma"
+    followed by the exponent itself.
     """
     known = canonical(name)
     gamma = _GAMMA.fullmatch(known)
@@ -88,20 +88,20 @@ def parts(name: str) -> tuple[str, str] | None:
 
 
 def is_known(name: str) -> bool:
-    """Tells whether a name is of a space that colors can be converted from."""
+    """Tells whether colors of the named space can be converted."""
     return parts(name) is not None
 
 
 def is_data_name(name: str) -> bool:
-    """Tells whether a name says that values are no colors."""
+    """Tells whether a name means that values are not colors."""
     return canonical(name).lower() == DATA
 
 
 def checked_name(name: str) -> str:
-    """Returns the name of a space, as a flag gives it.
+    """Returns the name of a space, as given by a flag, if it is known.
 
     Raises:
-        ValueError: It is unknown.
+        ValueError: The name is unknown.
     """
     if name != AUTO and not is_data_name(name) and not is_known(name):
         raise ValueError(
@@ -112,13 +112,13 @@ def checked_name(name: str) -> str:
 
 
 def chromaticities_of(name: str) -> tuple[float, ...] | None:
-    """Returns x and y of red, green, blue and white of a linear space; None where unknown."""
+    """Returns x and y of red, green, blue and white of a linear space; None if unknown."""
     found = parts(name)
     return CHROMATICITIES[found[1]] if found is not None and found[0] == "lin" else None
 
 
 def interop_name(name: str) -> str:
-    """Returns the Color Interop Forum's name of a space; empty where there is none."""
+    """Returns the Color Interop Forum's name of a space; empty if there is none."""
     known = canonical(name)
     if known == DATA:
         return DATA

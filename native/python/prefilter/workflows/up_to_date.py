@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Whether files were made of just what they would be made of now: most kinds can keep that."""
+"""Fingerprints of inputs, stored in output files, to detect files that are up to date."""
 
 import hashlib
 import json
@@ -20,18 +20,18 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 KEY = "PrefilterInputs"
-"""Under which key files keep the fingerprint; TIFF files in their description."""
+"""Key of the fingerprint in files; TIFF files have it in their description."""
 
 LEVELS = (".ktx2", ".exr", ".tif", ".tiff", ".tx")
-"""The files of levels that can keep one: in DDS there is no place, and PNG files are several."""
+"""Extensions of level files that can store it: DDS cannot, and PNG makes several files."""
 PICTURES = (".png", ".exr")
-"""The same of pictures of one level."""
+"""Extensions of single pictures that can store it."""
 MESHES = (".obj", ".ply", ".stl", ".glb")
-"""The same of meshes."""
+"""Extensions of mesh files that can store it."""
 IN_DESCRIPTION = re.compile(rf" ?\b{KEY}=([0-9a-f]{{64}})\b")
-"""What the description of a TIFF file has of it."""
+"""The fingerprint in the description of a TIFF file."""
 _GZIP = b"\x1f\x8b"
-# Texts, whose fonts are files, addresses, and what may stand for either.
+# Text, whose fonts are files; addresses; and escapes or entities that may stand for either.
 _ELSEWHERE = re.compile(
     rb"<!ENTITY|\\|<([\w.-]+:)?text\b|@import|(href|src|url)\s*[=(]\s*[\"']?\s*(?!#|data:|[\"'\s])",
     re.IGNORECASE,
@@ -41,13 +41,13 @@ _MOST_HEADER = 1 << 20
 
 
 def fingerprint(sources: Iterable[str | os.PathLike[str]], settings: Mapping[str, Any]) -> str:
-    """Returns a number, as text, of what is read and of how it is used.
+    """Returns a fingerprint, as text, of inputs and settings.
 
-    The contents of files count, and not their names or times.
+    It depends on the files' contents, not on their names or times.
 
     Args:
-        sources: The files, in their order; what glTF files refer to counts as well.
-        settings: All that decides what is made of them.
+        sources: The files, in order; buffers that glTF files refer to are included.
+        settings: All settings that affect the result.
 
     Raises:
         OSError: A file cannot be read.
@@ -62,7 +62,7 @@ def fingerprint(sources: Iterable[str | os.PathLike[str]], settings: Mapping[str
 
 
 def fingerprint_of(arrays: Iterable["NDArray[Any]"], settings: Mapping[str, Any]) -> str:
-    """Returns the same of what was read, where that is more than some files."""
+    """Returns a fingerprint of arrays and settings."""
     found = _begun(settings)
     for array in arrays:
         found.update(f"{array.dtype.str} {array.shape} ".encode())
@@ -72,7 +72,7 @@ def fingerprint_of(arrays: Iterable["NDArray[Any]"], settings: Mapping[str, Any]
 
 
 def arrays_of(read: Any) -> "Iterator[NDArray[Any]]":
-    """Yields all that dataclasses, sequences, sets and mappings hold, for `fingerprint_of`."""
+    """Yields all arrays and values in nested dataclasses and containers, for `fingerprint_of`."""
     import numpy as np
 
     if isinstance(read, np.ndarray):
@@ -93,9 +93,9 @@ def arrays_of(read: Any) -> "Iterator[NDArray[Any]]":
 
 
 def stands_alone(drawing: str | os.PathLike[str]) -> bool:
-    """Tells whether all that an SVG file shows is in it: no text, and no address of another file.
+    """Tells whether an SVG file is self-contained: no text, and no reference to another file.
 
-    What is not sure counts as no.
+    In doubt, returns False.
 
     Raises:
         OSError: The file cannot be read.
@@ -112,7 +112,7 @@ def stands_alone(drawing: str | os.PathLike[str]) -> bool:
 
 
 def is_up_to_date(targets: Sequence[Path], number: str) -> bool:
-    """Tells whether files are all there, and have been made of what has this fingerprint."""
+    """Tells whether all files exist and store this fingerprint."""
     for target in targets:
         recover(target.parent)
     try:
@@ -122,10 +122,10 @@ def is_up_to_date(targets: Sequence[Path], number: str) -> bool:
 
 
 def kept(path: Path) -> str:
-    """Returns the fingerprint that a file keeps; empty where it keeps none.
+    """Returns the fingerprint stored in a file; empty if there is none.
 
     Raises:
-        ValueError: The file is of no kind that can, or damaged.
+        ValueError: The file is damaged, or of a format that cannot store one.
         OSError: It cannot be read.
     """
     ending = path.suffix.lower()
@@ -156,7 +156,7 @@ def _begun(settings: Mapping[str, Any]) -> Any:
 
 
 def _exr_text(header: bytes, wanted: str) -> str:
-    """Returns a text of the header of an OpenEXR file; empty where it has none of that name."""
+    """Returns a text attribute from the header of an OpenEXR file; empty if absent."""
     if len(header) < 8 or struct.unpack_from("<I", header)[0] != _EXR_MAGIC:
         raise ValueError("no OpenEXR file")
     at = 8
@@ -175,12 +175,12 @@ def _exr_text(header: bytes, wanted: str) -> str:
 
 
 def referred_files(path: Path) -> list[Path]:
-    """Returns the buffers of a glTF file that are files by themselves."""
+    """Returns the external buffers of a glTF file."""
     if path.suffix.lower() != ".gltf":
         return []
     try:
         buffers = json.loads(path.read_bytes()).get("buffers", [])
         names = [unquote(one.get("uri", "data:")) for one in buffers]
     except (ValueError, AttributeError, TypeError):
-        return []  # Its reader says what is wrong.
+        return []  # The mesh reader reports the error.
     return [path.parent / name for name in names if not name.startswith("data:")]

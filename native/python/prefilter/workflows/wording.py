@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Messages, and words that several of them share."""
+"""Translatable sentences and common phrases of messages."""
 
 from collections.abc import Iterable, Sequence, Sized
 from typing import Self
@@ -10,11 +10,11 @@ _SCALES = ((1e9, "billion"), (1e6, "million"))
 
 
 class Sentence(str):
-    """A text in English that keeps what it was put together from, for who translates it.
+    """An English text that remembers its template and values, for translation.
 
     Attributes:
-        template: The text with {} where values are.
-        values: What is filled in; sentences among them are translated too.
+        template: The text with {} for each value.
+        values: The values; sentences among them are translated too.
     """
 
     __slots__ = ("template", "values")
@@ -22,18 +22,18 @@ class Sentence(str):
     values: tuple[object, ...]
 
     def __new__(cls, template: str, *values: object) -> Self:
-        """Fills values in."""
+        """Fills in the values."""
         made = super().__new__(cls, template.format(*values) if values else template)
         made.template, made.values = template, values
         return made
 
     def __str__(self) -> Self:
-        """Returns the sentence; so does `str` of an exception with it."""
+        """Returns the sentence, so that `str` of an exception keeps its type."""
         return self
 
 
 def listed(names: Iterable[str]) -> Sentence:
-    """Returns quoted names with commas between them; of many, the first and how many follow."""
+    """Returns quoted names with commas; for long lists, the first ones and the number of others."""
     quoted = [f"'{name}'" for name in names]
     more = len(quoted) - _MOST_LISTED
     first = ", ".join(quoted[:_MOST_LISTED])
@@ -41,27 +41,27 @@ def listed(names: Iterable[str]) -> Sentence:
 
 
 def joined(separator: str, parts: Sequence[str]) -> Sentence:
-    """Returns texts with something between them."""
+    """Returns texts joined by a separator."""
     return Sentence(separator.join(["{}"] * len(parts)), *parts)
 
 
 def together(parts: Sequence[str]) -> str:
-    """Returns texts with "and" between them."""
+    """Returns texts joined by "and"."""
     return parts[0] if len(parts) == 1 else Sentence("{} and {}", parts[0], together(parts[1:]))
 
 
 def counted(things: Sized, noun: str) -> Sentence:
-    """Returns how many things there are, such as "2 files"."""
+    """Returns a count with its noun, such as "2 files"."""
     return Sentence(f"1 {noun}") if len(things) == 1 else Sentence(f"{{}} {noun}s", len(things))
 
 
 def either(words: Sequence[str]) -> str:
-    """Returns words with commas and "or" between them."""
+    """Returns words joined by commas and "or"."""
     return f"{', '.join(words[:-1])} or {words[-1]}" if len(words) > 1 else "".join(words)
 
 
 def amount(number: float, noun: str) -> Sentence:
-    """Returns how many things there are, rounded where there are very many: "1.6 million edges"."""
+    """Returns an amount with its noun, rounded if large, such as "1.6 million edges"."""
     for scale, name in _SCALES:
         if number >= scale:
             return Sentence(f"{{}} {name} {noun}s", f"{number / scale:.3g}")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""GLSL and HLSL: one text, as HLSL has the same words but for the names of types."""
+"""GLSL and HLSL source: one text, as the languages differ only in the names of types."""
 
 import re
 from collections.abc import Callable
@@ -285,7 +285,7 @@ ivec3 ${name}_pick(${upper}_PARAMETER vec2 uv, float mip_value, ivec2 wrap, floa
 #undef ${upper}_EXTENT
 """
 
-# The terms of a polynomial (sampling_table.h) in vectors, and what these are multiplied by.
+# Terms of a polynomial (sampling_table.h) grouped into vectors, and the vectors of monomials.
 _LINEAR = ("linear", slice(0, 4), "vec4(1.0, p)")
 _SQUARES = ("squares", slice(4, 8), "vec4(p * p, p.x * p.y)")
 _PRODUCTS = ("products", slice(8, 10), "(p.xy * p.z)")
@@ -325,12 +325,12 @@ _HLSL = _Language(
 
 
 def glsl(table: Table, name: str) -> str:
-    """GLSL whose identifiers begin with `name`."""
+    """Returns GLSL whose identifiers begin with `name`."""
     return _source(table, name, _GLSL)
 
 
 def hlsl(table: Table, name: str) -> str:
-    """HLSL whose identifiers begin with `name`."""
+    """Returns HLSL whose identifiers begin with `name`."""
     return _source(table, name, _HLSL)
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""OSL: a shader that reads texels from files, one file a level."""
+"""OSL source: a shader that reads texels from files, one file per level."""
 
 from string import Template
 
@@ -185,7 +185,7 @@ _MONOMIALS = ("1", "p", "q", "f", "p * p", "q * q", "f * f", "p * q", "p * f", "
 
 
 def osl(table: Table, name: str) -> str:
-    """OSL whose shader is called `name`."""
+    """Returns OSL of a shader called `name`."""
     numbers = TableNumbers.of(table)
     terms = numbers.coefficients.shape[1]
     weight = " +\n          ".join(

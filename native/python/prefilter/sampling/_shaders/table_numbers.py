@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""A sampling table as shaders hold it: the same numbers, in the same order, in every language."""
+"""The numbers of a sampling table in the form of shaders, common to all languages."""
 
 import re
 from collections.abc import Iterable
@@ -13,14 +13,14 @@ import numpy.typing as npt
 from ..._border.arguments import as_name
 
 FARTHEST_OFFSET = 64
-"""Offsets of texels from their cell are from -64 to 64 (sampling_table.h)."""
+"""Largest offset of a texel from its cell, in either direction (sampling_table.h)."""
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*")
 _LINE_LENGTH = 100
 
 
 class Section(Protocol):
-    """What shaders need of a TableSection."""
+    """The part of a TableSection that shaders need."""
 
     @property
     def offsets(self) -> npt.NDArray[Any]: ...
@@ -29,7 +29,7 @@ class Section(Protocol):
 
 
 class Table(Protocol):
-    """What shaders need of a SamplingTable."""
+    """The part of a SamplingTable that shaders need."""
 
     @property
     def filter(self) -> str: ...
@@ -46,11 +46,11 @@ class Table(Protocol):
 
 @dataclass(frozen=True)
 class TableNumbers:
-    """The sections for one, two and three levels one after another.
+    """The sections for one, two and three levels, concatenated.
 
     Attributes:
         offsets: By subdomain and texel: x + 64, y + 64 and `finer`, at bits 0, 8 and 16.
-        coefficients: Likewise, and by term.
+        coefficients: By subdomain and texel, and by term.
     """
 
     filter: str
@@ -98,7 +98,7 @@ class TableNumbers:
         return 4 * (len(self.offsets) + self.coefficients.size)
 
     def constants(self) -> dict[str, int]:
-        """What templates call the table's sizes."""
+        """Returns the table's sizes, by their names in templates."""
         return {
             "texels": self.texels,
             "grid": self.grid,
@@ -110,7 +110,7 @@ class TableNumbers:
         }
 
     def about(self) -> str:
-        """The table in words."""
+        """Returns a description of the table."""
         return (
             f"{self.texels} texels, {self.grid} x {self.grid} x {self.slices} subdomains, "
             f"{'linear' if self.degree == 1 else 'quadratic'} weights; {self.nbytes} bytes"
@@ -118,7 +118,7 @@ class TableNumbers:
 
 
 def checked_name(name: object) -> str:
-    """A name that identifiers of shaders can begin with."""
+    """Checks a prefix of shader identifiers."""
     text = as_name("name", name)
     if not _NAME.fullmatch(text) or text.startswith("gl_"):
         raise ValueError(
@@ -129,12 +129,12 @@ def checked_name(name: object) -> str:
 
 
 def number(value: np.float32) -> str:
-    """The shortest digits that stand for this float, with a point or an exponent."""
+    """Returns the shortest decimal representation of a float, with a point or an exponent."""
     return str(value)
 
 
 def wrapped(items: Iterable[str], indent: str = "    ") -> str:
-    """Items with commas between them, in lines."""
+    """Joins items by commas, in lines of limited length."""
     lines: list[str] = []
     line = indent
     for item in items:
@@ -147,5 +147,5 @@ def wrapped(items: Iterable[str], indent: str = "    ") -> str:
 
 
 def commented(text: str) -> str:
-    """Text as comments that begin with two slashes."""
+    """Returns text as comment lines that begin with two slashes."""
     return "\n".join(f"// {line}".rstrip() for line in text.strip("\n").split("\n"))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What picture files embed, read by itself: some versions of OpenImageIO leave it out."""
+"""Metadata embedded in picture files, parsed here because some OpenImageIO versions omit it."""
 
 import os
 import struct
@@ -23,12 +23,12 @@ _MOST_ENTRIES = 1000
 
 @dataclass(frozen=True)
 class Embedded:
-    """What is embedded in a picture file.
+    """Metadata embedded in a picture file.
 
     Attributes:
-        exif: The block of EXIF, as a TIFF file; empty where there is none.
-        icc: An ICC profile that OpenImageIO may leave out; empty where there is none.
-        chunks: Of a PNG file, the chunks before its pixels that tell of colors, by their kinds.
+        exif: The EXIF block, a TIFF file; empty if absent.
+        icc: An ICC profile that OpenImageIO may omit; empty if absent.
+        chunks: The color chunks of a PNG file, by type.
     """
 
     exif: bytes = b""
@@ -38,7 +38,7 @@ class Embedded:
 
 @dataclass(frozen=True)
 class Exif:
-    """What EXIF says.
+    """Metadata in EXIF.
 
     Attributes:
         orientation: 1 to 8; 1 is upright.
@@ -50,16 +50,16 @@ class Exif:
 
 
 def embedded(path: Path) -> Embedded:
-    """Returns what a PNG, WebP or JPEG file embeds; nothing for other files, and damaged ones."""
+    """Returns the metadata of a PNG, WebP or JPEG file; empty for other or damaged files."""
     try:
         with path.open("rb") as file:
             return embedded_in(file)
     except OSError:
-        return Embedded()  # Its reader says what is wrong.
+        return Embedded()  # The picture reader reports the error.
 
 
 def embedded_in(file: BinaryIO) -> Embedded:
-    """Returns the same of a file that is open at its start."""
+    """Returns the metadata of a file that is open at its start."""
     try:
         start = file.read(12)
         file.seek(0)
@@ -73,12 +73,12 @@ def embedded_in(file: BinaryIO) -> Embedded:
         if start[:2] == b"\xff\xd8":
             return Embedded(_jpeg_exif(file))
     except (ValueError, struct.error):
-        pass  # Likewise.
+        pass  # The picture reader reports the error.
     return Embedded()
 
 
 def _png_profile(chunks: Mapping[bytes, bytes]) -> bytes:
-    """Returns the ICC profile; not empty where it is damaged: libpng then leaves it out."""
+    """Returns the ICC profile; `_DAMAGED` if it is damaged, as libpng then omits it."""
     if b"iCCP" not in chunks:
         return b""
     packed = chunks[b"iCCP"].partition(b"\0")[2][1:]
@@ -112,7 +112,7 @@ def _jpeg_exif(file: BinaryIO) -> bytes:
 
 
 def exif_of(block: bytes) -> Exif:
-    """Returns what a block of EXIF says; what is damaged says nothing."""
+    """Parses an EXIF block; a damaged one yields the defaults."""
     try:
         order = {b"II": "<", b"MM": ">"}[block[:2]]
         (start,) = struct.unpack_from(f"{order}I", block, 4)
@@ -129,7 +129,7 @@ def exif_of(block: bytes) -> Exif:
 
 
 def _entries(block: bytes, order: str, start: int) -> dict[int, tuple[int, bytes]]:
-    """Returns the types and the four bytes of the values of a folder, by tags."""
+    """Returns type and inline value of a directory's entries, by tag."""
     if start == 0:
         return {}
     (count,) = struct.unpack_from(f"{order}H", block, start)

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Files for engines: DDS and KTX 2 with all levels, and a PNG for each level.
+"""Texture files for engines: DDS and KTX 2 with all levels, or one PNG for each level.
 
-* A byte image in sRGB or data keeps its bytes, in 8-bit and block formats; straight alpha.
-* Other images are sRGB-encoded in these, or as they are where they are data.
-* Formats of floats are scene-linear. A float image has associated alpha, and the file says so.
-* PNG: a byte image as it is; a float image with 16 bits, sRGB-encoded unless it is data; straight
-  alpha.
+* A byte image in sRGB or of data keeps its bytes in 8-bit and block formats; straight alpha.
+* Other images are sRGB-encoded in these formats, unless they are data.
+* Float formats are scene-linear. A float image has associated alpha, and the file says so.
+* PNG: a byte image is unchanged; a float image gets 16 bits, sRGB-encoded unless it is data;
+  straight alpha.
 """
 
 import re
@@ -38,7 +38,7 @@ _CUT_OUT_ALPHA = 0.5
 
 
 def is_for_engines(target: Path) -> bool:
-    """Tells whether `stage` of this module writes such a file."""
+    """Tells whether `stage` of this module writes files of this type."""
     return target.suffix.lower() in (*_WRITERS, ".png")
 
 
@@ -51,18 +51,18 @@ def checked(
     may_lose_channels: bool = False,
     is_stretched: bool = False,
 ) -> list[str]:
-    """Returns what the user should know about the format of a picture's file.
+    """Returns warnings about the format of a picture's file.
 
     Args:
         picture: Level 0.
         target: The file; None for none.
         texture_format: See `stage`.
-        threshold: The alpha from which on a cut-out is shown; None for other images.
-        may_lose_channels: Whether nothing reads the channels that the format has not.
-        is_stretched: Whether its sides become multiples of `unit_of_sides`.
+        threshold: The alpha test's threshold for a cut-out; None for other images.
+        may_lose_channels: Whether channels that the format lacks are unused anyway.
+        is_stretched: Whether the sides become multiples of `unit_of_sides`.
 
     Raises:
-        ValueError: The picture does not go with the format.
+        ValueError: The picture does not fit the format.
     """
     if target is None or not has_formats(target.name):
         return []
@@ -87,14 +87,14 @@ def checked(
 
 
 def keeps_range(picture: Picture, target: Path, texture_format: str) -> bool:
-    """Tells whether a picture's file holds values below 0 and above 1."""
+    """Tells whether a picture's file can hold values below 0 and above 1."""
     return has_formats(target.name) and _chosen(picture, texture_format).keeps_negatives
 
 
 def unit_of_sides(picture: Picture, target: Path | None, texture_format: str) -> int:
-    """Returns what readers of a picture's file need the sides to be multiples of.
+    """Returns the number that the sides must be multiples of for readers of a picture's file.
 
-    Direct3D needs that of its blocks, and so do those who transcode others to them.
+    Direct3D requires whole blocks, and so do transcoders to its formats.
     """
     if target is None or not has_formats(target.name):
         return 1
@@ -160,20 +160,20 @@ def stage(
 
     Args:
         target: A path from `target_files.check_target`.
-        picture: Where the levels come from.
+        picture: The source of the levels.
         linear_levels: Every level, scene-linear, row 0 at the bottom.
         stored_levels: The same levels in the encoding of the picture.
-        texture_format: A format of `prefilter.write_dds`; for "auto" floats or bytes, as the
-            picture has them. Not for PNG.
-        check: Called now and then.
-        effort: As of `prefilter.write_dds`.
-        supercompression: As of `prefilter.write_ktx2`; other files have none.
-        quality: As of `prefilter.write_ktx2`; other formats than "etc1s" have none.
-        metadata: As of `prefilter.write_ktx2`; other files have none.
+        texture_format: A format of `prefilter.write_dds`; "auto" for floats or bytes like the
+            picture's. Not for PNG.
+        check: Called regularly.
+        effort: See `prefilter.write_dds`.
+        supercompression: See `prefilter.write_ktx2`; ignored for other files.
+        quality: See `prefilter.write_ktx2`; ignored for formats other than "etc1s".
+        metadata: See `prefilter.write_ktx2`; ignored for other files.
         threads: How many threads to use; 0 for all.
 
     Raises:
-        ValueError: The values do not go with the format.
+        ValueError: The values do not fit the format.
         OSError: A file cannot be written.
     """
     write_texture = _WRITERS.get(target.suffix.lower())
@@ -233,7 +233,7 @@ def _stage_numbered(
 
 
 def _png_pixels(picture: Picture, level: FloatArray) -> np.ndarray[Any, Any]:
-    """Returns bytes, or 16 bits, with straight alpha."""
+    """Returns 8-bit or 16-bit integers, with straight alpha."""
     if not picture.is_float:
         return _bytes(level)
     if picture.alpha_is_coverage and not picture.alpha_is_straight:
@@ -245,7 +245,7 @@ def _png_pixels(picture: Picture, level: FloatArray) -> np.ndarray[Any, Any]:
 
 
 def _label(texture_format: str) -> str:
-    """Returns a format as users see it: "ASTC 6x6 HDR" of "astc-6x6-hdr"."""
+    """Returns a format's label, such as "ASTC 6x6 HDR" for "astc-6x6-hdr"."""
     return re.sub(r"(\d)X(\d)", r"\1x\2", texture_format.upper().replace("-", " "))
 
 
@@ -261,7 +261,7 @@ def _values(
     stored_levels: Sequence[FloatArray],
     chosen: TexelFormat,
 ) -> tuple[list[Any], str]:
-    """Returns the levels to write, and the encoding that they have or are to get."""
+    """Returns the levels to write, and the encoding that they have or will get."""
     if not (picture.is_float or chosen.is_float or picture.encoding is Encoding.OCIO):
         encoding = "srgb" if picture.encoding is Encoding.SRGB else "linear"
         return [_bytes(level) for level in stored_levels], encoding
@@ -270,5 +270,5 @@ def _values(
 
 
 def _bytes(level: FloatArray) -> np.ndarray[Any, Any]:
-    # As Blender rounds, so that level images are the same.
+    # Rounded as Blender does, so that they equal the level images.
     return (np.clip(level, 0, 1) * np.float32(255) + np.float32(0.5)).astype(np.uint8)

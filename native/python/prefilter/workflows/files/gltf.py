@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The triangles of glTF files, in their places."""
+"""Reader of glTF files: triangles in world coordinates."""
 
 import base64
 import json
@@ -36,7 +36,7 @@ def read_gltf(path: str) -> list[PolygonMesh]:
 
     Raises:
         OSError: A file that it refers to cannot be read.
-        ValueError: It is damaged, or compressed by an extension.
+        ValueError: The file is damaged, or compressed by an extension.
     """
     file = _File(Path(path))
     return [mesh for mesh in file.meshes() if len(mesh.corners)]
@@ -64,7 +64,7 @@ class _File:
         self._buffers: dict[int, bytes] = {}
 
     def meshes(self) -> Iterator[PolygonMesh]:
-        """Yields what the default scene shows."""
+        """Yields the meshes that the default scene shows."""
         nodes, scenes = self._list("nodes"), self._list("scenes")
         children = {child for node in nodes for child in node.get("children", ())}
         roots = [number for number in range(len(nodes)) if number not in children]
@@ -84,7 +84,7 @@ class _File:
             pending += [(child, matrix) for child in reversed(node.get("children", ()))]
 
     def _chunks(self, data: bytes) -> bytes:
-        """Returns the JSON of a .glb file, and keeps its buffer."""
+        """Returns the JSON of a .glb file, and stores its buffer."""
         text, start = b"", 12
         while start + 8 <= len(data):
             length, kind = struct.unpack_from("<II", data, start)
@@ -143,7 +143,7 @@ class _File:
         )
 
     def _values(self, number: int) -> NDArray[Any]:
-        """Returns the values of an accessor, a row each; normalized ones as fractions."""
+        """Returns the values of an accessor as rows; normalized ones as fractions."""
         accessor = self._list("accessors")[number]
         kind, width = np.dtype(_TYPES[accessor["componentType"]]), _WIDTHS[accessor["type"]]
         count = accessor["count"]
@@ -200,7 +200,7 @@ class _File:
 
 
 def _triangles(order: NDArray[np.int64], mode: int) -> NDArray[np.int64]:
-    """Returns (triangles, 3) vertices from their order in a primitive."""
+    """Returns (triangles, 3) vertex indices from the index order of a primitive."""
     if mode == _TRIANGLES:
         return order[: len(order) // 3 * 3].reshape(-1, 3)
     if len(order) < 3:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""A line of text that files of meshes keep beside the mesh: each format has room for one."""
+"""Storing a key and a short text inside mesh files, in a comment or header of each format."""
 
 import json
 import re
@@ -15,13 +15,13 @@ _JSON = 0x4E4F534A
 
 
 def with_note(kind: str, data: bytes, key: str, text: str) -> bytes:
-    """Returns a file with `key=text`: a comment, of STL the header, of GLB what its asset has more.
+    """Adds `key=text` to a file: as a comment, as the STL header, or as GLB asset extras.
 
     Args:
         kind: "ply", "obj", "stl" (binary) or "glb".
         data: The file.
         key: A word.
-        text: Of STL at most what fits into 80 bytes with the key; letters and digits.
+        text: Letters and digits; for STL, key and text must fit into 80 bytes.
     """
     note = f"{key}={text}".encode()
     if kind == "ply":
@@ -41,7 +41,7 @@ def with_note(kind: str, data: bytes, key: str, text: str) -> bytes:
 
 
 def note_of(path: Path, key: str) -> str:
-    """Returns the text that a file has under a key; empty where it has none.
+    """Returns the text that a file stores under a key; empty if absent.
 
     Raises:
         ValueError: The file is damaged.
@@ -60,7 +60,7 @@ def note_of(path: Path, key: str) -> str:
 
 
 def _split_glb(data: bytes) -> tuple[dict[str, Any], bytes]:
-    """Returns the JSON of a GLB file, and what follows it.
+    """Returns the JSON of a GLB file, and the bytes that follow it.
 
     Raises:
         ValueError: The file is damaged.

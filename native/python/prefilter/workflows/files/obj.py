@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The polygons of Wavefront OBJ files."""
+"""Reader of Wavefront OBJ files."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -64,7 +64,7 @@ def _without_comment(words: list[bytes]) -> list[bytes]:
 
 
 def _from_the_start(word: bytes, places: int, uvs: int) -> bytes:
-    """Returns a corner's word with numbers from the end, below 0, counted from the start."""
+    """Replaces relative (negative) indices in a corner's word by absolute ones."""
     parts = word.split(b"/")
     for number, count in enumerate((places, uvs)[: len(parts)]):
         if parts[number].startswith(b"-"):
@@ -106,7 +106,7 @@ def _mesh(
 
 
 def _indices(words: list[bytes]) -> NDArray[np.int64]:
-    """Returns the vertex and the UV of each corner, from 0."""
+    """Returns the vertex index and the UV index of each corner, from 0."""
     slashes = words[0].count(b"/") if words else 0
     text = b" ".join(words)
     is_even = slashes and b"//" not in text and all(word.count(b"/") == slashes for word in words)

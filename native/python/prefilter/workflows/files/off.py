@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The polygons of OFF files."""
+"""Reader of OFF files."""
 
 import re
 
@@ -12,10 +12,10 @@ _HEADER = re.compile(r"(ST)?(C)?(N)?OFF\b")
 
 
 def read_off(data: bytes) -> list[PolygonMesh]:
-    """Returns the mesh of a text file.
+    """Returns the mesh of a text file, as a list of one.
 
     Raises:
-        ValueError: The file is damaged, or of another kind, such as binary.
+        ValueError: The file is damaged, or of another variant, such as binary.
     """
     text = data.decode("utf-8-sig", "replace")
     lines = [line.split() for line in re.sub(r"#[^\n]*", "", text).splitlines()]

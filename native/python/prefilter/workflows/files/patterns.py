@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Placeholders in the paths of files to write: words in braces."""
+"""Placeholders, words in braces, in output paths."""
 
 import re
 from collections.abc import Collection, Mapping
@@ -9,12 +9,12 @@ _BRACES = re.compile(r"\{\{|\}\}|\{([^{}]*)\}")
 
 
 def check(argument: str, pattern: str, allowed: Collection[str]) -> None:
-    """Raises ValueError for a placeholder that is not allowed.
+    """Raises ValueError for unknown placeholders.
 
     Args:
-        argument: What the path is called in messages.
+        argument: The path's name in messages.
         pattern: The path; "{{" and "}}" in it stand for braces.
-        allowed: The words, without braces.
+        allowed: The allowed words, without braces.
     """
     for word in _words(pattern):
         if word not in allowed:
@@ -31,7 +31,7 @@ def has(pattern: str, word: str) -> bool:
 
 
 def filled(pattern: str, values: Mapping[str, str]) -> str:
-    """Returns a path with values in the place of its placeholders; others stay as they are."""
+    """Returns a path with its placeholders replaced by values; unknown ones stay."""
     return _BRACES.sub(
         lambda match: match[0][0] if match[1] is None else values.get(match[1], match[0]),
         pattern,
@@ -39,7 +39,7 @@ def filled(pattern: str, values: Mapping[str, str]) -> str:
 
 
 def literal(path: str) -> str:
-    """Returns the pattern of a path without placeholders."""
+    """Escapes braces, so that a path has no placeholders."""
     return path.replace("{", "{{").replace("}", "}}")
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Pictures of one level, as PNG and OpenEXR files."""
+"""Writing single pictures as PNG and OpenEXR files."""
 
 from collections.abc import Mapping, Sequence
 from functools import partial
@@ -29,19 +29,19 @@ def stage(
     chunks: Sequence[tuple[bytes, bytes]] = (),
     metadata: Mapping[str, str] | None = None,
 ) -> staging.StagedFile:
-    """Writes a picture beside its target.
+    """Stages a picture file.
 
     Args:
         target: A path that ends in one of `ENDINGS`.
-        pixels: (h, w, 1 to 4) array, row 0 at the bottom. For PNG it is of uint8 or uint16, and
-            sRGB-encoded unless it is data; for OpenEXR of float32 and scene-linear. It is written
-            as it is: PNG files should have straight alpha, and OpenEXR files associated alpha.
-        is_data: Whether the values are no colors; OpenEXR files say so.
+        pixels: (h, w, 1 to 4) array, row 0 at the bottom. For PNG: uint8 or uint16, sRGB-encoded
+            unless it is data, with straight alpha. For OpenEXR: float32, scene-linear, with
+            associated alpha. The values are written unchanged.
+        is_data: Whether the values are not colors; OpenEXR files declare that.
         is_half: Whether OpenEXR gets 16-bit floats instead of 32-bit ones.
-        linear_space: The name of the space of colors for OpenEXR.
+        linear_space: The name of the color space for OpenEXR.
         has_alpha: Whether the last one of two or four channels is alpha.
-        chunks: What a PNG file says of its colors, in the place of sRGB.
-        metadata: What the file is to keep, by keys.
+        chunks: Color chunks of a PNG file, instead of sRGB.
+        metadata: Key-value pairs to store in the file.
 
     Raises:
         OSError: The file cannot be written.
@@ -65,14 +65,14 @@ def stage(
 
 
 def exr_attributes(space: str) -> dict[str, str]:
-    """Returns what the header of an OpenEXR file says of a color space, beside chromaticities."""
+    """Returns the attributes of an OpenEXR header for a color space, except chromaticities."""
     name = space_names.interop_name(space)
     known = {"colorInteropID": name} if name else {}
     return {"Software": "Prefilter", "oiio:ColorSpace": name or space, **known}
 
 
 def in_file_channels(pixels: NDArray[Any], *, is_gray: bool) -> NDArray[Any]:
-    """Returns pixels with one channel for all colors, where a file had one and they are equal."""
+    """Returns pixels with one channel for all colors, if the file is gray and they are equal."""
     if not is_gray or pixels.shape[2] < 3:
         return pixels
     gray = pixels[..., :1]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""PNG files in memory."""
+"""Encoding PNG files, and reading their text and color chunks."""
 
 import os
 import struct
@@ -33,9 +33,9 @@ def encoded(
     Args:
         pixels: (h, w, 1 to 4) array of uint8 or uint16, row 0 at the bottom: gray or colors, and
             straight alpha where there are two or four.
-        is_srgb: Whether to say that it is sRGB-encoded, as most readers take for granted.
-        texts: What the file is to keep, by keys: Latin letters both.
-        chunks: More chunks that say what the colors are: kinds, and what they hold.
+        is_srgb: Whether to declare sRGB, which most readers assume anyway.
+        texts: Key-value pairs to store; keys and values in Latin-1.
+        chunks: More color chunks, as type and content.
     """
     height, width, channels = pixels.shape
     size = pixels.dtype.itemsize
@@ -57,7 +57,7 @@ def encoded(
 
 
 def texts(file: BinaryIO) -> dict[str, str]:
-    """Returns what a PNG file keeps by keys before its pixels, and nothing else of it.
+    """Returns the key-value pairs stored in a PNG file before its pixels.
 
     Raises:
         ValueError: The file is no PNG file, or damaged.
@@ -70,7 +70,7 @@ def texts(file: BinaryIO) -> dict[str, str]:
 
 
 def color_chunks(file: BinaryIO) -> dict[bytes, bytes]:
-    """Returns what a PNG file says of its colors and its orientation, by the kinds of chunks.
+    """Returns the chunks of a PNG file about colors and orientation, by type.
 
     Raises:
         ValueError: The file is no PNG file, or damaged.
@@ -79,7 +79,7 @@ def color_chunks(file: BinaryIO) -> dict[bytes, bytes]:
 
 
 def _chunks(file: BinaryIO, kinds: Set[bytes], most: int) -> Iterator[tuple[bytes, bytes]]:
-    """Yields the chunks of some kinds before the pixels."""
+    """Yields the chunks of the given types before the pixels."""
     if file.read(len(SIGNATURE)) != SIGNATURE:
         raise ValueError("no PNG file")
     while len(head := file.read(8)) == 8:
@@ -101,7 +101,7 @@ def _text(key: str, value: str) -> bytes:
 
 
 def _filtered_rows(pixels: NDArray[Any]) -> Iterator[NDArray[np.uint8]]:
-    """Yields bytes from the top, each row after the number of its filter, of which 0 is none."""
+    """Yields bands of rows from the top, each row preceded by its filter type, 0 for none."""
     height = len(pixels)
     for top in range(height, 0, -_ROWS_AT_ONCE):
         band = pixels[max(top - _ROWS_AT_ONCE, 0) : top][::-1].reshape(min(top, _ROWS_AT_ONCE), -1)

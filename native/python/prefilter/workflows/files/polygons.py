@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Meshes of polygons as files have them, and their triangles."""
+"""Polygon meshes as files store them, and their triangulation."""
 
 from dataclasses import dataclass
 
@@ -12,14 +12,15 @@ from ... import _native
 
 @dataclass(frozen=True)
 class PolygonMesh:
-    """A mesh of a file.
+    """A polygon mesh of a file.
 
     Attributes:
-        name: What the file calls it; empty for a mesh without a name.
+        name: Its name in the file; empty if it has none.
         positions: (vertices, 3), rounded to single precision.
-        corners: (corners,) the vertices of all polygons, one polygon after another.
-        sizes: (polygons,) how many corners each has.
-        uvs: (corners, 2), rounded likewise; NaN for a corner without. None for a mesh without.
+        corners: (corners,) vertex indices of all polygons, one polygon after another.
+        sizes: (polygons,) number of corners of each.
+        uvs: (corners, 2), rounded to single precision; NaN for corners without UVs. None for a mesh
+            without UVs.
     """
 
     name: str
@@ -29,10 +30,10 @@ class PolygonMesh:
     uvs: NDArray[np.float64] | None
 
     def triangle_corners(self) -> NDArray[np.int64]:
-        """Returns (triangles, 3) indices into `corners`: the polygons, concave ones too."""
+        """Triangulates the polygons, concave ones too: (triangles, 3) indices into `corners`."""
         return _native.triangulate_polygons(self.positions, self.corners, self.sizes, None)
 
 
 def rounded(numbers: object) -> NDArray[np.float64]:
-    """Returns numbers in single precision, as Blender keeps them: results are then the same."""
+    """Rounds numbers to single precision, like Blender, so that results agree."""
     return np.asarray(numbers, np.float32).astype(np.float64)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Where textures are written to: which files there may be, and what their names say of them.
+"""Texture files to write: allowed extensions, and their properties.
 
-A command that finds its files up to date needs no more of them, so this loads nothing slow.
+Loads nothing slow, so that commands that find their files up to date start fast.
 """
 
 import os
@@ -11,14 +11,14 @@ from pathlib import Path
 from ...files import staging
 
 _OF_RENDERERS = (".exr", ".tif", ".tiff", ".tx")
-# Those that `engines` writes; the last one gets a file a level.
+# Extensions that `engines` writes; .png gets one file per level.
 _WITH_FORMATS = (".dds", ".ktx2")
 _OTHER_EXTENSIONS = (*_WITH_FORMATS, ".png")
 _MOST_LEVELS = 31
 EXTENSIONS = (*_OF_RENDERERS, *_OTHER_EXTENSIONS)
-"""Those that a texture file may have."""
+"""Allowed extensions of texture files."""
 PLACE = "{name}"
-"""What stands for the name of what is read in the path of what is written."""
+"""Placeholder for the name of the input in an output path."""
 
 
 def check_target(path: str) -> Path:
@@ -40,22 +40,22 @@ def check_target(path: str) -> Path:
 
 
 def written(target: Path) -> list[Path]:
-    """Returns the files that may be written for a target: one, or one a level."""
+    """Returns the files that may be written for a target: one, or one per level."""
     if target.suffix.lower() != ".png":
         return [target]
     return [numbered(target, number) for number in range(_MOST_LEVELS)]
 
 
 def numbered(target: Path, number: int) -> Path:
-    """Returns the file of a level where each has its own, symbolic links resolved."""
+    """Returns the file of one level, where each has its own, with symbolic links resolved."""
     return Path(os.path.realpath(target.with_suffix(f".{number:02d}{target.suffix}")))
 
 
 def has_formats(path: str) -> bool:
-    """Tells whether there is a choice of formats for such a file."""
+    """Tells whether files of this type have a choice of texel formats."""
     return path.lower().endswith(_WITH_FORMATS)
 
 
 def has_supercompression(path: str) -> bool:
-    """Tells whether such a file may be supercompressed."""
+    """Tells whether files of this type can be supercompressed."""
     return path.lower().endswith(".ktx2")

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Mip-mapped files for renderers.
+"""Mip-mapped texture files for renderers.
 
-* OpenEXR: scene-linear, associated alpha, 16-bit floats unless 32 are asked for.
-* TIFF (.tif, .tiff, .tx): a byte image stays 8-bit and in its color space, a float image is
-  written as scene-linear 32-bit floats; associated alpha, as texture readers expect.
+* OpenEXR: scene-linear, associated alpha, 16-bit floats unless 32 are requested.
+* TIFF (.tif, .tiff, .tx): a byte image keeps 8 bits and its color space, a float image becomes
+  scene-linear 32-bit floats; associated alpha, as texture readers expect.
 
-A file always holds every level down to 1 x 1, in tiles of 64 x 64. OpenEXR files are written by
-the library, TIFF files by OpenImageIO, and those for engines by `engines`.
+A file always holds every level down to 1 x 1, in tiles of 64 x 64. The library writes OpenEXR files
+and OpenImageIO writes TIFF files; `engines` writes the files for engines.
 """
 
 from collections.abc import Mapping, Sequence
@@ -32,19 +32,19 @@ _KNOWN_BEFORE = {
     space_names.REC709_LINEAR: "lin_rec709",
     space_names.DATA: "raw",
 }
-"""What OpenImageIO calls spaces in all of its versions."""
+"""Names of color spaces that all versions of OpenImageIO know."""
 _WRAP_MODES = {"repeat": "periodic", "clamp": "clamp", "border": "black"}
 
 
 def shown(target: Path) -> str:
-    """Returns how to call a file, or the files of all levels."""
+    """Returns a file, or the numbered files of all levels, for messages."""
     if target.suffix.lower() != ".png":
         return f"'{target}'"
     return Sentence("'{}' and so on", target_files.numbered(target, 0))
 
 
 def is_stored(target: Path) -> bool:
-    """Tells whether a file may hold the levels in the encoding of the picture."""
+    """Tells whether a file may hold levels in the encoding of the picture."""
     return target.suffix.lower() != ".exr"
 
 
@@ -66,11 +66,11 @@ def stage(
         target: A path from `check_target`.
         picture: Level 0.
         linear_levels: Levels 1, 2, ..., scene-linear, row 0 at the bottom.
-        stored_levels: The same in the encoding of the picture; not needed unless `is_stored`.
+        stored_levels: The same in the encoding of the picture; needed only if `is_stored`.
         wrap: Wrap modes in u and v.
         check: Called before each level, at least.
         half: Whether OpenEXR gets 16-bit floats instead of 32-bit ones.
-        metadata: What the file is to keep, by keys.
+        metadata: Key-value pairs to store in the file.
         threads: How many threads to use for OpenEXR; 0 for all.
 
     Raises:
@@ -97,7 +97,7 @@ def stage(
         wrap_modes=wrap_modes,
         has_alpha=picture.alpha_is_coverage,
         check=check,
-        # TIFF files have no keys of their own that all readers keep.
+        # TIFF files have no custom attributes that all readers preserve.
         description=" ".join(f"{key}={value}" for key, value in told.items()),
     )
     return stage_with(target, write)
@@ -142,7 +142,7 @@ def _stage_exr(
 
 
 def _is_gray(picture: Picture, levels: Sequence[images.Texels]) -> bool:
-    """Tells whether all levels are to have one channel for all colors."""
+    """Tells whether all levels can be stored with one channel for all colors."""
     return picture.is_gray and all(
         in_file_channels(one, is_gray=True).shape[2] < 3 for one in levels
     )
@@ -160,5 +160,5 @@ def _color_space(picture: Picture, keep_bytes: bool) -> str:
         return space_names.DATA
     is_encoded = keep_bytes and picture.encoding is not images.Encoding.NONE
     name = picture.colorspace if is_encoded else picture.linear_space
-    # A name that has a space in it would end early in a description.
+    # In a description, a space would end the name.
     return space_names.interop_name(name) or name.replace(" ", "_")

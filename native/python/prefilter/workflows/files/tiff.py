@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Dates in TIFF files: writers put in when they were run, so that two runs would differ."""
+"""Removing dates from TIFF files: they would make two runs differ."""
 
 import re
 import struct
@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 NO_DATE = "    :  :     :  :  "
-"""What EXIF says where a date is unknown."""
+"""The EXIF value of an unknown date."""
 _DATE = re.compile(rb"\d{4}:\d\d:\d\d \d\d:\d\d:\d\d")
 _DATES = frozenset({0x132, 0x9003, 0x9004})
 _XMP, _FOLDERS = 700, frozenset({0x14A, 0x8769})
@@ -18,7 +18,7 @@ _MOST_FOLDERS = 1 << 16
 
 
 def remove_dates(path: Path) -> None:
-    """Puts `NO_DATE` for each date of a TIFF file, in all of its levels.
+    """Replaces each date of a TIFF file, in all its levels, by `NO_DATE`.
 
     Raises:
         OSError: The file cannot be read and written, or it is no TIFF file.
@@ -35,7 +35,7 @@ def remove_dates(path: Path) -> None:
 
 
 def _dated(file: BinaryIO) -> Iterator[tuple[int, int]]:
-    """Yields the offsets and sizes of values that may hold dates."""
+    """Yields the offsets and sizes of values that may contain dates."""
     head = file.read(16)
     order = {b"II": "<", b"MM": ">"}[head[:2]]
     is_big = struct.unpack_from(f"{order}H", head, 2)[0] == 43

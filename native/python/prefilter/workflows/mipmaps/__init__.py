@@ -1,3 +1,3 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The levels of an image on its surfaces, by what it holds."""
+"""Computing and writing mipmap levels of an image on its surfaces."""

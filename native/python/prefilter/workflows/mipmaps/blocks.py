@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Which compressed blocks suit what an image holds."""
+"""Choosing compressed texel formats that suit an image's content."""
 
 from collections.abc import Iterable
 
@@ -19,14 +19,14 @@ def suiting(
     is_height: bool = False,
     is_one_channel: bool = False,
 ) -> str:
-    """Returns the key of the texel format that suits an image: the smallest that keeps it.
+    """Returns the key of the smallest texel format that preserves an image.
 
     Args:
         picture: Its pixels.
-        content: A key of `choices.CONTENTS`, and not "auto".
-        reads_alpha: Whether shaders read its alpha; they do where it is coverage.
-        is_height: Whether it holds heights, of which more than 8 bits are kept.
-        is_one_channel: Whether shaders read its red channel alone.
+        content: A key of `choices.CONTENTS`, except "auto".
+        reads_alpha: Whether shaders read its alpha; implied if alpha is coverage.
+        is_height: Whether it holds heights, which need more than 8 bits.
+        is_one_channel: Whether shaders read only its red channel.
     """
     reads_alpha = reads_alpha or picture.alpha_is_coverage
     if content == "normal":
@@ -42,7 +42,7 @@ def suiting(
 
 
 def suiting_all(keys: Iterable[str]) -> str:
-    """Returns the one of several formats that suits what all of them suit."""
+    """Returns the one of several formats that suits all images that the others suit."""
 
     def extent(key: str) -> tuple[bool, float, int]:
         found = prefilter.TEXEL_FORMATS[key]
@@ -52,7 +52,7 @@ def suiting_all(keys: Iterable[str]) -> str:
 
 
 def _smallest(channels: int, *, is_float: bool = False, is_signed: bool = False) -> str:
-    """Returns the key of the smallest format of DDS files that keeps so many channels well."""
+    """Returns the key of the smallest DDS format that preserves this many channels well."""
     fitting = (
         found
         for found in prefilter.TEXEL_FORMATS.values()
@@ -67,7 +67,7 @@ def _smallest(channels: int, *, is_float: bool = False, is_signed: bool = False)
 
 
 def is_gray(picture: Picture) -> bool:
-    """Tells whether red, green and blue are the same everywhere."""
+    """Tells whether red, green and blue are equal everywhere."""
     return bool((picture.texels[..., :1] == picture.texels[..., 1:3]).all())
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Whether the settings of a bake go with its image, and what they mean for it."""
+"""Checks of bake settings against the image, and the roughness that belongs to a normal map."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ class Rough:
     """The roughness of a normal map.
 
     Attributes:
-        roughness: What was read of it; None for none.
+        roughness: The roughness image; None for none.
         target: Its file; None for none.
     """
 
@@ -37,18 +37,18 @@ def roughness_of(
     read: Callable[[], Picture],
     texture_format: str = "",
 ) -> Rough:
-    """Returns the roughness of a normal map, after a check of what the settings say of it.
+    """Returns the roughness of a normal map, after checking the settings.
 
     Args:
-        settings: Of the bake.
+        settings: The settings of the bake.
         normal_map: The image that is baked.
-        content: What it holds.
-        targets: Its files.
-        read: Reads the image of the roughness.
-        texture_format: That of the file of the roughness; empty for `roughness_format`.
+        content: The content of that image.
+        targets: The files of that image.
+        read: Reads the roughness image.
+        texture_format: The format of the roughness file; empty for `roughness_format`.
 
     Raises:
-        ValueError: The settings do not go together, or the images do not.
+        ValueError: The settings contradict one another, or the images do not fit.
         OSError: The file of the roughness cannot be written.
     """
     if not settings.roughness:
@@ -78,7 +78,7 @@ def roughness_of(
 
 
 def roughness_format(settings: Settings, picture: Picture) -> str:
-    """Returns the format of the roughness file: that of the normal map, unless channels lack."""
+    """Returns the format of the roughness file: the normal map's, unless that lacks channels."""
     chosen = prefilter.TEXEL_FORMATS.get(settings.texture_format)
     if chosen is None or chosen.channels > 2:
         return settings.texture_format
@@ -98,15 +98,15 @@ def odd_uses(
     *,
     is_encoded: bool,
 ) -> list[str]:
-    """Returns warnings of settings that do not go with the image, or with each other.
+    """Returns warnings about settings that do not fit the image, or one another.
 
     Args:
-        settings: Of the bake.
+        settings: The settings of the bake.
         picture: The image.
-        content: What it holds.
+        content: Its content.
         targets: Its files.
-        rough: What `roughness_of` returned.
-        is_encoded: Whether the image is to be decoded, whatever it holds.
+        rough: The result of `roughness_of`.
+        is_encoded: Whether the image's color space needs decoding, whatever its content.
     """
     told = []
     if content == "normal" and is_encoded:
@@ -130,14 +130,14 @@ def odd_uses(
 
 
 def suiting_blocks(pictures: Sequence[Picture], content: str) -> str:
-    """Returns the format that suits an image; of several tiles, one that suits them all."""
+    """Returns the format that suits an image, or all tiles of one."""
     return blocks.suiting_all(
         blocks.suiting(one, content, reads_alpha=one.shape[2] == 4) for one in pictures
     )
 
 
 def _odd_readers(picture: Picture, targets: Sequence[Path]) -> list[str]:
-    """Returns warnings where nothing that is baked is read as encoded."""
+    """Returns warnings if an output cannot be read as encoded texels."""
     if not reads_encoded(picture):
         return [
             f"Reader: '{picture.name}' is not an 8-bit sRGB image, so it is read as linear light"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What an image holds, and how its levels are made accordingly."""
+"""Computing levels according to an image's content: color, data, cut-out, or normal map."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -17,7 +17,7 @@ from ..progress import Progress, share
 Bounds = tuple[float | None, float | None] | None
 
 CHANNELS = {"all": (0, 1, 2), "red": (0,), "green": (1,), "blue": (2,)}
-"""The channels of an image that hold roughness, by the key of the choice."""
+"""Indices of the image channels that hold roughness, by the key of the choice."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class Roughness:
 
     Attributes:
         picture: The image.
-        linear: Its values as a shader reads them, of the size of the normal map.
+        linear: Its values as a shader reads them, in the size of the normal map.
         channels: A key of `CHANNELS`.
         texture_format: A key of `choices.TEXTURE_FORMATS`, for its file.
     """
@@ -38,9 +38,9 @@ class Roughness:
 
 
 def as_content(picture: Picture, content: str) -> Picture:
-    """Returns the picture with its values taken for what the content says that they are."""
+    """Returns the picture with its values interpreted as the given content."""
     if content in {"normal", "data"}:
-        # Blender keeps a float image as light whatever its color space; a level has to say so.
+        # Blender stores float images as light in any color space; levels must declare that.
         space = picture.linear_space if picture.is_float else picture.colorspace
         changed = replace(picture, encoding=Encoding.NONE, is_data=True, colorspace=space)
         return picture if picture.is_data else changed
@@ -50,7 +50,7 @@ def as_content(picture: Picture, content: str) -> Picture:
 
 
 def check_cutout(picture: Picture) -> None:
-    """Raises ValueError unless an alpha test of the picture makes sense."""
+    """Raises ValueError if an alpha test of the picture makes no sense."""
     if picture.shape[2] == 3 and not _is_gray(picture.texels):
         raise ValueError(
             f"image '{picture.name}': has no alpha, and is not a grayscale mask; a cut-out needs "
@@ -59,7 +59,7 @@ def check_cutout(picture: Picture) -> None:
 
 
 def check_roughness(picture: Picture, roughness: Picture) -> None:
-    """Raises ValueError unless a roughness image fits the normal map."""
+    """Raises ValueError if a roughness image does not fit the normal map."""
     if roughness.full_name == picture.full_name:
         raise ValueError(f"Roughness: '{roughness.name}' is the normal map itself")
     (height, width), (high, wide) = picture.shape[:2], roughness.shape[:2]
@@ -78,7 +78,7 @@ def plain_levels(
     progress: Progress,
     **options: Any,
 ) -> list[FloatArray]:
-    """Returns the levels above 0 of color or data, of light or of bytes."""
+    """Returns levels 1 and up of color or data, from light or from bytes."""
     return prefilter.coarser_levels(
         texels,
         surfaces,
@@ -98,9 +98,9 @@ def cutout_levels(
     progress: Progress,
     **options: Any,
 ) -> list[FloatArray]:
-    """Returns the levels of color whose alpha test keeps the surface that it keeps at level 0.
+    """Returns levels 1 and up of color whose alpha test preserves the coverage of level 0.
 
-    Without an alpha channel, the image itself is what is tested.
+    Without an alpha channel, the image itself is tested.
     """
     is_mask = linear.shape[2] == 3
     tested = np.ascontiguousarray(linear[..., :1]) if is_mask else linear
@@ -124,10 +124,10 @@ def normal_levels(
     progress: Progress,
     **options: Any,
 ) -> tuple[list[FloatArray], list[FloatArray]]:
-    """Returns the levels of a normal map, and those of its roughness: none if there is none.
+    """Returns the levels of a normal map, and those of its roughness; none without roughness.
 
-    A fourth channel of the normal map, and the channels of the roughness image that hold something
-    else, are filtered as data.
+    A fourth channel of the normal map, and channels of the roughness image other than roughness,
+    are filtered as data.
     """
     normals = np.ascontiguousarray(linear[..., :3])
     made: list[FloatArray] = []

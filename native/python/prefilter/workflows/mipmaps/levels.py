@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The levels of an image on its surfaces, by what it holds, and what heeding seams did to them."""
+"""Filtering the levels of an image on its surfaces, and measuring the effect of seam weights."""
 
 from functools import partial
 from typing import Any, cast
@@ -16,19 +16,19 @@ from .source import Source
 
 Levels = list[FloatArray]
 
-_FIRST_FILTERED = 2 / 3  # What the progress is once levels are filtered that are then compared.
+_FIRST_FILTERED = 2 / 3  # Progress once the levels are filtered, before they are compared.
 
 
 def filtered(
     source: Source, roughness: contents.Roughness | None, progress: Progress, *, all_levels: bool
 ) -> tuple[Levels, Levels, str]:
-    """Returns what `above_0` does, and a line about seams where levels heed them.
+    """Returns the result of `above_0`, and a note about seams if they were weighted.
 
     Args:
         source: The image.
-        roughness: What belongs to a normal map; None for none.
+        roughness: The roughness of a normal map; None for none.
         progress: Called with the fraction done.
-        all_levels: Whether all are needed, as by files, however many the settings say.
+        all_levels: Whether to compute all levels, as files need, whatever the settings say.
 
     Raises:
         prefilter.Cancelled: `progress` returned False.
@@ -45,13 +45,13 @@ def filtered(
 def above_0(
     source: Source, roughness: contents.Roughness | None, progress: Progress, *, all_levels: bool
 ) -> tuple[Levels, Levels]:
-    """Returns the levels above 0, scene-linear, of an image and of its roughness.
+    """Returns levels 1 and up, scene-linear, of an image and of its roughness.
 
     Args:
         source: The image.
-        roughness: What belongs to a normal map; None for none.
+        roughness: The roughness of a normal map; None for none.
         progress: Called with the fraction done.
-        all_levels: Whether all are needed, as by files, however many the settings say.
+        all_levels: Whether to compute all levels, as files need, whatever the settings say.
 
     Raises:
         prefilter.Cancelled: `progress` returned False.
@@ -77,7 +77,7 @@ def above_0(
 
 
 def heeds_seams(source: Source) -> bool:
-    """Tells whether the levels of an image are made for little contrast across seams."""
+    """Tells whether contrast across seams is minimized in an image's levels."""
     return (
         source.settings.seam_budget > 0.0
         and source.settings.filter in SEAM_FILTERS
@@ -86,11 +86,11 @@ def heeds_seams(source: Source) -> bool:
 
 
 def seam_note(source: Source, levels: Levels, progress: Progress) -> str:
-    """Returns a line that compares the seams of levels with those of levels that do not heed them.
+    """Returns a line that compares seam contrast with and without seam weights.
 
     Args:
         source: The image.
-        levels: Those above 0.
+        levels: Its levels 1 and up, with seam weights.
         progress: Called with the fraction done.
     """
     others = source.filtered(

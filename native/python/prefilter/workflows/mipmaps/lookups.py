@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What the setting Lookups means: the footprint that levels are fitted for."""
+"""The setting Lookups: footprints that levels are fitted for."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -11,7 +11,7 @@ from ..wording import Sentence
 
 _FOOTPRINTS = {"supersampled": 0.0, "one-lookup": 1.0, "anisotropic": 1.5, "views": 1.0}
 BEFORE_VIEWS = 1.5
-"""The footprint of levels that are then fitted to views: among those it comes out best."""
+"""Footprint of levels before they are fitted to views; chosen for the best result."""
 _WORDS = {
     0.0: Sentence(""),
     1.0: Sentence("for one lookup per pixel"),
@@ -21,7 +21,7 @@ _TO_VIEWS = Sentence("fitted to views")
 
 
 def resolved(settings: Settings) -> Settings:
-    """Returns settings whose lookups no longer depend on the file."""
+    """Returns settings with Lookups resolved for the file type."""
     if settings.lookups != "auto":
         return settings
     is_for_games = target_files.has_formats(settings.filepath)
@@ -29,12 +29,12 @@ def resolved(settings: Settings) -> Settings:
 
 
 def footprint(settings: Settings, filter: str, reader: str) -> float:
-    """Returns the texels of a level that a pixel covers, as `prefilter.mipmaps` takes it.
+    """Returns the width of a pixel in texels of a level, as `prefilter.mipmaps` takes it.
 
     Args:
-        settings: Of the bake.
-        filter: A key of `choices.FILTERS`; those that are no fits make the same levels for all.
-        reader: How the levels are looked up: readers of encoded texels are supersampled.
+        settings: The settings of the bake.
+        filter: A key of `choices.FILTERS`; filters that are no fits do not depend on it.
+        reader: How the levels are looked up; readers of encoded texels are supersampled.
     """
     if filter not in FITTED_FILTERS or reader != "linear":
         return 0.0
@@ -42,13 +42,13 @@ def footprint(settings: Settings, filter: str, reader: str) -> float:
 
 
 def fits_views(settings: Settings, content: str, reader: str, objects: Sequence[str]) -> bool:
-    """Tells whether levels are fitted to what pixels show of a model.
+    """Tells whether levels are fitted to views of a model.
 
     Args:
-        settings: Of the bake.
-        content: What the image holds.
+        settings: The settings of the bake.
+        content: The content of the image.
         reader: How the levels are looked up.
-        objects: That wear the image.
+        objects: The objects that use the image.
     """
     return (
         settings.lookups == "views"
@@ -60,10 +60,10 @@ def fits_views(settings: Settings, content: str, reader: str, objects: Sequence[
 
 
 def described(footprint: float, *, fits: bool) -> Sentence:
-    """Returns what levels are for; empty for supersampled readers.
+    """Returns the lookups that levels are made for, in words; empty for supersampled readers.
 
     Args:
-        footprint: Of the levels.
+        footprint: The footprint of the levels.
         fits: Whether they are fitted to views.
     """
     return _TO_VIEWS if fits else _WORDS[footprint]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What becomes of the levels of an image: files of them, and a line that says so."""
+"""Outputs of a bake: files of levels, and the summary for the user."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
@@ -20,14 +20,13 @@ from .source import Source
 
 @dataclass(frozen=True)
 class Outputs:
-    """What a bake makes beside level images.
+    """Outputs of a bake other than level images.
 
     Attributes:
         target: The file of the levels; None for none.
-        roughness: The roughness whose levels are baked, too; None for none.
+        roughness: The roughness whose levels are baked too; None for none.
         roughness_target: The file of its levels; None for none.
-        writes_image: Whether the image's own levels are written, and not only those of its
-            roughness.
+        writes_image: Whether the image's own levels are written, not only those of its roughness.
     """
 
     target: Path | None
@@ -49,11 +48,11 @@ _DECIDES_NOTHING = (
     "use_images",
     "levels",
 )
-"""Settings that say where levels go, or of which the files do not depend."""
+"""Settings that do not affect the contents of the files."""
 
 
 def made_of(source: Source, outputs: Outputs) -> str:
-    """Returns a number, as text, of all that the files are made of; see `up_to_date`."""
+    """Returns the fingerprint of all inputs of the files; see `up_to_date`."""
     chosen = asdict(source.settings)
     for name in _DECIDES_NOTHING:
         chosen.pop(name, None)
@@ -76,7 +75,7 @@ def made_of(source: Source, outputs: Outputs) -> str:
 
 
 def _described(picture: Picture) -> dict[str, str]:
-    """Returns what is known of a picture beside its texels, but for names."""
+    """Returns all attributes of a picture except its texels and names."""
     return {
         one.name: str(getattr(picture, one.name))
         for one in fields(picture)
@@ -95,15 +94,15 @@ def staged(
 ) -> Iterator[tuple[list[StagedFile], list[FloatArray]]]:
     """Stages the files of an image, then those of its roughness, if there is one.
 
-    Yields for each its files, and its levels as level images hold them.
+    Yields the files of each, and its levels as level images store them.
 
     Args:
         source: The image.
-        outputs: What is made of it.
-        made: Its levels above 0, scene-linear.
-        rough: Those of the roughness.
-        check: Called now and then.
-        metadata: What files keep by keys, but for DDS and PNG files.
+        outputs: Its outputs.
+        made: Its levels 1 and up, scene-linear.
+        rough: The levels of the roughness.
+        check: Called regularly.
+        metadata: Key-value pairs to store in files, except DDS and PNG.
     """
     stage = partial(
         _staged, settings=source.settings, wrap=source.wrap, check=check, metadata=metadata
@@ -125,7 +124,7 @@ def _staged(
     check: Callable[[], None],
     metadata: Mapping[str, str] | None,
 ) -> tuple[list[StagedFile], list[FloatArray]]:
-    """Stages a file of an image and its levels; returns these as level images hold them, too."""
+    """Stages the file of an image; returns it with the levels as level images store them."""
     stored: list[FloatArray] = []
     if settings.use_images or (target is not None and textures.is_stored(target)):
         stored = [encoded(picture, level, check) for level in made]
@@ -158,13 +157,13 @@ def _staged(
 def summary(
     source: Source, outputs: Outputs, names: Sequence[str] = (), frames: Sequence[int] = ()
 ) -> str:
-    """Returns a line that says what was baked, over what, and into which images and files.
+    """Returns a line with the image, its objects, and the images and files of its levels.
 
     Args:
         source: The image.
-        outputs: What was to be made.
-        names: The level images that were made.
-        frames: Those that it is an average of.
+        outputs: Its outputs.
+        names: The names of the level images.
+        frames: The frames that surfaces are averaged over.
     """
     name, settings = source.image_name, source.settings
     baked = Sentence("Baked '{}'", name)

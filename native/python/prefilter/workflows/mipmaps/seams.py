@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What the setting Seams does: the contrast of UV seams in each level, without it and with it."""
+"""Report on the setting Seams: contrast across UV seams in each level, without and with it."""
 
 from collections.abc import Sequence
 
 
 def note(image_name: str, without: Sequence[float], weighed: Sequence[float]) -> str:
-    """Returns a line that compares contrasts of levels 1 and up; empty where there is no seam.
+    """Returns a line that compares contrasts of levels 1 and up; empty without seams.
 
     Args:
-        image_name: Whose levels they are.
-        without: What `prefilter.seam_contrast` says of levels that do not heed seams.
-        weighed: The same of those that do.
+        image_name: The image's name.
+        without: Results of `prefilter.seam_contrast` for levels without seam weights.
+        weighed: The same for levels with seam weights.
     """
     if not any(without):
         return ""

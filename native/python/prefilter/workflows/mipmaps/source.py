@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""An image on its surfaces, as it was read: what levels are computed of, on any thread."""
+"""An image on its surfaces, independent of Blender: the input of filtering, on any thread."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -25,16 +25,16 @@ _LIMITS = {"unit": (0.0, 1.0), "positive": (0.0, None), "none": None}
 
 @dataclass
 class Source:
-    """An image and the surfaces that it is mapped on; no Blender data.
+    """An image and the surfaces that it is mapped on, without Blender data.
 
     Attributes:
         picture: The pixels of the image.
         surfaces: The surfaces.
         objects: The name of the object that each surface comes from.
-        settings: What is to be made of it.
-        content: A key of `choices.CONTENTS`, and not "auto".
-        wrap: What lookups read outside of the image along u and v.
-        warnings: What a user should know about it.
+        settings: The settings of the bake.
+        content: A key of `choices.CONTENTS`, except "auto".
+        wrap: Wrap modes along u and v.
+        warnings: Warnings for the user.
     """
 
     picture: Picture
@@ -62,12 +62,12 @@ class Source:
 
     @property
     def footprint(self) -> float:
-        """The texels of a level that a pixel covers, as `prefilter.mipmaps` takes it."""
+        """The width of a pixel in texels of a level, as `prefilter.mipmaps` takes it."""
         return self.footprint_of(self.settings.filter)
 
     @property
     def fits_views(self) -> bool:
-        """Whether levels are fitted to what pixels show of the objects."""
+        """Whether levels are fitted to views of the objects."""
         return lookups.fits_views(self.settings, self.content, self.reader, self.objects)
 
     def footprint_of(self, filter: str) -> float:
@@ -77,7 +77,7 @@ class Source:
         return lookups.footprint(self.settings, filter, self.reader)
 
     def bounds(self, texels: images.Texels) -> tuple[float | None, float | None] | None:
-        """Returns the range of the levels of texels."""
+        """Returns the allowed range of the levels of texels."""
         if self.settings.bounds != "auto":
             return _LIMITS[self.settings.bounds]
         if texels.dtype == np.uint8:
@@ -86,7 +86,7 @@ class Source:
         return images.automatic_bounds(texels, is_associated=is_associated)
 
     def capped(self, levels: list[FloatArray], linear: FloatArray) -> list[FloatArray]:
-        """Returns levels above 0 within the range that `bounds` leaves open for some images."""
+        """Limits levels 1 and up where `bounds` leaves associated alpha without an upper limit."""
         if self.settings.bounds != "auto" or not self.picture.alpha_is_associated:
             return levels
         return [images.capped(level, linear) for level in levels]
@@ -108,10 +108,10 @@ class Source:
         """Returns scene-linear levels with any filter.
 
         Args:
-            linear: What `linear` returned.
+            linear: The result of `linear`.
             filter: A key of `FILTERS`.
             progress: Called with the fraction done.
-            levels: How many, the image itself included; None for all.
+            levels: How many, including the image itself; None for all.
             seam_budget: See `prefilter.mipmaps`; None for that of the settings.
             footprint: See `prefilter.mipmaps`; None for that of the settings.
 
@@ -150,7 +150,7 @@ class Source:
         bounds: tuple[float | None, float | None] | None,
         progress: Progress,
     ) -> list[FloatArray]:
-        """Returns levels, with level 0, that go on from others; see `fits_views`."""
+        """Returns levels, including level 0, fitted to views from an initial guess."""
         with self.naming_objects():
             return prefilter.fit_to_views(
                 levels,
@@ -164,7 +164,7 @@ class Source:
 
     @contextmanager
     def naming_objects(self) -> Iterator[None]:
-        """Puts objects in the place of surfaces in the library's messages."""
+        """A context in which error messages name objects instead of surfaces."""
         try:
             yield
         except ValueError as error:
@@ -182,12 +182,12 @@ def without_pixels(picture: Picture) -> Picture:
 
 
 def reads_encoded(picture: Picture) -> bool:
-    """Tells whether there are renderers that interpolate the picture's texels as encoded."""
+    """Tells whether some renderers interpolate the picture's texels in encoded form."""
     return picture.encoding is images.Encoding.SRGB and not picture.is_float
 
 
 def _naming_objects(message: str, objects: Sequence[str]) -> str:
-    """Returns a message of the library, with objects in the place of its surfaces."""
+    """Replaces surfaces by objects in an error message of the library."""
     one = re.match(r"surface (\d+)\b", message)
     if one and int(one[1]) < len(objects):
         return f"object '{objects[int(one[1])]}'{message[one.end() :]}"

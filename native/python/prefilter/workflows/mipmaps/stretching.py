@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Images whose sides are stretched to multiples of what readers of compressed blocks need."""
+"""Stretching images to sides that readers of compressed blocks need."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -23,15 +23,15 @@ _WHITE = 255
 
 
 def stretch(source: Source, outputs: Outputs, progress: Progress) -> tuple[Outputs, list[str]]:
-    """Gives images that end in blocks the sides that readers need.
+    """Stretches images for block formats to the sides that readers need.
 
     Args:
-        source: The image; it is replaced.
-        outputs: What is made of it.
-        progress: Asked whether to go on.
+        source: The image; its picture is replaced.
+        outputs: Its outputs.
+        progress: Called to check for cancellation.
 
     Returns:
-        The outputs, with the roughness likewise; and notes on what was stretched.
+        The outputs, with stretched roughness; and notes on stretched images.
 
     Raises:
         prefilter.Cancelled: `progress` returned False.
@@ -42,7 +42,7 @@ def stretch(source: Source, outputs: Outputs, progress: Progress) -> tuple[Outpu
         return outputs, []
     size = size_for(source.picture, outputs.target, settings.texture_format)
     if rough is not None:
-        # Both have one size, so if one needs another the other gets it, too.
+        # Both images have one size, so they are stretched together.
         own = size_for(rough.picture, outputs.roughness_target, rough.texture_format)
         size = max(size, own)
     change = partial(
@@ -82,15 +82,15 @@ def stretched(
     is_normal_map: bool = False,
     threads: int = 0,
 ) -> Picture:
-    """Returns a picture of another size, with values in the range of its own.
+    """Returns a resized picture whose values stay within their original range.
 
     Args:
         picture: Any picture.
         size: Width and height.
-        wrap: What lies outside of it along u and v.
+        wrap: Wrap modes along u and v.
         progress: Called with the fraction done.
-        check: Called between the parts of a conversion that takes long.
-        is_normal_map: Whether its texels are normals, which then have length 1.
+        check: Called between stages of a slow conversion.
+        is_normal_map: Whether its texels are normals, which are renormalized.
         threads: How many to use; 0 for all.
 
     Raises:
@@ -120,7 +120,7 @@ def stretched(
 
 
 def note(picture: Picture, size: tuple[int, int]) -> str:
-    """Returns a line that says how a picture is stretched."""
+    """Returns a note that a picture is stretched."""
     height, width, _ = picture.shape
     return Sentence(
         "'{}' is stretched from {} x {} to {} x {} texels, as its texture format needs sides "
@@ -130,7 +130,7 @@ def note(picture: Picture, size: tuple[int, int]) -> str:
 
 
 def _normalized(texels: FloatArray) -> FloatArray:
-    """Returns vectors of length 1, as a normal map holds them; zero stays."""
+    """Normalizes the vectors of a normal map; zero vectors stay."""
     vectors = 2 * texels - 1
     length = np.sqrt((vectors**2).sum(axis=2, keepdims=True))
     unit = vectors / np.where(length > 0, length, 1)

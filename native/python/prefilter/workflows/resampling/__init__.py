@@ -1,3 +1,3 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Pictures of other sizes, and in other places."""
+"""Resizing and resampling pictures, and making sampling tables."""

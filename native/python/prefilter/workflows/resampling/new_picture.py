@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""A new image of an old one: what was read is computed anywhere, then handed on or written."""
+"""Computing a new image from an old one, on any thread, and writing or handing on the result."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -24,12 +24,12 @@ from ..wording import Sentence
 Bytes = NDArray[np.uint8]
 Keep = Callable[["NewPicture", FloatArray], Outcome]
 
-_DECODED, _FILTERED = 0.1, 0.9  # What the progress is once these steps are done.
+_DECODED, _FILTERED = 0.1, 0.9  # Progress after decoding, and after filtering.
 _BYTE, _SHORT = 255, 65535
 
 
 class NewPicture:
-    """One new image, which a subclass says how to filter.
+    """The computation of one new image; subclasses define the filter.
 
     `write` belongs on the main thread; `compute` touches no Blender data and runs on any thread.
     """
@@ -42,13 +42,13 @@ class NewPicture:
         target: Path | None = None,
         keep: Keep | None = None,
     ) -> None:
-        """Keeps what was read.
+        """Takes the inputs.
 
         Args:
             picture: The image.
-            settings: Of the subclass.
-            target: A file to write; None for what `keep` makes.
-            keep: Makes an image of the new pixels, as the picture stores them.
+            settings: Settings of the subclass.
+            target: A file to write; None to call `keep` instead.
+            keep: Creates an image from the new pixels, in the encoding of the picture.
         """
         height, width = picture.shape[:2]
         self.old_size = (width, height)
@@ -57,13 +57,13 @@ class NewPicture:
         self._target = target
         self._keep = keep
         self.metadata: Mapping[str, str] | None = None
-        """What the file is to keep, by keys."""
+        """Key-value pairs to store in the file."""
         self._stored: FloatArray | None = None
         self._staged: staging.StagedFile | None = None
 
     @property
     def suffix(self) -> str:
-        """The end of the name of the new image."""
+        """Suffix of the new image's name."""
         raise NotImplementedError
 
     @property
@@ -75,15 +75,15 @@ class NewPicture:
         """Returns the pixels of the new image.
 
         Args:
-            linear: Those of the old one as light, with alpha as it is stored.
+            linear: The pixels of the old one as light, with alpha as it is stored.
             progress: Called with the fraction done.
         """
         raise NotImplementedError
 
     def filtered_bytes(self, progress: Progress) -> Bytes | None:
-        """Returns the pixels of the new image as bytes that are stored as they are.
+        """Returns the pixels of the new image as bytes, in the encoding of the picture.
 
-        None where a subclass makes none of the picture, whose pixels then are `filtered`.
+        Returns None if the subclass cannot filter bytes; `filtered` is then called.
 
         Args:
             progress: Called with the fraction done.
@@ -92,7 +92,7 @@ class NewPicture:
 
     @property
     def keeps_bytes(self) -> bool:
-        """Whether bytes become bytes of the same encoding, which the library has."""
+        """Whether bytes are filtered to bytes of the same encoding, which the library supports."""
         picture = self.picture
         if picture.texels.dtype != np.uint8 or picture.encoding is Encoding.OCIO:
             return False
@@ -147,7 +147,7 @@ class NewPicture:
         """Makes the image, or puts the file into place.
 
         Raises:
-            OSError: It cannot be.
+            OSError: The file cannot be put into place.
         """
         if self._staged is not None:
             self._staged.commit()
@@ -158,7 +158,7 @@ class NewPicture:
         return self._keep(self, self._stored)
 
     def discard(self) -> None:
-        """Removes the file that was staged, if it was not put into place."""
+        """Removes the staged file if it was not put into place."""
         if self._staged is not None:
             self._staged.discard()
 
@@ -166,7 +166,7 @@ class NewPicture:
 def _stage(
     target: Path, picture: Picture, linear: FloatArray, metadata: Mapping[str, str] | None
 ) -> staging.StagedFile:
-    """Writes a file with the alpha, the encoding and the depth that its kind should have."""
+    """Stages a file with the alpha, encoding and depth that suit its format."""
     covers, straight = picture.alpha_is_coverage, picture.alpha_is_straight
     if target.suffix.lower() == ".exr":
         pixels = alpha.associated(linear) if straight else linear

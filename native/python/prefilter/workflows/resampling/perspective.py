@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""How wide a rectangle is that a camera saw at an angle (Zhang and He, 2007, section 3.1).
+"""Proportions of a rectangle in a perspective view (Zhang and He, 2007, section 3.1).
 
-The camera has square pixels, and looks through the middle of its image. The vanishing points of two
-directions at right angles then tell its focal length, and this the proportions. Where one of them
-is at infinity, as of a camera that is held level, every lens is possible.
+The camera has square pixels and looks through the center of its image. The vanishing points of two
+perpendicular directions then determine its focal length, and that the proportions. If one of them
+is at infinity, as for a level camera, any focal length is possible.
 """
 
 from dataclasses import dataclass
@@ -16,19 +16,19 @@ from ... import _native
 from ..matrices import inner
 
 _FARTHEST = 100.0
-"""How far away a vanishing point may be to tell something, in diagonals of the image: farther,
-what tells is less than the rounding of corners to a pixel."""
-_SHORTEST, _LONGEST = 0.25, 15.0  # Focal lengths that are believed, in diagonals.
-_USUAL = 0.65  # A lens of 28 mm, by the measure of film 36 mm wide: that of a phone.
+"""Largest distance of a usable vanishing point, in diagonals of the image; beyond that, rounding of
+the corners to pixels dominates."""
+_SHORTEST, _LONGEST = 0.25, 15.0  # Plausible focal lengths, in diagonals.
+_USUAL = 0.65  # Focal length of a phone in diagonals, 28 mm equivalent.
 
 
 @dataclass(frozen=True)
 class Proportions:
-    """What the perspective tells.
+    """Proportions derived from the perspective.
 
     Attributes:
-        aspect: The width of the rectangle by its height.
-        is_certain: Whether the corners alone tell it; else the lens is taken to be a usual one.
+        aspect: Width of the rectangle / its height.
+        is_certain: Whether the corners alone determine it; otherwise a usual lens was assumed.
     """
 
     aspect: float
@@ -39,10 +39,10 @@ def proportions(corners: ArrayLike, width: int, height: int) -> Proportions:
     """Returns the proportions of a rectangle.
 
     Args:
-        corners: (4, 2) places in pixels, around a convex quadrilateral: the first two are the ends
-            of the side that is the width.
-        width: Of the image, in pixels.
-        height: Of the image.
+        corners: (4, 2) positions in pixels, around a convex quadrilateral; the side between the
+            first two counts as the width.
+        width: Width of the image in pixels.
+        height: Height of the image in pixels.
     """
     diagonal = _native.hypot(width, height)
     along, up = _directions((np.asarray(corners, np.float64) - (width / 2, height / 2)) / diagonal)
@@ -53,13 +53,13 @@ def proportions(corners: ArrayLike, width: int, height: int) -> Proportions:
     focal = None if any(is_far) else _focal_length(along, up)
     if focal is None:
         aspect = _length(along, _USUAL) / _length(up, _USUAL)
-        # What is seen from the front has the proportions of its picture, whatever the lens.
+        # In a frontal view the proportions are those of the picture, with any lens.
         return Proportions(aspect, all(is_far))
     return Proportions(_length(along, focal) / _length(up, focal), True)
 
 
 def _directions(points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Returns the homogeneous images of the two sides, as long as these in a unit of their own."""
+    """Returns the homogeneous directions of both sides, scaled by their relative lengths."""
     m1, m2, m4, m3 = np.column_stack([points, np.ones(4)])
     across = np.cross(m1, m4)
     k2 = inner(across, m3) / inner(np.cross(m2, m4), m3)
@@ -68,7 +68,7 @@ def _directions(points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArr
 
 
 def _focal_length(along: NDArray[np.float64], up: NDArray[np.float64]) -> float | None:
-    """Returns at which distance the sides are at right angles; None where no lens has it."""
+    """Returns the focal length that makes the sides perpendicular; None if it is implausible."""
     square = -inner(along[:2], up[:2]) / float(along[2] * up[2])
     return float(np.sqrt(square)) if _SHORTEST**2 <= square <= _LONGEST**2 else None
 

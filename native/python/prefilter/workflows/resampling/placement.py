@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Where an image goes in its result: projective transforms of pixel coordinates.
+"""Placement of an image in its result: projective transforms of pixel coordinates.
 
-A point (x, y) of an image is in pixels from its lower left corner, with y upwards. A transform is
-a 3 x 3 matrix that takes (x, y, 1) to a multiple of (x', y', 1).
+A point (x, y) of an image is in pixels from its lower left corner, with y upwards. A transform is a
+3 x 3 matrix that maps (x, y, 1) to a multiple of (x', y', 1).
 """
 
 import math
@@ -19,20 +19,20 @@ from .perspective import proportions
 
 Matrix = NDArray[np.float64]
 
-_ROUNDING = 1e-6  # In pixels: what an extent may be above a whole number by rounding.
-_PLACES = 16  # Along x and y, for a mean over the result.
-_FLATTEST = 1e-9  # Twice the area at a corner, by the square of the longest side.
+_ROUNDING = 1e-6  # Rounding tolerance of extents above a whole number, in pixels.
+_PLACES = 16  # Samples along x and y for a mean over the result.
+_FLATTEST = 1e-9  # Least twice the area at a corner / the square of the longest side.
 
 
 @dataclass(frozen=True)
 class Placement:
-    """A result, and where it comes from.
+    """The size of a result, and the transform from it to the image.
 
     Attributes:
-        transform: From pixels of the result to those of the image; the factor of (x', y', 1) is
-            above 0 where the image is, and below it beyond the horizon.
-        width: Of the result, in pixels.
-        height: Of the result, in pixels.
+        transform: Maps pixels of the result to those of the image; the factor of (x', y', 1) is
+            positive on the image's side of the horizon.
+        width: Width of the result in pixels.
+        height: Height of the result in pixels.
     """
 
     transform: Matrix
@@ -41,7 +41,7 @@ class Placement:
 
 
 def placement(settings: ResampleSettings, width: int, height: int) -> Placement:
-    """Returns where an image of this size goes.
+    """Returns the placement of an image of this size.
 
     Raises:
         ValueError: The settings make it flat, fold it, or make it too large.
@@ -63,7 +63,7 @@ def placement(settings: ResampleSettings, width: int, height: int) -> Placement:
 
 
 def frame(settings: ResampleSettings, width: int, height: int) -> tuple[int, int]:
-    """Returns the size of what corners are places of: of the image, or of the result."""
+    """Returns the size that corners are relative to: that of the image, or of the result."""
     if settings.warp == "rectify" or settings.size == "fit":
         return width, height
     return _size(settings, width, height)
@@ -76,9 +76,9 @@ def corners(settings: ResampleSettings, width: int, height: int) -> NDArray[np.f
 
 
 def knows_proportions(settings: ResampleSettings, width: int, height: int) -> bool:
-    """Returns whether the settings say how wide what is straightened is by its height.
+    """Returns whether the settings determine the proportions of the rectified area.
 
-    They do not where the perspective has to, and does not: a usual lens is assumed then.
+    They do not if the perspective is needed but inconclusive; a usual lens is then assumed.
 
     Raises:
         ValueError: The corners are not around a convex quadrilateral.
@@ -96,17 +96,17 @@ def rectangle(width: float, height: float) -> NDArray[np.float64]:
 
 
 def moved(x: float, y: float) -> Matrix:
-    """Returns the transform that moves."""
+    """Returns the transform that translates."""
     return np.array([[1.0, 0.0, x], [0.0, 1.0, y], [0.0, 0.0, 1.0]])
 
 
 def scaled_and_rotated(scale_x: float, scale_y: float, angle: float) -> Matrix:
-    """Returns the transform that scales along x and y, and then turns counterclockwise.
+    """Returns the transform that scales along x and y, and then rotates counterclockwise.
 
     Args:
-        scale_x: The factor along x; below 0 it mirrors.
-        scale_y: Along y.
-        angle: In radians; quarter turns are exact.
+        scale_x: The factor along x; negative factors mirror.
+        scale_y: The factor along y.
+        angle: Radians; quarter turns are exact.
 
     Raises:
         ValueError: A factor is 0.
@@ -116,7 +116,7 @@ def scaled_and_rotated(scale_x: float, scale_y: float, angle: float) -> Matrix:
             raise ValueError(f"{label}: found 0; the image would vanish")
     cosine, sine = _native.cos(angle), _native.sin(angle)
     quarters = angle / (math.pi / 2)
-    # Blender keeps angles in single precision.
+    # Blender stores angles in single precision.
     if math.isclose(quarters, round(quarters), rel_tol=1e-6, abs_tol=1e-6):
         cosine, sine = float(round(cosine)), float(round(sine))
     return np.array(
@@ -129,11 +129,11 @@ def scaled_and_rotated(scale_x: float, scale_y: float, angle: float) -> Matrix:
 
 
 def homography(source: ArrayLike, target: ArrayLike) -> Matrix:
-    """Returns the projective transform that takes four points to four others.
+    """Returns the projective transform that maps four points to four others.
 
     Args:
         source: (4, 2) points, around a convex quadrilateral.
-        target: (4, 2) points, likewise, either way around.
+        target: (4, 2) points around a convex quadrilateral, in either direction.
 
     Raises:
         ValueError: Points of `source` or `target` are not around a convex quadrilateral.
@@ -142,23 +142,22 @@ def homography(source: ArrayLike, target: ArrayLike) -> Matrix:
 
 
 def applied(transform: Matrix, points: ArrayLike) -> NDArray[np.float64]:
-    """Returns where a transform takes (n, 2) points."""
+    """Returns the images of (n, 2) points under a transform."""
     points = np.asarray(points, np.float64)
     homogeneous = product(points, transform[:, :2].T) + transform[:, 2]
     return homogeneous[:, :2] / homogeneous[:, 2:]
 
 
 def squeeze(placed: Placement, width: int, height: int) -> float:
-    """Returns how many pixels of the image an upright square has, in the mean, that is as wide as
-    the filter of a pixel of the result.
+    """Returns the mean number of image pixels in an upright square as wide as a pixel's filter.
 
-    Each is at least 1 and at most those of a square as long as the image; pixels of the result that
-    do not show the image have none.
+    Each number is at least 1 and at most that of a square as long as the image; pixels of the
+    result outside the image count as 0.
 
     Args:
-        placed: Where the image goes.
-        width: Of the image, in pixels.
-        height: Of the image, in pixels.
+        placed: The placement of the image.
+        width: Width of the image in pixels.
+        height: Height of the image in pixels.
     """
     grid = (np.arange(_PLACES) + 0.5) / _PLACES
     x, y = (axis.ravel() for axis in np.meshgrid(grid * placed.width, grid * placed.height))
@@ -173,7 +172,7 @@ def squeeze(placed: Placement, width: int, height: int) -> float:
 
 
 def check_convex(quadrilateral: ArrayLike) -> None:
-    """Raises ValueError unless four points are around a convex quadrilateral."""
+    """Raises ValueError unless four points form a convex quadrilateral."""
     points = np.asarray(quadrilateral, np.float64)
     sides = np.roll(points, -1, axis=0) - points
     onwards = np.roll(sides, -1, axis=0)
@@ -207,7 +206,7 @@ def _largest_stretch(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _fitted(forward: Matrix, width: int, height: int) -> Placement:
-    """Returns a result that is just as large as needed, with the image in its middle."""
+    """Returns the smallest result that holds the whole image, centered."""
     ends = applied(forward, rectangle(width, height))
     low, high = ends.min(axis=0), ends.max(axis=0)
     sizes = [_whole(float(extent)) for extent in high - low]
@@ -227,7 +226,7 @@ def _rectified(settings: ResampleSettings, width: int, height: int) -> Placement
 def _fitted_size(
     settings: ResampleSettings, places: NDArray[np.float64], width: int, height: int
 ) -> tuple[int, int]:
-    """Returns the size of what is straightened: no side has fewer pixels than in the image."""
+    """Returns the size of the rectified area: no side gets fewer pixels than in the image."""
     sides = [_native.hypot(*side) for side in np.roll(places, -1, axis=0) - places]
     across, up = max(sides[0], sides[2]), max(sides[1], sides[3])
     if settings.proportions == "sides":

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Resampling an image: scaled, rotated, in perspective, or out of it."""
+"""Resampling an image: scaling, rotating, pinning corners, or rectifying."""
 
 from pathlib import Path
 from typing import Any, cast
@@ -15,8 +15,8 @@ from .new_picture import Keep, NewPicture
 from .placement import placement, squeeze
 
 _RADII = {one.name: one.radius for one in prefilter.PIXEL_FILTERS}
-_PER_PIXEL, _PER_WEIGHT = 8.0, 0.2  # What an exact filter costs, in texels read.
-_PER_TEXEL = 8.0  # What a texel costs that mipmaps are made of.
+_PER_PIXEL, _PER_WEIGHT = 8.0, 0.2  # Cost of the exact filter, in texels read.
+_PER_TEXEL = 8.0  # Cost of making mipmaps, in texels read per texel.
 _DONE = {
     "affine": Sentence("Scaled and rotated '{}' to {} x {} pixels with {}"),
     "corners": Sentence("Pinned '{}' to {} x {} pixels with {}"),
@@ -25,7 +25,7 @@ _DONE = {
 
 
 class Resampling(NewPicture):
-    """One image in another place."""
+    """The resampling of one image."""
 
     def __init__(
         self,
@@ -35,13 +35,13 @@ class Resampling(NewPicture):
         target: Path | None = None,
         keep: Keep | None = None,
     ) -> None:
-        """Keeps what was read.
+        """Takes the inputs.
 
         Args:
             picture: The image.
-            settings: Where it goes, the filter, and more.
+            settings: The transform, the filter, and more.
             target: See `NewPicture`.
-            keep: Likewise.
+            keep: See `NewPicture`.
 
         Raises:
             ValueError: The settings make the image flat, fold it, or make it too large.
@@ -53,7 +53,7 @@ class Resampling(NewPicture):
 
     @property
     def suffix(self) -> str:
-        """What has become of the image."""
+        """The kind of transform."""
         return SUFFIXES[self._settings.warp]
 
     @property
@@ -92,7 +92,7 @@ def load(label: str, path: str) -> "prefilter.SamplingTable":
     """Loads a table.
 
     Args:
-        label: What the path is called in messages.
+        label: The path's name in messages.
         path: The file.
 
     Raises:
@@ -108,7 +108,7 @@ def load(label: str, path: str) -> "prefilter.SamplingTable":
 
 
 def effort(settings: ResampleSettings, width: int, height: int) -> float:
-    """Returns about how many texels are read for an image of this size.
+    """Estimates how many texels are read to resample an image of this size.
 
     Raises:
         ValueError: The settings make it flat, fold it, or make it too large.

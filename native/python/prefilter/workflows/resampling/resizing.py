@@ -15,7 +15,7 @@ from .new_picture import Bytes, Keep, NewPicture
 
 
 class Resizing(NewPicture):
-    """One image of another size."""
+    """The resizing of one image."""
 
     def __init__(
         self,
@@ -25,20 +25,20 @@ class Resizing(NewPicture):
         target: Path | None = None,
         keep: Keep | None = None,
     ) -> None:
-        """Keeps what was read.
+        """Takes the inputs.
 
         Args:
             picture: The image.
             settings: The size, the filter, and more.
             target: See `NewPicture`.
-            keep: Likewise.
+            keep: See `NewPicture`.
         """
         super().__init__(picture, settings, target=target, keep=keep)
         self.new_size = settings.new_size(*self.old_size)
 
     @property
     def suffix(self) -> str:
-        """The size."""
+        """The new size."""
         return f"{self.new_size[0]}x{self.new_size[1]}"
 
     @property

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Sampling tables: built or loaded anywhere, then written as files."""
+"""Building or loading sampling tables, and writing them as files."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -19,21 +19,21 @@ from ..wording import Sentence, listed
 from .resampling import load
 
 ENDINGS = tuple(f".{language}" for language in LANGUAGES)
-"""What files of tables may end in, which says what is written."""
+"""Extensions of table files, which select the language."""
 
-_BUILT = 0.9  # What the progress is once there is a table.
+_BUILT = 0.9  # Progress once the table exists.
 
 
 class TableMaking:
-    """One table, and files of it."""
+    """The making of one table and its files."""
 
     def __init__(self, settings: TableSettings, targets: Sequence[Path] = ()) -> None:
-        """Keeps the settings.
+        """Takes the settings.
 
         Args:
             settings: The filter, the number of texels, and more.
-            targets: Files to write, each in the language that its ending says; if there is none,
-                the text is kept in the language of the settings.
+            targets: Files to write, each in the language of its extension; if empty, the text is
+                kept in `source`, in the language of the settings.
         """
         self.source = ""
         self.settings = settings
@@ -43,7 +43,7 @@ class TableMaking:
 
     @property
     def table(self) -> "prefilter.SamplingTable":
-        """What was computed."""
+        """The table that was built or loaded."""
         assert self._table is not None
         return self._table
 
@@ -52,7 +52,7 @@ class TableMaking:
 
         Raises:
             prefilter.Cancelled: `progress` returned False.
-            ValueError: The settings ask for a table that cannot be, or the file holds none.
+            ValueError: The settings allow no table, or the file holds none.
             OSError: A file cannot be read or written.
         """
         go_on(progress, 0.0)
@@ -69,13 +69,13 @@ class TableMaking:
         """Puts the files into place.
 
         Raises:
-            OSError: They cannot be.
+            OSError: A file cannot be put into place.
         """
         staging.commit_all(self._staged)
         return self.outcome([str(target) for target in self.targets])
 
     def outcome(self, names: Sequence[str]) -> Outcome:
-        """Returns what to say of a table that was written under some names."""
+        """Returns the outcome for a table that was written under some names."""
         table = self.table
         return Outcome(
             Sentence(
@@ -88,7 +88,7 @@ class TableMaking:
         )
 
     def discard(self) -> None:
-        """Removes files that were staged, if they were not put into place."""
+        """Removes staged files that were not put into place."""
         for staged in self._staged:
             staged.discard()
 
@@ -117,7 +117,7 @@ class TableMaking:
 
 
 def _proof(table: "prefilter.SamplingTable") -> list[str]:
-    """Returns what is known about how good the sets are."""
+    """Returns a note about the proven quality of the sets of texels."""
     gaps = table.gaps
     if gaps is None:
         return []

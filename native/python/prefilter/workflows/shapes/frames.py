@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Where shapes are in an image."""
+"""Placement of a plane in an image."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,17 +15,17 @@ from ..wording import Sentence
 FloatArray = NDArray[np.float64]
 
 _BYTES_PER_PIXEL = 40.0
-"""What an image takes while it is made: its values as floats, a copy, and its bytes."""
+"""Peak memory per pixel: floats, a copy, and bytes."""
 
 
 @dataclass(frozen=True)
 class Frame:
-    """Where a plane is in an image.
+    """The size of an image, and the transform from a plane to it.
 
     Attributes:
-        width: In pixels.
-        height: In pixels.
-        to_pixels: (3, 3), from homogeneous points of the plane to those of the image.
+        width: Pixels.
+        height: Pixels.
+        to_pixels: (3, 3), maps homogeneous points of the plane to those of the image.
     """
 
     width: int
@@ -34,13 +34,13 @@ class Frame:
 
 
 def whole_frame(width: int, height: int, low: Sequence[float], high: Sequence[float]) -> Frame:
-    """Returns the frame in which a box is stretched over an image."""
+    """Returns the frame that stretches a box over an image."""
     scale = [width / (high[0] - low[0]), height / (high[1] - low[1])]
     return _frame(width, height, scale, [-low[0] * scale[0], -low[1] * scale[1]])
 
 
 def fitted_frame(box: FloatArray, settings: RasterizeSettings) -> Frame:
-    """Returns the frame in which a box is in the middle of an image, with the margin around it.
+    """Returns the frame that centers a box in an image, with the margin around it.
 
     Args:
         box: (2, 2): the low and the high corner.
@@ -88,7 +88,7 @@ def _frame(width: int, height: int, scale: Sequence[float], shift: Sequence[floa
 
 
 def check_memory(frame: Frame, memory: Memory) -> None:
-    """Raises MemoryError where an image cannot be made."""
+    """Raises MemoryError if an image would not fit into memory."""
     needed = _BYTES_PER_PIXEL * frame.width * frame.height
     free, why = memory()
     if needed > free:

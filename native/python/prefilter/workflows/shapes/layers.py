@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What images are made of: contours that are filled, a UV map, an SVG file."""
+"""Sources of rasterized images: layers of filled contours, UV maps, and SVG files."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
@@ -32,17 +32,17 @@ _MOST_WARNINGS = 5
 
 @dataclass(frozen=True)
 class Drawn:
-    """Shapes in an image.
+    """Shapes placed in an image.
 
     Attributes:
-        width: In pixels.
-        height: In pixels.
-        shapes: Those of a coverage have one channel, others four.
-        color: Of a coverage: the color of all shapes. None where each shape has its own.
-        warnings: What is not in them.
-        place: Where the image is; None where that is not known.
-        draw: Returns the image of what is more than shapes, by its progress; None for shapes.
-        light: How colors of that image are: "linear", or "srgb" as they are encoded.
+        width: Pixels.
+        height: Pixels.
+        shapes: Shapes with one channel for coverage, otherwise four.
+        color: The common color of all shapes, for coverage; None if each shape has its own.
+        warnings: Warnings about omissions.
+        place: Position of the image; None if unknown.
+        draw: Draws content other than shapes, given a progress callback; None for shapes.
+        light: Encoding of colors in the drawn image: "linear" or "srgb".
     """
 
     width: int
@@ -56,33 +56,33 @@ class Drawn:
 
 
 class Source(Protocol):
-    """What was read and can be drawn."""
+    """Content that has been read and can be drawn."""
 
     @property
     def name(self) -> str:
-        """What the image is named after."""
+        """The name for the image."""
 
     def inputs(self, settings: RasterizeSettings) -> str | None:
-        """Returns a number of all that decides; None where it is not all known.
+        """Returns a fingerprint of all inputs; None if they are not all known.
 
         Raises:
             OSError: A file cannot be read.
         """
 
     def drawn(self, settings: RasterizeSettings, progress: Progress) -> Drawn:
-        """Returns the shapes in an image.
+        """Returns the shapes placed in an image.
 
         Raises:
-            ValueError: There are none, or they do not fit the settings.
+            ValueError: There are no shapes, or they do not fit the settings.
             OSError: A file cannot be read.
             MemoryError: The image would not fit into memory.
-            prefilter.Cancelled: `progress` has said so.
+            prefilter.Cancelled: `progress` returned False.
         """
 
 
 @dataclass(frozen=True)
 class Layer:
-    """Contours on a plane that are filled together, as `outlines` has them."""
+    """Contours on a plane that are filled together, in the form of `outlines`."""
 
     contours: list[FloatArray]
     color: Color
@@ -96,15 +96,15 @@ class Layers:
     name: str
     layers: list[Layer]
     frame: Frame | None
-    """Where the plane is in the image; None to fit it."""
+    """Placement of the plane in the image; None to fit it."""
     memory: Memory = free_memory
     placed: Callable[[Frame], Any] = lambda _: None
-    """Returns where the image is."""
+    """Returns the position of the image."""
     grown: float = 0.0
-    """How many pixels farther than their contours shapes reach."""
+    """Distance in pixels by which shapes extend beyond their contours."""
 
     def inputs(self, settings: RasterizeSettings) -> str:
-        """Returns a number of the contours, the colors and the settings."""
+        """Returns a fingerprint of the contours, colors and settings."""
         arrays = [contour for layer in self.layers for contour in layer.contours]
         looks = [[len(each.contours), each.color, each.fill_rule] for each in self.layers]
         if self.frame is not None:
@@ -112,7 +112,7 @@ class Layers:
         return fingerprint_of(arrays, {**_decisive(settings), "looks": looks, "grown": self.grown})
 
     def drawn(self, settings: RasterizeSettings, progress: Progress) -> Drawn:
-        """Returns the shapes in an image."""
+        """Returns the shapes placed in an image."""
         frame = self.frame
         if frame is None:
             boxes = np.array([box_of(one) for layer in self.layers for one in layer.contours])
@@ -122,7 +122,7 @@ class Layers:
         colors = {layer.color for layer in self.layers}
         if settings.color != "material":
             colors = {_WHITE}
-        # What is translucent covers itself only where shapes overlap.
+        # A translucent color combines with itself only where shapes overlap.
         is_coverage = len(colors) <= 1 and all(color[3] == 1.0 for color in colors)
         shapes = []
         for i, layer in enumerate(self.layers):
@@ -147,14 +147,14 @@ class _Svg:
     path: Path
     memory: Memory
     placed: Callable[[FloatArray], Any]
-    """Returns where the image is, of half of its sides."""
+    """Returns the position of the image, from half of its side lengths."""
 
     def inputs(self, settings: RasterizeSettings) -> str | None:
-        """Returns a number of the file and the settings."""
+        """Returns a fingerprint of the file and the settings; None unless it is self-contained."""
         return fingerprint([self.path], _decisive(settings)) if stands_alone(self.path) else None
 
     def drawn(self, settings: RasterizeSettings, progress: Progress) -> Drawn:
-        """Reads the file, and returns what draws it into an image."""
+        """Reads the file, and returns a function that draws it into an image."""
         fonts = [settings.font_folder] if settings.font_folder else None
         picture = SvgPicture(self.path, settings.light, fonts, share(progress, 0.0, 1.0))
         box = np.array([[0.0, 0.0], [picture.width, picture.height]])
@@ -207,13 +207,13 @@ def uv_layers(
     settings: RasterizeSettings,
     memory: Memory = free_memory,
 ) -> Layers:
-    """Returns what the faces of a mesh cover in a tile of UV space.
+    """Returns the area that a mesh's faces cover in a tile of UV space, as layers.
 
     Args:
-        name: What the image is named after.
-        polygons: The borders of what they cover, as `layouts.borders` returns them.
-        settings: The tile, the size of the image, and how far what is covered grows.
-        memory: What the work may use.
+        name: The name for the image.
+        polygons: The borders of that area, from `layouts.borders`.
+        settings: The tile, the size of the image, and the growth of the area.
+        memory: Returns the available memory.
     """
     row, column = divmod(settings.tile - 1001, _TILES_PER_ROW)
     contours = []
@@ -232,13 +232,13 @@ def svg_drawing(
     memory: Memory = free_memory,
     placed: Callable[[FloatArray], Any] = lambda _: None,
 ) -> Source:
-    """Returns an SVG file, which is read when it is drawn.
+    """Returns an SVG file as a source; it is read when it is drawn.
 
     Args:
-        argument: What the path is called in messages.
+        argument: The path's name in messages.
         path: The file.
-        memory: What the work may use.
-        placed: Returns where the image is, of half of its sides.
+        memory: Returns the available memory.
+        placed: Returns the position of the image, from half of its side lengths.
 
     Raises:
         OSError: There is no such file.

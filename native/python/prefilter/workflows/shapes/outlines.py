@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Rational Bezier curves of the plane as parts of `prefilter.Shape`."""
+"""Conversion of rational Bezier curves in the plane to contours of `prefilter.Shape`."""
 
 from math import comb
 
@@ -14,23 +14,23 @@ from ..matrices import product
 FloatArray = NDArray[np.float64]
 
 _PIECES = 32
-"""Into how many cubic curves a rational one is cut that is not quadratic: a quarter of a circle is
-then 1e-8 of its radius off."""
+"""Number of cubic curves that replace a rational one of degree above 2; the error of a quarter
+circle is then 1e-8 of its radius."""
 _SAMPLES = 64
-"""At how many places a curve is looked at for its box: 1e-5 of its size is missed at most."""
+"""Number of samples per curve for its box, which is exact to 1e-5 of the curve's size."""
 _EQUAL = 1e-12
 
 
 def add_contour(shape: "prefilter.Shape", control: FloatArray) -> None:
     """Adds a closed contour to a shape.
 
-    Lines, polynomial curves and conics are kept exactly; rational curves of a higher degree become
-    cubic ones with the same tangents.
+    Lines, polynomial curves and conics stay exact; rational curves of higher degree become cubic
+    ones with the same tangents.
 
     Args:
-        shape: Gets the contour.
-        control: (segments, degree + 1, 3) homogeneous control points, each segment beginning where
-            the one before it ends: coordinates multiplied by the weight, then the weight, above 0.
+        shape: The shape that gets the contour.
+        control: (segments, degree + 1, 3) homogeneous control points, each segment starting at the
+            end of the previous one: coordinates times the weight, then the weight, which is > 0.
     """
     points, weights = control[..., :2] / control[..., 2:], control[..., 2]
     degree = control.shape[1] - 1
@@ -49,7 +49,7 @@ def add_contour(shape: "prefilter.Shape", control: FloatArray) -> None:
 
 
 def box_of(control: FloatArray) -> FloatArray:
-    """Returns the low and the high corner of curves as above, (2, 2)."""
+    """Returns the low and the high corner, (2, 2), of curves in the form of `add_contour`."""
     count = 2 if control.shape[1] == 2 else _SAMPLES + 1
     values = product(_bernstein(control.shape[1] - 1, count), control)
     points = values[..., :2] / values[..., 2:]
@@ -57,14 +57,14 @@ def box_of(control: FloatArray) -> FloatArray:
 
 
 def _joined(points: FloatArray) -> FloatArray:
-    """Returns curves each of which begins just where the one before it ends, rounded or not."""
+    """Returns curves that start exactly at the end of the previous one, in spite of rounding."""
     joined = points.copy()
     joined[1:, 0] = points[:-1, -1]
     return joined
 
 
 def _cubics(control: FloatArray) -> FloatArray:
-    """Returns cubic curves through points of rational ones, with their tangents there."""
+    """Returns cubic curves through points of rational curves, with the same tangents there."""
     degree = control.shape[1] - 1
     values = product(_bernstein(degree, _PIECES + 1), control)
     slopes = product(_bernstein(degree - 1, _PIECES + 1), degree * np.diff(control, axis=1))
@@ -76,7 +76,7 @@ def _cubics(control: FloatArray) -> FloatArray:
 
 
 def _bernstein(degree: int, count: int) -> FloatArray:
-    """Returns (count, degree + 1) values of the Bernstein polynomials at places from 0 to 1."""
+    """Returns (count, degree + 1) values of Bernstein polynomials, evenly spaced over [0, 1]."""
     t = np.linspace(0.0, 1.0, count)[:, None]
     k = np.arange(degree + 1)
     binomials = np.array([comb(degree, i) for i in k], np.float64)

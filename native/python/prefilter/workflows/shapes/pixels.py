@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""From coverage and associated colors to what images and files hold."""
+"""Conversion of coverage and associated colors to pixels of images and files."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -26,13 +26,13 @@ _ROWS_AT_ONCE = 64
 
 @dataclass(frozen=True)
 class Pixels:
-    """What an image or a file holds, in scene-linear values.
+    """Scene-linear pixels of an image or a file.
 
     Attributes:
         values: (height, width, 1, 3 or 4), row 0 at the bottom: a mask, opaque colors, or colors
-            and alpha.
+            with alpha.
         is_straight: Whether colors are not multiplied by alpha.
-        color: The straight color everywhere, of which `values` are the alpha; None for others.
+        color: One straight color for all pixels, with `values` as alpha; None otherwise.
     """
 
     values: FloatArray
@@ -41,12 +41,12 @@ class Pixels:
 
     @property
     def channels(self) -> int:
-        """1 for a mask, 3 for opaque colors, 4 for colors and alpha."""
+        """1 for a mask, 3 for opaque colors, 4 for colors with alpha."""
         return self.values.shape[2] if self.color is None else 4
 
     @property
     def is_mask(self) -> bool:
-        """Whether the values are no colors."""
+        """Whether the values are a mask instead of colors."""
         return self.channels == 1
 
     def floats(self) -> FloatArray:
@@ -59,7 +59,7 @@ class Pixels:
         return found
 
     def encoded(self, kind: type[np.uint8] | type[np.uint16]) -> NDArray[Any]:
-        """Returns whole numbers, sRGB-encoded unless they are a mask."""
+        """Returns integers, sRGB-encoded unless they are a mask."""
         if self.color is None:
             return _whole(self.values if self.is_mask else prefilter.to_srgb(self.values), kind)
         found = np.empty((*self.values.shape[:2], 4), kind)
@@ -78,20 +78,20 @@ def finished(
     is_straight: bool,
     progress: Progress,
 ) -> Pixels:
-    """Returns the pixels that the settings ask for.
+    """Returns the pixels according to the settings.
 
     Args:
-        raster: (height, width, 1) coverage, or (height, width, 4) associated colors and alpha. They
-            may overshoot, as those of many filters do. What it holds afterward is undefined.
-        color: What is covered, of a coverage.
+        raster: (height, width, 1) coverage, or (height, width, 4) associated colors with alpha.
+            Values may overshoot, as many filters do. The array is overwritten.
+        color: The color of the shapes, if the raster is coverage.
         settings: Colors, background and bleeding.
-        light: How the colors of the raster are, and how they mix with a background: "linear", or
-            "srgb" as they are encoded.
-        is_straight: Whether colors are not to be multiplied by alpha.
+        light: The encoding of the raster's colors, in which they are blended with a background:
+            "linear" or "srgb".
+        is_straight: Whether the result's colors are not multiplied by alpha.
         progress: Called with the fraction done.
 
     Raises:
-        prefilter.Cancelled: `progress` has said so.
+        prefilter.Cancelled: `progress` returned False.
     """
     if settings.color != "material":
         raster, color = raster[..., -1:], (1.0, 1.0, 1.0, 1.0)
@@ -128,7 +128,7 @@ def finished(
 
 
 def _decoded(raster: FloatArray) -> FloatArray:
-    """Returns scene-linear colors of encoded ones, both multiplied by alpha."""
+    """Decodes sRGB colors with associated alpha; the result has associated alpha too."""
     straight = unassociated(raster)
     straight[..., :3] = prefilter.to_linear(straight[..., :3])
     return associated(straight)
@@ -137,7 +137,7 @@ def _decoded(raster: FloatArray) -> FloatArray:
 def _of_one_color(
     coverage: FloatArray, color: Color, settings: RasterizeSettings, *, is_straight: bool
 ) -> Pixels:
-    """Returns one color with a coverage as alpha: it bleeds everywhere as it is."""
+    """Returns one color with coverage as alpha; bleeding extends the color everywhere."""
     if is_straight and settings.use_bleed:
         return Pixels(coverage, is_straight, color[:3])
     values = np.empty((*coverage.shape[:2], 4), np.float32)
@@ -148,10 +148,10 @@ def _of_one_color(
 
 
 def _whole(values: FloatArray, kind: type[np.uint8] | type[np.uint16]) -> NDArray[Any]:
-    """Returns [0, 1] as whole numbers, rounded."""
+    """Converts [0, 1] to integers, rounded."""
     most = np.float32(np.iinfo(kind).max)
     found = np.empty(values.shape, kind)
-    # In bands, as temporary arrays of a whole image cost more than the arithmetic.
+    # In bands: temporary arrays of a whole image would cost more than the arithmetic.
     for start in range(0, len(values), _ROWS_AT_ONCE):
         band = np.clip(values[start : start + _ROWS_AT_ONCE], np.float32(0.0), np.float32(1.0))
         band *= most
@@ -166,13 +166,13 @@ def stage(
     settings: RasterizeSettings,
     metadata: Mapping[str, str] | None = None,
 ) -> staging.StagedFile:
-    """Writes a picture beside its target: for PNG with 8 bits or, of floats, 16.
+    """Stages a picture file: PNG with 8 bits, or 16 for float pixel types, or OpenEXR.
 
     Args:
         target: The file.
         pixels: The picture.
-        settings: How it is stored.
-        metadata: What the file is to keep, by keys.
+        settings: The pixel type.
+        metadata: Key-value pairs to store in the file.
 
     Raises:
         OSError: The file cannot be written.

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Shapes to an image, and to a file of it."""
+"""Rasterizing shapes into pixels, and into files."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -20,7 +20,7 @@ from . import pixels
 from .layers import Drawn, Source
 
 _READ, _DRAWN = 0.1, 2 / 3
-"""What the progress is once there are shapes, and once they are drawn."""
+"""Progress once the shapes exist, and once they are drawn."""
 
 
 def rasterized(
@@ -30,15 +30,15 @@ def rasterized(
 
     Args:
         source: The shapes.
-        settings: How.
+        settings: The settings.
         progress: Called with the fraction done.
-        is_straight: Whether colors are not to be multiplied by alpha.
+        is_straight: Whether the result's colors are not multiplied by alpha.
 
     Raises:
-        ValueError: There are none, or they do not fit the settings.
+        ValueError: There are no shapes, or they do not fit the settings.
         MemoryError: The image does not fit into memory.
         OSError: A file cannot be read.
-        prefilter.Cancelled: `progress` has said so.
+        prefilter.Cancelled: `progress` returned False.
     """
     drawn = source.drawn(settings, share(progress, 0.0, _READ))
     raster: Any
@@ -68,27 +68,27 @@ def rasterized(
 
 
 def is_straight(target: Path, settings: RasterizeSettings) -> bool:
-    """Tells whether colors in a file are not multiplied by alpha."""
+    """Tells whether a file's colors are not multiplied by alpha."""
     if settings.alpha != "auto":
         return settings.alpha == "straight"
     return target.suffix.lower() == ".png"
 
 
 def told(name: str, target: str, size: tuple[int, int]) -> str:
-    """Returns a line that says what was made."""
+    """Returns a summary line."""
     return Sentence("Rasterized '{}' to '{}': {} x {} pixels", name, target, *size)
 
 
 class RasterFile:
-    """Shapes to a file."""
+    """Rasterizes shapes into a file."""
 
     def __init__(
         self, source: Source, target: Path, settings: RasterizeSettings, warnings: list[str]
     ) -> None:
-        """Takes what to draw, where to, and how; and what is to be told of it."""
+        """Takes the shapes, the file to write, the settings, and warnings to report."""
         check(settings)
         self.metadata: Mapping[str, str] | None = None
-        """What the file is to keep, by keys."""
+        """Key-value pairs to store in the file."""
         self._source = source
         self._target = target
         self._settings = settings
@@ -117,6 +117,6 @@ class RasterFile:
         return Outcome(self._done, files=[str(self._target)], warnings=self._warnings)
 
     def discard(self) -> None:
-        """Removes what was staged, if it was not put into place."""
+        """Removes the staged file if it was not put into place."""
         if self._staged is not None:
             self._staged.discard()

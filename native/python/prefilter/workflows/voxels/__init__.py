@@ -1,3 +1,3 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Meshes to cells, and cells to a surface."""
+"""Voxelizing meshes, and extracting surfaces."""

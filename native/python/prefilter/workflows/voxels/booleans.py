@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Set operations on what meshes fill, in one grid of cells."""
+"""Set operations on voxelized meshes in one grid."""
 
 from collections.abc import Sequence
 from functools import partial, reduce
@@ -15,10 +15,10 @@ from .grid import Box
 
 
 def box(boxes: Sequence[Box], operation: str) -> Box:
-    """Returns the box that holds the result, by those of the operands.
+    """Returns a box around the result, from the boxes of the operands.
 
     Raises:
-        ValueError: There is nothing that is in all of them.
+        ValueError: The intersection of the boxes is empty.
     """
     if operation == "union":
         return (
@@ -37,12 +37,12 @@ def box(boxes: Sequence[Box], operation: str) -> Box:
 def combined(
     trees: Sequence[prefilter.Octree], operation: str, progress: Progress, threads: int
 ) -> prefilter.Octree:
-    """Returns the first tree with the others, one after another.
+    """Combines the first tree with the others, one after another.
 
     Args:
-        trees: One or more, of one grid.
+        trees: One or more trees in the same grid.
         operation: The method of `prefilter.Octree`.
-        progress: Called now and then, with 0.
+        progress: Called regularly with 0.
         threads: How many to use.
     """
     combine = getattr(prefilter.Octree, operation)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Where the cells of a tree are, and what they cost."""
+"""The grid of a voxelization, and its memory requirements."""
 
 import math
 from dataclasses import dataclass
@@ -20,19 +20,19 @@ Box = tuple[FloatArray, FloatArray]
 _MARGIN = 2
 """Empty cells on each side; the surface next to the outermost cells needs them."""
 _BYTES_PER_CELL = 320.0
-"""Of a tree, its contour and its mesh, for each finest cell that the surface runs through."""
+"""Memory of a tree, its contour and its mesh, per finest cell on the surface."""
 _CELLS_PER_AREA = 1.5
-"""How many unit cells a surface of area 1 runs through on average: |n|_1 over all directions."""
+"""Mean number of unit cells that a surface of area 1 crosses: |n|_1 averaged over directions."""
 _MOST_CORNERS = 2**31 - 1
 
 
 @dataclass(frozen=True)
 class Grid:
-    """A cube of 2^depth cells along each axis.
+    """A cube with 2^depth cells along each axis.
 
     Attributes:
-        low: Its low corner.
-        side: Its side.
+        low: The low corner.
+        side: The length of a side.
         depth: How often it is halved.
     """
 
@@ -57,12 +57,12 @@ class Grid:
 
 
 def choose_grid(box: Box, settings: VoxelSettings) -> Grid:
-    """Returns the grid for what is in a box.
+    """Returns the grid for the contents of a box.
 
-    With a voxel size, cells begin at its multiples, so that grids of one size coincide.
+    With a voxel size, cell borders are multiples of it, so that grids of the same size coincide.
 
     Raises:
-        ValueError: The voxel size makes too many cells, or the box has no extent.
+        ValueError: The voxel size yields too many cells, or the box has no extent.
     """
     low, high = box
     extent = float((high - low).max())
@@ -85,17 +85,17 @@ def choose_grid(box: Box, settings: VoxelSettings) -> Grid:
 
 
 def cells_crossed(grid: Grid, area: float) -> float:
-    """Returns about how many cells a surface of some area runs through."""
+    """Estimates how many cells a surface of the given area crosses."""
     return min(_CELLS_PER_AREA * area / grid.spacing**2, float(grid.cells) ** 3)
 
 
 def check_memory(grid: Grid, area: float, memory: Memory = free_memory) -> None:
-    """Raises MemoryError where the surface in so many cells does not fit into memory.
+    """Raises MemoryError if a surface in this grid would not fit into memory.
 
     Args:
         grid: The cells.
         area: The area of the surface.
-        memory: What the work may use.
+        memory: Returns the available memory.
     """
     crossed = cells_crossed(grid, area)
     needed, (free, why) = _BYTES_PER_CELL * crossed, memory()
@@ -107,7 +107,7 @@ def check_memory(grid: Grid, area: float, memory: Memory = free_memory) -> None:
 
 
 def check_dense_memory(grid: Grid, memory: Memory = free_memory) -> None:
-    """Raises MemoryError where a full array of the cells does not fit into memory."""
+    """Raises MemoryError if a dense array of the cells would not fit into memory."""
     needed, (free, why) = 4.0 * float(grid.cells) ** 3, memory()
     if needed > free:
         raise MemoryError(

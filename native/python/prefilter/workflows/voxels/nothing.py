@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Objects of which nothing is left, among others."""
+"""Objects that vanish in voxelization, because no cell is filled enough."""
 
 from collections.abc import Sized
 
@@ -17,27 +17,27 @@ class NothingLeftError(ValueError):
 
 
 def check_area(area: float) -> None:
-    """Raises NothingLeftError where a mesh has no area."""
+    """Raises NothingLeftError if a mesh has no area."""
     if area == 0.0:
         raise NothingLeftError(Sentence("all its faces have zero area"))
 
 
 class LeftOut:
-    """Objects that have no result, by the reason."""
+    """Objects without a result, grouped by reason."""
 
     def __init__(self) -> None:
         """Starts with none."""
         self._names: dict[str, list[str]] = {}
 
     def add(self, name: str, error: NothingLeftError) -> None:
-        """Adds an object and why nothing is left of it."""
+        """Adds an object, with the reason why it vanished."""
         self._names.setdefault(error.args[0], []).append(name)
 
     def warnings_beside(self, results: Sized) -> list[Sentence]:
-        """Returns what is told of the objects, beside the results of others.
+        """Returns warnings about the objects, if other objects have results.
 
         Raises:
-            ValueError: There is no other.
+            ValueError: There are no results.
         """
         lines = [
             Sentence("object {}: {}" if len(names) == 1 else "objects {}: {}", listed(names), why)

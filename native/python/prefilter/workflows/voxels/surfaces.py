@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Any mesh to the occupancy of cells, and that to a surface."""
+"""From any mesh to the occupancy of cells, and from occupancy to a surface."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -24,17 +24,17 @@ _DUPLICATE = Sentence("duplicate faces dropped: {}")
 
 @dataclass(frozen=True)
 class Occupancy:
-    """What a mesh fills of cells, and what it was made into for that.
+    """The occupancy of cells by a mesh, and the solid that the mesh was turned into.
 
     Attributes:
-        tree: What it fills.
+        tree: The occupancy.
         solid: The mesh as a solid.
-        positions: (n, 3) of the solid with its holes closed.
-        triangles: (m, 3) likewise.
-        origins: For each of these the triangle of the mesh that it came from, or -1; None where
-            they are the mesh's own.
-        holes: How many were closed.
-        open_edges: How many edges the faces left open.
+        positions: (n, 3) vertices of the solid with its holes closed.
+        triangles: (m, 3) triangles of the same.
+        origins: (m,) the triangle of the input mesh that each came from, or -1; None if they are
+            unchanged.
+        holes: Number of holes that were closed.
+        open_edges: Number of open edges before that.
     """
 
     tree: prefilter.Octree
@@ -53,13 +53,13 @@ def occupancy(
     settings: VoxelSettings,
     progress: Progress,
 ) -> Occupancy:
-    """Returns what a mesh fills that is made a solid.
+    """Makes a mesh solid and voxelizes it.
 
     Args:
         positions: (n, 3).
         triangles: (m, 3).
         grid: The cells.
-        settings: How.
+        settings: The settings.
         progress: Called with the fraction done.
 
     Raises:
@@ -111,14 +111,14 @@ def surface(
     *,
     adaptivity: float,
 ) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int64] | None]:
-    """Returns a surface, and the sources' triangles that its faces come from, where it is known.
+    """Returns a surface, and the source triangles that its faces come from, if known.
 
     Args:
-        tree: What is filled.
+        tree: The occupancy.
         meshes: The sources, as `Octree.contour` takes them.
-        settings: What the surface is made of.
+        settings: The settings of the surface.
         progress: Called with the fraction done.
-        adaptivity: In the place of that of the settings.
+        adaptivity: Replaces that of the settings.
     """
     if settings.faces == "quads":
         quads = tree.quad_contour(
@@ -148,7 +148,7 @@ def surface(
 
 
 def lines_of(name: str, made: Occupancy) -> tuple[list[str], list[str]]:
-    """Returns warnings and notes of what was odd about the mesh of an object."""
+    """Returns warnings and notes about repairs to an object's mesh."""
     warnings: list[str] = []
     notes: list[str] = []
     solid = made.solid
