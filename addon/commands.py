@@ -38,14 +38,16 @@ class Commands:
             The exit status: 0, 1 for a failure that was told on stderr, 2 for wrong arguments, 130
             after Ctrl-C, 143 after SIGTERM.
         """
-        from prefilter.commands.program import ended, execute, parse
+        from prefilter.commands.program import execute, parse_arguments, run_to_status
 
-        return ended(lambda: execute(parse(self.parser(), arguments)), is_end=True)
+        return run_to_status(
+            lambda: execute(parse_arguments(self.parser(), arguments)), is_end=True
+        )
 
     def parser(self) -> "argparse.ArgumentParser":
         """Returns what reads the arguments."""
+        from prefilter.commands.cli_common import add_progress
         from prefilter.commands.program import Parser
-        from prefilter.commands.telling import add_progress
 
         parser = Parser(
             prog=_PROGRAM,

@@ -120,7 +120,7 @@ def _blender_parser() -> argparse.ArgumentParser:
 
 @functools.cache
 def _package_parser() -> argparse.ArgumentParser:
-    return importlib.import_module("prefilter.commands.program").parser()
+    return importlib.import_module("prefilter.commands.program").make_parser()
 
 
 if __name__ == "__main__":

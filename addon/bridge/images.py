@@ -174,16 +174,16 @@ def _as_bytes(pixels: FloatArray) -> NDArray[np.uint8]:
     return pixels.view(np.uint8)[:count]
 
 
-def _file_of(image: bpy.types.Image) -> openimageio.Contents:
+def _file_of(image: bpy.types.Image) -> openimageio.ValueKind:
     """Returns what the file of an image holds: integers, as 16-bit PNG, are floats in Blender."""
     if image.source != "FILE":
-        return openimageio.Contents(is_integer=False, is_gray=False)
+        return openimageio.ValueKind(is_integer=False, is_gray=False)
     if image.packed_file is None:
-        return openimageio.contents(bpy.path.abspath(image.filepath, library=image.library))
+        return openimageio.value_kind(bpy.path.abspath(image.filepath, library=image.library))
     with temporary_folder() as folder:
         copy = folder / "picture"
         copy.write_bytes(image.packed_file.data)
-        return openimageio.contents(str(copy))
+        return openimageio.value_kind(str(copy))
 
 
 def check_untiled(image: bpy.types.Image) -> None:

@@ -11,13 +11,13 @@ from types import ModuleType
 from prefilter.workflows.openimageio import (
     TILE_SIZE,
     Check,
-    Contents,
+    ValueKind,
     check_whole,
     color_convert,
-    contents,
-    find_by,
+    last_error,
     module,
-    said,
+    set_finder,
+    value_kind,
     write_texture,
 )
 
@@ -26,12 +26,12 @@ from . import own_modules
 __all__ = (
     "TILE_SIZE",
     "Check",
-    "Contents",
+    "ValueKind",
     "check_whole",
     "color_convert",
-    "contents",
+    "last_error",
     "module",
-    "said",
+    "value_kind",
     "write_texture",
 )
 
@@ -46,4 +46,4 @@ def _blenders_own() -> ModuleType:
         ) from error
 
 
-find_by(_blenders_own)
+set_finder(_blenders_own)

@@ -5,7 +5,7 @@
 import zlib
 from collections.abc import Mapping
 
-from prefilter.options.choices import Choice
+from prefilter.options.options import Choice
 
 __all__ = ("Choice", "flag_items", "items", "number_of")
 

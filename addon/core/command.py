@@ -2,30 +2,32 @@
 
 """What the commands share: options, progress, messages."""
 
-from prefilter.commands.telling import (
+from prefilter.commands.cli_common import (
     add_command,
-    add_skipping,
+    add_skip_flag,
     are_up_to_date,
-    check_can_tell,
-    check_ending,
-    done,
+    check_extension,
+    check_stores_fingerprint,
+    print_line,
     progress_line,
-    say,
-    share,
-    tell,
+    report_outcome,
+    run_and_report,
+    run_work,
+    subtask,
     warn,
 )
 
 __all__ = (
     "add_command",
-    "add_skipping",
+    "add_skip_flag",
     "are_up_to_date",
-    "check_can_tell",
-    "check_ending",
-    "done",
+    "check_extension",
+    "check_stores_fingerprint",
+    "print_line",
     "progress_line",
-    "say",
-    "share",
-    "tell",
+    "report_outcome",
+    "run_and_report",
+    "run_work",
+    "subtask",
     "warn",
 )

@@ -14,7 +14,7 @@ from typing import Protocol
 import numpy as np
 from prefilter.workflows import outcome, up_to_date
 from prefilter.workflows.mipmaps import levels, stretching
-from prefilter.workflows.mipmaps.outputs import Outputs, made_of, staged, summary
+from prefilter.workflows.mipmaps.outputs import Outputs, inputs_fingerprint, stage_files, summary
 
 from ..bridge.files.staging import StagedFile, commit_all
 from ..bridge.images import FloatArray, Picture
@@ -99,7 +99,7 @@ class Bake:
         """
         go_on(progress, 0.0)
         if self._may_skip:
-            number = made_of(self.source, self._outputs)
+            number = inputs_fingerprint(self.source, self._outputs)
             self.is_up_to_date = up_to_date.is_up_to_date(self._outputs.targets, number)
             self._metadata = {up_to_date.KEY: number}
         if self.is_up_to_date:
@@ -126,7 +126,7 @@ class Bake:
     ) -> None:
         """Stages the files, and keeps the levels as level images hold them."""
         own_levels = [self._levels, self._roughness_levels]
-        found = staged(
+        found = stage_files(
             self.source, self._outputs, made, rough, check=check, metadata=self._metadata
         )
         for kept, (files, stored) in zip(own_levels, found, strict=False):
@@ -181,9 +181,9 @@ class Bake:
             notes=self._notes,
         )
 
-    def let_pixels_go(self) -> None:
+    def release_pixels(self) -> None:
         """Frees the memory of what is in staged files; of level images nothing is left."""
-        self.source.let_pixels_go()
+        self.source.release_pixels()
         rough = self._outputs.roughness
         if rough is not None:
             empty = without_pixels(rough.picture)

@@ -18,7 +18,7 @@ from .choices import FILE_FORMATS
 
 NAME = "name"
 """The placeholder for the name of an image in a path."""
-PLACE = target_files.PLACE
+PLACE = target_files.NAME_PLACEHOLDER
 """What stands for the name of an image in a path."""
 
 
@@ -127,7 +127,7 @@ def paths(
 def _written(path: str, tiles: Sequence[int]) -> Iterator[Path]:
     """Yields the files that a bake to a path writes, or may write."""
     for one in udim.paths(path, tiles):
-        yield from target_files.written(Path(os.path.realpath(one)))
+        yield from target_files.files_of(Path(os.path.realpath(one)))
 
 
 def source_files() -> Iterator[Path]:

@@ -9,7 +9,7 @@ from pathlib import Path
 import bpy
 from prefilter.workflows.files import engines, target_files
 from prefilter.workflows.mipmaps import checks, contents
-from prefilter.workflows.mipmaps.checks import Rough
+from prefilter.workflows.mipmaps.checks import RoughnessOutput
 from prefilter.workflows.mipmaps.outputs import Outputs
 
 from ..bridge import image_roles, images, meshes
@@ -49,7 +49,7 @@ class Request:
         all_faces: See `meshes.image_surfaces`.
         needs_surface: Whether a surface is needed for any filter.
         roughness_texture_format: That of the file of the roughness; by default that of `checks`.
-        may_lose_channels: See `engines.checked`.
+        may_lose_channels: See `engines.format_warnings`.
         writes_image: Whether the image itself is baked; else only the roughness that it is the
             normal map of, for the surfaces of that.
         pictures: What was read of images before, by their full names.
@@ -128,7 +128,7 @@ def reading(request: Request) -> Generator[float, None, Bake | udim.TiledBake]:
     yield 0.0
     found = yield from read_surfaces(request)
     job = bake_of(request, level_0, rough, found)
-    job.warnings.extend(told + odd_uses(request, level_0, rough))
+    job.warnings.extend(told + usage_warnings(request, level_0, rough))
     return job
 
 
@@ -169,7 +169,7 @@ def with_format(request: Request, level_0: Level0) -> Request:
     """Returns the request with a format of texels in the place of "blocks"."""
     if request.settings.texture_format != "blocks":
         return request
-    chosen = checks.suiting_blocks(level_0.pictures, level_0.content)
+    chosen = checks.suitable_blocks(level_0.pictures, level_0.content)
     settings = replace(request.settings, texture_format=chosen)
     return replace(request, settings=settings, may_lose_channels=True)
 
@@ -181,7 +181,7 @@ def told_of_files(request: Request, level_0: Level0) -> list[str]:
     return [
         note
         for picture, target in zip(level_0.pictures, level_0.targets, strict=False)
-        for note in engines.checked(
+        for note in engines.format_warnings(
             picture,
             target,
             settings.texture_format,
@@ -192,11 +192,11 @@ def told_of_files(request: Request, level_0: Level0) -> list[str]:
     ]
 
 
-def told_of_roughness(request: Request, rough: Rough) -> list[str]:
+def told_of_roughness(request: Request, rough: RoughnessOutput) -> list[str]:
     """Returns the same of the file of the roughness."""
     if rough.roughness is None:
         return []
-    return engines.checked(
+    return engines.format_warnings(
         rough.roughness.picture,
         rough.target,
         rough.roughness.texture_format,
@@ -225,7 +225,7 @@ def read_surfaces(request: Request) -> Generator[float, None, meshes.ImageSurfac
 
 
 def bake_of(
-    request: Request, level_0: Level0, rough: Rough, found: meshes.ImageSurfaces
+    request: Request, level_0: Level0, rough: RoughnessOutput, found: meshes.ImageSurfaces
 ) -> Bake | udim.TiledBake:
     """Returns the bake of what was read."""
     content, pictures = level_0.content, level_0.pictures
@@ -249,7 +249,7 @@ def bake_of(
     return Bake(source, outputs, may_skip=request.may_skip)
 
 
-def read_roughness(request: Request, level_0: Level0) -> Rough:
+def read_roughness(request: Request, level_0: Level0) -> RoughnessOutput:
     """Copies the roughness of a normal map, and checks what its settings say of it."""
     settings = request.settings
     return checks.roughness_of(
@@ -262,9 +262,9 @@ def read_roughness(request: Request, level_0: Level0) -> Rough:
     )
 
 
-def odd_uses(request: Request, level_0: Level0, rough: Rough) -> list[str]:
+def usage_warnings(request: Request, level_0: Level0, rough: RoughnessOutput) -> list[str]:
     """Returns warnings of settings that do not go with the image, or with each other."""
-    return checks.odd_uses(
+    return checks.usage_warnings(
         request.settings,
         level_0.pictures[0],
         level_0.content,

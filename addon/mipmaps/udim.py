@@ -107,10 +107,10 @@ class TiledBake:
             notes=[note for outcome in outcomes for note in outcome.notes],
         )
 
-    def let_pixels_go(self) -> None:
-        """See `Bake.let_pixels_go`."""
+    def release_pixels(self) -> None:
+        """See `Bake.release_pixels`."""
         for one in self._bakes:
-            one.let_pixels_go()
+            one.release_pixels()
 
     def discard(self) -> None:
         """Removes what was staged, if it was not put into place."""

@@ -4,7 +4,7 @@
 
 from dataclasses import dataclass
 
-from prefilter.options.choices import Choice
+from prefilter.options.options import Choice
 from prefilter.options.scans import (
     AGAINST,
     CLASSES,

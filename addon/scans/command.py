@@ -56,9 +56,11 @@ def add(commands: Any) -> None:
 
 
 def _reconstruct(options: argparse.Namespace) -> None:
-    reconstruct.settle(options)
-    endings = [command.check_ending(options, "SOURCE", path, _SOURCES) for path in options.sources]
-    ending = command.check_ending(options, "TARGET", options.target, scenes.TARGETS)
+    reconstruct.resolve_files(options)
+    endings = [
+        command.check_extension(options, "SOURCE", path, _SOURCES) for path in options.sources
+    ]
+    ending = command.check_extension(options, "TARGET", options.target, scenes.TARGETS)
     has_blend = _BLEND in endings
     if has_blend and len(set(endings)) > 1:
         options.usage_error("SOURCE: .blend files cannot be combined with others")
@@ -81,9 +83,9 @@ def _reconstruct(options: argparse.Namespace) -> None:
         return
     sources = [Path(path) for path in options.sources]
     if ending == STREAMED_TARGET:
-        command.tell(command.done(Streaming(sources, target, settings, length, options.viewpoint)))
+        command.run_and_report(Streaming(sources, target, settings, length, options.viewpoint))
         return
-    command.tell(command.done(FilesReconstruction(sources, target, settings, options.viewpoint)))
+    command.run_and_report(FilesReconstruction(sources, target, settings, options.viewpoint))
 
 
 def _from_objects(options: argparse.Namespace, target: Path, settings: ScanSettings) -> None:
@@ -91,14 +93,14 @@ def _from_objects(options: argparse.Namespace, target: Path, settings: ScanSetti
     objects = scenes.chosen([obj for group in groups for obj in group], options.object, _WANTED)
     work = Reconstruction.read(objects, objects[0], settings, bpy.context.evaluated_depsgraph_get())
     if target.suffix.lower() == STREAMED_TARGET and work.offset.any():
-        command.tell(command.done(ObjectsStreaming(work, target)))
+        command.run_and_report(ObjectsStreaming(work, target))
         return
-    outcome = command.done(work)
+    outcome = command.run_work(work)
     warnings = []
     for name in outcome.objects:
         warnings += place_back(bpy.data.objects[name], work.offset, target)
     scenes.save(target, outcome.objects)
-    command.tell(replace(outcome, warnings=[*outcome.warnings, *warnings]))
+    command.report_outcome(replace(outcome, warnings=[*outcome.warnings, *warnings]))
 
 
 def _is_wanted(obj: bpy.types.Object) -> bool:

@@ -9,7 +9,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 import prefilter
-from prefilter.workflows.scans import as_classes, has_connections, merged
+from prefilter.workflows.scans import as_classes, has_connections, rounding_warning
 
 from ..bridge.layers import ATTRIBUTE, NewLayer
 from ..bridge.new_points import Cloud, new_points, scene_offset, spacing
@@ -74,7 +74,7 @@ class PointsImport:
         if offset.any():
             self._warnings.append(moved(offset))
         self._warnings += [
-            merged(length(step))
+            rounding_warning(length(step))
             for step in dict.fromkeys(map(_merging_step, self._clouds))
             if step > 0.0
         ]

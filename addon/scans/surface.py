@@ -143,7 +143,7 @@ def contour(surface: Surface, place: Place, look: Look, settings: ScanSettings) 
 
 def told(report: "prefilter.ReconstructionReport") -> str:
     """Returns numbers about a surface, in words, in the units of the scene."""
-    return scans.told(report, length)
+    return scans.summary(report, length)
 
 
 def oddities(
@@ -155,4 +155,4 @@ def oddities(
         report: About the surface.
         origin: Where the origin of the points' coordinates is.
     """
-    return scans.oddities(report, length, origin)
+    return scans.point_warnings(report, length, origin)

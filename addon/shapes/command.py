@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 import bpy
-from prefilter.commands import many, rasterize, tasks
-from prefilter.commands.many import Pair
+from prefilter.commands import batch, rasterize, tasks
+from prefilter.commands.batch import Pair
 from prefilter.commands.program import COMMANDS
 from prefilter.commands.rasterize import SVG
 from prefilter.workflows.files import pictures
@@ -48,7 +48,7 @@ def add(commands: Any) -> None:
         commands, "rasterize", COMMANDS["rasterize"], *tables(RasterizeSettings), _NOTES
     )
     endings = either(_SOURCES), either(pictures.ENDINGS)
-    many.add_arguments(parser, ("INPUT", "OUTPUT"), f"a file: {endings[0]}", endings[1])
+    batch.add_arguments(parser, ("INPUT", "OUTPUT"), f"a file: {endings[0]}", endings[1])
     parser.add_argument(
         "--object",
         metavar="NAME",
@@ -61,16 +61,16 @@ def add(commands: Any) -> None:
     presets.add_flag(parser)
     add_flags(parser, RasterizeSettings)
     tasks.add_flags(parser, "INPUT")
-    command.add_skipping(parser)
+    command.add_skip_flag(parser)
     parser.set_defaults(execute=_rasterize, usage_error=parser.error)
 
 
 def _rasterize(options: argparse.Namespace) -> None:
     rasterize.check_files(options, _SOURCES)
     if options.skip_up_to_date:
-        command.check_can_tell(options, options.target, PICTURES)
+        command.check_stores_fingerprint(options, options.target, PICTURES)
     settings = rasterize.settings_of(options, presets.host(RASTERIZE))
-    many.run(options, partial(_rasterize_one, options, settings))
+    batch.run(options, partial(_rasterize_one, options, settings))
 
 
 def _rasterize_one(options: argparse.Namespace, settings: RasterizeSettings, pair: Pair) -> None:
@@ -88,7 +88,7 @@ def _rasterize_one(options: argparse.Namespace, settings: RasterizeSettings, pai
         if command.are_up_to_date([target], number):
             return
         work.metadata = {KEY: number}
-    command.tell(command.done(work))
+    command.run_and_report(work)
 
 
 def _mesh(options: argparse.Namespace, path: str) -> bpy.types.Object:

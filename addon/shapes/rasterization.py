@@ -173,7 +173,7 @@ class Rasterization:
             self._staged.commit()
             target = str(self._staged.target)
             return Outcome(
-                rasterizing.told(self._source.name, target, self._size),
+                rasterizing.summary(self._source.name, target, self._size),
                 files=[target],
                 warnings=self.warnings,
             )

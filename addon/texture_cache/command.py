@@ -46,13 +46,13 @@ def add(commands: Any) -> None:
     parser.add_argument(
         "--save", action="store_true", help="save FILE with the scene's texture cache turned on"
     )
-    command.add_skipping(parser)
+    command.add_skip_flag(parser)
     tasks.add_flags(parser, "image file")
     parser.set_defaults(execute=_bake_cache, usage_error=parser.error)
 
 
 def _bake_cache(options: argparse.Namespace) -> None:
-    command.check_ending(options, "FILE", options.file, [".blend"])
+    command.check_extension(options, "FILE", options.file, [".blend"])
     tasks.check(options)
     for name in ("save", "unpack"):
         if getattr(options, name) and (options.task or options.list):
@@ -78,20 +78,20 @@ def _bake_cache(options: argparse.Namespace) -> None:
         _list(options, work)
         return
     if options.task is not None:
-        work.keep(tasks.chosen(options, list(work.tasks)))
+        work.keep(tasks.select(options, list(work.tasks)))
         if not work.tasks:
             return
-    outcome = command.done(work)
+    outcome = command.run_work(work)
     if options.save:
         scenes.save_open(path)
-    command.tell(outcome)
+    command.report_outcome(outcome)
 
 
 def _list(options: argparse.Namespace, work: CacheBake) -> None:
     if options.json:
         found = work.tasks.items()
-        tasks.say_json([{"inputs": [str(path)], "images": names} for path, names in found])
+        tasks.print_json([{"inputs": [str(path)], "images": names} for path, names in found])
     else:
         for path, names in work.tasks.items():
-            command.say(f"{path}  {', '.join(names)}")
+            command.print_line(f"{path}  {', '.join(names)}")
     command.warn(work.warnings)

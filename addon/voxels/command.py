@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import bpy
-from prefilter.commands import boolean, many, outputs, tasks, voxelize
-from prefilter.commands.many import Pair
+from prefilter.commands import batch, boolean, outputs, tasks, voxelize
+from prefilter.commands.batch import Pair
 from prefilter.commands.program import COMMANDS
 from prefilter.commands.voxelize import RESOLUTIONS
 from prefilter.workflows.up_to_date import KEY, MESHES
@@ -55,7 +55,7 @@ def _add_voxelize(commands: Any) -> None:
     notes = (*tables(VoxelizeSettings), _VOXELIZE_NOTES)
     parser = command.add_command(commands, "voxelize", COMMANDS["voxelize"], *notes)
     endings = either(scenes.SOURCES), either(_TARGETS)
-    many.add_arguments(parser, ("FILE", "OUTPUT"), f"a file: {endings[0]}", endings[1])
+    batch.add_arguments(parser, ("FILE", "OUTPUT"), f"a file: {endings[0]}", endings[1])
     parser.add_argument(
         "--object",
         metavar="NAME",
@@ -66,7 +66,7 @@ def _add_voxelize(commands: Any) -> None:
     presets.add_flag(parser)
     add_flags(parser, VoxelizeSettings, exclusive=RESOLUTIONS)
     tasks.add_flags(parser, "FILE")
-    command.add_skipping(parser)
+    command.add_skip_flag(parser)
     parser.set_defaults(execute=_voxelize, usage_error=parser.error)
 
 
@@ -98,13 +98,13 @@ def _add_boolean(commands: Any) -> None:
 
 
 def _voxelize(options: argparse.Namespace) -> None:
-    many.settle(options)
+    batch.resolve_files(options)
     for path in options.sources:
-        command.check_ending(options, "FILE", path, scenes.SOURCES)
-    ending = command.check_ending(options, "OUTPUT", options.target, _TARGETS)
+        command.check_extension(options, "FILE", path, scenes.SOURCES)
+    ending = command.check_extension(options, "OUTPUT", options.target, _TARGETS)
     if options.skip_up_to_date:
-        command.check_can_tell(options, options.target, MESHES)
-    many.run(options, partial(_voxelize_one, options, is_volume=ending == _VOLUME))
+        command.check_stores_fingerprint(options, options.target, MESHES)
+    batch.run(options, partial(_voxelize_one, options, is_volume=ending == _VOLUME))
 
 
 def _voxelize_one(options: argparse.Namespace, pair: Pair, *, is_volume: bool) -> None:
@@ -123,17 +123,17 @@ def _voxelize_one(options: argparse.Namespace, pair: Pair, *, is_volume: bool) -
         is_whole = not target.exists() or all(map(Path.is_file, scenes.material_files(target)))
         if is_whole and command.are_up_to_date([target], metadata[KEY]):
             return
-    outcome = command.done(work)
+    outcome = command.run_work(work)
     if not is_volume:
         scenes.save(target, outcome.objects, metadata)
-    command.tell(outcome)
+    command.report_outcome(outcome)
 
 
 def _boolean(options: argparse.Namespace) -> None:
     if len(options.files) < 2 and len(options.object) < 2:
         options.usage_error("FILE: give two files or more, or --object for two objects or more")
     for path in options.files:
-        command.check_ending(options, "FILE", path, scenes.SOURCES)
+        command.check_extension(options, "FILE", path, scenes.SOURCES)
     boolean.check_output(options, scenes.TARGETS)
     target = scenes.check_target(options.output)
     groups = scenes.load(options.files, _is_wanted, _WANTED)
@@ -152,9 +152,9 @@ def _boolean(options: argparse.Namespace) -> None:
     else:
         settings = replace(settings, use_keep_resolution=False)
     work = Boolean.read(operands[0], operands[1:], settings, bpy.context.evaluated_depsgraph_get())
-    outcome = command.done(work)
+    outcome = command.run_work(work)
     scenes.save(target, outcome.objects)
-    command.tell(outcome)
+    command.report_outcome(outcome)
 
 
 def _is_wanted(obj: bpy.types.Object) -> bool:

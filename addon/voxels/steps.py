@@ -9,7 +9,7 @@ import numpy as np
 import prefilter
 from numpy.typing import NDArray
 from prefilter.workflows.voxels import surfaces
-from prefilter.workflows.voxels.nothing import NO_CELL, NothingLeftError
+from prefilter.workflows.voxels.empty_results import NO_FILLED_CELL, NothingLeftError
 
 from ..bridge import solids
 from ..bridge.files.staging import StagedFile
@@ -186,7 +186,7 @@ def contoured(
     middle = (_CONTOURED - VOXELIZED) / (1.0 - VOXELIZED)
     positions, faces, origins = _surface(tree, sources, settings, share(progress, 0.0, middle))
     if len(faces) == 0:
-        raise NothingLeftError(NO_CELL)
+        raise NothingLeftError(NO_FILLED_CELL)
     transfer = Transfer(sources, positions, faces, origins, grid.spacing, settings.threads)
     face_materials, layers = transfer.run(place, share(progress, middle, 1.0))
     go_on(progress, 1.0)
@@ -304,7 +304,7 @@ class Told:
 
     def tell(self, name: str, made: surfaces.Occupancy) -> None:
         """Adds what was found in the mesh of an object."""
-        warnings, notes = surfaces.lines_of(name, made)
+        warnings, notes = surfaces.repair_lines(name, made)
         self.warnings += warnings
         self.notes += notes
 

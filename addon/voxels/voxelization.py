@@ -12,7 +12,7 @@ from pathlib import Path
 import bpy
 from mathutils import Matrix
 from prefilter.workflows.up_to_date import arrays_of, fingerprint, fingerprint_of
-from prefilter.workflows.voxels.nothing import LeftOut, NothingLeftError, check_area
+from prefilter.workflows.voxels.empty_results import EmptyResults, NothingLeftError, check_area
 
 from ..bridge import new_meshes, solids
 from ..bridge.armatures import at_rest
@@ -133,7 +133,7 @@ class Voxelization:
             MemoryError: A result does not fit into memory.
             prefilter.Cancelled: `progress` has said so.
         """
-        steps, left_out = parts(progress, len(self._read)), LeftOut()
+        steps, left_out = parts(progress, len(self._read)), EmptyResults()
         for i, ((place, solid), part) in enumerate(zip(self._read, steps, strict=True)):
             found = Told()
             with naming(place.name):
@@ -144,7 +144,7 @@ class Voxelization:
                     continue
             self._results.append(result)
             self._told.add(found)
-        self._told.warnings += left_out.warnings_beside(self._results)
+        self._told.warnings += left_out.warnings_for(self._results)
         go_on(progress, 1.0)
         self._read.clear()
 

@@ -266,7 +266,7 @@ def begin_quickly(writer: Writer) -> Begin:
     from prefilter.commands import program
 
     with contextlib.suppress(SystemExit), contextlib.redirect_stdout(io.StringIO()):
-        program.parser()
+        program.make_parser()
     for name in prefilter.__all__:
         getattr(prefilter, name)
     return begin_copy

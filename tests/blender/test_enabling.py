@@ -24,7 +24,7 @@ AT_ENABLING = re.compile(
 WORK = re.compile(r"\w+\.(view\.(errors|figure|canvas)|model\.\w+)")
 # Of the package: what options take their limits and choices from.
 OF_PACKAGE = re.compile(
-    r"prefilter(\.(_native|files(\..*)?|_border(\..*)?|options(\.(?!flags).*)?|workflows(\.\w+)?|images(\.(mipmap_filters|color|pixel_filters))?|meshes(\.surface)?"
+    r"prefilter(\.(_native|files(\..*)?|_border(\..*)?|options(\.(?!flags).*)?|workflows(\.\w+)?|images(\.(filters|color))?|meshes(\.surface)?"
     r"|points(\.scan_files)?|sampling(\.levels)?"
     r"|voxels(\.(octree|contours|thin_places|lost_parts))?))?"
 )

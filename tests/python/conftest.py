@@ -103,7 +103,7 @@ SAME_IN_ANY_PYTHON = {
     "test_thin_places.py",
     "test_thin_scans.py",
     "test_up_to_date.py",
-    "test_voices.py",
+    "test_reporters.py",
     "test_voxel_laws.py",
     "test_voxelize_oracle.py",
     "test_wavelet_shapes.py",

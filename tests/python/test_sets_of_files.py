@@ -55,7 +55,7 @@ def counted(original):
 
 for name in ("replace", "link", "unlink", "fsync", "mkdir", "rmdir"):
     setattr(os, name, counted(getattr(os, name)))
-for name in ("say", "unsay", "end"):
+for name in ("write_journal", "clear_journal", "end"):
     setattr(claims.Claim, name, counted(getattr(claims.Claim, name)))
 folders = [Path(one) for one in sys.argv[3:]]
 targets = [folders[i % len(folders)] / f"{i}.txt" for i in range(6)]
@@ -175,7 +175,7 @@ def test_one_who_lives_is_left_alone(quick_path):
     target.write_text("old")
     new = quick_path / "new"
     new.write_text("new")
-    with replacing.undone_on_failure([(new, target), (new, quick_path / "b.txt")]):
+    with replacing.restored_on_failure([(new, target), (new, quick_path / "b.txt")]):
         new.rename(target)
         run = subprocess.run(
             [

@@ -12,7 +12,7 @@ import numpy as np
 import prefilter
 import pytest
 from prefilter._border import stopping
-from prefilter.commands.program import ended
+from prefilter.commands.program import run_to_status
 from prefilter.files import staging
 from prefilter.workflows.files import png
 
@@ -53,7 +53,7 @@ def test_elsewhere_it_is_interrupted(number, capsys, quick_path):
 
         staging.write_output(quick_path / "a.txt", write)
 
-    assert ended(run) == STATUS[number]
+    assert run_to_status(run) == STATUS[number]
     assert capsys.readouterr().err == "prefilter: canceled\n"
     assert list(quick_path.iterdir()) == []
 
@@ -65,7 +65,7 @@ def test_what_fails_because_of_it_is_no_failure(number, capsys):
         except KeyboardInterrupt as error:
             raise RuntimeError("an operator of Blender tells it in its way") from error
 
-    assert ended(run) == STATUS[number]
+    assert run_to_status(run) == STATUS[number]
     assert capsys.readouterr().err == "prefilter: canceled\n"
 
 
@@ -79,7 +79,7 @@ def test_a_set_that_is_put_into_place_is_not_interrupted(number, quick_path, mon
 
     files = [staging.stage_data(quick_path / f"{i}.txt", b"new") for i in range(3)]
     monkeypatch.setattr(os, "replace", stop_amid)
-    assert ended(lambda: staging.commit_all(files)) == STATUS[number]
+    assert run_to_status(lambda: staging.commit_all(files)) == STATUS[number]
     assert sorted(path.name for path in quick_path.iterdir()) == ["0.txt", "1.txt", "2.txt"]
 
 
@@ -93,12 +93,12 @@ def test_other_threads_do_not_hold_it(number):
         thread.start()
         thread.join()
 
-    assert ended(elsewhere) == STATUS[number]
+    assert run_to_status(elsewhere) == STATUS[number]
 
 
 def test_handlers_are_put_back(number):
     before = signal.getsignal(number)
-    assert ended(lambda: None) == 0
+    assert run_to_status(lambda: None) == 0
     assert signal.getsignal(number) is before
 
 
@@ -106,4 +106,4 @@ def test_others_end_as_canceled():
     def run():
         raise prefilter.Cancelled
 
-    assert ended(run) == 130
+    assert run_to_status(run) == 130

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The native module's stub names what the module has, with the same arguments."""
+"""The stubs have the names of the package and of the native module, with the same arguments."""
 
 import ast
 import inspect
@@ -10,7 +10,8 @@ from pathlib import Path
 import prefilter
 from prefilter import _native
 
-STUB = ast.parse((Path(prefilter.__file__).parent / "_native.pyi").read_text())
+FOLDER = Path(prefilter.__file__).parent
+STUB = ast.parse((FOLDER / "_native.pyi").read_text())
 
 
 def arguments_in_stub(function):
@@ -59,3 +60,16 @@ def test_members_are_the_same():
             expected = [arguments_in_stub(part) for part in methods if part.name == name]
             if not isinstance(member, property):
                 assert signatures(member) == expected, f"{node.name}.{name}"
+
+
+def test_the_package_has_the_names_of_its_stub():
+    lines = (FOLDER / "__init__.pyi").read_text().splitlines()
+    stub = {
+        (match[1], match[2])
+        for match in map(re.compile(r"from (\S+) import (\w+) as \2").fullmatch, lines)
+        if match
+    }
+    names = {
+        (module, name) for module in prefilter._NAMES for name in prefilter._NAMES[module].split()
+    }
+    assert stub == names

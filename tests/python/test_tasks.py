@@ -8,7 +8,7 @@ import sys
 
 import pytest
 from command_files import fails, noise, run, write_picture, write_quad
-from prefilter.commands.tasks import Part
+from prefilter.commands.tasks import TaskPart
 
 pytest.importorskip("OpenImageIO", reason="scripts/decoders.txt is not installed")
 
@@ -33,7 +33,7 @@ def contents(path):
 @pytest.mark.parametrize("count", [1, 2, 3, 5, 7])
 @pytest.mark.parametrize("tasks", [0, 1, 4, 11])
 def test_parts_have_every_task_once(tasks, count):
-    parts = [Part(number, count).of(range(tasks)) for number in range(1, count + 1)]
+    parts = [TaskPart(number, count).select(range(tasks)) for number in range(1, count + 1)]
     assert sorted(task for part in parts for task in part) == list(range(tasks))
     assert max(map(len, parts)) - min(map(len, parts)) <= 1
 

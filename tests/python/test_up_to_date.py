@@ -18,8 +18,8 @@ from prefilter.workflows.up_to_date import (
     arrays_of,
     fingerprint_of,
     is_up_to_date,
-    kept,
-    stands_alone,
+    stored_fingerprint,
+    is_self_contained,
 )
 
 oiio = pytest.importorskip("OpenImageIO", reason="scripts/decoders.txt is not installed")
@@ -62,7 +62,7 @@ def test_levels(photo, tmp_path, capsys, kind):
     level = oiio.ImageBuf(str(out), 0, 1).get_pixels("float")
     assert run("mipmaps", photo, quad, "-o", out, "--wrap", "clamp") == 0
     np.testing.assert_array_equal(oiio.ImageBuf(str(out), 0, 1).get_pixels("float"), level)
-    assert kept(out) == ""
+    assert stored_fingerprint(out) == ""
     assert is_made(capsys, out, *command, "--wrap", "clamp")
 
 
@@ -163,11 +163,11 @@ def test_drawings(tmp_path, capsys, kind):
 def test_drawings_of_several_files_are_made_anew(tmp_path, inside):
     path = tmp_path / "a.svg"
     path.write_text(f"<svg>{inside}</svg>")
-    assert not stands_alone(path)
+    assert not is_self_contained(path)
     path.write_bytes(gzip.compress(path.read_bytes()))
-    assert not stands_alone(path)
+    assert not is_self_contained(path)
     path.write_bytes(f"<svg>{inside}</svg>".encode("utf-16"))
-    assert not stands_alone(path)
+    assert not is_self_contained(path)
 
 
 @pytest.mark.parametrize(
@@ -182,17 +182,17 @@ def test_drawings_of_several_files_are_made_anew(tmp_path, inside):
 def test_drawings_of_one_file_stand_alone(tmp_path, inside):
     path = tmp_path / "a.svg"
     path.write_text(f"<svg>{inside}</svg>")
-    assert stands_alone(path)
+    assert is_self_contained(path)
     path.write_bytes(gzip.compress(path.read_bytes()))
-    assert stands_alone(path)
+    assert is_self_contained(path)
     path.write_bytes(path.read_bytes()[:-9])
-    assert not stands_alone(path)
+    assert not is_self_contained(path)
 
 
 def test_a_drawing_that_is_large_when_unpacked_is_not_looked_through(tmp_path):
     path = tmp_path / "a.svg"
     path.write_bytes(gzip.compress(b"<svg>" + bytes(MAX_UNPACKED).replace(b"\0", b" ") + b"</svg>"))
-    assert not stands_alone(path)
+    assert not is_self_contained(path)
 
 
 def test_of_many_files_those_that_have_changed_are_made(tmp_path, capsys):

@@ -354,7 +354,7 @@ def _earlier_versions(target: Path, count: int) -> Iterator[staging.StagedFile]:
     names = [Path(f"{target}{number or ''}") for number in range(count + 1)]
     for number in reversed(range(count)):
         if names[number].exists():
-            yield staging.stage_other_name(names[number], names[number + 1])
+            yield staging.stage_link(names[number], names[number + 1])
 
 
 def _load_one(path: str, *, is_first: bool) -> None:

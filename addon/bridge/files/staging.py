@@ -13,7 +13,7 @@ from prefilter.files.staging import (
     commit_all,
     stage_data,
     stage_folder,
-    stage_other_name,
+    stage_link,
     stage_with,
 )
 
@@ -27,7 +27,7 @@ __all__ = (
     "commit_all",
     "stage_data",
     "stage_folder",
-    "stage_other_name",
+    "stage_link",
     "stage_with",
 )
 

@@ -253,7 +253,7 @@ def read(path: Path) -> Texture:
     finally:
         reader.close()
     if pixels is None:
-        raise OSError(f"cannot read '{path}': {openimageio.said(reader)}")
+        raise OSError(f"cannot read '{path}': {openimageio.last_error(reader)}")
     is_float = reader.format_name() == "openexr"
     return Texture(
         path,
@@ -299,7 +299,7 @@ def stage(
             pixels = np.ascontiguousarray(level[::-1], np.float32)
             _write(writer, temporary, _level_spec(oiio, spec, pixels), mode, pixels)
         if not writer.close():
-            raise OSError(f"cannot write '{temporary}': {openimageio.said(writer)}")
+            raise OSError(f"cannot write '{temporary}': {openimageio.last_error(writer)}")
         # An OpenEXR file is finished when its writer goes.
         del writer
         openimageio.check_whole(temporary, 1 + len(levels))
@@ -324,7 +324,7 @@ def _open(path: Path) -> tuple[Any, Any]:
     oiio = openimageio.module()
     reader = oiio.ImageInput.open(str(path))
     if reader is None:
-        raise OSError(f"cannot read '{path}': {openimageio.said(oiio)}")
+        raise OSError(f"cannot read '{path}': {openimageio.last_error(oiio)}")
     spec = reader.spec()
     software = spec.getattribute("Software") or ""
     if not software.startswith(_MAKER.decode()):
@@ -386,4 +386,4 @@ def _level_spec(oiio: Any, first: Any, pixels: FloatArray) -> Any:
 
 def _write(writer: Any, path: Path, spec: Any, mode: str, pixels: Any) -> None:
     if not writer.open(str(path), spec, mode) or not writer.write_image(pixels):
-        raise OSError(f"cannot write '{path}': {openimageio.said(writer)}")
+        raise OSError(f"cannot write '{path}': {openimageio.last_error(writer)}")

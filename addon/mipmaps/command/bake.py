@@ -92,13 +92,13 @@ def add(commands: Any) -> None:
         help="with --all, a .json file that says of each image its content, size and format, and "
         "which file has it",
     )
-    command.add_skipping(parser)
+    command.add_skip_flag(parser)
     tasks.add_flags(parser, "image, or a normal map and its roughness", needs="with --all, ")
     parser.set_defaults(execute=_bake, usage_error=parser.error)
 
 
 def _bake(options: argparse.Namespace) -> None:
-    extension = command.check_ending(options, "FILE", options.file, scenes.SOURCES)
+    extension = command.check_extension(options, "FILE", options.file, scenes.SOURCES)
     tasks.check(options)
     settings = _settings(options)
     for argument, path in _outputs(settings):
@@ -131,7 +131,9 @@ def _bake_some(options: argparse.Namespace, settings: Settings) -> None:
     paths = (settings.filepath, settings.roughness_filepath)
     if any(patterns.has(path, outputs.NAME) for path in paths):
         options.usage_error(f"--output: {file_names.PLACE} needs --all")
-    filled = [outputs.resolved(options, argument, path) for argument, path in _outputs(settings)]
+    filled = [
+        outputs.checked_path(options, argument, path) for argument, path in _outputs(settings)
+    ]
     settings = replace(settings, filepath=filled[0], roughness_filepath=filled[1])
     settings = source.fitted(options, settings, paths)
     if settings.texture_format != "auto" and not any(map(target_files.has_formats, paths)):
@@ -180,7 +182,7 @@ def _bake_some(options: argparse.Namespace, settings: Settings) -> None:
                 may_skip=options.skip_up_to_date,
             )
             work = reading.read(request)
-            command.tell(command.done(work))
+            command.run_and_report(work)
         except FAILURES as error:
             if len(chosen) == 1:
                 raise
@@ -194,15 +196,15 @@ def _bake_some(options: argparse.Namespace, settings: Settings) -> None:
 
 def _check_sources(options: argparse.Namespace, paths: Iterable[str]) -> None:
     """Ends the program where a file that is read would be replaced."""
-    written = [file for path in paths if path for file in target_files.written(Path(path))]
-    outputs.check_kept(options, written, [options.file, *file_names.source_files()])
+    written = [file for path in paths if path for file in target_files.files_of(Path(path))]
+    outputs.check_not_replaced(options, written, [options.file, *file_names.source_files()])
 
 
 def _check_skipping(options: argparse.Namespace, paths: Iterable[str]) -> None:
     if options.save:
         options.usage_error("--skip-up-to-date: not allowed with --save; it looks at files alone")
     for path in filter(None, paths):
-        command.check_can_tell(options, path, LEVELS)
+        command.check_stores_fingerprint(options, path, LEVELS)
 
 
 def _frames(text: str) -> tuple[int, int, int]:

@@ -75,7 +75,7 @@ def _jobs(options: argparse.Namespace, planned: Plan) -> list[Job]:
             raise ValueError(
                 f"--image: found no image '{options.image}' to bake; there are {known}"
             )
-    return tasks.chosen(options, jobs)
+    return tasks.select(options, jobs)
 
 
 def _finish(options: argparse.Namespace, model: ModelBake, path: str) -> None:
@@ -85,13 +85,13 @@ def _finish(options: argparse.Namespace, model: ModelBake, path: str) -> None:
     finally:
         model.discard()
     for line in model.results.lines_of_left_out():
-        command.say(line)
+        command.print_line(line)
     if _is_part(options) and not (model.results.failed or model.results.outcomes):
         return
     outcome = model.results.outcome()
     if options.save:
         scenes.save_open(path)
-    command.say(outcome.summary)
+    command.print_line(outcome.summary)
     if model.results.failed:
         raise ValueError(f"not baked: {listed(one.image for one in model.results.failed)}")
 
@@ -112,7 +112,7 @@ def _check(options: argparse.Namespace, settings: Settings, pattern: file_names.
     if options.skip_up_to_date and options.save:
         options.usage_error("--skip-up-to-date: not allowed with --save; it looks at files alone")
     if options.skip_up_to_date:
-        command.check_can_tell(options, pattern.text, LEVELS)
+        command.check_stores_fingerprint(options, pattern.text, LEVELS)
     for name in ("save", "manifest"):
         if _is_part(options) and getattr(options, name):
             options.usage_error(f"--{name}: not allowed with --task and --image, but for the whole")
@@ -149,5 +149,5 @@ def _bake(model: ModelBake) -> None:
             model.stage_images()
         written = model.write()
     for outcome in written:
-        command.tell(outcome)
+        command.report_outcome(outcome)
     command.warn(f"image '{one.image}' is not baked: {one.reason}" for one in model.results.failed)

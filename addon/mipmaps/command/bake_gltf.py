@@ -35,7 +35,7 @@ def is_gltf(path: str) -> bool:
 def bake_gltf(options: argparse.Namespace, settings: Settings) -> None:
     """Exports the model, as Blender's exporter does with Prefilter Mipmaps."""
     _check(options)
-    target = scenes.check_target(outputs.resolved(options, "--output", settings.filepath))
+    target = scenes.check_target(outputs.checked_path(options, "--output", settings.filepath))
     (objects,) = scenes.load([options.file], meshes.may_show_image, WANTED)
     if not options.overwrite:
         _check_sources(options, target)
@@ -48,8 +48,8 @@ def bake_gltf(options: argparse.Namespace, settings: Settings) -> None:
         scenes.save_gltf(target, [obj.name for obj in chosen_objects])
     command.warn(export.warnings)
     for note in export.notes:
-        command.say(note)
-    command.say(f"Baked {counted(export.baked, 'image')} into '{target}'")
+        command.print_line(note)
+    command.print_line(f"Baked {counted(export.baked, 'image')} into '{target}'")
     if export.failed:
         raise ValueError(f"not baked: {listed(export.failed)}")
 

@@ -43,7 +43,7 @@ def say(
         results.left_out += model.results.left_out
         results.failed += model.results.failed
     if options.json:
-        tasks.say_json(
+        tasks.print_json(
             [{"images": [_image(row) for row in rows]} for rows in found],
             left_out=[asdict(one) for one in results.left_out],
             failed=[asdict(one) for one in results.failed],
@@ -51,7 +51,7 @@ def say(
     else:
         rows = [row for rows in found for row in rows]
         for line in (*table.lines(rows), *results.lines_of_left_out()):
-            command.say(line)
+            command.print_line(line)
     command.warn(dict.fromkeys(warnings))
     command.warn(f"image '{one.image}' cannot be baked: {one.reason}" for one in results.failed)
     if not any(found):
@@ -71,7 +71,7 @@ def _image(row: Row) -> dict[str, Any]:
     files = [
         str(file)
         for path in udim.paths(row.file, row.tiles)
-        for file in target_files.written(Path(os.path.realpath(path)))[:levels]
+        for file in target_files.files_of(Path(os.path.realpath(path)))[:levels]
     ]
     return {
         "image": row.image,

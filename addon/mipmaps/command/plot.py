@@ -48,12 +48,12 @@ def add(commands: Any) -> None:
 
 
 def _plot(options: argparse.Namespace) -> None:
-    command.check_ending(options, "FILE", options.file, scenes.SOURCES)
+    command.check_extension(options, "FILE", options.file, scenes.SOURCES)
     if not options.output and not options.table:
         options.usage_error("nothing to write: give --output FILE or --table FILE")
     for name in ("output", "table"):
         if getattr(options, name):
-            path = outputs.resolved(options, f"--{name}", getattr(options, name))
+            path = outputs.checked_path(options, f"--{name}", getattr(options, name))
             setattr(options, name, path)
     targets = [
         staging.check_plain_target(path, ending)
@@ -62,7 +62,7 @@ def _plot(options: argparse.Namespace) -> None:
     ]
     objects = source.objects_of(options)
     chosen, is_picture = source.images_of(options.image, objects, "auto")
-    outputs.check_kept(options, targets, [options.file, *file_names.source_files()])
+    outputs.check_not_replaced(options, targets, [options.file, *file_names.source_files()])
     if len(chosen) > 1:
         found = listed(image.name for image in chosen)
         raise ValueError(f"--image: choose one; the meshes use {found}")
@@ -94,4 +94,4 @@ def _plot(options: argparse.Namespace) -> None:
         for file in staged:
             file.discard()
     command.warn(work.warnings)
-    command.say(curves.summary())
+    command.print_line(curves.summary())

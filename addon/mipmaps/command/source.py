@@ -81,7 +81,7 @@ def images_of(
     if name is None:
         chosen, line = unnamed.images_to_bake(objects)
         if line:
-            command.say(line)
+            command.print_line(line)
         return chosen, False
     if name not in bpy.data.images and os.path.isfile(name):
         return [images.load("--image", name, is_data=content in {"normal", "data"})], True

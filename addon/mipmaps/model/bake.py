@@ -122,7 +122,7 @@ class ModelBake:
                 self.results.fail(job.images, error)
                 return
             if not self._settings.use_images:
-                bake.let_pixels_go()
+                bake.release_pixels()
             self._computed.append((job, bake))
 
         return compute
@@ -140,7 +140,7 @@ class ModelBake:
             job, bake = one
             try:
                 bake.stage_images()
-                bake.let_pixels_go()
+                bake.release_pixels()
             except FAILURES as error:
                 self._computed.remove(one)
                 self.results.fail(job.images, error)
@@ -204,7 +204,7 @@ class ModelBake:
         settings = made.settings
         fits = self._settings.texture_format in decisions.BY_CONTENT
         if self._is_rehearsal:
-            self.warnings += engines.checked(
+            self.warnings += engines.format_warnings(
                 made.picture,
                 made.target,
                 made.texture_format,

@@ -62,7 +62,7 @@ def texture_format(item: Item, picture: Picture, content: str, target: Path | No
     """
     if target is None or not target_files.has_formats(target.name):
         return "auto"
-    return blocks.suiting(
+    return blocks.suitable_format(
         picture,
         content,
         reads_alpha=picture.shape[2] == 4 and "alpha" in item.channels,

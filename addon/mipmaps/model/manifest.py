@@ -69,7 +69,7 @@ def _entries(rows: Sequence[Row], written: set[Path], folder: Path) -> Iterator[
         files = [
             Path(os.path.relpath(file, folder)).as_posix()
             for path in udim.paths(row.file, row.tiles)
-            for file in target_files.written(Path(os.path.realpath(path)))
+            for file in target_files.files_of(Path(os.path.realpath(path)))
             if file in written
         ]
         if files:

@@ -77,4 +77,4 @@ def _reasons(row: Row) -> list[str]:
 
 def _shown_file(path: str) -> str:
     """Returns how to call a file of a row."""
-    return textures.shown(Path(path)).strip("'") if path else ""
+    return textures.display_name(Path(path)).strip("'") if path else ""

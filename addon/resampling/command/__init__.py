@@ -30,7 +30,7 @@ def _read(
     argument: str, path: str, *, is_data: bool, colorspace: str = AUTO, **more: Any
 ) -> Picture:
     """Reads a picture as Blender does, or as the package does what Blender takes for another."""
-    seen = picture_files.look(argument, path, is_data=is_data)
+    seen = picture_files.probe(argument, path, is_data=is_data)
     if colorspace != AUTO or (seen is not None and not seen.is_plain):
         return picture_files.read(argument, path, is_data=is_data, colorspace=colorspace, **more)
     picture = read(images.load(argument, path, is_data=is_data))

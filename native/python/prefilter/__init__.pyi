@@ -1,20 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-# Every public name and its module, once: type checkers read this, and `__init__.py` too.
+# Public names for type checkers; `_NAMES` in `__init__.py` has the same ones, as a test checks.
 from ._native import Cancelled as Cancelled
 from ._native import available_memory as available_memory
 from .images.color import to_linear as to_linear
 from .images.color import to_srgb as to_srgb
 from .images.cutouts import keep_coverage as keep_coverage
-from .images.mipmap_filters import MIPMAP_FILTERS as MIPMAP_FILTERS
-from .images.mipmap_filters import MipmapFilter as MipmapFilter
+from .images.filters import MIPMAP_FILTERS as MIPMAP_FILTERS
+from .images.filters import PIXEL_FILTERS as PIXEL_FILTERS
+from .images.filters import MipmapFilter as MipmapFilter
+from .images.filters import PixelFilter as PixelFilter
 from .images.mipmaps import coarser_levels as coarser_levels
 from .images.mipmaps import mipmap_error as mipmap_error
 from .images.mipmaps import mipmaps as mipmaps
 from .images.mipmaps import seam_contrast as seam_contrast
 from .images.normal_maps import normal_mipmaps as normal_mipmaps
-from .images.pixel_filters import PIXEL_FILTERS as PIXEL_FILTERS
-from .images.pixel_filters import PixelFilter as PixelFilter
 from .images.resizing import RESIZE_FILTERS as RESIZE_FILTERS
 from .images.resizing import resize as resize
 from .images.texture_use import fill_transparent as fill_transparent

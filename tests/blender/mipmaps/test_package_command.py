@@ -23,7 +23,7 @@ def quad(tmp_path, monkeypatch):
     )
     positions = np.array([[0, 0, 0], [3, 0, 0], [3, 0, 1], [0, 0, 1]], float)
     uvs = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], float)
-    part = mesh_files.Part("Quad", positions, np.array([[0, 1, 2], [0, 2, 3]]), uvs)
+    part = mesh_files.NamedMesh("Quad", positions, np.array([[0, 1, 2], [0, 2, 3]]), uvs)
     monkeypatch.setattr(mesh_files, "read", lambda _, paths: [part] if paths else [])
     return path
 

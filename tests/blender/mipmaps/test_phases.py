@@ -62,7 +62,7 @@ def test_roughness_is_of_normal_maps(addon, request_of):
     level_0 = reading.read_level_0(request)
     rough = reading.read_roughness(request, level_0)
     assert (rough.roughness, rough.target) == (None, None)
-    (told,) = reading.odd_uses(request, level_0, rough)
+    (told,) = reading.usage_warnings(request, level_0, rough)
     assert told == "Roughness: 'Rough' is not used, because 'Paint' is not a normal map"
     request = request_of(image, roughness="Rough", content="color")
     with pytest.raises(ValueError, match="the content is 'color'"):
@@ -106,7 +106,7 @@ def test_what_heeds_seams(addon, without_surface, budget, filter_name, content, 
         settings,
         content,
     )
-    assert levels.heeds_seams(source) is expected
+    assert levels.weights_seams(source) is expected
 
 
 def test_the_line_that_says_what_was_baked(addon, without_surface):

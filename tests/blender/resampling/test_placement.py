@@ -185,7 +185,7 @@ def test_a_result_has_a_pixel_at_least(place):
 
 
 def test_squeeze(addon, place):
-    squeeze = placing.squeeze
+    squeeze = placing.mean_footprint
     assert squeeze(place(), 60, 40) == pytest.approx(1)
     assert squeeze(place(scale_x=3.0), 60, 40) == pytest.approx(1)
     assert squeeze(place(scale_x=0.5, scale_y=0.25), 60, 40) == pytest.approx(16)

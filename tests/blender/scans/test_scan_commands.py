@@ -11,7 +11,7 @@ import clouds
 import numpy as np
 import pytest
 from command_line import assert_fails, loaded, run
-from prefilter.commands import voices
+from prefilter.commands import reporters
 
 DEPTH = ("--depth", 6)
 
@@ -235,7 +235,7 @@ def test_failures_leave_nothing(scan, tmp_path):
 def test_ctrl_c_leaves_nothing(scan, tmp_path, addon, monkeypatch, number, status):
     """As a user presses it who sees the first line of progress."""
 
-    class Interrupted(voices.Plain):
+    class Interrupted(reporters.PlainReporter):
         _is_sent = False
 
         def progress(self, fraction):
@@ -244,7 +244,7 @@ def test_ctrl_c_leaves_nothing(scan, tmp_path, addon, monkeypatch, number, statu
                 os.kill(os.getpid(), number)
             super().progress(fraction)
 
-    monkeypatch.setitem(voices.VOICES, "plain", Interrupted)
+    monkeypatch.setitem(reporters.REPORTERS, "plain", Interrupted)
     for name in ("out.ply", "out.stl"):
         result = run("reconstruct", scan, "-o", tmp_path / name, *DEPTH)
         assert result.returncode == status

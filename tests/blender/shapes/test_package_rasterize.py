@@ -51,6 +51,6 @@ def test_uv_map(tmp_path, monkeypatch):
         "vt 0.1 0\nvt 0.7 0.2\nvt 0.9 0.9\nvt 0 0.6\nf 1/1 2/2 3/3 4/4\n"
     )
     uvs = np.array([[0.1, 0], [0.7, 0.2], [0.9, 0.9], [0, 0.6]])
-    part = mesh_files.Part("Quad", np.eye(4)[:, :3], np.array([[0, 1, 2], [0, 2, 3]]), uvs)
+    part = mesh_files.NamedMesh("Quad", np.eye(4)[:, :3], np.array([[0, 1, 2], [0, 2, 3]]), uvs)
     monkeypatch.setattr(mesh_files, "read", lambda *_: [part])
     assert same(path, tmp_path, "png", "--uv", "--side", "50", "--filter", "tent")

@@ -241,7 +241,7 @@ def test_a_boolean_sums_up():
     command = importlib.import_module(f"{PACKAGE}.core.command")
     settings = choices.BooleanSettings(depth=6, operation="union")
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    found = command.done(boolean.Boolean.read(cube, [other], settings, depsgraph))
+    found = command.run_work(boolean.Boolean.read(cube, [other], settings, depsgraph))
     assert the_line(found) == ["parts: 2 before, 2 after", "genus: 1 before, 1 after"]
 
 
@@ -255,7 +255,7 @@ def test_the_volume_is_that_of_the_surface():
     command = importlib.import_module(f"{PACKAGE}.core.command")
     settings = choices.BooleanSettings(depth=6, operation="difference")
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    found = command.done(boolean.Boolean.read(cubes[0], cubes[1:], settings, depsgraph))
+    found = command.run_work(boolean.Boolean.read(cubes[0], cubes[1:], settings, depsgraph))
     told = float(str(found.summary).split("volume ")[1].split()[0])
     assert told == pytest.approx(bodies.volume(cubes[0]), rel=1e-3)
     assert told == pytest.approx(12, rel=0.005)

@@ -16,7 +16,7 @@ def outcome(*objects, **options):
     command = importlib.import_module(f"{PACKAGE}.core.command")
     settings = choices.VoxelizeSettings(**{"depth": 6, **options})
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    return command.done(voxelization.Voxelization.read(list(objects), settings, depsgraph))
+    return command.run_work(voxelization.Voxelization.read(list(objects), settings, depsgraph))
 
 
 def rows(line):

@@ -20,7 +20,7 @@ class _Stopping:
         self._holds = 0
 
     @contextmanager
-    def heeded(self) -> Iterator[None]:
+    def handled(self) -> Iterator[None]:
         self.number = self._holds = 0
         before = [signal.signal(one, self._note) for one in _SIGNALS]
         try:
@@ -53,7 +53,7 @@ class _Stopping:
 
 
 _stopping = _Stopping()
-heeded, held = _stopping.heeded, _stopping.held
+handled, held = _stopping.handled, _stopping.held
 """Contexts: a command that signals stop, on the main thread; and code they must not interrupt."""
 
 

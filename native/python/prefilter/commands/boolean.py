@@ -16,15 +16,15 @@ from ..files import staging
 from ..meshes.measures import MeshMeasures, measure_mesh
 from ..options.flags import add_flags, tables
 from ..options.voxels import BooleanSettings
-from ..workflows import mesh_endings, mesh_files
-from ..workflows.mesh_files import Part
+from ..workflows import mesh_extensions, mesh_files
+from ..workflows.mesh_files import NamedMesh
 from ..workflows.outcome import Outcome
 from ..workflows.progress import Progress, go_on, parts, share
 from ..workflows.voxels import booleans, surfaces
+from ..workflows.voxels.empty_results import NO_FILLED_CELL, NothingLeftError
 from ..workflows.voxels.grid import check_memory, choose_grid
-from ..workflows.voxels.nothing import NO_CELL, NothingLeftError
 from ..workflows.wording import amount, either, listed
-from . import outputs, telling, voxelize
+from . import cli_common, outputs, voxelize
 from .host import PLAIN
 
 FLAGS = (*voxelize.FLAGS, "operation")
@@ -43,11 +43,11 @@ examples:
 def add(commands: Any, purpose: str) -> None:
     """Adds the command."""
     notes = (*tables(BooleanSettings, *FLAGS), _NOTES)
-    parser = telling.add_command(commands, "boolean", purpose, *notes)
+    parser = cli_common.add_command(commands, "boolean", purpose, *notes)
     parser.add_argument(
-        "files", metavar="FILE", nargs="+", help=f"the operands: {either(mesh_endings.ENDINGS)}"
+        "files", metavar="FILE", nargs="+", help=f"the operands: {either(mesh_extensions.READABLE)}"
     )
-    endings = either(mesh_endings.TARGETS)
+    endings = either(mesh_extensions.WRITABLE)
     outputs.add_output(
         parser, "OUTPUT", f"the file to write: {endings}", is_required=True, destination="output"
     )
@@ -66,7 +66,7 @@ def add(commands: Any, purpose: str) -> None:
 class BooleanFile:
     """Combines meshes in one grid of cells and writes the result to a file."""
 
-    def __init__(self, operands: list[Part], target: Path, settings: BooleanSettings) -> None:
+    def __init__(self, operands: list[NamedMesh], target: Path, settings: BooleanSettings) -> None:
         """Takes the meshes to combine, the file to write, and the settings."""
         self._operands = operands
         self._target = target
@@ -95,7 +95,7 @@ class BooleanFile:
             adaptivity=settings.adaptivity,
         )
         if len(triangles) == 0:
-            raise NothingLeftError(NO_CELL)
+            raise NothingLeftError(NO_FILLED_CELL)
         name = self._operands[0].name
         others = listed(one.name for one in self._operands[1:])
         volume = measure_mesh(positions, triangles, threads=settings.threads).volume
@@ -103,7 +103,7 @@ class BooleanFile:
             f"{settings.operation.capitalize()} of '{name}' with {others} in {cells}³ cells: "
             f"{amount(len(triangles), 'triangle')}, volume {volume:.4g}"
         )
-        made = [Part(name, positions, triangles, None)]
+        made = [NamedMesh(name, positions, triangles, None)]
         self._staged = mesh_files.stage(self._target, made)
         go_on(progress, 1.0)
 
@@ -136,7 +136,7 @@ class BooleanFile:
                 )
             except ValueError as error:
                 raise ValueError(f"mesh '{operand.name}': {error}") from error
-            warnings, notes = surfaces.lines_of(operand.name, made)
+            warnings, notes = surfaces.repair_lines(operand.name, made)
             self._warnings += warnings
             self._notes += notes
             trees.append(made.tree)
@@ -146,7 +146,7 @@ class BooleanFile:
         )
         return tree, sources, grid.cells
 
-    def _measured(self, operand: Part) -> MeshMeasures:
+    def _measured(self, operand: NamedMesh) -> MeshMeasures:
         try:
             return measure_mesh(
                 operand.positions, operand.triangles, threads=self._settings.threads
@@ -159,36 +159,36 @@ def _boolean(options: argparse.Namespace) -> None:
     if len(options.files) < 2 and len(options.object) < 2:
         options.usage_error("FILE: give two files or more, or --object for two meshes or more")
     for path in options.files:
-        telling.check_ending(options, "FILE", path, mesh_endings.ENDINGS)
-    check_output(options, mesh_endings.TARGETS)
+        cli_common.check_extension(options, "FILE", path, mesh_extensions.READABLE)
+    check_output(options, mesh_extensions.WRITABLE)
     target = Path(os.path.realpath(options.output))
     staging.check_target(target)
     settings = voxelize.settings_of(options, PLAIN, BooleanSettings)
-    telling.tell(telling.done(BooleanFile(_operands(options), target, settings)))
+    cli_common.run_and_report(BooleanFile(_operands(options), target, settings))
 
 
 def check_output(options: argparse.Namespace, allowed: Sequence[str]) -> None:
     """Ends the program if the file to write has an unknown extension, or is also read."""
-    options.output = outputs.resolved(options, "--output", options.output)
-    telling.check_ending(options, "--output", options.output, allowed)
-    outputs.check_kept(options, [options.output], options.files)
+    options.output = outputs.checked_path(options, "--output", options.output)
+    cli_common.check_extension(options, "--output", options.output, allowed)
+    outputs.check_not_replaced(options, [options.output], options.files)
 
 
-def _operands(options: argparse.Namespace) -> list[Part]:
+def _operands(options: argparse.Namespace) -> list[NamedMesh]:
     groups = [mesh_files.read("FILE", [path]) for path in options.files]
     if options.object:
         found = [part for group in groups for part in group]
-        named = [mesh_files.chosen(found, [name]) for name in options.object]
+        named = [mesh_files.select(found, [name]) for name in options.object]
         operands = [as_one(parts[0].name, parts) for parts in named]
     else:
         names = [mesh_files.name_of(path) for path in options.files]
         operands = [as_one(name, group) for name, group in zip(names, groups, strict=True)]
-    return [mesh_files.without_seams(one) for one in operands]
+    return [mesh_files.merge_seams(one) for one in operands]
 
 
-def as_one(name: str, meshes: Sequence[Part]) -> Part:
+def as_one(name: str, meshes: Sequence[NamedMesh]) -> NamedMesh:
     """Returns several meshes joined into one, without UVs."""
     starts = np.cumsum([0, *(len(one.positions) for one in meshes)])
     triangles = [one.triangles + start for one, start in zip(meshes, starts, strict=False)]
     positions = np.concatenate([one.positions for one in meshes])
-    return Part(name, positions, np.concatenate(triangles), None)
+    return NamedMesh(name, positions, np.concatenate(triangles), None)

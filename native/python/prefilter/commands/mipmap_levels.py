@@ -13,8 +13,7 @@ from ..options.mipmaps import Settings
 from ..workflows import mesh_files, picture_files
 from ..workflows.files import engines, target_files, textures
 from ..workflows.mipmaps import checks, contents, levels, stretching
-from ..workflows.mipmaps.checks import Rough
-from ..workflows.mipmaps.outputs import Outputs, staged, summary
+from ..workflows.mipmaps.outputs import Outputs, stage_files, summary
 from ..workflows.mipmaps.source import Source
 from ..workflows.outcome import Outcome
 from ..workflows.picture import Encoding, Picture
@@ -24,7 +23,7 @@ from . import color_arguments
 _FILTERED = 0.9  # Progress once the levels are filtered.
 
 
-class Levels:
+class LevelsFile:
     """Computes the levels of one texture and writes them to a file."""
 
     def __init__(
@@ -52,16 +51,16 @@ class Levels:
         """
         source = self._source
         go_on(progress, 0.0)
-        outputs, told = stretching.stretch(source, self._outputs, progress)
-        rough = outputs.roughness
-        self._notes += told
-        made, made_rough, note = levels.filtered(
-            source, rough, share(progress, 0.0, _FILTERED), all_levels=True
+        outputs, notes = stretching.stretch(source, self._outputs, progress)
+        roughness = outputs.roughness
+        self._notes += notes
+        image_levels, roughness_levels, note = levels.filtered(
+            source, roughness, share(progress, 0.0, _FILTERED), all_levels=True
         )
         self._notes += [note] if note else []
         check = partial(go_on, progress, _FILTERED)
-        for files, _ in staged(
-            source, outputs, made, made_rough, check=check, metadata=self._metadata
+        for files, _ in stage_files(
+            source, outputs, image_levels, roughness_levels, check=check, metadata=self._metadata
         ):
             self._staged += files
         go_on(progress, 1.0)
@@ -89,7 +88,7 @@ def read(
     settings: Settings,
     metadata: Mapping[str, str] | None,
     options: argparse.Namespace,
-) -> Levels:
+) -> LevelsFile:
     """Reads the files and checks them against the settings.
 
     Args:
@@ -111,7 +110,7 @@ def read(
         texture,
         is_data=is_data,
         colorspace=options.colorspace,
-        keeps_bytes=textures.is_stored(target),
+        keeps_bytes=textures.keeps_encoding(target),
         turns=not meshes,
     )
     content = settings.content
@@ -123,13 +122,13 @@ def read(
         contents.check_cutout(picture)
     blocks = settings.texture_format == "blocks"
     if blocks:
-        chosen = checks.suiting_blocks([picture], content)
-        settings = replace(settings, texture_format=chosen)
+        block_format = checks.suitable_blocks([picture], content)
+        settings = replace(settings, texture_format=block_format)
     threshold = settings.threshold if content == "cutout" else None
     if not _holds_all_colors(picture, target, settings.texture_format):
         color_arguments.check_range("TEXTURE", picture, target, options)
-    told = [*picture.reading_warnings, *_of_orientation(picture)]
-    told += engines.checked(
+    warnings = [*picture.reading_warnings, *_orientation_warnings(picture)]
+    warnings += engines.format_warnings(
         picture,
         target,
         settings.texture_format,
@@ -137,34 +136,38 @@ def read(
         may_lose_channels=blocks,
         is_stretched=settings.use_multiples_of_4,
     )
-    read_rough = partial(_rough, settings, turns=not meshes)
+    read_rough = partial(_read_roughness, settings, turns=not meshes)
     rough = checks.roughness_of(settings, picture, content, [target], read_rough)
     if rough.roughness is not None:
-        told += engines.checked(
+        warnings += engines.format_warnings(
             rough.roughness.picture,
             rough.target,
             rough.roughness.texture_format,
             may_lose_channels=blocks,
             is_stretched=settings.use_multiples_of_4,
         )
-    told += checks.odd_uses(settings, picture, content, [target], rough, is_encoded=is_encoded)
-    outputs = Outputs(target, *_of(rough))
-    parts = mesh_files.chosen(mesh_files.read("MESH", meshes), objects)
-    return Levels(_on_meshes(parts, settings, picture, content, told), outputs, told, metadata)
+    warnings += checks.usage_warnings(
+        settings, picture, content, [target], rough, is_encoded=is_encoded
+    )
+    outputs = Outputs(target, rough.roughness, rough.target)
+    parts = mesh_files.select(mesh_files.read("MESH", meshes), objects)
+    return LevelsFile(
+        _on_meshes(parts, settings, picture, content, warnings), outputs, warnings, metadata
+    )
 
 
 def _on_meshes(
-    parts: Sequence[mesh_files.Part],
+    parts: Sequence[mesh_files.NamedMesh],
     settings: Settings,
     picture: Picture,
     content: str,
-    told: list[str],
+    warnings: list[str],
 ) -> Source:
-    """Returns the picture on its surfaces; prepends warnings about these to `told`."""
+    """Returns the picture on its surfaces; prepends warnings about these to `warnings`."""
     surfaces, names, without = mesh_files.surfaces(parts)
     wrap = "repeat" if settings.wrap == "auto" else settings.wrap
     wraps = (wrap, wrap if settings.wrap_v == "same" else settings.wrap_v)
-    told[:0] = without
+    warnings[:0] = without
     return Source(picture, surfaces, names, settings, content, wraps)
 
 
@@ -175,7 +178,7 @@ def _holds_all_colors(picture: Picture, target: Path, texture_format: str) -> bo
     return picture.is_float
 
 
-def _of_orientation(picture: Picture) -> list[str]:
+def _orientation_warnings(picture: Picture) -> list[str]:
     """Returns a warning if the file's EXIF orientation is ignored."""
     if picture.orientation == 1:
         return []
@@ -186,9 +189,5 @@ def _of_orientation(picture: Picture) -> list[str]:
     ]
 
 
-def _rough(settings: Settings, *, turns: bool) -> Picture:
+def _read_roughness(settings: Settings, *, turns: bool) -> Picture:
     return picture_files.read("--roughness", settings.roughness, is_data=True, turns=turns)
-
-
-def _of(rough: Rough) -> tuple[contents.Roughness | None, Path | None]:
-    return rough.roughness, rough.target

@@ -9,11 +9,11 @@ from typing import Any
 
 from ..options.flags import add_flags, given, tables
 from ..options.mipmaps import FILTERS, TEXTURE_SPACE_FILTERS, Settings
-from ..workflows import mesh_endings
+from ..workflows import mesh_extensions
 from ..workflows.files import target_files
 from ..workflows.up_to_date import KEY, LEVELS, fingerprint
 from ..workflows.wording import either
-from . import color_arguments, outputs, telling
+from . import cli_common, color_arguments, outputs
 
 FLAGS = (
     *("filter", "reader", "lookups", "wrap", "wrap_v", "content", "threshold", "roughness"),
@@ -36,13 +36,14 @@ examples:
 def add(commands: Any, purpose: str) -> None:
     """Adds the command."""
     notes = (*tables(Settings, *FLAGS), _NOTES)
-    parser = telling.add_command(commands, "mipmaps", purpose, *notes)
+    parser = cli_common.add_command(commands, "mipmaps", purpose, *notes)
     parser.add_argument("texture", metavar="TEXTURE", help="a picture file")
     parser.add_argument(
         "meshes",
         metavar="MESH",
         nargs="*",
-        help=f"a file of meshes that wear it: {either(mesh_endings.ENDINGS)}; repeat for several",
+        help=f"a file of meshes that wear it: {either(mesh_extensions.READABLE)}; "
+        "repeat for several",
     )
     parser.add_argument(
         "--object",
@@ -54,19 +55,19 @@ def add(commands: Any, purpose: str) -> None:
     add_flags(parser, Settings, *FLAGS, short={"filepath": "-o"})
     color_arguments.add_flags(parser, "TEXTURE")
     outputs.add_overwrite(parser)
-    telling.add_skipping(parser)
+    cli_common.add_skip_flag(parser)
     parser.set_defaults(intermixed="meshes", execute=_run, usage_error=parser.error)
 
 
 def _run(options: argparse.Namespace) -> None:
     for path in options.meshes:
-        telling.check_ending(options, "MESH", path, mesh_endings.ENDINGS)
+        cli_common.check_extension(options, "MESH", path, mesh_extensions.READABLE)
     settings = _settings(options)
     _check_files(options, settings)
     number = _fingerprint(options, settings) if options.skip_up_to_date else None
     if number is not None:
         targets = [target_files.check_target(path) for path in _paths(settings)]
-        if telling.are_up_to_date(targets, number):
+        if cli_common.are_up_to_date(targets, number):
             return
     metadata = None if number is None else {KEY: number}
     from . import mipmap_levels  # Imported late: a run in which all is up to date needs none of it.
@@ -74,14 +75,14 @@ def _run(options: argparse.Namespace) -> None:
     work = mipmap_levels.read(
         options.texture, options.meshes, options.object, settings, metadata, options
     )
-    telling.tell(telling.done(work))
+    cli_common.run_and_report(work)
 
 
 def _check_files(options: argparse.Namespace, settings: Settings) -> None:
     """Ends the program if it would replace a file that it reads."""
-    written = [file for path in _paths(settings) for file in target_files.written(Path(path))]
+    written = [file for path in _paths(settings) for file in target_files.files_of(Path(path))]
     sources = [options.texture, settings.roughness, *options.meshes]
-    outputs.check_kept(options, written, filter(None, sources))
+    outputs.check_not_replaced(options, written, filter(None, sources))
 
 
 def _paths(settings: Settings) -> list[str]:
@@ -91,7 +92,7 @@ def _paths(settings: Settings) -> list[str]:
 def _fingerprint(options: argparse.Namespace, settings: Settings) -> str:
     """Returns the fingerprint of all inputs; ends the program if a file cannot store it."""
     for path in _paths(settings):
-        telling.check_can_tell(options, path, LEVELS)
+        cli_common.check_stores_fingerprint(options, path, LEVELS)
     chosen = asdict(settings)
     for name in ("filepath", "roughness_filepath", "roughness", "threads"):
         del chosen[name]
@@ -109,7 +110,7 @@ def _settings(options: argparse.Namespace) -> Settings:
         options.usage_error("nothing to write: give -o FILE")
     for name, flag in (("filepath", "-o"), ("roughness_filepath", "--roughness-output")):
         if found.get(name):
-            found[name] = outputs.resolved(options, flag, found[name], options.texture)
+            found[name] = outputs.checked_path(options, flag, found[name], options.texture)
     if options.object and not options.meshes:
         options.usage_error("--object: needs a MESH")
     if not options.meshes and found.setdefault("filter", _WITHOUT_MESH) not in (

@@ -52,7 +52,7 @@ def add_overwrite(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def settle(
+def resolve_files(
     options: argparse.Namespace,
     names: tuple[str, str],
     placeholders: Sequence[str] = (),
@@ -96,7 +96,7 @@ def check_path(
         options.usage_error(str(error))
 
 
-def resolved(
+def checked_path(
     options: argparse.Namespace, argument: str, path: str, source: str | None = None
 ) -> str:
     """Returns a user's output path, with the input's name filled in.
@@ -108,15 +108,15 @@ def resolved(
         source: The file that `{name}` stands for; None if that placeholder is not allowed.
     """
     check_path(options, argument, path, () if source is None else (NAME,))
-    return for_source(path, source or "")
+    return path_for(path, source or "")
 
 
-def for_source(pattern: str, source: str) -> str:
+def path_for(pattern: str, source: str) -> str:
     """Returns the output path for an input file."""
     return patterns.filled(pattern, {NAME: stem_of(source)})
 
 
-def check_kept(
+def check_not_replaced(
     options: argparse.Namespace,
     targets: Iterable[str | os.PathLike[str]],
     sources: Iterable[str | os.PathLike[str]],

@@ -9,9 +9,9 @@ from typing import Any
 from ..workflows.files import pictures
 from ..workflows.picture import Picture
 from ..workflows.wording import either
-from . import color_arguments, many, tasks, telling
+from . import batch, cli_common, color_arguments, tasks
+from .batch import Pair
 from .host import Host
-from .many import Pair
 
 NOTE = """\
 INPUT is a picture file of any kind. Colors are filtered as light, with alpha as coverage. PNG
@@ -23,7 +23,7 @@ Rec. 709 in OpenEXR files."""
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Adds the arguments that name the files."""
-    many.add_arguments(parser, ("INPUT", "OUTPUT"), "a picture file", either(pictures.ENDINGS))
+    batch.add_arguments(parser, ("INPUT", "OUTPUT"), "a picture file", either(pictures.ENDINGS))
     parser.add_argument(
         "--data",
         action="store_true",
@@ -31,10 +31,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     color_arguments.add_flags(parser, "INPUT")
     tasks.add_flags(parser, "INPUT")
-    telling.add_skipping(parser)
+    cli_common.add_skip_flag(parser)
 
 
-def decisive(options: argparse.Namespace, host: Host, settings: type) -> dict[str, Any]:
+def result_settings(options: argparse.Namespace, host: Host, settings: type) -> dict[str, Any]:
     """Returns the settings that determine a command's result, besides the picture itself.
 
     Args:
@@ -43,13 +43,13 @@ def decisive(options: argparse.Namespace, host: Host, settings: type) -> dict[st
         settings: The dataclass of the command's options.
     """
     names = ("data", "colorspace", "clip", "corners", "rectify", "scale")
-    return telling.decisive(options, settings, *names, preset=host.preset(options))
+    return cli_common.result_settings(options, settings, *names, preset=host.preset(options))
 
 
 def check_target(options: argparse.Namespace) -> None:
     """Ends the program unless OUTPUT has the extension of a picture file."""
-    many.settle(options)
-    telling.check_ending(options, "OUTPUT", options.target, pictures.ENDINGS)
+    batch.resolve_files(options)
+    cli_common.check_extension(options, "OUTPUT", options.target, pictures.ENDINGS)
 
 
 def read_source(options: argparse.Namespace, host: Host, pair: Pair) -> tuple[Picture, Path]:
@@ -64,7 +64,7 @@ def read_source(options: argparse.Namespace, host: Host, pair: Pair) -> tuple[Pi
         keeps_chunks=is_png,
         keeps_bytes=is_png,
     )
-    telling.warn(picture.reading_warnings)
+    cli_common.warn(picture.reading_warnings)
     if is_png:
         color_arguments.check_range("INPUT", picture, target, options)
     return picture, target

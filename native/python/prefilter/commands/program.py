@@ -10,7 +10,7 @@ from typing import Any
 
 from .. import _native
 from .._border import stopping
-from . import reports, streams, telling
+from . import cli_common, failures, streams
 
 COMMANDS = {
     "mipmaps": "make the mipmap levels of a texture, weighted by the meshes that wear it",
@@ -33,7 +33,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         after Ctrl-C, 143 after SIGTERM.
     """
     words = list(sys.argv[1:] if arguments is None else arguments)
-    return ended(lambda: execute(parse(parser(words[:1]), words)))
+    return run_to_status(lambda: execute(parse_arguments(make_parser(words[:1]), words)))
 
 
 class Parser(argparse.ArgumentParser):
@@ -44,7 +44,7 @@ class Parser(argparse.ArgumentParser):
         streams.write(stream, message, "")
 
 
-def parse(reader: argparse.ArgumentParser, words: Sequence[str]) -> argparse.Namespace:
+def parse_arguments(reader: argparse.ArgumentParser, words: Sequence[str]) -> argparse.Namespace:
     """Returns the arguments; files may come before, between and after flags."""
     options, left = reader.parse_known_args(words)
     name = getattr(options, "intermixed", "")
@@ -57,22 +57,22 @@ def parse(reader: argparse.ArgumentParser, words: Sequence[str]) -> argparse.Nam
 
 def execute(options: argparse.Namespace) -> None:
     """Runs the chosen command and reports progress in the chosen format."""
-    telling.speak(options.progress)
+    cli_common.use_reporter(options.progress)
     options.execute(options)
 
 
-def ended(run: Callable[[], object], *, is_end: bool = False) -> int:
+def run_to_status(run: Callable[[], object], *, is_end: bool = False) -> int:
     """Runs a command and returns its exit status; stderr says why it is not 0.
 
     Args:
         run: Parses the arguments and runs the command.
         is_end: Whether to discard everything that the process prints afterwards.
     """
-    telling.speak()
-    with streams.apart(is_end=is_end), stopping.heeded():
+    cli_common.use_reporter()
+    with streams.redirected(is_end=is_end), stopping.handled():
         status = _status_of(run)
         if (failure := streams.failure()) is not None:
-            telling.fail(f"not all that was said could be written: {failure.strerror}")
+            cli_common.fail(f"not all that was said could be written: {failure.strerror}")
             status = status or 1
     return status
 
@@ -83,15 +83,15 @@ def _status_of(run: Callable[[], object]) -> int:
     except SystemExit as end:
         return end.code if isinstance(end.code, int) else 0
     except BaseException as error:
-        if telling.is_canceled(error):
-            telling.cancel()
+        if cli_common.is_canceled(error):
+            cli_common.cancel()
             return stopping.status()
-        telling.fail(reports.told(error))
+        cli_common.fail(failures.describe(error))
         return 1
     return 0
 
 
-def parser(chosen: Sequence[str] = tuple(COMMANDS)) -> argparse.ArgumentParser:
+def make_parser(chosen: Sequence[str] = tuple(COMMANDS)) -> argparse.ArgumentParser:
     """Returns the parser of the command line.
 
     Args:
@@ -109,7 +109,7 @@ def parser(chosen: Sequence[str] = tuple(COMMANDS)) -> argparse.ArgumentParser:
     for name, purpose in COMMANDS.items():
         if name in chosen:
             import_module(f".{name.replace('-', '_')}", __package__).add(commands, purpose)
-            telling.add_progress(commands.choices[name])
+            cli_common.add_progress(commands.choices[name])
         else:
             commands.add_parser(name, help=purpose)
     return found

@@ -11,20 +11,20 @@ import numpy as np
 
 from ..options.flags import add_flags, given, tables
 from ..options.shapes import RasterizeSettings
-from ..workflows import mesh_endings, mesh_files
+from ..workflows import mesh_extensions, mesh_files
 from ..workflows.files import pictures
 from ..workflows.shapes.layers import Source, svg_drawing, uv_layers
 from ..workflows.shapes.layouts import borders
 from ..workflows.shapes.rasterizing import RasterFile
-from ..workflows.up_to_date import stands_alone
+from ..workflows.up_to_date import is_self_contained
 from ..workflows.wording import either
-from . import many, tasks, telling
+from . import batch, cli_common, tasks
+from .batch import Pair
 from .host import PLAIN, Host
-from .many import Pair
 
 SVG = ".svg"
 """The extension of drawings."""
-_SOURCES = (SVG, *mesh_endings.ENDINGS)
+_SOURCES = (SVG, *mesh_extensions.READABLE)
 FLAGS = (
     *("filter", "side", "width", "height", "density", "margin", "tile", "uv_margin"),
     *("color", "background_color", "overlap", "light", "font_folder", "pixel_type", "alpha"),
@@ -46,16 +46,16 @@ examples:
 def add(commands: Any, purpose: str) -> None:
     """Adds the command."""
     notes = (*tables(RasterizeSettings, *FLAGS), _NOTES)
-    parser = telling.add_command(commands, "rasterize", purpose, *notes)
+    parser = cli_common.add_command(commands, "rasterize", purpose, *notes)
     endings = either(_SOURCES), either(pictures.ENDINGS)
-    many.add_arguments(parser, ("INPUT", "OUTPUT"), f"a file: {endings[0]}", endings[1])
+    batch.add_arguments(parser, ("INPUT", "OUTPUT"), f"a file: {endings[0]}", endings[1])
     parser.add_argument(
         "--object", metavar="NAME", help="with --uv, the mesh, if there are several"
     )
     parser.add_argument("--uv", action="store_true", help="make a mask of the UV map of a mesh")
     add_flags(parser, RasterizeSettings, *FLAGS)
     tasks.add_flags(parser, "INPUT")
-    telling.add_skipping(parser)
+    cli_common.add_skip_flag(parser)
     parser.set_defaults(execute=_rasterize, usage_error=parser.error)
 
 
@@ -84,16 +84,23 @@ def _rasterize(options: argparse.Namespace) -> None:
     if endings != {SVG} and not options.uv:
         options.usage_error("--uv: needed for meshes")
     settings = settings_of(options, PLAIN)
-    decisive = telling.decisive(options, RasterizeSettings, "object", "uv")
-    do = partial(_rasterize_one, options, settings)
-    many.run(options, do, decisive, may_skip=lambda path: options.uv or stands_alone(path))
+    result_settings = cli_common.result_settings(options, RasterizeSettings, "object", "uv")
+    process = partial(_rasterize_one, options, settings)
+    batch.run(
+        options,
+        process,
+        result_settings,
+        may_skip=lambda path: options.uv or is_self_contained(path),
+    )
 
 
 def check_files(options: argparse.Namespace, allowed: Sequence[str]) -> set[str]:
     """Returns the extensions of the inputs; ends the program if the files do not fit the flags."""
-    many.settle(options)
-    endings = {telling.check_ending(options, "INPUT", path, allowed) for path in options.sources}
-    telling.check_ending(options, "OUTPUT", options.target, pictures.ENDINGS)
+    batch.resolve_files(options)
+    endings = {
+        cli_common.check_extension(options, "INPUT", path, allowed) for path in options.sources
+    }
+    cli_common.check_extension(options, "OUTPUT", options.target, pictures.ENDINGS)
     if SVG in endings and (options.uv or options.object):
         options.usage_error("--object, --uv: an SVG file has neither objects nor a UV map")
     return endings
@@ -108,7 +115,7 @@ def _rasterize_one(options: argparse.Namespace, settings: RasterizeSettings, pai
         source = _layout(options, pair.source, settings, warnings)
     work = RasterFile(source, target, settings, warnings)
     work.metadata = pair.metadata
-    telling.tell(telling.done(work))
+    cli_common.run_and_report(work)
 
 
 def _layout(
@@ -116,7 +123,7 @@ def _layout(
 ) -> Source:
     """Returns the UV map of the mesh; adds to the warnings where it has no area."""
     names = [options.object] if options.object else []
-    found = mesh_files.chosen(mesh_files.read("INPUT", [path]), names)
+    found = mesh_files.select(mesh_files.read("INPUT", [path]), names)
     if len(found) > 1:
         options.usage_error(f"--object: choose one of the {len(found)} meshes; --uv takes one")
     (part,) = found

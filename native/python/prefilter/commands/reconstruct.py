@@ -15,10 +15,10 @@ from ..options.scans import ScanSettings
 from ..points.scan_files import POINT_EXTENSIONS
 from ..points.steps import STEPS, Steps
 from ..workflows.outcome import up_to_date
-from ..workflows.scans import STREAMED_TARGET, Step, Streaming
+from ..workflows.scans import STREAMED_TARGET, StepWork, Streaming
 from ..workflows.scans import options as scan_options
 from ..workflows.wording import either, listed
-from . import outputs, tasks, telling
+from . import cli_common, outputs, tasks
 from .host import PLAIN, Host
 
 _MOST_PARTS = 4096
@@ -37,7 +37,7 @@ examples:
 
 def add(commands: Any, purpose: str) -> None:
     """Adds the command."""
-    parser = telling.add_command(commands, "reconstruct", purpose, *tables(ScanSettings), _NOTES)
+    parser = cli_common.add_command(commands, "reconstruct", purpose, *tables(ScanSettings), _NOTES)
     add_files(parser, POINT_EXTENSIONS, (STREAMED_TARGET,))
     add_settings(parser, PLAIN)
     add_steps(parser)
@@ -68,15 +68,15 @@ def add_files(
     )
 
 
-def settle(options: argparse.Namespace) -> None:
+def resolve_files(options: argparse.Namespace) -> None:
     """Determines which files are read and written; a folder stands for its point files.
 
     Ends the program if it would replace a file that it reads.
     """
-    outputs.settle(options, ("SOURCE", "TARGET"))
-    options.target = outputs.for_source(options.target, "")
+    outputs.resolve_files(options, ("SOURCE", "TARGET"))
+    options.target = outputs.path_for(options.target, "")
     _expand_folders(options)
-    outputs.check_kept(options, [options.target], options.sources)
+    outputs.check_not_replaced(options, [options.target], options.sources)
     if all(os.path.isfile(path) and not os.path.getsize(path) for path in options.sources):
         raise ValueError(f"SOURCE: {listed(options.sources)}: there is nothing in it")
 
@@ -159,18 +159,18 @@ def do_step(
     if options.list:
         files = [str(target if step == "join" else steps.file(step, run)) for run in runs]
         if options.json:
-            tasks.say_json([{"step": step, "files": [file]} for file in files])
+            tasks.print_json([{"step": step, "files": [file]} for file in files])
         else:
             for file in files:
-                telling.say(file)
+                cli_common.print_line(file)
         return
-    chosen = tasks.chosen(options, runs)
+    chosen = tasks.select(options, runs)
     for done, run in enumerate(chosen):
-        with telling.share(done, len(chosen)):
+        with cli_common.subtask(done, len(chosen)):
             if step != "join" and steps.is_done(step, run):
-                telling.say(up_to_date([steps.file(step, run)]))
+                cli_common.print_line(up_to_date([steps.file(step, run)]))
             else:
-                telling.tell(telling.done(Step(steps, step, run, target, length)))
+                cli_common.run_and_report(StepWork(steps, step, run, target, length))
 
 
 def settings_of(options: argparse.Namespace, host: Host) -> ScanSettings:
@@ -186,10 +186,10 @@ def settings_of(options: argparse.Namespace, host: Host) -> ScanSettings:
 
 
 def _reconstruct(host: Host, options: argparse.Namespace) -> None:
-    settle(options)
+    resolve_files(options)
     for path in options.sources:
-        telling.check_ending(options, "SOURCE", path, POINT_EXTENSIONS)
-    telling.check_ending(options, "TARGET", options.target, (STREAMED_TARGET,))
+        cli_common.check_extension(options, "SOURCE", path, POINT_EXTENSIONS)
+    cli_common.check_extension(options, "TARGET", options.target, (STREAMED_TARGET,))
     check_steps(options)
     target = Path(os.path.realpath(options.target))
     check_target(target)
@@ -199,4 +199,4 @@ def _reconstruct(host: Host, options: argparse.Namespace) -> None:
         do_step(options, target, settings, "{:.4g}".format)
         return
     work = Streaming(sources, target, settings, "{:.4g}".format, options.viewpoint)
-    telling.tell(telling.done(work))
+    cli_common.run_and_report(work)

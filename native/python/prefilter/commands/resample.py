@@ -13,9 +13,9 @@ from ..options.options import check
 from ..options.resampling import CORNERS, ResampleSettings
 from ..workflows.resampling.resampling import Resampling
 from ..workflows.up_to_date import fingerprint
-from . import many, picture_arguments, telling
+from . import batch, cli_common, picture_arguments
+from .batch import Pair
 from .host import PLAIN, Host
-from .many import Pair
 
 _SIZES = ("width", "height")
 _TRANSFORM = {
@@ -42,7 +42,9 @@ examples:
 
 def add(commands: Any, purpose: str, host: Host = PLAIN) -> None:
     """Adds the command."""
-    parser = telling.add_command(commands, "resample", purpose, *tables(ResampleSettings), _NOTES)
+    parser = cli_common.add_command(
+        commands, "resample", purpose, *tables(ResampleSettings), _NOTES
+    )
     picture_arguments.add_arguments(parser)
     parser.add_argument(
         "--corners",
@@ -70,10 +72,10 @@ def _resample(host: Host, options: argparse.Namespace) -> None:
     picture_arguments.check_target(options)
     settings = _settings(options, host)
     options.also_read = [settings.table] if settings.table else []
-    decisive = picture_arguments.decisive(options, host, ResampleSettings)
+    result_settings = picture_arguments.result_settings(options, host, ResampleSettings)
     if settings.table and options.skip_up_to_date:
-        decisive["table"] = fingerprint([settings.table], {})
-    many.run(options, partial(_resample_one, host, options, settings), decisive)
+        result_settings["table"] = fingerprint([settings.table], {})
+    batch.run(options, partial(_resample_one, host, options, settings), result_settings)
 
 
 def _resample_one(
@@ -82,7 +84,7 @@ def _resample_one(
     picture, target = picture_arguments.read_source(options, host, pair)
     work = Resampling(picture, settings, target=target)
     work.metadata = pair.metadata
-    telling.tell(telling.done(work))
+    cli_common.run_and_report(work)
 
 
 def _settings(options: argparse.Namespace, host: Host) -> ResampleSettings:

@@ -9,9 +9,9 @@ from typing import Any
 from ..options.flags import add_flags, given, tables
 from ..options.resampling import ResizeSettings
 from ..workflows.resampling.resizing import Resizing
-from . import many, picture_arguments, telling
+from . import batch, cli_common, picture_arguments
+from .batch import Pair
 from .host import PLAIN, Host
-from .many import Pair
 
 _SIZES = ("percent", "width", "height")
 _NOTES = f"""\
@@ -26,7 +26,7 @@ examples:
 
 def add(commands: Any, purpose: str, host: Host = PLAIN) -> None:
     """Adds the command."""
-    parser = telling.add_command(commands, "resize", purpose, *tables(ResizeSettings), _NOTES)
+    parser = cli_common.add_command(commands, "resize", purpose, *tables(ResizeSettings), _NOTES)
     picture_arguments.add_arguments(parser)
     host.add_preset(parser)
     add_flags(parser, ResizeSettings, without_default=_SIZES, preferred=host.preferred)
@@ -41,8 +41,8 @@ def _resize(host: Host, options: argparse.Namespace) -> None:
         options.usage_error("no size: give --percent, --width or --height")
     if "percent" in sizes and len(sizes) > 1:
         options.usage_error("--percent: not allowed with --width and --height")
-    decisive = picture_arguments.decisive(options, host, ResizeSettings)
-    many.run(options, partial(_resize_one, host, options, found, sizes), decisive)
+    result_settings = picture_arguments.result_settings(options, host, ResizeSettings)
+    batch.run(options, partial(_resize_one, host, options, found, sizes), result_settings)
 
 
 def _resize_one(
@@ -61,4 +61,4 @@ def _resize_one(
     settings = host.settings(options, ResizeSettings, **more)
     work = Resizing(picture, settings, target=target)
     work.metadata = pair.metadata
-    telling.tell(telling.done(work))
+    cli_common.run_and_report(work)

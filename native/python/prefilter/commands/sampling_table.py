@@ -13,7 +13,7 @@ from ..options.flags import add_flags, given, tables
 from ..options.tables import TableSettings
 from ..workflows.resampling.table_making import ENDINGS, TableMaking
 from ..workflows.wording import either
-from . import outputs, telling
+from . import cli_common, outputs
 from .host import PLAIN, Host
 
 _NOTES = """\
@@ -29,7 +29,7 @@ examples:
 def add(commands: Any, purpose: str, host: Host = PLAIN) -> None:
     """Adds the command."""
     notes = (*tables(TableSettings), _NOTES)
-    parser = telling.add_command(commands, "sampling-table", purpose, *notes)
+    parser = cli_common.add_command(commands, "sampling-table", purpose, *notes)
     kinds = either(ENDINGS)
     parser.add_argument(
         "targets", metavar="OUTPUT", nargs="*", help="the same as -o, for new files"
@@ -51,7 +51,7 @@ def add(commands: Any, purpose: str, host: Host = PLAIN) -> None:
 def _paths(options: argparse.Namespace) -> list[str]:
     """Returns the files to write; ends the program without any."""
     for name in ("outputs", "targets"):
-        paths = [outputs.resolved(options, "OUTPUT", path) for path in getattr(options, name)]
+        paths = [outputs.checked_path(options, "OUTPUT", path) for path in getattr(options, name)]
         setattr(options, name, paths)
     if not options.outputs and not options.targets:
         options.usage_error("nothing to write: give -o OUTPUT")
@@ -61,7 +61,7 @@ def _paths(options: argparse.Namespace) -> list[str]:
 def _make(host: Host, options: argparse.Namespace) -> None:
     paths = _paths(options)
     for target in paths:
-        telling.check_ending(options, "OUTPUT", target, ENDINGS)
+        cli_common.check_extension(options, "OUTPUT", target, ENDINGS)
     found = given(options, TableSettings)
     others = sorted(found.keys() - {"table", "threads"})
     if "table" in found and others:
@@ -70,10 +70,10 @@ def _make(host: Host, options: argparse.Namespace) -> None:
     settings = host.settings(options, TableSettings)
     read = [settings.table] if settings.table else []
     options.is_positional = False
-    outputs.check_kept(options, options.outputs, read)
+    outputs.check_not_replaced(options, options.outputs, read)
     options.is_positional = True
-    outputs.check_kept(options, options.targets, read)
+    outputs.check_not_replaced(options, options.targets, read)
     targets = [Path(os.path.realpath(target)) for target in paths]
     for path in targets:
         check_target(path)
-    telling.tell(telling.done(TableMaking(settings, targets)))
+    cli_common.run_and_report(TableMaking(settings, targets))

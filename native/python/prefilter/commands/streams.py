@@ -31,17 +31,17 @@ class _Streams:
     failure: OSError | None = None
 
 
-_own: _Streams | None = None
+_streams: _Streams | None = None
 
 
 def output() -> TextIO:
     """Returns the commands' standard output, even while other code's is redirected."""
-    return sys.stdout if _own is None else _own.output
+    return sys.stdout if _streams is None else _streams.output
 
 
 def errors() -> TextIO:
     """Returns the commands' standard error, even while other code's is redirected."""
-    return sys.stderr if _own is None else _own.errors
+    return sys.stderr if _streams is None else _streams.errors
 
 
 def write(stream: TextIO, text: str, end: str = "\n") -> None:
@@ -53,17 +53,17 @@ def write(stream: TextIO, text: str, end: str = "\n") -> None:
         pass  # The stream is closed.
     except OSError as error:
         _silence(stream)
-        if error.errno not in _NOBODY_READS and _own is not None:
-            _own.failure = error
+        if error.errno not in _NOBODY_READS and _streams is not None:
+            _streams.failure = error
 
 
 def failure() -> OSError | None:
     """Returns why output could not be written, other than to a closed pipe; else None."""
-    return None if _own is None else _own.failure
+    return None if _streams is None else _streams.failure
 
 
 @contextmanager
-def apart(*, is_end: bool) -> Iterator[None]:
+def redirected(*, is_end: bool) -> Iterator[None]:
     """A context in which only messages of commands reach the standard streams.
 
     Everything that libraries, Blender and its importers print is dropped, or goes to standard
@@ -73,15 +73,15 @@ def apart(*, is_end: bool) -> Iterator[None]:
         is_end: Whether to leave the redirection in place at the end. Blender prints something as it
             quits.
     """
-    global _own
+    global _streams
     _prepare()
     before = sys.stdout, sys.stderr
-    with _quiet(is_end=is_end) as (own_output, own_errors):
-        _own = _Streams(own_output, own_errors)
+    with _moved(is_end=is_end) as (own_output, own_errors):
+        _streams = _Streams(own_output, own_errors)
         try:
             yield
         finally:
-            _own = None
+            _streams = None
             sys.stdout, sys.stderr = before
 
 
@@ -108,9 +108,9 @@ def _prepare() -> None:
 
 
 @contextmanager
-def _quiet(*, is_end: bool) -> Iterator[tuple[TextIO, TextIO]]:
+def _moved(*, is_end: bool) -> Iterator[tuple[TextIO, TextIO]]:
     """Redirects both streams; yields new streams that lead where they led before."""
-    own = [_same(getattr(sys, name), number) for name, number in _NUMBERS.items()]
+    own = [_duplicate(getattr(sys, name), number) for name, number in _NUMBERS.items()]
     kept = {number: os.dup(number) for number in _NUMBERS.values()}
     for stream in (sys.stdout, sys.stderr):
         write(stream, "", "")
@@ -119,7 +119,7 @@ def _quiet(*, is_end: bool) -> Iterator[tuple[TextIO, TextIO]]:
         os.dup2(sink, number)
     _flush_c()  # Drop buffered output now, before it can appear after our last line.
     given = sys.stdout, sys.stderr
-    sys.stdout, sys.stderr = (_text(one) for one in (sink, os.dup(sink)))
+    sys.stdout, sys.stderr = (_open_text(one) for one in (sink, os.dup(sink)))
     moved = sys.stdout, sys.stderr
     try:
         yield own[0], own[1]
@@ -138,17 +138,17 @@ def _quiet(*, is_end: bool) -> Iterator[tuple[TextIO, TextIO]]:
             stream.close()
 
 
-def _same(stream: TextIO, number: int) -> TextIO:
+def _duplicate(stream: TextIO, number: int) -> TextIO:
     """Returns a new stream to the same descriptor, or the stream itself if it was replaced."""
     try:
         if not os.path.samestat(os.fstat(stream.fileno()), os.fstat(number)):
             return stream
     except (OSError, ValueError):
         return stream
-    return _text(os.dup(number), stream.encoding)
+    return _open_text(os.dup(number), stream.encoding)
 
 
-def _text(number: int, encoding: str = "utf-8") -> TextIO:
+def _open_text(number: int, encoding: str = "utf-8") -> TextIO:
     return os.fdopen(number, "w", 1, encoding=encoding, errors="backslashreplace")
 
 

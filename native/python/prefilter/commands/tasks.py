@@ -12,13 +12,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from . import telling
+from . import cli_common
 
 T = TypeVar("T")
 
 
 @dataclass(frozen=True)
-class Part:
+class TaskPart:
     """One of `count` parts of the tasks, which takes every `count`-th of them.
 
     Attributes:
@@ -29,7 +29,7 @@ class Part:
     number: int
     count: int
 
-    def of(self, tasks: Sequence[T]) -> list[T]:
+    def select(self, tasks: Sequence[T]) -> list[T]:
         """Returns the tasks in this part; none if there are fewer tasks than parts."""
         return list(tasks[self.number - 1 :: self.count])
 
@@ -45,7 +45,7 @@ def add_flags(parser: argparse.ArgumentParser, thing: str, *, needs: str = "") -
     parser.add_argument(
         "--task",
         metavar="K/N",
-        type=_part,
+        type=_parse_part,
         help=f"{needs}do part K of N, from 1/N to N/N; with as many parts as --list has tasks, "
         f"each is one {thing}",
     )
@@ -65,24 +65,26 @@ def check(options: argparse.Namespace) -> None:
         options.usage_error("--task: not allowed with --list, which says all tasks")
 
 
-def chosen(options: argparse.Namespace, tasks: Sequence[T]) -> list[T]:
+def select(options: argparse.Namespace, tasks: Sequence[T]) -> list[T]:
     """Returns the tasks to do here; prints a line if there are none."""
     if options.task is None:
         return list(tasks)
-    found: list[T] = options.task.of(tasks)
+    found: list[T] = options.task.select(tasks)
     if not found:
-        telling.say(f"Nothing to do in part {options.task.number} of {options.task.count}")
+        cli_common.print_line(
+            f"Nothing to do in part {options.task.number} of {options.task.count}"
+        )
     return found
 
 
-def say_json(tasks: Sequence[Mapping[str, Any]], **more: Any) -> None:
+def print_json(tasks: Sequence[Mapping[str, Any]], **more: Any) -> None:
     """Prints numbered tasks, and more values, as one JSON object on a line."""
     numbered = [{"task": number, **task} for number, task in enumerate(tasks, start=1)]
-    telling.say(json.dumps({"tasks": numbered, **more}))
+    cli_common.print_line(json.dumps({"tasks": numbered, **more}))
 
 
-def _part(text: str) -> Part:
+def _parse_part(text: str) -> TaskPart:
     found = re.fullmatch(r"(\d{1,9})/(\d{1,9})", text, re.ASCII)
     if found is None or not 1 <= int(found[1]) <= int(found[2]):
         raise argparse.ArgumentTypeError(f"found '{text}'; K/N is needed, with K from 1 to N")
-    return Part(int(found[1]), int(found[2]))
+    return TaskPart(int(found[1]), int(found[2]))

@@ -12,18 +12,23 @@ from ..files import staging
 from ..meshes.measures import measure_mesh
 from ..options.flags import add_flags, given, tables
 from ..options.voxels import VoxelizeSettings, VoxelSettings
-from ..workflows import mesh_endings, mesh_files
-from ..workflows.mesh_files import Part
+from ..workflows import mesh_extensions, mesh_files
+from ..workflows.mesh_files import NamedMesh
 from ..workflows.outcome import Outcome
 from ..workflows.progress import Progress, go_on, parts, share
 from ..workflows.up_to_date import MESHES
 from ..workflows.voxels import surfaces
+from ..workflows.voxels.empty_results import (
+    NO_FILLED_CELL,
+    EmptyResults,
+    NothingLeftError,
+    check_area,
+)
 from ..workflows.voxels.grid import check_memory, choose_grid
-from ..workflows.voxels.nothing import NO_CELL, LeftOut, NothingLeftError, check_area
 from ..workflows.wording import Sentence, amount, counted, either
-from . import many, tasks, telling
+from . import batch, cli_common, tasks
+from .batch import Pair
 from .host import PLAIN, Host
-from .many import Pair
 
 RESOLUTIONS = ("depth", "voxel_size")
 FLAGS = (
@@ -45,9 +50,9 @@ examples:
 def add(commands: Any, purpose: str) -> None:
     """Adds the command."""
     notes = (*tables(VoxelizeSettings, *FLAGS), _NOTES)
-    parser = telling.add_command(commands, "voxelize", purpose, *notes)
-    endings = either(mesh_endings.ENDINGS), either(mesh_endings.TARGETS)
-    many.add_arguments(parser, ("FILE", "OUTPUT"), f"a file: {endings[0]}", endings[1])
+    parser = cli_common.add_command(commands, "voxelize", purpose, *notes)
+    endings = either(mesh_extensions.READABLE), either(mesh_extensions.WRITABLE)
+    batch.add_arguments(parser, ("FILE", "OUTPUT"), f"a file: {endings[0]}", endings[1])
     parser.add_argument(
         "--object",
         metavar="NAME",
@@ -57,7 +62,7 @@ def add(commands: Any, purpose: str) -> None:
     )
     add_flags(parser, VoxelizeSettings, *FLAGS, exclusive=RESOLUTIONS)
     tasks.add_flags(parser, "FILE")
-    telling.add_skipping(parser)
+    cli_common.add_skip_flag(parser)
     parser.set_defaults(execute=_voxelize, usage_error=parser.error)
 
 
@@ -77,7 +82,7 @@ def settings_of(
 class VoxelFile:
     """Voxelizes each of several meshes and writes the results to a file."""
 
-    def __init__(self, meshes: list[Part], target: Path, settings: VoxelizeSettings) -> None:
+    def __init__(self, meshes: list[NamedMesh], target: Path, settings: VoxelizeSettings) -> None:
         """Takes the meshes to voxelize, the file to write, and the settings."""
         self.metadata: Mapping[str, str] | None = None
         """Key-value pairs to store in the file."""
@@ -100,7 +105,7 @@ class VoxelFile:
             prefilter.Cancelled: `progress` returned False.
         """
         steps = parts(share(progress, 0.0, _COMPUTED), len(self._meshes))
-        made, left_out = [], LeftOut()
+        made, left_out = [], EmptyResults()
         for mesh, part in zip(self._meshes, steps, strict=True):
             try:
                 made.append(self._voxelized(mesh, part))
@@ -108,7 +113,7 @@ class VoxelFile:
                 left_out.add(mesh.name, error)
             except ValueError as error:
                 raise ValueError(f"mesh '{mesh.name}': {error}") from error
-        self._warnings += left_out.warnings_beside(made)
+        self._warnings += left_out.warnings_for(made)
         go_on(progress, _COMPUTED)
         self._staged = mesh_files.stage(self._target, made, self.metadata)
         go_on(progress, 1.0)
@@ -128,7 +133,7 @@ class VoxelFile:
         if self._staged is not None:
             self._staged.discard()
 
-    def _voxelized(self, mesh: Part, progress: Progress) -> Part:
+    def _voxelized(self, mesh: NamedMesh, progress: Progress) -> NamedMesh:
         settings = self._settings
         measures = measure_mesh(mesh.positions, mesh.triangles, threads=settings.threads)
         check_area(measures.area)
@@ -144,8 +149,8 @@ class VoxelFile:
             adaptivity=settings.adaptivity,
         )
         if len(triangles) == 0:
-            raise NothingLeftError(NO_CELL)
-        warnings, notes = surfaces.lines_of(mesh.name, made)
+            raise NothingLeftError(NO_FILLED_CELL)
+        warnings, notes = surfaces.repair_lines(mesh.name, made)
         self._warnings += warnings
         self._notes += notes
         self._triangles += len(triangles)
@@ -154,23 +159,23 @@ class VoxelFile:
             f"'{mesh.name}' in {grid.cells}³ cells of {grid.spacing:.4g}: "
             f"{amount(len(triangles), 'triangle')}, volume {volume:.4g}"
         )
-        return Part(mesh.name, positions, triangles, None)
+        return NamedMesh(mesh.name, positions, triangles, None)
 
 
 def _voxelize(options: argparse.Namespace) -> None:
-    many.settle(options)
+    batch.resolve_files(options)
     for path in options.sources:
-        telling.check_ending(options, "FILE", path, mesh_endings.ENDINGS)
-    telling.check_ending(options, "OUTPUT", options.target, mesh_endings.TARGETS)
+        cli_common.check_extension(options, "FILE", path, mesh_extensions.READABLE)
+    cli_common.check_extension(options, "OUTPUT", options.target, mesh_extensions.WRITABLE)
     settings = settings_of(options, PLAIN, VoxelizeSettings)
-    decisive = telling.decisive(options, VoxelizeSettings, "object")
-    many.run(options, partial(_voxelize_one, options, settings), decisive, MESHES)
+    result_settings = cli_common.result_settings(options, VoxelizeSettings, "object")
+    batch.run(options, partial(_voxelize_one, options, settings), result_settings, MESHES)
 
 
 def _voxelize_one(options: argparse.Namespace, settings: VoxelizeSettings, pair: Pair) -> None:
     target = pair.checked_target()
-    found = mesh_files.chosen(mesh_files.read("FILE", [pair.source]), options.object)
-    meshes = [mesh_files.without_seams(one) for one in found]
+    found = mesh_files.select(mesh_files.read("FILE", [pair.source]), options.object)
+    meshes = [mesh_files.merge_seams(one) for one in found]
     work = VoxelFile(meshes, target, settings)
     work.metadata = pair.metadata
-    telling.tell(telling.done(work))
+    cli_common.run_and_report(work)

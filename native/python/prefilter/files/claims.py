@@ -31,7 +31,7 @@ CLAIM, JOURNAL = ".lock", ".set"
 _STEM = re.compile(r"\.prefilter-([0-9a-f]+)")
 _SECONDS_ELSEWHERE = 24 * 3600.0
 
-End = Callable[[Path, BinaryIO], bool]
+Recover = Callable[[Path, BinaryIO], bool]
 """Carries out the recovery steps of a claim's file; returns whether its files can be removed."""
 
 
@@ -55,17 +55,17 @@ class Claim:
                 return
             self._file.close()
 
-    def beside(self, suffix: str) -> Path:
+    def new_name(self, suffix: str) -> Path:
         """Returns an unused name that this claim owns."""
         return self.path.with_name(f"{self.path.stem}-{next(self._numbers)}{suffix}")
 
-    def say(self, text: bytes) -> None:
+    def write_journal(self, text: bytes) -> None:
         """Writes recovery steps in case this process is killed, and syncs them to disk."""
         while text:
             text = text[self._file.write(text) :]
         os.fsync(self._file.fileno())
 
-    def unsay(self) -> None:
+    def clear_journal(self) -> None:
         """Empties the journal and syncs that to disk: nothing is left to recover."""
         self._file.truncate(0)
         os.fsync(self._file.fileno())
@@ -75,7 +75,7 @@ class Claim:
         self._file.close()
         self.path.unlink(missing_ok=True)
 
-    def leave(self) -> None:
+    def abandon(self) -> None:
         """Unlocks the claim but leaves its files, so that the next run recovers them."""
         self._file.close()
 
@@ -121,7 +121,7 @@ def temporary_folder(parent: str | os.PathLike[str] | None = None) -> Iterator[P
     sweep(place)
     claim = take(place)
     try:
-        folder = claim.beside("")
+        folder = claim.new_name("")
         folder.mkdir(mode=0o700)
         try:
             yield folder
@@ -131,7 +131,7 @@ def temporary_folder(parent: str | os.PathLike[str] | None = None) -> Iterator[P
         give_back(place)
 
 
-def sweep(folder: Path, end: End = lambda path, file: path.suffix != JOURNAL) -> None:
+def sweep(folder: Path, recover: Recover = lambda path, file: path.suffix != JOURNAL) -> None:
     """Removes files that dead processes left in a folder; in doubt, leaves them."""
     owned: dict[str, list[Path]] = {}
     try:
@@ -143,13 +143,13 @@ def sweep(folder: Path, end: End = lambda path, file: path.suffix != JOURNAL) ->
     for paths in owned.values():
         held = [path for path in paths if path.suffix in (CLAIM, JOURNAL)]
         for path in held:
-            sweep_claim(path, end)
+            sweep_claim(path, recover)
         if not held and sys.platform != "win32":  # Windows removes them with their process.
             for path in paths:
                 _sweep_own(path)
 
 
-def sweep_claim(path: Path, end: End) -> bool:
+def sweep_claim(path: Path, recover: Recover) -> bool:
     """Recovers and removes a claim and its files if its process is dead; returns whether it is
     gone.
 
@@ -170,7 +170,7 @@ def sweep_claim(path: Path, end: End) -> bool:
         # Journals are recovered at once, whatever their machine: they live for moments only.
         if path.exists() and not (path.suffix == JOURNAL or _may_be_swept(path)):
             return False
-        if not end(path, file):
+        if not recover(path, file):
             return False
         for owned in path.parent.glob(f"{path.stem}-*"):
             _remove(owned)

@@ -18,7 +18,7 @@ from typing import BinaryIO
 
 from .claims import JOURNAL, Claim, sweep, sweep_claim
 
-Kept = tuple[Path, Path | None]
+Backup = tuple[Path, Path | None]
 """A target, and the backup of the file that was there; None if there was none."""
 
 
@@ -53,7 +53,7 @@ def sync(path: Path) -> None:
 
 
 @contextmanager
-def undone_on_failure(pairs: Sequence[tuple[Path, Path]]) -> Iterator[None]:
+def restored_on_failure(pairs: Sequence[tuple[Path, Path]]) -> Iterator[None]:
     """A context whose replacements of files are all undone if it fails.
 
     Args:
@@ -65,24 +65,24 @@ def undone_on_failure(pairs: Sequence[tuple[Path, Path]]) -> Iterator[None]:
     """
     folders = list(dict.fromkeys(target.parent for _, target in pairs))
     with _claimed(folders) as claims:
-        kept: list[Kept] = []
+        backups: list[Backup] = []
         try:
             for _, target in pairs:
-                kept.append((target, _second_name(target, claims[target.parent])))
-            _begin(claims, pairs, kept)
+                backups.append((target, _back_up(target, claims[target.parent])))
+            _write_journals(claims, pairs, backups)
             yield
             for folder in folders:
                 sync(folder)
-            claims[folders[0]].unsay()  # The whole set is in place.
+            claims[folders[0]].clear_journal()  # The whole set is in place.
         except BaseException as error:
-            lost = [text for target, earlier in kept if (text := _put_back(target, earlier))]
+            lost = [text for target, earlier in backups if (text := _restore(target, earlier))]
             if lost:
                 for claim in claims.values():
-                    claim.leave()
+                    claim.abandon()
                 claims.clear()
                 raise OSError("; ".join([str(error), *lost])) from error
             raise
-        for _, earlier in kept:
+        for _, earlier in backups:
             if earlier is not None:
                 earlier.unlink(missing_ok=True)
 
@@ -122,34 +122,34 @@ def _claimed(folders: Sequence[Path]) -> Iterator[dict[Path, Claim]]:
             claim.end()
 
 
-def _begin(
-    claims: dict[Path, Claim], pairs: Sequence[tuple[Path, Path]], kept: Sequence[Kept]
+def _write_journals(
+    claims: dict[Path, Claim], pairs: Sequence[tuple[Path, Path]], backups: Sequence[Backup]
 ) -> None:
     """Writes the journals and syncs them and their folders to disk."""
     first, *others = claims.values()
     place = first.path.parent
     entries = [
-        [_said(target, place), _said(earlier, place), _identity(new)]
-        for (new, _), (target, earlier) in zip(pairs, kept, strict=True)
+        [_journal_path(target, place), _journal_path(earlier, place), _identity(new)]
+        for (new, _), (target, earlier) in zip(pairs, backups, strict=True)
     ]
-    first.say(json.dumps({"kept": entries}).encode())
+    first.write_journal(json.dumps({"kept": entries}).encode())
     # The journals in the other folders point to the first one.
     for claim in others:
-        claim.say(json.dumps({"see": str(first.path)}).encode())
+        claim.write_journal(json.dumps({"see": str(first.path)}).encode())
     for folder in claims:
         sync(folder)
 
 
-def _second_name(target: Path, claim: Claim) -> Path | None:
+def _back_up(target: Path, claim: Claim) -> Path | None:
     """Backs a file up under a name that outlasts its replacement; None if there is no file."""
     if not target.exists():
         return None
-    other = claim.beside(target.suffix)
+    other = claim.new_name(target.suffix)
     link_or_copy(target, other)
     return other
 
 
-def _put_back(target: Path, earlier: Path | None) -> str:
+def _restore(target: Path, earlier: Path | None) -> str:
     """Undoes a replacement; returns an error message if that fails, else an empty text."""
     try:
         if earlier is None:
@@ -159,8 +159,8 @@ def _put_back(target: Path, earlier: Path | None) -> str:
         else:
             rename(earlier, target)
     except OSError as error:
-        kept = "" if earlier is None else f"; the earlier file is kept as '{earlier}'"
-        return f"'{target}' was written, which cannot be undone{kept}: {error}"
+        backup = "" if earlier is None else f"; the earlier file is kept as '{earlier}'"
+        return f"'{target}' was written, which cannot be undone{backup}: {error}"
     return ""
 
 
@@ -173,23 +173,25 @@ def _undo(path: Path, file: BinaryIO) -> bool:
     except ValueError:
         text = {}
     failed = [
-        told
+        message
         for target, earlier, identity in text.get("kept", [])
-        if (told := _put_back_again(path.parent, target, earlier, identity))
+        if (message := _restore_unless_changed(path.parent, target, earlier, identity))
     ]
     if failed:
         raise OSError("; ".join(failed))
     return "see" not in text or sweep_claim(Path(text["see"]), _undo)
 
 
-def _put_back_again(folder: Path, target: str, earlier: str | None, identity: Sequence[int]) -> str:
+def _restore_unless_changed(
+    folder: Path, target: str, earlier: str | None, identity: Sequence[int]
+) -> str:
     """Undoes one replacement, unless that is done already or the target has changed since."""
     with suppress(OSError):
         if _identity(folder / target) == list(identity):
             if earlier is None:
-                return _put_back(folder / target, None)
+                return _restore(folder / target, None)
             if (folder / earlier).exists():
-                return _put_back(folder / target, folder / earlier)
+                return _restore(folder / target, folder / earlier)
     return ""
 
 
@@ -199,7 +201,7 @@ def _identity(path: Path) -> list[int]:
     return [found.st_size, found.st_mtime_ns]
 
 
-def _said(path: Path | None, folder: Path) -> str | None:
+def _journal_path(path: Path | None, folder: Path) -> str | None:
     """Returns a file's path for a journal; relative to its folder, which may be moved."""
     if path is None:
         return None

@@ -18,14 +18,14 @@ from .._border import stopping
 from .._border.input import as_path
 from .._native import random_name
 from . import claims
-from .replacing import link_or_copy, recover, rename, sync, undone_on_failure
+from .replacing import link_or_copy, recover, rename, restored_on_failure, sync
 
 Output = str | os.PathLike[str] | BinaryIO
 
 _WRITE_BITS = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
 _KINDS = {stat.S_IFDIR: "folder", stat.S_IFIFO: "pipe", stat.S_IFSOCK: "socket"}
 _NEW_MODE = 0o666  # Before the user's umask.
-_nameless_left = threading.BoundedSemaphore(64)
+_nameless_slots = threading.BoundedSemaphore(64)
 """Nameless files have to stay open, and a process may have only about a thousand open files."""
 
 
@@ -59,7 +59,7 @@ class StagedFile:
             # The link in /proc has to be followed, which os.link does only with src_dir_fd.
             anywhere = os.open(self.target.parent, os.O_RDONLY)
             try:
-                with _known_as(self.target, {path: self.target}):
+                with _naming_target(self.target, {path: self.target}):
                     os.link(_own_link(self._nameless), path, src_dir_fd=anywhere)
             finally:
                 os.close(anywhere)
@@ -70,7 +70,7 @@ class StagedFile:
         """Renames the file into place."""
         check_regular(self.target)
         name = self.name()
-        with _known_as(self.target, {name: self.target}):
+        with _naming_target(self.target, {name: self.target}):
             if self.target.exists():
                 shutil.copymode(self.target, name)
             rename(name, self.target)
@@ -83,7 +83,7 @@ class StagedFile:
             with suppress(OSError):  # Errors of buffered data no longer matter.
                 self._nameless.close()
             self._nameless = None
-            _nameless_left.release()
+            _nameless_slots.release()
         if self._is_claimed:
             self._is_claimed = False
             claims.give_back(self.target.parent)
@@ -101,7 +101,7 @@ class StagedFolder:
     def make(self, write: Callable[[Path], object]) -> None:
         """Calls a function that writes the files."""
         made = self._folder / self.target.name
-        with _known_as(self.target, {self._folder: self.target.parent}):
+        with _naming_target(self.target, {self._folder: self.target.parent}):
             self._folder.mkdir()
             write(made)
             if not made.exists():
@@ -145,11 +145,11 @@ def stage_with(
         OSError: The file cannot be written.
     """
     recover(target.parent)
-    with _known_as(target, {}):
+    with _naming_target(target, {}):
         claim = claims.take(target.parent)
-    staged = StagedFile(target, claim.beside(target.suffix if suffix is None else suffix))
+    staged = StagedFile(target, claim.new_name(target.suffix if suffix is None else suffix))
     try:
-        with _known_as(target, {staged.name(): target}):
+        with _naming_target(target, {staged.name(): target}):
             write(staged.name())
             sync(staged.name())
     except BaseException:
@@ -170,7 +170,7 @@ def stage_bytes(target: Path, write: Callable[[BinaryIO], object]) -> StagedFile
     staged = StagedFile(target, nameless=nameless)
     try:
         recover(target.parent)
-        with _known_as(target, {}):
+        with _naming_target(target, {}):
             write(nameless)
             nameless.flush()
             os.fsync(nameless.fileno())
@@ -192,9 +192,9 @@ def stage_folder(target: Path, write: Callable[[Path], object]) -> StagedFolder:
         OSError: The file cannot be written.
     """
     recover(target.parent)
-    with _known_as(target, {}):
+    with _naming_target(target, {}):
         claim = claims.take(target.parent)
-    staged = StagedFolder(target, claim.beside(""))
+    staged = StagedFolder(target, claim.new_name(""))
     try:
         staged.make(write)
     except BaseException:
@@ -203,7 +203,7 @@ def stage_folder(target: Path, write: Callable[[Path], object]) -> StagedFolder:
     return staged
 
 
-def stage_other_name(path: Path, other: Path) -> StagedFile:
+def stage_link(path: Path, other: Path) -> StagedFile:
     """Stages a link or copy of a file under another name in the same folder.
 
     Raises:
@@ -243,8 +243,8 @@ def commit_all(files: Sequence[StagedFile]) -> None:
             sync(folders[0])
         elif files:
             with (
-                _known_as(files[-1].target, {}),
-                undone_on_failure([(file.name(), file.target) for file in files]),
+                _naming_target(files[-1].target, {}),
+                restored_on_failure([(file.name(), file.target) for file in files]),
             ):
                 for file in files:
                     file.put()
@@ -306,7 +306,7 @@ def check_regular(path: Path, who: str = "") -> None:
 
 
 @contextmanager
-def _known_as(target: Path, names: Mapping[Path, Path]) -> Iterator[None]:
+def _naming_target(target: Path, names: Mapping[Path, Path]) -> Iterator[None]:
     """A context in which errors name the target instead of its temporary files.
 
     Args:
@@ -339,18 +339,18 @@ def _is_writable(path: Path) -> bool:
 
 def _nameless(folder: Path) -> BinaryIO | None:
     """Opens a nameless file, deleted on close unless it gets a name; None if not supported."""
-    if not hasattr(os, "O_TMPFILE") or not _nameless_left.acquire(blocking=False):
+    if not hasattr(os, "O_TMPFILE") or not _nameless_slots.acquire(blocking=False):
         return None
     try:
         file = os.fdopen(os.open(folder, os.O_TMPFILE | os.O_RDWR, _NEW_MODE), "w+b")
     except OSError:
-        _nameless_left.release()
+        _nameless_slots.release()
         return None
     claims.lock_new(file)
     if os.path.exists(_own_link(file)):
         return file
     file.close()
-    _nameless_left.release()
+    _nameless_slots.release()
     return None
 
 

@@ -23,7 +23,7 @@ from .._border.arguments import (
 from .._border.arrays import as_image, as_texels, as_threads, in_form_of
 from .._border.names import Encoding, ResizeFilter, Ringing
 from .color import as_light, as_words
-from .pixel_filters import names_for
+from .filters import names_for
 
 RESIZE_FILTERS: tuple[ResizeFilter, ...] = names_for("resize")
 """All filters of `resize`."""

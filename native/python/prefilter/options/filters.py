@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import prefilter
 
-from .choices import Choice
+from .options import Choice
 
 LABELS = {one.name: one.label for one in prefilter.PIXEL_FILTERS}
 

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 
 import prefilter
 
-from .choices import Choice
 from .filters import LABELS
-from .options import number, one_of, switch, text, threads
+from .options import Choice, number, one_of, switch, text, threads
 
 _PAM = {
     "pam-bilinear": Choice(

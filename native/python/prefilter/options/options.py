@@ -15,13 +15,19 @@ import inspect
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
-from .choices import Choice
 from .colors import Color, to_hex
 
 _KEY = "option"
 _ROUNDING = 2.0**-24
+
+
+class Choice(NamedTuple):
+    """One of the values of an option that has a fixed set of them."""
+
+    label: str
+    description: str
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from .choices import Choice
 from .filters import filters_for
-from .options import number, numbers, one_of, switch, text, threads
+from .options import Choice, number, numbers, one_of, switch, text, threads
 
 SIZES = {
     "percent": Choice("Percent", "A share of the width and height of the image"),

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 
 import prefilter
 
-from .choices import Choice
-from .options import number, numbers, one_of, switch, text, threads
+from .options import Choice, number, numbers, one_of, switch, text, threads
 
 RESOLUTIONS = {
     "auto": Choice(

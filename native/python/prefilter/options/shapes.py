@@ -4,9 +4,8 @@
 
 from dataclasses import dataclass
 
-from .choices import Choice
 from .filters import filters_for
-from .options import number, one_of, rgba, switch, text, threads
+from .options import Choice, number, one_of, rgba, switch, text, threads
 
 LARGEST_SIDE = 1 << 16
 

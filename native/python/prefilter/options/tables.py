@@ -4,8 +4,7 @@
 
 from dataclasses import dataclass
 
-from .choices import Choice
-from .options import number, one_of, switch, text, threads
+from .options import Choice, number, one_of, switch, text, threads
 from .resampling import TABLE_FILTERS
 
 LANGUAGES = {

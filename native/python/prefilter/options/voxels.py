@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 import prefilter
 
-from .choices import Choice
-from .options import number, one_of, switch, text, threads
+from .options import Choice, number, one_of, switch, text, threads
 
 RESOLUTIONS = {
     "depth": Choice("Depth", "Halve the cube around the object this many times"),

@@ -22,7 +22,7 @@ from .._border.arguments import (
 from .._border.arrays import FloatArray, as_image, as_threads, in_form_of
 from .._border.channels import in_channel_groups
 from .._border.names import Kernel
-from ..images.pixel_filters import names_for
+from ..images.filters import names_for
 
 SAMPLING_FILTERS: tuple[Kernel, ...] = names_for("sampling")
 """Kernels that sampling tables and `sampling_levels` support."""

@@ -20,7 +20,7 @@ from .._border.arguments import (
 )
 from .._border.arrays import FloatArray, as_threads
 from .._border.names import RasterFilter
-from ..images.pixel_filters import names_for
+from ..images.filters import names_for
 from .arguments import as_color
 from .shape import Shape
 

@@ -36,7 +36,7 @@ class ThinPlaces:
         Returns:
             Cells; infinity if nothing is thin.
         """
-        return self._reached(self.thickness, share)
+        return self._quantile(self.thickness, share)
 
     def refinement(self, share: float = 1.0) -> float:
         """Factor by which cells must shrink so that this share of the thin area is unchanged.
@@ -47,10 +47,10 @@ class ThinPlaces:
         Returns:
             1 if nothing is thin; infinity if sheets make up more than the rest.
         """
-        least = self._reached(self.thickness / self.made, share)
+        least = self._quantile(self.thickness / self.made, share)
         return 1.0 if least == np.inf else (1.0 / least if least > 0.0 else np.inf)
 
-    def _reached(self, values: npt.NDArray[np.float64], share: float) -> float:
+    def _quantile(self, values: npt.NDArray[np.float64], share: float) -> float:
         if not 0.0 < share <= 1.0:
             raise ValueError(f"share: {share!r}; a number above 0 and up to 1 is needed")
         if len(values) == 0:

@@ -42,7 +42,7 @@ class Curve(Protocol):
 
 
 @dataclass(frozen=True)
-class Parametric:
+class ParametricCurve:
     """(a x + b) ** g + e for x >= d, else c x + f; extended as an odd function to negative values.
 
     The parameters have the names of the ICC specification.
@@ -76,7 +76,7 @@ class Parametric:
 
 
 @dataclass(frozen=True)
-class Sampled:
+class SampledCurve:
     """A nondecreasing curve, linear between samples at equal steps from 0 to 1."""
 
     samples: tuple[float, ...]
@@ -98,8 +98,8 @@ def _power(base: Any, exponent: float) -> NDArray[np.float64]:
     return powers(positive, exponent)
 
 
-LINE = Parametric()
-SRGB_CURVE = Parametric(2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045)
+LINE = ParametricCurve()
+SRGB_CURVE = ParametricCurve(2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045)
 _CURVES: dict[str, Curve] = {"lin": LINE, "srgb": SRGB_CURVE, "srgbe": SRGB_CURVE}
 _IDENTITY: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -202,7 +202,7 @@ def named(name: str) -> Space | None:
     curve = _CURVES.get(curve_name)
     if curve is None:
         number = curve_name.lstrip("Gagm")
-        curve = Parametric(float(number) if curve_name[0] == "G" else int(number) / 10)
+        curve = ParametricCurve(float(number) if curve_name[0] == "G" else int(number) / 10)
     return Space(name, (curve,), matrix_of(space_names.CHROMATICITIES[primaries]))
 
 

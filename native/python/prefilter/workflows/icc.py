@@ -7,7 +7,7 @@ import zlib
 
 import numpy as np
 
-from .color_spaces import LINE, Curve, Parametric, Sampled, Space, from_d50, is_regular
+from .color_spaces import LINE, Curve, ParametricCurve, SampledCurve, Space, from_d50, is_regular
 
 _HEADER = 128
 _MOST_TAGS = 1000
@@ -102,7 +102,7 @@ def _curve(data: bytes) -> Curve:
     samples = np.frombuffer(data, ">u2", count, 12) / 65535.0
     if np.any(np.diff(samples) < 0.0) or samples[0] == samples[-1]:
         raise ValueError("an ICC profile whose curve falls")
-    return Sampled(tuple(samples.tolist()))
+    return SampledCurve(tuple(samples.tolist()))
 
 
 def _parametric(kind: int, found: dict[str, float]) -> Curve:
@@ -111,4 +111,4 @@ def _parametric(kind: int, found: dict[str, float]) -> Curve:
     if kind in {1, 2}:
         constant = found.pop("c", 0.0)
         found |= {"d": max(-found["b"] / found["a"], 0.0), "e": constant, "f": constant}
-    return Parametric(**found)
+    return ParametricCurve(**found)

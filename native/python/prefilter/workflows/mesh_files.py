@@ -16,8 +16,8 @@ import prefilter
 
 from .. import _native
 from ..files.file_names import portable
-from ..files.odd_names import is_text, readable_name
 from ..files.staging import StagedFile, stage_bytes, stage_data
+from ..files.undecodable_names import is_text, readable_name
 from .damage import why_unreadable
 from .files.gltf import read_gltf
 from .files.mesh_notes import with_note
@@ -28,7 +28,7 @@ from .wording import counted, listed
 
 
 @dataclass(frozen=True)
-class Part:
+class NamedMesh:
     """A mesh of a file, in world coordinates.
 
     Attributes:
@@ -55,7 +55,7 @@ class Part:
         return self.triangles[~self.bare], uvs[~self.bare]
 
 
-def read(argument: str, paths: Sequence[str]) -> list[Part]:
+def read(argument: str, paths: Sequence[str]) -> list[NamedMesh]:
     """Reads the meshes of files, sorted by name within each.
 
     Args:
@@ -66,10 +66,10 @@ def read(argument: str, paths: Sequence[str]) -> list[Part]:
         OSError: A file cannot be read, or trimesh is missing.
         ValueError: A file has no triangle.
     """
-    return [part for path in paths for part in _parts(argument, path)]
+    return [part for path in paths for part in _read_file(argument, path)]
 
 
-def chosen(parts: Sequence[Part], names: Sequence[str]) -> list[Part]:
+def select(parts: Sequence[NamedMesh], names: Sequence[str]) -> list[NamedMesh]:
     """Returns the meshes with the given names; all if no name is given.
 
     Raises:
@@ -88,15 +88,15 @@ def name_of(path: str) -> str:
     return stem if is_text(stem) else portable(stem)
 
 
-def without_seams(part: Part) -> Part:
+def merge_seams(part: NamedMesh) -> NamedMesh:
     """Merges vertices of equal position, which files split along UV seams."""
     places, numbers = np.unique(part.positions, axis=0, return_inverse=True)
     triangles = numbers.reshape(-1)[part.triangles]
-    return Part(part.name, places, np.asarray(triangles, np.int64), None)
+    return NamedMesh(part.name, places, np.asarray(triangles, np.int64), None)
 
 
 def stage(
-    target: Path, parts: Sequence[Part], metadata: Mapping[str, str] | None = None
+    target: Path, parts: Sequence[NamedMesh], metadata: Mapping[str, str] | None = None
 ) -> StagedFile:
     """Stages positions and triangles in the format of the target's extension.
 
@@ -125,7 +125,7 @@ def stage(
     return stage_data(target, data)
 
 
-def surfaces(parts: Sequence[Part]) -> tuple[list[prefilter.Surface], list[str], list[str]]:
+def surfaces(parts: Sequence[NamedMesh]) -> tuple[list[prefilter.Surface], list[str], list[str]]:
     """Returns the surfaces of meshes with UV maps, their names, and warnings about the others.
 
     Raises:
@@ -154,7 +154,7 @@ def surfaces(parts: Sequence[Part]) -> tuple[list[prefilter.Surface], list[str],
     return found, names, told
 
 
-def _parts(argument: str, path: str) -> list[Part]:
+def _read_file(argument: str, path: str) -> list[NamedMesh]:
     if not os.path.isfile(path):
         raise OSError(f"{argument}: there is no file '{path}'")
     reader = _READERS.get(os.path.splitext(path)[1].lower(), _read_by_trimesh)
@@ -165,23 +165,23 @@ def _parts(argument: str, path: str) -> list[Part]:
     except Exception as error:  # Readers may raise anything.
         reason = why_unreadable(error, path)
         raise OSError(f"{argument}: '{path}' cannot be read as a mesh: {reason}") from error
-    parts = [_part(mesh) for mesh in sorted(meshes, key=lambda mesh: mesh.name)]
+    parts = [_triangulated(mesh) for mesh in sorted(meshes, key=lambda mesh: mesh.name)]
     parts = [part for part in parts if len(part.triangles)]
     if not parts:
         raise ValueError(f"{argument}: there is no triangle in '{path}'")
     return [part if part.name else replace(part, name=name_of(path)) for part in parts]
 
 
-def _part(mesh: PolygonMesh) -> Part:
+def _triangulated(mesh: PolygonMesh) -> NamedMesh:
     corners = mesh.triangle_corners()
     triangles = mesh.corners[corners]
     if mesh.uvs is None:
-        return Part(mesh.name, mesh.positions, triangles, None)
+        return NamedMesh(mesh.name, mesh.positions, triangles, None)
     uvs = mesh.uvs[corners]
     bare = np.asarray(np.isnan(uvs).any(axis=(1, 2)), np.bool_)
     if bare.all():
-        return Part(mesh.name, mesh.positions, triangles, None)
-    return Part(mesh.name, mesh.positions, triangles, uvs, bare if bare.any() else None)
+        return NamedMesh(mesh.name, mesh.positions, triangles, None)
+    return NamedMesh(mesh.name, mesh.positions, triangles, uvs, bare if bare.any() else None)
 
 
 def _read_by_trimesh(path: str) -> list[PolygonMesh]:

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..files.claims import temporary_folder
-from ..files.odd_names import reads_any_name, writes_any_name
+from ..files.undecodable_names import reads_any_name, writes_any_name
 from .damage import damaged
 from .files.tiff import NO_DATE, remove_dates
 from .memory import free_memory
@@ -45,7 +45,7 @@ _DESCRIBED_SPACE = re.compile(r"\bcolorInteropID=(\w+)")
 _EXIF_ADOBE_RGB, _ADOBE_RGB_RULE = 2, "R03"
 
 
-class Stated(NamedTuple):
+class Metadata(NamedTuple):
     """Metadata of a picture file about its colors and orientation.
 
     Attributes:
@@ -77,13 +77,13 @@ class Pixels(NamedTuple):
     Attributes:
         values: (h, w, c) array of uint8, uint16 or float32, rows from the top.
         is_straight: Whether colors are not multiplied by alpha.
-        stated: Metadata about the colors.
+        metadata: Metadata about the colors.
         left_out: Unread contents, such as "the channels 'Z', 'mask'"; empty for none.
     """
 
     values: NDArray[Any]
     is_straight: bool
-    stated: Stated
+    metadata: Metadata
     left_out: str = ""
 
 
@@ -96,12 +96,12 @@ def module() -> ModuleType:
     return _finder()
 
 
-def said(source: Any) -> str:
+def last_error(source: Any) -> str:
     """Returns the last error message of the module, or of an object of it, in one line."""
     return " ".join(source.geterror().split())
 
 
-def find_by(finder: Callable[[], ModuleType]) -> None:
+def set_finder(finder: Callable[[], ModuleType]) -> None:
     """Sets the function that finds the module in this process; it raises OSError on failure."""
     global _finder
     _finder = finder
@@ -144,12 +144,12 @@ def color_convert(
             oiio.ImageBuf(colors[band]), source, target, unpremult=False, colorconfig=config
         )
         if result.has_error:
-            raise ValueError(f"{said(result)} (configuration '{config}')")
+            raise ValueError(f"{last_error(result)} (configuration '{config}')")
         converted[band] = result.get_pixels("float")
     return converted
 
 
-class Contents(NamedTuple):
+class ValueKind(NamedTuple):
     """Kind of values in a picture file.
 
     Attributes:
@@ -161,20 +161,20 @@ class Contents(NamedTuple):
     is_gray: bool
 
 
-def contents(path: str) -> Contents:
+def value_kind(path: str) -> ValueKind:
     """Returns the kind of values in a picture file, as far as that can be determined."""
     try:
         oiio = module()
     except OSError:
-        return Contents(is_integer=_is_png(path), is_gray=False)
+        return ValueKind(is_integer=_is_png(path), is_gray=False)
     reader = oiio.ImageInput.open(path)
     if reader is None:
         oiio.geterror()
-        return Contents(is_integer=False, is_gray=False)
+        return ValueKind(is_integer=False, is_gray=False)
     spec = reader.spec()
     reader.close()
     kind, channels = spec.format.basetype, _channels(list(spec.channelnames))
-    return Contents(
+    return ValueKind(
         is_integer=kind not in {oiio.HALF, oiio.FLOAT, oiio.DOUBLE},
         is_gray=len(channels) in {1, 2},
     )
@@ -209,18 +209,18 @@ def read_pixels(path: Path) -> Pixels:
         is_float = kind in {oiio.HALF, oiio.FLOAT, oiio.DOUBLE}
         read_as = {oiio.UINT8: "uint8"}.get(kind, "float" if is_float else "uint16")
         _check_memory(spec, read_as)
-        stated = _stated(reader.format_name(), spec)
+        metadata = _metadata(reader.format_name(), spec)
         values = reader.read_image(read_as)
-        failure = said(reader)
+        failure = last_error(reader)
         # Readers of JPEG files also report harmless problems.
-        if values is None or (_CUT_OFF in failure if stated.format == "jpeg" else failure):
+        if values is None or (_CUT_OFF in failure if metadata.format == "jpeg" else failure):
             raise OSError(_unreadable(path, failure))
         is_straight = bool(spec.get_int_attribute("oiio:UnassociatedAlpha", 0))
         left_out = _left_out(reader, spec, channels)
     finally:
         reader.close()
     values = np.asarray(values).reshape(spec.height, spec.width, spec.nchannels)[..., channels]
-    return Pixels(_on_canvas(values, spec), is_straight, stated, left_out)
+    return Pixels(_on_canvas(values, spec), is_straight, metadata, left_out)
 
 
 def _left_out(reader: Any, spec: Any, channels: Sequence[int]) -> str:
@@ -236,7 +236,7 @@ def _left_out(reader: Any, spec: Any, channels: Sequence[int]) -> str:
 
 
 @reads_any_name
-def read_stated(path: Path) -> tuple[Stated, int, bool]:
+def read_metadata(path: Path) -> tuple[Metadata, int, bool]:
     """Reads the metadata of a picture file, but no pixels.
 
     Returns:
@@ -252,7 +252,7 @@ def read_stated(path: Path) -> tuple[Stated, int, bool]:
         _check_memory(spec, "float")
         is_float = spec.format.basetype in {oiio.HALF, oiio.FLOAT, oiio.DOUBLE}
         channels = len(_channels(list(spec.channelnames)))
-        return _stated(reader.format_name(), spec), channels, is_float
+        return _metadata(reader.format_name(), spec), channels, is_float
     finally:
         reader.close()
 
@@ -263,7 +263,7 @@ def _opened(path: Path) -> Any:
     config.attribute("oiio:UnassociatedAlpha", 1)
     reader = oiio.ImageInput.open(str(path), config)
     if reader is None:
-        raise OSError(_unreadable(path, said(oiio)))
+        raise OSError(_unreadable(path, last_error(oiio)))
     return reader
 
 
@@ -282,14 +282,14 @@ def _check_memory(spec: Any, read_as: str) -> None:
         )
 
 
-def _stated(format: str, spec: Any) -> Stated:
+def _metadata(format: str, spec: Any) -> Metadata:
     model = str(spec.getattribute(f"{format}:ColorSpace") or "")
     interop = str(spec.getattribute("Exif:InteroperabilityIndex") or "")
     points = spec.getattribute("chromaticities")
     profile = spec.getattribute("ICCProfile")
     orientation = spec.get_int_attribute("Orientation", 1)
     described = _DESCRIBED_SPACE.search(str(spec.getattribute("ImageDescription") or ""))
-    return Stated(
+    return Metadata(
         format=format,
         orientation=orientation if 1 <= orientation <= _MOST_ORIENTATIONS else 1,
         model="" if model in _RGB_MODELS else model,
@@ -342,7 +342,7 @@ def text_attribute(path: Path, name: str) -> str:
     """
     reader = module().ImageInput.open(str(path))
     if reader is None:
-        raise OSError(_unreadable(path, said(module())))
+        raise OSError(_unreadable(path, last_error(module())))
     try:
         return str(reader.spec().getattribute(name) or "")
     finally:
@@ -363,12 +363,12 @@ def check_whole(path: Path, levels: int = 1) -> None:
     """
     reader = module().ImageInput.open(str(path))
     if reader is None:
-        reason = said(module())
+        reason = last_error(module())
         raise OSError(f"'{path.name}' was not written as a whole; is the disk full? {reason}")
     try:
         if _levels_read(reader) < levels:
             raise OSError(
-                f"'{path.name}' was not written as a whole; is the disk full? {said(reader)}"
+                f"'{path.name}' was not written as a whole; is the disk full? {last_error(reader)}"
             )
     finally:
         reader.close()
@@ -468,7 +468,7 @@ def write_texture(
         full = _buffer(levels[0], has_alpha)
         made = str(folder / f"texture{path.suffix}")
         if not oiio.ImageBufAlgo.make_texture(oiio.MakeTxTexture, full, made, config):
-            raise OSError(f"cannot write '{made}': {said(oiio)}")
+            raise OSError(f"cannot write '{made}': {last_error(oiio)}")
         remove_dates(Path(made))
         shutil.move(made, path)
     check_whole(path, len(levels))
@@ -492,10 +492,10 @@ def _work_folder(path: Path) -> str:
 def _write_level(path: str, buffer: Any, number: int) -> None:
     """Writes a level and reads it back: the texture maker aborts the process if it cannot."""
     if not buffer.write(path):
-        raise OSError(f"cannot write level {number} to '{path}': {said(buffer)}")
+        raise OSError(f"cannot write level {number} to '{path}': {last_error(buffer)}")
     reader = module().ImageInput.open(path)
     if reader is None:
-        raise OSError(f"cannot read level {number} back from '{path}': {said(module())}")
+        raise OSError(f"cannot read level {number} back from '{path}': {last_error(module())}")
     reader.close()
 
 

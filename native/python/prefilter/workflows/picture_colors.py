@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The color space of a picture file, from all its metadata."""
+"""Color space and orientation of a picture file, from all its metadata."""
 
 import struct
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from typing import Any
+
+from numpy.typing import NDArray
 
 from . import color_spaces, icc, space_names
 from .color_spaces import Space
-from .files.embedded import Embedded, exif_of
-from .openimageio import Stated
+from .files.embedded import EmbeddedMetadata, exif_of
+from .openimageio import Metadata
 
 _CICP_PRIMARIES = {1: "rec709", 9: "rec2020", 12: "p3d65"}
 _CICP_CURVES = {4: "g22", 8: "lin", 13: "srgb"}
@@ -24,16 +27,27 @@ _TAKEN_FOR_GRANTED = {
 _WAY_OUT = "--colorspace says which color space to take it for"
 
 
-def orientation_of(stated: Stated, embedded: Embedded) -> int:
+def orientation_of(metadata: Metadata, embedded: EmbeddedMetadata) -> int:
     """Returns the EXIF orientation, 1 to 8; 1 is upright."""
-    if stated.orientation != 1:
-        return stated.orientation
+    if metadata.orientation != 1:
+        return metadata.orientation
     return exif_of(embedded.exif).orientation
 
 
+def upright(values: NDArray[Any], orientation: int) -> NDArray[Any]:
+    """Returns an upright picture, rows from the top, of one stored with an EXIF orientation."""
+    if orientation in {5, 6, 7, 8}:
+        values = values.swapaxes(0, 1)
+    if orientation in {2, 3, 6, 7}:
+        values = values[:, ::-1]
+    if orientation in {3, 4, 7, 8}:
+        values = values[::-1]
+    return values
+
+
 def space_of(
-    stated: Stated,
-    embedded: Embedded,
+    metadata: Metadata,
+    embedded: EmbeddedMetadata,
     *,
     is_integer: bool,
     is_gray: bool,
@@ -42,7 +56,7 @@ def space_of(
     """Returns the color space of a picture; None if its values are not colors.
 
     Args:
-        stated: Metadata read by OpenImageIO.
+        metadata: Metadata read by OpenImageIO.
         embedded: Metadata read by our own parsers.
         is_integer: Whether values are integers, which default to sRGB; floats default to linear
             Rec. 709.
@@ -52,19 +66,19 @@ def space_of(
     Raises:
         ValueError: The kind of space is unknown, or the metadata contradict one another.
     """
-    if stated.model:
+    if metadata.model:
         raise ValueError(
-            f"its colors are {stated.model}, which cannot be converted; save it as RGB first"
+            f"its colors are {metadata.model}, which cannot be converted; save it as RGB first"
         )
     if colorspace != space_names.AUTO:
         space_names.checked_name(colorspace)
         return color_spaces.named(colorspace)
-    if space_names.is_data_name(stated.interop_id):
+    if space_names.is_data_name(metadata.interop_id):
         return None
     # The first claim counts. The name comes first, then the order of the PNG specification.
-    claims = list(_claims(stated, embedded))
+    claims = list(_claims(metadata, embedded))
     if not claims:
-        if space_names.is_data_name(stated.color_space):
+        if space_names.is_data_name(metadata.color_space):
             return None
         return color_spaces.SRGB if is_integer else color_spaces.LINEAR
     _check_agreement(claims)
@@ -84,23 +98,23 @@ def _check_agreement(claims: list[tuple[str, Space]]) -> None:
             raise ValueError(f"{first} and {other} are different color spaces; {_WAY_OUT}")
 
 
-def _claims(stated: Stated, embedded: Embedded) -> Iterator[tuple[str, Space]]:
+def _claims(metadata: Metadata, embedded: EmbeddedMetadata) -> Iterator[tuple[str, Space]]:
     """Yields each source of color metadata, in words, with the space that it names."""
-    if stated.interop_id not in _UNKNOWN:
-        what = f"colorInteropID '{stated.interop_id}'"
-        yield what, _named(stated.interop_id, what)
+    if metadata.interop_id not in _UNKNOWN:
+        what = f"colorInteropID '{metadata.interop_id}'"
+        yield what, _named(metadata.interop_id, what)
     chunks = embedded.chunks
     if b"cICP" in chunks:
         yield "its cICP chunk", _of_cicp(chunks[b"cICP"])
         return
-    profile = embedded.icc or stated.icc
+    profile = embedded.icc or metadata.icc
     if profile:
         yield "its ICC profile", _of_icc(profile)
         return
     if b"sRGB" in chunks:
         yield "its sRGB chunk", color_spaces.SRGB
         return
-    name = stated.color_space
+    name = metadata.color_space
     found = None if name in _UNKNOWN else color_spaces.named(name)
     if chunks and found is not None and not found.is_rec709:
         # OpenImageIO before 3.1 stores the name in a text attribute.
@@ -109,18 +123,18 @@ def _claims(stated: Stated, embedded: Embedded) -> Iterator[tuple[str, Space]]:
     if b"gAMA" in chunks:
         yield "its gAMA chunk", _of_gamma(chunks)
         return
-    if stated.chromaticities is not None:
-        points = tuple(round(one, 6) for one in stated.chromaticities)
+    if metadata.chromaticities is not None:
+        points = tuple(round(one, 6) for one in metadata.chromaticities)
         yield "its chromaticities", _of_chromaticities(points)
         return
-    if stated.is_adobe_rgb or exif_of(embedded.exif).is_adobe_rgb:
+    if metadata.is_adobe_rgb or exif_of(embedded.exif).is_adobe_rgb:
         yield "its EXIF", _named("g22_adobergb_scene", "EXIF")
         return
-    granted = _TAKEN_FOR_GRANTED.get(stated.format, _TAKEN_FOR_GRANTED[""])
+    granted = _TAKEN_FOR_GRANTED.get(metadata.format, _TAKEN_FOR_GRANTED[""])
     if name not in _UNKNOWN | granted and not space_names.is_data_name(name):
         if name == "GammaCorrected":
-            name = f"Gamma{stated.gamma:g}"
-        if stated.interop_id in _UNKNOWN:
+            name = f"Gamma{metadata.gamma:g}"
+        if metadata.interop_id in _UNKNOWN:
             yield f"its color space '{name}'", _named(name, f"the color space '{name}'")
 
 
@@ -164,7 +178,7 @@ def _of_gamma(chunks: Mapping[bytes, bytes]) -> Space:
     return replace(
         space,
         name=f"the gamma {gamma:.3g}",
-        curves=(color_spaces.Parametric(gamma),),
+        curves=(color_spaces.ParametricCurve(gamma),),
         chunks=tuple((kind, chunks[kind]) for kind in (b"gAMA", b"cHRM") if kind in chunks),
     )
 

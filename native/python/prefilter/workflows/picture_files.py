@@ -15,10 +15,9 @@ from . import color_spaces, openimageio
 from .alpha import associated, unassociated
 from .color_spaces import Space
 from .damage import damaged
-from .files.embedded import embedded
-from .orientation import turned
+from .files.embedded import read_embedded
 from .picture import Encoding, FloatArray, Picture, without_fourth
-from .picture_colors import orientation_of, space_of
+from .picture_colors import orientation_of, space_of, upright
 from .space_names import AUTO
 
 _LINEAR, _DATA, _SRGB = "Linear Rec.709", "Non-Color", "sRGB"
@@ -58,8 +57,8 @@ def read(
     try:
         if not Path(path).is_file():
             raise OSError(f"there is no file '{path}'")
-        values, is_straight, stated, left_out = openimageio.read_pixels(Path(path))
-        found = embedded(Path(path))
+        values, is_straight, metadata, left_out = openimageio.read_pixels(Path(path))
+        found = read_embedded(Path(path))
     except UnicodeError as error:
         reason = damaged(path, str(error))
         raise OSError(f"{argument}: '{path}' cannot be read as a picture: {reason}") from error
@@ -67,18 +66,18 @@ def read(
         raise type(error)(f"{argument}: {error}") from error
     try:
         space = space_of(
-            stated,
+            metadata,
             found,
             is_integer=values.dtype != np.float32,
             is_gray=values.shape[2] < 3,
             colorspace=colorspace,
         )
     except ValueError as error:
-        if not is_data or stated.model:
+        if not is_data or metadata.model:
             raise ValueError(f"{argument}: '{path}': {error}") from error
         space = None
-    orientation = orientation_of(stated, found)
-    values = turned(values, orientation) if turns else values
+    orientation = orientation_of(metadata, found)
+    values = upright(values, orientation) if turns else values
     picture = _read_in(
         None if is_data else space,
         np.ascontiguousarray(_with_colors(values)[::-1]),
@@ -98,7 +97,7 @@ def read(
 
 
 @dataclass(frozen=True)
-class Look:
+class Probe:
     """Metadata of a picture file, known before its pixels are read.
 
     Attributes:
@@ -110,7 +109,7 @@ class Look:
     is_gray: bool
 
 
-def look(argument: str, path: str, *, is_data: bool) -> Look | None:
+def probe(argument: str, path: str, *, is_data: bool) -> Probe | None:
     """Returns metadata of a picture file; None if OpenImageIO is missing or cannot read it.
 
     Args:
@@ -122,22 +121,22 @@ def look(argument: str, path: str, *, is_data: bool) -> Look | None:
         MemoryError: It is too large for the free memory.
     """
     try:
-        stated, channels, is_float = openimageio.read_stated(Path(path))
+        metadata, channels, is_float = openimageio.read_metadata(Path(path))
     except OSError:
         return None
     except MemoryError as error:
         raise MemoryError(f"{argument}: {error}") from error
-    found, is_gray = embedded(Path(path)), channels in {1, 2}
-    is_usual = not stated.model
+    found, is_gray = read_embedded(Path(path)), channels in {1, 2}
+    is_usual = not metadata.model
     if is_usual and not is_data:
         try:
-            space = space_of(stated, found, is_integer=not is_float, is_gray=is_gray)
+            space = space_of(metadata, found, is_integer=not is_float, is_gray=is_gray)
         except ValueError:
             is_usual = False
         else:
             usual = color_spaces.LINEAR if is_float else color_spaces.SRGB
             is_usual = space is not None and space.agrees(usual)
-    return Look(is_usual and orientation_of(stated, found) == 1, is_gray)
+    return Probe(is_usual and orientation_of(metadata, found) == 1, is_gray)
 
 
 def _read_in(

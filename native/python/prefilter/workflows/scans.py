@@ -39,10 +39,10 @@ _DROPPED = {
     "weightless": Sentence("left out, because they have no weight: {}"),
     "normalless": Sentence("left out, because they have no normal: {}"),
 }
-_MOST_PLACES = 3
+_MOST_POSITIONS = 3
 """Largest number of positions of phantom points to list."""
 _LAST_CLASS = 255
-_FEW = 1e-3
+_USUAL_OUTLIERS = 1e-3
 """Share of outliers that is normal in any scan."""
 
 
@@ -93,7 +93,7 @@ class Streaming:
         """Does nothing: the library leaves no temporary files."""
 
 
-class Step:
+class StepWork:
     """One run of a step of a reconstruction that is split into steps; see `Steps`."""
 
     def __init__(
@@ -181,7 +181,7 @@ def as_classes(text: str) -> list[int] | None:
     return [int(word) for word in words] or None
 
 
-def told(report: "prefilter.ReconstructionReport", length: Callable[[float], str]) -> str:
+def summary(report: "prefilter.ReconstructionReport", length: Callable[[float], str]) -> str:
     """Returns a summary of a reconstruction's numbers.
 
     Args:
@@ -193,7 +193,7 @@ def told(report: "prefilter.ReconstructionReport", length: Callable[[float], str
     return Sentence("{} at depth {}, in cells of {}: {}", points, report.depth, cell, triangles)
 
 
-def merged(length: str) -> str:
+def rounding_warning(length: str) -> str:
     """Returns a warning that coordinates have been rounded to a length."""
     return Sentence(
         "coordinates were rounded to {} before they were read, as single precision does far from "
@@ -202,22 +202,24 @@ def merged(length: str) -> str:
     )
 
 
-def _phantoms(report: "prefilter.ReconstructionReport", origin: Sequence[float]) -> Iterator[str]:
+def _phantom_warnings(
+    report: "prefilter.ReconstructionReport", origin: Sequence[float]
+) -> Iterator[str]:
     """Yields warnings about points left out because many share one position."""
-    for position, count in report.phantoms[:_MOST_PLACES]:
+    for position, count in report.phantoms[:_MOST_POSITIONS]:
         place = ", ".join(f"{x + o + 0.0:.6g}" for x, o in zip(position, origin, strict=True))
         text = (
             "left out, because they are all at one place, ({}), as scanners write where they saw "
             "nothing: {}"
         )
         yield Sentence(text, place, amount(count, "point"))
-    if more := report.phantoms[_MOST_PLACES:]:
+    if more := report.phantoms[_MOST_POSITIONS:]:
         points = amount(sum(count for _, count in more), "point")
         text = "left out, because they are at {} more such places: {}"
         yield Sentence(text, len(more), points)
 
 
-def _contradiction(report: "prefilter.ReconstructionReport") -> Iterator[str]:
+def _contradiction_warnings(report: "prefilter.ReconstructionReport") -> Iterator[str]:
     """Yields warnings about given normals that contradict one another."""
     if report.is_contradictory:
         share = f"{report.contradiction:.2f}"
@@ -234,7 +236,7 @@ def _contradiction(report: "prefilter.ReconstructionReport") -> Iterator[str]:
         yield Sentence(text, share)
 
 
-def oddities(
+def point_warnings(
     report: "prefilter.ReconstructionReport",
     length: Callable[[float], str],
     origin: Sequence[float] = (0.0, 0.0, 0.0),
@@ -246,15 +248,15 @@ def oddities(
         length: Formats a length for messages.
         origin: Position of the origin of the points' coordinates.
     """
-    found: list[str] = [*report.warnings, *_phantoms(report, origin)]
+    found: list[str] = [*report.warnings, *_phantom_warnings(report, origin)]
     for cause, dropped in _DROPPED.items():
         if count := report.causes.get(cause, 0):
             found.append(Sentence(dropped, amount(count, "point")))
-    found += _contradiction(report)
+    found += _contradiction_warnings(report)
     if report.strays:
         strays = amount(report.strays, "point")
         found.append(Sentence("left out, because they are far from all others: {}", strays))
-    if report.outliers > _FEW:
+    if report.outliers > _USUAL_OUTLIERS:
         outliers = f"{100.0 * report.outliers:.2g} %"
         text = (
             "left out as outliers, because they are sampled much more sparsely than the rest: "
@@ -264,7 +266,7 @@ def oddities(
     if report.is_flipped:
         found.append(Sentence("most normals point inward; all were flipped"))
     if report.float_step:
-        found.append(merged(length(report.float_step)))
+        found.append(rounding_warning(length(report.float_step)))
     if report.is_room and "given" in report.directions:
         found.append(
             Sentence(
@@ -326,9 +328,9 @@ def outcome(
         before, after = length(report.alignment.before), length(report.alignment.after)
         notes.append(f"aligned the files: typically {after} apart, before {before}")
     return Outcome(
-        Sentence("Reconstructed '{}' from {}", target.name, told(report, length)),
+        Sentence("Reconstructed '{}' from {}", target.name, summary(report, length)),
         objects=list(objects),
         files=[str(target)],
-        warnings=oddities(report, length),
+        warnings=point_warnings(report, length),
         notes=[*notes, *directions(report), *openings(report)],
     )

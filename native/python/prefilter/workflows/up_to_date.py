@@ -15,6 +15,7 @@ from urllib.parse import unquote
 
 from .._native import VERSION
 from ..files.replacing import recover
+from . import mesh_extensions
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -26,7 +27,7 @@ LEVELS = (".ktx2", ".exr", ".tif", ".tiff", ".tx")
 """Extensions of level files that can store it: DDS cannot, and PNG makes several files."""
 PICTURES = (".png", ".exr")
 """Extensions of single pictures that can store it."""
-MESHES = (".obj", ".ply", ".stl", ".glb")
+MESHES = mesh_extensions.WRITABLE
 """Extensions of mesh files that can store it."""
 IN_DESCRIPTION = re.compile(rf" ?\b{KEY}=([0-9a-f]{{64}})\b")
 """The fingerprint in the description of a TIFF file."""
@@ -52,7 +53,7 @@ def fingerprint(sources: Iterable[str | os.PathLike[str]], settings: Mapping[str
     Raises:
         OSError: A file cannot be read.
     """
-    found = _begun(settings)
+    found = _hash_of_settings(settings)
     for source in sources:
         for path in (Path(source), *referred_files(Path(source))):
             data = path.read_bytes()
@@ -63,7 +64,7 @@ def fingerprint(sources: Iterable[str | os.PathLike[str]], settings: Mapping[str
 
 def fingerprint_of(arrays: Iterable["NDArray[Any]"], settings: Mapping[str, Any]) -> str:
     """Returns a fingerprint of arrays and settings."""
-    found = _begun(settings)
+    found = _hash_of_settings(settings)
     for array in arrays:
         found.update(f"{array.dtype.str} {array.shape} ".encode())
         if array.size:
@@ -92,7 +93,7 @@ def arrays_of(read: Any) -> "Iterator[NDArray[Any]]":
         yield np.frombuffer(repr(read).encode(), np.uint8)
 
 
-def stands_alone(drawing: str | os.PathLike[str]) -> bool:
+def is_self_contained(drawing: str | os.PathLike[str]) -> bool:
     """Tells whether an SVG file is self-contained: no text, and no reference to another file.
 
     In doubt, returns False.
@@ -116,12 +117,12 @@ def is_up_to_date(targets: Sequence[Path], number: str) -> bool:
     for target in targets:
         recover(target.parent)
     try:
-        return bool(targets) and all(kept(target) == number for target in targets)
+        return bool(targets) and all(stored_fingerprint(target) == number for target in targets)
     except (OSError, ValueError):
         return False
 
 
-def kept(path: Path) -> str:
+def stored_fingerprint(path: Path) -> str:
     """Returns the fingerprint stored in a file; empty if there is none.
 
     Raises:
@@ -151,7 +152,7 @@ def kept(path: Path) -> str:
     return found[1] if found else ""
 
 
-def _begun(settings: Mapping[str, Any]) -> Any:
+def _hash_of_settings(settings: Mapping[str, Any]) -> Any:
     return hashlib.sha256(json.dumps([VERSION, settings], sort_keys=True).encode())
 
 

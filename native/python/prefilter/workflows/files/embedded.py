@@ -22,7 +22,7 @@ _MOST_ENTRIES = 1000
 
 
 @dataclass(frozen=True)
-class Embedded:
+class EmbeddedMetadata:
     """Metadata embedded in a picture file.
 
     Attributes:
@@ -49,32 +49,32 @@ class Exif:
     is_adobe_rgb: bool = False
 
 
-def embedded(path: Path) -> Embedded:
+def read_embedded(path: Path) -> EmbeddedMetadata:
     """Returns the metadata of a PNG, WebP or JPEG file; empty for other or damaged files."""
     try:
         with path.open("rb") as file:
-            return embedded_in(file)
+            return read_embedded_from(file)
     except OSError:
-        return Embedded()  # The picture reader reports the error.
+        return EmbeddedMetadata()  # The picture reader reports the error.
 
 
-def embedded_in(file: BinaryIO) -> Embedded:
+def read_embedded_from(file: BinaryIO) -> EmbeddedMetadata:
     """Returns the metadata of a file that is open at its start."""
     try:
         start = file.read(12)
         file.seek(0)
         if start[:8] == png.SIGNATURE:
             chunks = png.color_chunks(file)
-            return Embedded(chunks.get(b"eXIf", b""), _png_profile(chunks), chunks)
+            return EmbeddedMetadata(chunks.get(b"eXIf", b""), _png_profile(chunks), chunks)
         if start[:4] == b"RIFF" and start[8:] == b"WEBP":
             found = dict(_riff(file))
             exif = found.get(b"EXIF", b"").removeprefix(_EXIF)
-            return Embedded(exif, found.get(b"ICCP", b""))
+            return EmbeddedMetadata(exif, found.get(b"ICCP", b""))
         if start[:2] == b"\xff\xd8":
-            return Embedded(_jpeg_exif(file))
+            return EmbeddedMetadata(_jpeg_exif(file))
     except (ValueError, struct.error):
         pass  # The picture reader reports the error.
-    return Embedded()
+    return EmbeddedMetadata()
 
 
 def _png_profile(chunks: Mapping[bytes, bytes]) -> bytes:

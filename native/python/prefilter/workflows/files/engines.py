@@ -42,7 +42,7 @@ def is_for_engines(target: Path) -> bool:
     return target.suffix.lower() in (*_WRITERS, ".png")
 
 
-def checked(
+def format_warnings(
     picture: Picture,
     target: Path | None,
     texture_format: str,
@@ -66,7 +66,7 @@ def checked(
     """
     if target is None or not has_formats(target.name):
         return []
-    chosen = _chosen(picture, texture_format)
+    chosen = _resolved_format(picture, texture_format)
     who = f"Texture Format: {_label(chosen.name)}"
     if not chosen.is_in_dds and not has_supercompression(target.name):
         raise ValueError(f"{who} needs a .ktx2 file; found '{target.name}'")
@@ -88,7 +88,7 @@ def checked(
 
 def keeps_range(picture: Picture, target: Path, texture_format: str) -> bool:
     """Tells whether a picture's file can hold values below 0 and above 1."""
-    return has_formats(target.name) and _chosen(picture, texture_format).keeps_negatives
+    return has_formats(target.name) and _resolved_format(picture, texture_format).keeps_negatives
 
 
 def unit_of_sides(picture: Picture, target: Path | None, texture_format: str) -> int:
@@ -98,7 +98,7 @@ def unit_of_sides(picture: Picture, target: Path | None, texture_format: str) ->
     """
     if target is None or not has_formats(target.name):
         return 1
-    chosen = _chosen(picture, texture_format)
+    chosen = _resolved_format(picture, texture_format)
     if chosen.block is None or not (chosen.is_in_dds or chosen.is_transcoded):
         return 1
     return max(chosen.block)
@@ -179,7 +179,7 @@ def stage(
     write_texture = _WRITERS.get(target.suffix.lower())
     if write_texture is None:
         return _stage_numbered(target, picture, linear_levels, stored_levels, check)
-    chosen = _chosen(picture, texture_format)
+    chosen = _resolved_format(picture, texture_format)
     levels, encoding = _values(picture, linear_levels, stored_levels, chosen)
     alpha = "independent"
     if picture.alpha_is_coverage:
@@ -249,7 +249,7 @@ def _label(texture_format: str) -> str:
     return re.sub(r"(\d)X(\d)", r"\1x\2", texture_format.upper().replace("-", " "))
 
 
-def _chosen(picture: Picture, texture_format: str) -> TexelFormat:
+def _resolved_format(picture: Picture, texture_format: str) -> TexelFormat:
     if texture_format == "auto":
         texture_format = "rgba16f" if picture.is_float else "rgba8"
     return prefilter.TEXEL_FORMATS[texture_format]

@@ -10,14 +10,14 @@ from pathlib import Path
 
 from ...files import staging
 
-_OF_RENDERERS = (".exr", ".tif", ".tiff", ".tx")
+_RENDERER_EXTENSIONS = (".exr", ".tif", ".tiff", ".tx")
 # Extensions that `engines` writes; .png gets one file per level.
 _WITH_FORMATS = (".dds", ".ktx2")
 _OTHER_EXTENSIONS = (*_WITH_FORMATS, ".png")
 _MOST_LEVELS = 31
-EXTENSIONS = (*_OF_RENDERERS, *_OTHER_EXTENSIONS)
+EXTENSIONS = (*_RENDERER_EXTENSIONS, *_OTHER_EXTENSIONS)
 """Allowed extensions of texture files."""
-PLACE = "{name}"
+NAME_PLACEHOLDER = "{name}"
 """Placeholder for the name of the input in an output path."""
 
 
@@ -34,12 +34,12 @@ def check_target(path: str) -> Path:
         raise ValueError(
             f"file '{path}': unsupported extension '{target.suffix}'; use {', '.join(EXTENSIONS)}"
         )
-    for file in written(target):
+    for file in files_of(target):
         staging.check_target(file)
     return target
 
 
-def written(target: Path) -> list[Path]:
+def files_of(target: Path) -> list[Path]:
     """Returns the files that may be written for a target: one, or one per level."""
     if target.suffix.lower() != ".png":
         return [target]

@@ -36,14 +36,14 @@ _KNOWN_BEFORE = {
 _WRAP_MODES = {"repeat": "periodic", "clamp": "clamp", "border": "black"}
 
 
-def shown(target: Path) -> str:
+def display_name(target: Path) -> str:
     """Returns a file, or the numbered files of all levels, for messages."""
     if target.suffix.lower() != ".png":
         return f"'{target}'"
     return Sentence("'{}' and so on", target_files.numbered(target, 0))
 
 
-def is_stored(target: Path) -> bool:
+def keeps_encoding(target: Path) -> bool:
     """Tells whether a file may hold levels in the encoding of the picture."""
     return target.suffix.lower() != ".exr"
 
@@ -66,7 +66,7 @@ def stage(
         target: A path from `check_target`.
         picture: Level 0.
         linear_levels: Levels 1, 2, ..., scene-linear, row 0 at the bottom.
-        stored_levels: The same in the encoding of the picture; needed only if `is_stored`.
+        stored_levels: The same in the encoding of the picture; needed only if `keeps_encoding`.
         wrap: Wrap modes in u and v.
         check: Called before each level, at least.
         half: Whether OpenEXR gets 16-bit floats instead of 32-bit ones.
@@ -77,7 +77,7 @@ def stage(
         OSError: The file cannot be written.
     """
     wrap_modes = ",".join(_WRAP_MODES[mode] for mode in wrap)
-    if not is_stored(target):
+    if not keeps_encoding(target):
         attributes = {"wrapmodes": wrap_modes, **(metadata or {})}
         return _stage_exr(target, picture, linear_levels, attributes, check, half, threads)
     keep_bytes = not picture.is_float

@@ -25,7 +25,7 @@ def remove_dates(path: Path) -> None:
     """
     with path.open("r+b") as file:
         try:
-            for start, size in list(_dated(file)):
+            for start, size in list(_date_values(file)):
                 file.seek(start)
                 data = file.read(size)
                 file.seek(start)
@@ -34,7 +34,7 @@ def remove_dates(path: Path) -> None:
             raise OSError(f"'{path.name}' is no TIFF file, or damaged") from error
 
 
-def _dated(file: BinaryIO) -> Iterator[tuple[int, int]]:
+def _date_values(file: BinaryIO) -> Iterator[tuple[int, int]]:
     """Yields the offsets and sizes of values that may contain dates."""
     head = file.read(16)
     order = {b"II": "<", b"MM": ">"}[head[:2]]
@@ -49,9 +49,9 @@ def _dated(file: BinaryIO) -> Iterator[tuple[int, int]]:
         seen.add(start)
         file.seek(start)
         entry = struct.Struct(f"{order}HH{word}{8 if is_big else 4}s")
-        (count,) = _unpacked(file, order + count_code)
+        (count,) = _unpack(file, order + count_code)
         entries = [entry.unpack(file.read(entry.size)) for _ in range(count)]
-        waiting += _unpacked(file, order + word)
+        waiting += _unpack(file, order + word)
         for tag, kind, values, inline in entries:
             size = _SIZES.get(kind, 8) * values
             (offset,) = struct.unpack(order + word, inline)
@@ -65,8 +65,8 @@ def _offsets(file: BinaryIO, order: str, word: str, values: int, offset: int) ->
     if values == 1:
         return (offset,)
     file.seek(offset)
-    return _unpacked(file, f"{order}{values}{word}")
+    return _unpack(file, f"{order}{values}{word}")
 
 
-def _unpacked(file: BinaryIO, form: str) -> tuple[int, ...]:
+def _unpack(file: BinaryIO, form: str) -> tuple[int, ...]:
     return struct.unpack(form, file.read(struct.calcsize(form)))

@@ -11,7 +11,7 @@ import prefilter
 from ..picture import Encoding, Picture
 
 
-def suiting(
+def suitable_format(
     picture: Picture,
     content: str,
     *,
@@ -41,7 +41,7 @@ def suiting(
     return _smallest(4 if reads_alpha else 3)
 
 
-def suiting_all(keys: Iterable[str]) -> str:
+def common_format(keys: Iterable[str]) -> str:
     """Returns the one of several formats that suits all images that the others suit."""
 
     def extent(key: str) -> tuple[bool, float, int]:

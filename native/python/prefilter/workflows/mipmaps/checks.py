@@ -17,7 +17,7 @@ from .source import reads_encoded
 
 
 @dataclass(frozen=True)
-class Rough:
+class RoughnessOutput:
     """The roughness of a normal map.
 
     Attributes:
@@ -36,7 +36,7 @@ def roughness_of(
     targets: Sequence[Path],
     read: Callable[[], Picture],
     texture_format: str = "",
-) -> Rough:
+) -> RoughnessOutput:
     """Returns the roughness of a normal map, after checking the settings.
 
     Args:
@@ -54,10 +54,10 @@ def roughness_of(
     if not settings.roughness:
         if settings.roughness_filepath:
             raise ValueError(Sentence("Roughness File: choose a Roughness image too"))
-        return Rough()
+        return RoughnessOutput()
     if content != "normal":
         if settings.content == "auto":
-            return Rough()
+            return RoughnessOutput()
         raise ValueError(
             f"Roughness: '{settings.roughness}' needs a normal map, and the content is '{content}'"
         )
@@ -74,7 +74,9 @@ def roughness_of(
     contents.check_roughness(normal_map, picture)
     chosen = texture_format or roughness_format(settings, picture)
     linear = scene_linear(picture)
-    return Rough(contents.Roughness(picture, linear, settings.roughness_channel, chosen), target)
+    return RoughnessOutput(
+        contents.Roughness(picture, linear, settings.roughness_channel, chosen), target
+    )
 
 
 def roughness_format(settings: Settings, picture: Picture) -> str:
@@ -89,12 +91,12 @@ def roughness_format(settings: Settings, picture: Picture) -> str:
     return "etc2-rgba" if picture.stored.shape[2] == 4 else "etc2-rgb"
 
 
-def odd_uses(
+def usage_warnings(
     settings: Settings,
     picture: Picture,
     content: str,
     targets: Sequence[Path],
-    rough: Rough,
+    rough: RoughnessOutput,
     *,
     is_encoded: bool,
 ) -> list[str]:
@@ -115,7 +117,7 @@ def odd_uses(
             "shaders read normals correctly only in Non-Color"
         )
     if settings.reader != "linear":
-        told.extend(_odd_readers(picture, targets))
+        told.extend(_reader_warnings(picture, targets))
         if settings.lookups in {"one-lookup", "anisotropic", "views"} and reads_encoded(picture):
             told.append(
                 "Lookups: readers of encoded texels are always supersampled, so "
@@ -129,14 +131,14 @@ def odd_uses(
     return told
 
 
-def suiting_blocks(pictures: Sequence[Picture], content: str) -> str:
+def suitable_blocks(pictures: Sequence[Picture], content: str) -> str:
     """Returns the format that suits an image, or all tiles of one."""
-    return blocks.suiting_all(
-        blocks.suiting(one, content, reads_alpha=one.shape[2] == 4) for one in pictures
+    return blocks.common_format(
+        blocks.suitable_format(one, content, reads_alpha=one.shape[2] == 4) for one in pictures
     )
 
 
-def _odd_readers(picture: Picture, targets: Sequence[Path]) -> list[str]:
+def _reader_warnings(picture: Picture, targets: Sequence[Path]) -> list[str]:
     """Returns warnings if an output cannot be read as encoded texels."""
     if not reads_encoded(picture):
         return [

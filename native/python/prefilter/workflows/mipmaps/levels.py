@@ -2,6 +2,7 @@
 
 """Filtering the levels of an image on its surfaces, and measuring the effect of seam weights."""
 
+from collections.abc import Sequence
 from functools import partial
 from typing import Any, cast
 
@@ -11,7 +12,7 @@ from ...options.mipmaps import SEAM_FILTERS
 from .. import picture as images
 from ..picture import FloatArray
 from ..progress import Progress, go_on, share
-from . import contents, seams
+from . import contents
 from .source import Source
 
 Levels = list[FloatArray]
@@ -22,7 +23,7 @@ _FIRST_FILTERED = 2 / 3  # Progress once the levels are filtered, before they ar
 def filtered(
     source: Source, roughness: contents.Roughness | None, progress: Progress, *, all_levels: bool
 ) -> tuple[Levels, Levels, str]:
-    """Returns the result of `above_0`, and a note about seams if they were weighted.
+    """Returns the result of `coarser_levels`, and a note about seams if they were weighted.
 
     Args:
         source: The image.
@@ -34,15 +35,17 @@ def filtered(
         prefilter.Cancelled: `progress` returned False.
         ValueError: The library refuses the image or the surfaces.
     """
-    compares = heeds_seams(source)
+    compares = weights_seams(source)
     end = _FIRST_FILTERED if compares else 1.0
     with source.naming_objects():
-        made, rough = above_0(source, roughness, share(progress, 0.0, end), all_levels=all_levels)
+        made, rough = coarser_levels(
+            source, roughness, share(progress, 0.0, end), all_levels=all_levels
+        )
         note = seam_note(source, made, share(progress, end, 1.0)) if compares else ""
     return made, rough, note
 
 
-def above_0(
+def coarser_levels(
     source: Source, roughness: contents.Roughness | None, progress: Progress, *, all_levels: bool
 ) -> tuple[Levels, Levels]:
     """Returns levels 1 and up, scene-linear, of an image and of its roughness.
@@ -76,7 +79,7 @@ def above_0(
     return _plain(source, progress, options), []
 
 
-def heeds_seams(source: Source) -> bool:
+def weights_seams(source: Source) -> bool:
     """Tells whether contrast across seams is minimized in an image's levels."""
     return (
         source.settings.seam_budget > 0.0
@@ -107,7 +110,22 @@ def seam_note(source: Source, levels: Levels, progress: Progress) -> str:
             (levels, share(progress, 0.9, 1.0)),
         )
     )
-    return seams.note(source.image_name, without.tolist(), weighed.tolist())
+    return _contrast_line(source.image_name, without.tolist(), weighed.tolist())
+
+
+def _contrast_line(image_name: str, without: Sequence[float], weighed: Sequence[float]) -> str:
+    """Returns a line that compares contrasts of levels 1 and up; empty without seams.
+
+    Args:
+        image_name: The image's name.
+        without: Results of `prefilter.seam_contrast` for levels without seam weights.
+        weighed: The same for levels with seam weights.
+    """
+    if not any(without):
+        return ""
+    pairs = enumerate(zip(without, weighed, strict=True), start=1)
+    shown = ", ".join(f"{level}: {before:.3g} > {after:.3g}" for level, (before, after) in pairs)
+    return f"Contrast across the seams of '{image_name}' by level, without and with Seams: {shown}"
 
 
 def _cutout(source: Source, progress: Progress, options: dict[str, Any]) -> Levels:

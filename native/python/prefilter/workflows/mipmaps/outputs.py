@@ -40,7 +40,7 @@ class Outputs:
         return [one for one in (self.target, self.roughness_target) if one is not None]
 
 
-_DECIDES_NOTHING = (
+_IRRELEVANT_SETTINGS = (
     "filepath",
     "roughness_filepath",
     "roughness",
@@ -51,18 +51,18 @@ _DECIDES_NOTHING = (
 """Settings that do not affect the contents of the files."""
 
 
-def made_of(source: Source, outputs: Outputs) -> str:
+def inputs_fingerprint(source: Source, outputs: Outputs) -> str:
     """Returns the fingerprint of all inputs of the files; see `up_to_date`."""
     chosen = asdict(source.settings)
-    for name in _DECIDES_NOTHING:
+    for name in _IRRELEVANT_SETTINGS:
         chosen.pop(name, None)
-    arrays, pictures = [source.picture.texels], [_described(source.picture)]
+    arrays, pictures = [source.picture.texels], [_attributes(source.picture)]
     for surface in source.surfaces:
         arrays += [surface.positions, surface.triangles, surface.uvs, surface.areas]
     rough = outputs.roughness
     if rough is not None:
         arrays.append(rough.picture.texels)
-        pictures += [_described(rough.picture), {"of": rough.channels, "as": rough.texture_format}]
+        pictures += [_attributes(rough.picture), {"of": rough.channels, "as": rough.texture_format}]
     kept = {
         "settings": chosen,
         "content": source.content,
@@ -74,7 +74,7 @@ def made_of(source: Source, outputs: Outputs) -> str:
     return fingerprint_of(arrays, kept)
 
 
-def _described(picture: Picture) -> dict[str, str]:
+def _attributes(picture: Picture) -> dict[str, str]:
     """Returns all attributes of a picture except its texels and names."""
     return {
         one.name: str(getattr(picture, one.name))
@@ -83,7 +83,7 @@ def _described(picture: Picture) -> dict[str, str]:
     }
 
 
-def staged(
+def stage_files(
     source: Source,
     outputs: Outputs,
     made: list[FloatArray],
@@ -105,7 +105,7 @@ def staged(
         metadata: Key-value pairs to store in files, except DDS and PNG.
     """
     stage = partial(
-        _staged, settings=source.settings, wrap=source.wrap, check=check, metadata=metadata
+        _stage_file, settings=source.settings, wrap=source.wrap, check=check, metadata=metadata
     )
     yield stage(source.picture, made, outputs.target, source.settings.texture_format)
     if outputs.roughness is not None:
@@ -113,7 +113,7 @@ def staged(
         yield stage(picture, rough, outputs.roughness_target, texture_format)
 
 
-def _staged(
+def _stage_file(
     picture: Picture,
     made: list[FloatArray],
     target: Path | None,
@@ -126,7 +126,7 @@ def _staged(
 ) -> tuple[list[StagedFile], list[FloatArray]]:
     """Stages the file of an image; returns it with the levels as level images store them."""
     stored: list[FloatArray] = []
-    if settings.use_images or (target is not None and textures.is_stored(target)):
+    if settings.use_images or (target is not None and textures.keeps_encoding(target)):
         stored = [encoded(picture, level, check) for level in made]
     files: list[StagedFile] = []
     threads = settings.threads
@@ -182,7 +182,7 @@ def summary(
     if source.footprint:
         parts.append(lookups.described(source.footprint, fits=source.fits_views))
     results: list[str] = [counted(names, "level image")] if names else []
-    results += map(textures.shown, outputs.targets)
+    results += map(textures.display_name, outputs.targets)
     if not results:
         return Sentence("{}; it has no further level", joined(" ", parts))
     return joined(" ", [*parts, Sentence("into {}", together(results))])

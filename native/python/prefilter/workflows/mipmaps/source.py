@@ -170,7 +170,7 @@ class Source:
         except ValueError as error:
             raise ValueError(_naming_objects(str(error), self.objects)) from error
 
-    def let_pixels_go(self) -> None:
+    def release_pixels(self) -> None:
         """Frees the memory of the image and of the surfaces."""
         self.picture = without_pixels(self.picture)
         self.surfaces = []

@@ -148,7 +148,7 @@ def applied(transform: Matrix, points: ArrayLike) -> NDArray[np.float64]:
     return homogeneous[:, :2] / homogeneous[:, 2:]
 
 
-def squeeze(placed: Placement, width: int, height: int) -> float:
+def mean_footprint(placed: Placement, width: int, height: int) -> float:
     """Returns the mean number of image pixels in an upright square as wide as a pixel's filter.
 
     Each number is at least 1 and at most that of a square as long as the image; pixels of the

@@ -12,7 +12,7 @@ from ..picture import FloatArray, Picture, with_coverage
 from ..progress import Progress
 from ..wording import Sentence, joined
 from .new_picture import Keep, NewPicture
-from .placement import placement, squeeze
+from .placement import mean_footprint, placement
 
 _RADII = {one.name: one.radius for one in prefilter.PIXEL_FILTERS}
 _PER_PIXEL, _PER_WEIGHT = 8.0, 0.2  # Cost of the exact filter, in texels read.
@@ -117,7 +117,7 @@ def effort(settings: ResampleSettings, width: int, height: int) -> float:
     made = placed.width * placed.height
     if settings.method == "exact":
         reach = 2.0 * _RADII[settings.filter]
-        return made * (_PER_PIXEL + _PER_WEIGHT * reach**2 * squeeze(placed, width, height))
+        return made * (_PER_PIXEL + _PER_WEIGHT * reach**2 * mean_footprint(placed, width, height))
     texels = int(settings.method) if settings.method.isdigit() else 8
     probes = settings.max_probes if settings.filter == "gaussian" else 1
     return made * texels * probes + _PER_TEXEL * width * height

@@ -18,7 +18,7 @@ from ...shapes.svg_image import SvgPicture
 from ..matrices import product
 from ..memory import Memory, free_memory
 from ..progress import Progress, go_on, share
-from ..up_to_date import fingerprint, fingerprint_of, stands_alone
+from ..up_to_date import fingerprint, fingerprint_of, is_self_contained
 from .frames import Frame, check_memory, fitted_frame, whole_frame
 from .outlines import add_contour, box_of
 
@@ -31,7 +31,7 @@ _MOST_WARNINGS = 5
 
 
 @dataclass(frozen=True)
-class Drawn:
+class PlacedShapes:
     """Shapes placed in an image.
 
     Attributes:
@@ -69,7 +69,7 @@ class Source(Protocol):
             OSError: A file cannot be read.
         """
 
-    def drawn(self, settings: RasterizeSettings, progress: Progress) -> Drawn:
+    def drawn(self, settings: RasterizeSettings, progress: Progress) -> PlacedShapes:
         """Returns the shapes placed in an image.
 
         Raises:
@@ -109,9 +109,11 @@ class Layers:
         looks = [[len(each.contours), each.color, each.fill_rule] for each in self.layers]
         if self.frame is not None:
             arrays.append(self.frame.to_pixels)
-        return fingerprint_of(arrays, {**_decisive(settings), "looks": looks, "grown": self.grown})
+        return fingerprint_of(
+            arrays, {**_result_settings(settings), "looks": looks, "grown": self.grown}
+        )
 
-    def drawn(self, settings: RasterizeSettings, progress: Progress) -> Drawn:
+    def drawn(self, settings: RasterizeSettings, progress: Progress) -> PlacedShapes:
         """Returns the shapes placed in an image."""
         frame = self.frame
         if frame is None:
@@ -136,7 +138,7 @@ class Layers:
             if self.grown > 0.0:
                 shapes.append(shape.stroked(2.0 * self.grown, join="round"))
         color = next(iter(colors), _WHITE) if is_coverage else None
-        return Drawn(frame.width, frame.height, shapes, color, place=self.placed(frame))
+        return PlacedShapes(frame.width, frame.height, shapes, color, place=self.placed(frame))
 
 
 @dataclass(frozen=True)
@@ -151,9 +153,13 @@ class _Svg:
 
     def inputs(self, settings: RasterizeSettings) -> str | None:
         """Returns a fingerprint of the file and the settings; None unless it is self-contained."""
-        return fingerprint([self.path], _decisive(settings)) if stands_alone(self.path) else None
+        return (
+            fingerprint([self.path], _result_settings(settings))
+            if is_self_contained(self.path)
+            else None
+        )
 
-    def drawn(self, settings: RasterizeSettings, progress: Progress) -> Drawn:
+    def drawn(self, settings: RasterizeSettings, progress: Progress) -> PlacedShapes:
         """Reads the file, and returns a function that draws it into an image."""
         fonts = [settings.font_folder] if settings.font_folder else None
         picture = SvgPicture(self.path, settings.light, fonts, share(progress, 0.0, 1.0))
@@ -174,18 +180,18 @@ class _Svg:
                 progress=progress,
             )
 
-        return Drawn(
+        return PlacedShapes(
             frame.width,
             frame.height,
             [],
             None,
-            self._told(picture),
+            self._warnings(picture),
             self.placed(half),
             draw,
             settings.light,
         )
 
-    def _told(self, picture: SvgPicture) -> list[str]:
+    def _warnings(self, picture: SvgPicture) -> list[str]:
         warnings = [str(one) for one in picture.warnings]
         more = len(warnings) - _MOST_WARNINGS
         if more > 0:
@@ -193,7 +199,7 @@ class _Svg:
         return [f"'{self.path.name}': {'; '.join(warnings)}"] if warnings else []
 
 
-def _decisive(settings: RasterizeSettings) -> dict[str, Any]:
+def _result_settings(settings: RasterizeSettings) -> dict[str, Any]:
     return {
         name: value
         for name, value in asdict(settings).items()

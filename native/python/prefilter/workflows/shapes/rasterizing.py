@@ -17,7 +17,7 @@ from ..outcome import Outcome
 from ..progress import Progress, go_on, share
 from ..wording import Sentence
 from . import pixels
-from .layers import Drawn, Source
+from .layers import PlacedShapes, Source
 
 _READ, _DRAWN = 0.1, 2 / 3
 """Progress once the shapes exist, and once they are drawn."""
@@ -25,7 +25,7 @@ _READ, _DRAWN = 0.1, 2 / 3
 
 def rasterized(
     source: Source, settings: RasterizeSettings, progress: Progress, *, is_straight: bool
-) -> tuple[Drawn, pixels.Pixels]:
+) -> tuple[PlacedShapes, pixels.Pixels]:
     """Draws shapes.
 
     Args:
@@ -74,7 +74,7 @@ def is_straight(target: Path, settings: RasterizeSettings) -> bool:
     return target.suffix.lower() == ".png"
 
 
-def told(name: str, target: str, size: tuple[int, int]) -> str:
+def summary(name: str, target: str, size: tuple[int, int]) -> str:
     """Returns a summary line."""
     return Sentence("Rasterized '{}' to '{}': {} x {} pixels", name, target, *size)
 
@@ -106,7 +106,7 @@ class RasterFile:
         )
         go_on(progress, 0.9)
         self._warnings.extend(drawn.warnings)
-        self._done = told(self._source.name, str(self._target), (drawn.width, drawn.height))
+        self._done = summary(self._source.name, str(self._target), (drawn.width, drawn.height))
         self._staged = pixels.stage(self._target, made, self._settings, self.metadata)
         go_on(progress, 1.0)
 

@@ -147,7 +147,7 @@ def surface(
     return traced.positions, traced.triangles, traced.origins
 
 
-def lines_of(name: str, made: Occupancy) -> tuple[list[str], list[str]]:
+def repair_lines(name: str, made: Occupancy) -> tuple[list[str], list[str]]:
     """Returns warnings and notes about repairs to an object's mesh."""
     warnings: list[str] = []
     notes: list[str] = []

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .... import _native
-from ....images.pixel_filters import PIXEL_FILTERS
+from ....images.filters import PIXEL_FILTERS
 from ...affine import Matrix, compose, inverse, translation
 from ...rasterization import rasterize
 from ...shape import Shape

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from ....files.claims import temporary_folder
 
 if TYPE_CHECKING:
-    from ....workflows.openimageio import Stated
+    from ....workflows.openimageio import Metadata
 
 Texels = npt.NDArray[np.uint8]
 
@@ -41,58 +41,58 @@ def decode_image(data: bytes) -> Texels:
     try:
         pillow = import_module("PIL.Image")
     except ImportError:
-        texels, stated, is_gray = _by_openimageio(data)
+        texels, metadata, is_gray = _by_openimageio(data)
     else:
-        texels, stated, is_gray = _by_pillow(pillow, data)
-    return _upright_in_srgb(texels, data, stated, is_gray=is_gray)
+        texels, metadata, is_gray = _by_pillow(pillow, data)
+    return _upright_in_srgb(texels, data, metadata, is_gray=is_gray)
 
 
-def _by_pillow(pillow: Any, data: bytes) -> "tuple[Texels, Stated, bool]":
-    from ....workflows.openimageio import Stated
+def _by_pillow(pillow: Any, data: bytes) -> "tuple[Texels, Metadata, bool]":
+    from ....workflows.openimageio import Metadata
 
     try:
         with pillow.open(io.BytesIO(data), formats=("PNG", "JPEG", "GIF", "WEBP")) as file:
             model = file.mode if file.mode in _COLOR_MODELS else ""
             icc = file.info.get("icc_profile") or b""
-            stated = Stated(file.format.lower(), model=model, icc=icc)
+            metadata = Metadata(file.format.lower(), model=model, icc=icc)
             # Pillow truncates 16 bits instead of rounding.
             if file.mode.startswith("I"):
                 gray = np.rint(np.asarray(file, np.float64) / 257.0).clip(0.0, 255.0)
-                return _as_rgba(gray.astype(np.uint8)[..., None]), stated, True
-            return np.array(file.convert("RGBA"), np.uint8), stated, file.mode in _GRAY_MODES
+                return _as_rgba(gray.astype(np.uint8)[..., None]), metadata, True
+            return np.array(file.convert("RGBA"), np.uint8), metadata, file.mode in _GRAY_MODES
     except (OSError, ValueError, SyntaxError, MemoryError) as error:
         raise ImageError(f"as it cannot be read: {error}") from None
 
 
-def _by_openimageio(data: bytes) -> "tuple[Texels, Stated, bool]":
+def _by_openimageio(data: bytes) -> "tuple[Texels, Metadata, bool]":
     from ....workflows import openimageio
 
     try:
         with temporary_folder() as folder:
             path = folder / f"image{image_extension(data)}"
             path.write_bytes(data)
-            values, _, stated, _ = openimageio.read_pixels(path)
+            values, _, metadata, _ = openimageio.read_pixels(path)
     except (OSError, ValueError, MemoryError) as error:
         raise ImageError(f"as it cannot be read: {error}") from None
     if values.dtype != np.uint8:
         values = np.rint(values / 257.0).clip(0.0, 255.0).astype(np.uint8)
-    return _as_rgba(values), stated, values.shape[2] < 3
+    return _as_rgba(values), metadata, values.shape[2] < 3
 
 
-def _upright_in_srgb(texels: Texels, data: bytes, stated: "Stated", *, is_gray: bool) -> Texels:
+def _upright_in_srgb(texels: Texels, data: bytes, metadata: "Metadata", *, is_gray: bool) -> Texels:
     """Applies EXIF orientation, and converts from the file's color space to sRGB."""
-    from ....workflows import color_spaces, orientation, picture_colors
-    from ....workflows.files.embedded import embedded_in
+    from ....workflows import color_spaces, picture_colors
+    from ....workflows.files.embedded import read_embedded_from
 
-    metadata = embedded_in(io.BytesIO(data))
+    embedded = read_embedded_from(io.BytesIO(data))
     try:
-        space = picture_colors.space_of(stated, metadata, is_integer=True, is_gray=is_gray)
+        space = picture_colors.space_of(metadata, embedded, is_integer=True, is_gray=is_gray)
     except ValueError as error:
         raise ImageError(f"as {str(error).partition(';')[0]}") from None
     if space is not None and not space.is_srgb:
         light = space.in_rec709(space.decoded(texels[..., :3].astype(np.float32) / np.float32(255)))
         texels[..., :3] = color_spaces.srgb_bytes(light)
-    upright = orientation.turned(texels, picture_colors.orientation_of(stated, metadata))
+    upright = picture_colors.upright(texels, picture_colors.orientation_of(metadata, embedded))
     return np.ascontiguousarray(upright)
 
 

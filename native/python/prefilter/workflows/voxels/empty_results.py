@@ -6,7 +6,7 @@ from collections.abc import Sized
 
 from ..wording import Sentence, joined, listed
 
-NO_CELL = Sentence(
+NO_FILLED_CELL = Sentence(
     "the result is empty: no cell is at least half full. Parts that are thinner "
     "than a cell, or enclose nothing, disappear"
 )
@@ -22,7 +22,7 @@ def check_area(area: float) -> None:
         raise NothingLeftError(Sentence("all its faces have zero area"))
 
 
-class LeftOut:
+class EmptyResults:
     """Objects without a result, grouped by reason."""
 
     def __init__(self) -> None:
@@ -33,7 +33,7 @@ class LeftOut:
         """Adds an object, with the reason why it vanished."""
         self._names.setdefault(error.args[0], []).append(name)
 
-    def warnings_beside(self, results: Sized) -> list[Sentence]:
+    def warnings_for(self, results: Sized) -> list[Sentence]:
         """Returns warnings about the objects, if other objects have results.
 
         Raises:

@@ -67,11 +67,11 @@ def test_people_get_a_line_each_quarter_of_all_files(pictures, capsys):
 def test_a_program_that_ends_early_says_so(tmp_path):
     """As from a farm: what the voice of one run says is gone in the next."""
     code = (
-        "from prefilter.commands import program, telling\n"
+        "from prefilter.commands import program, cli_common\n"
         "def stop(): raise KeyboardInterrupt\n"
-        "telling.speak('json')\n"
-        "telling.share(1, 3).__enter__()\n"
-        "raise SystemExit(program.ended(stop))\n"
+        "cli_common.use_reporter('json')\n"
+        "cli_common.subtask(1, 3).__enter__()\n"
+        "raise SystemExit(program.run_to_status(stop))\n"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert (done.returncode, done.stdout, done.stderr) == (130, "", "prefilter: canceled\n")
@@ -79,17 +79,17 @@ def test_a_program_that_ends_early_says_so(tmp_path):
 
 OTHERS = (
     "import logging, os, sys, warnings\n"
-    "from prefilter.commands import program, telling\n"
+    "from prefilter.commands import program, cli_common\n"
     "def run():\n"
     "    print('an importer')\n"
     "    os.write(1, b'a library\\n')\n"
     "    os.write(2, b'a library\\n')\n"
     "    warnings.warn('of Python')\n"
     "    logging.warning('of a reader')\n"
-    "    telling.say('ours')\n"
-    "    telling.warn(['of two\\n  lines'])\n"
+    "    cli_common.print_line('ours')\n"
+    "    cli_common.warn(['of two\\n  lines'])\n"
     "print('before')\n"
-    "status = program.ended(run, is_end={})\n"
+    "status = program.run_to_status(run, is_end={})\n"
     "print('after')\n"
     "raise SystemExit(status)\n"
 )
@@ -167,7 +167,7 @@ def test_what_nobody_foresaw_asks_for_a_report(tmp_path, monkeypatch, capsys):
         return {}["of a bug"]
 
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    assert program.ended(run) == 1
+    assert program.run_to_status(run) == 1
     told = capsys.readouterr().err
     (file,) = tmp_path.iterdir()
     assert told.count("\n") == 1
@@ -175,7 +175,7 @@ def test_what_nobody_foresaw_asks_for_a_report(tmp_path, monkeypatch, capsys):
     assert f"'{file}'" in told
     assert "in run" in file.read_text()
     monkeypatch.setenv("PREFILTER_DEBUG", "1")
-    assert program.ended(run) == 1
+    assert program.run_to_status(run) == 1
     assert "in run" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == [file]
 
@@ -183,7 +183,7 @@ def test_what_nobody_foresaw_asks_for_a_report(tmp_path, monkeypatch, capsys):
 def test_words_of_other_libraries_are_not_ours(tmp_path, monkeypatch, capsys):
     """They say nothing to users, who can act on what is ours."""
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    assert program.ended(lambda: json.loads("{")) == 1
+    assert program.run_to_status(lambda: json.loads("{")) == 1
     assert "unexpected failure (JSONDecodeError" in capsys.readouterr().err
-    assert program.ended(lambda: (tmp_path / "none").read_bytes()) == 1
+    assert program.run_to_status(lambda: (tmp_path / "none").read_bytes()) == 1
     assert "error: No such file or directory: " in capsys.readouterr().err

@@ -14,7 +14,7 @@ from ..files.staging import check_target
 from ..workflows.files import patterns
 from ..workflows.up_to_date import KEY, PICTURES, fingerprint
 from ..workflows.wording import listed
-from . import outputs, reports, tasks, telling
+from . import cli_common, failures, outputs, tasks
 
 
 @dataclass(frozen=True)
@@ -68,14 +68,14 @@ def add_arguments(
     parser.set_defaults(intermixed="sources", file_names=names)
 
 
-def settle(options: argparse.Namespace) -> None:
+def resolve_files(options: argparse.Namespace) -> None:
     """Determines which files are read and written; ends the program where that is ambiguous."""
-    outputs.settle(options, options.file_names, (outputs.NAME,))
+    outputs.resolve_files(options, options.file_names, (outputs.NAME,))
 
 
 def run(
     options: argparse.Namespace,
-    do: Callable[[Pair], None],
+    process: Callable[[Pair], None],
     settings: Mapping[str, Any] | None = None,
     kinds: Sequence[str] = PICTURES,
     may_skip: Callable[[str], bool] = lambda _: True,
@@ -86,52 +86,52 @@ def run(
 
     Args:
         options: The arguments.
-        do: Reads one file and writes another.
+        process: Reads one file and writes another.
         settings: The settings that determine the result, if up-to-date files may be skipped;
             None if they may not.
         kinds: The extensions of files that can store the fingerprint of their inputs.
         may_skip: Tells whether a file and the settings alone determine the result.
 
     Raises:
-        ValueError: Some files failed; for a single file, `do`'s own exception is raised.
+        ValueError: Some files failed; for a single file, `process`'s own exception is raised.
     """
     tasks.check(options)
     pairs = _pairs(options)
     if settings is not None and options.skip_up_to_date:
-        telling.check_can_tell(options, options.target, kinds)
-        do = _skipping(do, settings, may_skip)
+        cli_common.check_stores_fingerprint(options, options.target, kinds)
+        process = _skip_up_to_date(process, settings, may_skip)
     if options.list:
         _list(options, pairs)
         return
-    chosen, failed = tasks.chosen(options, pairs), []
+    chosen, failed = tasks.select(options, pairs), []
     for number, pair in enumerate(chosen):
-        with telling.share(number, len(chosen)):
+        with cli_common.subtask(number, len(chosen)):
             try:
-                do(pair)
+                process(pair)
             except Exception as error:
-                if len(chosen) == 1 or telling.is_canceled(error):
+                if len(chosen) == 1 or cli_common.is_canceled(error):
                     raise
-                telling.warn([f"'{pair.source}': {reports.told(error)}"])
+                cli_common.warn([f"'{pair.source}': {failures.describe(error)}"])
                 failed.append(pair.source)
     if failed:
         raise ValueError(f"not done: {listed(failed)}")
 
 
-def _skipping(
-    do: Callable[[Pair], None], settings: Mapping[str, Any], may_skip: Callable[[str], bool]
+def _skip_up_to_date(
+    process: Callable[[Pair], None], settings: Mapping[str, Any], may_skip: Callable[[str], bool]
 ) -> Callable[[Pair], None]:
-    """Returns a function like `do` that leaves up-to-date files alone."""
+    """Returns a function like `process` that leaves up-to-date files alone."""
 
-    def do_unless(pair: Pair) -> None:
+    def process_unless_up_to_date(pair: Pair) -> None:
         if not may_skip(pair.source):
-            do(pair)
+            process(pair)
             return
         target = pair.checked_target()
         number = fingerprint([pair.source], settings)
-        if not telling.are_up_to_date([target], number):
-            do(replace(pair, metadata={KEY: number}))
+        if not cli_common.are_up_to_date([target], number):
+            process(replace(pair, metadata={KEY: number}))
 
-    return do_unless
+    return process_unless_up_to_date
 
 
 def _pairs(options: argparse.Namespace) -> list[Pair]:
@@ -141,7 +141,7 @@ def _pairs(options: argparse.Namespace) -> list[Pair]:
         options.usage_error(
             f"found '{options.target}' for {len(sources)} files; {{name}} is needed in it"
         )
-    pairs = [Pair(source, outputs.for_source(options.target, source)) for source in sources]
+    pairs = [Pair(source, outputs.path_for(options.target, source)) for source in sources]
     read = [(pair, identities(pair.source)) for pair in pairs]
     written: dict[Hashable, Pair] = {}
     for pair in pairs:
@@ -153,7 +153,7 @@ def _pairs(options: argparse.Namespace) -> list[Pair]:
         # Even with --overwrite: the file would be read after it was replaced.
         if any(other is not pair and not own.isdisjoint(names) for other, names in read):
             options.usage_error(f"'{pair.target}' is read; choose other files to write")
-    outputs.check_kept(
+    outputs.check_not_replaced(
         options, [pair.target for pair in pairs], [*sources, *getattr(options, "also_read", ())]
     )
     return pairs
@@ -161,8 +161,8 @@ def _pairs(options: argparse.Namespace) -> list[Pair]:
 
 def _list(options: argparse.Namespace, pairs: Sequence[Pair]) -> None:
     if options.json:
-        tasks.say_json([{"inputs": [pair.source], "files": [pair.target]} for pair in pairs])
+        tasks.print_json([{"inputs": [pair.source], "files": [pair.target]} for pair in pairs])
         return
     width = max(len(pair.source) for pair in pairs)
     for pair in pairs:
-        telling.say(f"{pair.source:<{width}}  {pair.target}")
+        cli_common.print_line(f"{pair.source:<{width}}  {pair.target}")

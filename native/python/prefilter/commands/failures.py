@@ -10,37 +10,37 @@ from . import streams
 _PAGE = "https://extensions.blender.org/add-ons/prefilter/"
 
 
-def told(error: BaseException) -> str:
+def describe(error: BaseException) -> str:
     """Returns the line that says why work failed: a known reason, or a request to report it."""
     from ..workflows.outcome import reason
 
     is_of_system = isinstance(error, OSError) and error.strerror is not None
     if not (is_of_system or is_own(error) or isinstance(error, MemoryError)):
-        return unexpected(error)
-    show(error)
+        return describe_unexpected(error)
+    print_traceback(error)
     return reason(error)
 
 
-def unexpected(error: BaseException) -> str:
+def describe_unexpected(error: BaseException) -> str:
     """Returns the line that asks for a report; the traceback is printed, or saved in a file."""
     kind, text = type(error).__name__, str(error)
     what = f"{kind}: {text[:200]}" if text else kind
     if is_debugging():
-        show(error)
+        print_traceback(error)
         where = "the lines above"
     else:
-        kept = _kept(error)
-        where = f"the file '{kept}'" if kept else f"what it prints with {DEBUG}=1 set"
+        path = _save_traceback(error)
+        where = f"the file '{path}'" if path else f"what it prints with {DEBUG}=1 set"
     return f"unexpected failure ({what}); please report it at {_PAGE} with {where}"
 
 
-def show(error: BaseException) -> None:
+def print_traceback(error: BaseException) -> None:
     """Prints the traceback of an error, if debugging is on."""
     if is_debugging():
         streams.write(streams.errors(), _traceback(error), "")
 
 
-def _kept(error: BaseException) -> str:
+def _save_traceback(error: BaseException) -> str:
     """Saves the traceback in a new file and returns its path; empty if that is impossible."""
     import tempfile
 

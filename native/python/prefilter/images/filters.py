@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The library's pixel filters, and their uses."""
+"""Tables of the library's pixel filters and mipmap filters; loads little, as options need it."""
 
 from typing import Any, NamedTuple
 
 from .. import _native
+from .._border.names import MipmapFilterName
 
 
 class PixelFilter(NamedTuple):
@@ -29,3 +30,21 @@ PIXEL_FILTERS = tuple(PixelFilter(*found) for found in _native.pixel_filters())
 def names_for(use: str) -> tuple[Any, ...]:
     """Returns the names of the filters for a use; `_border.names` has a type of them."""
     return tuple(found.name for found in PIXEL_FILTERS if use in found.uses)
+
+
+class MipmapFilter(NamedTuple):
+    """A filter of `mipmaps`.
+
+    Attributes:
+        name: Its name, such as "tent", "tent-covered" or "pam-bilinear".
+        needs_surface: Whether it filters over the surface, or over texels that the surface touches.
+        is_fit: Whether it is a least-squares fit: only these depend on `seam_budget`.
+    """
+
+    name: MipmapFilterName
+    needs_surface: bool
+    is_fit: bool
+
+
+MIPMAP_FILTERS = tuple(MipmapFilter(*found) for found in _native.mipmap_filters())
+"""All filters: kernels, "-covered" kernels, least squares, and filters over the surface."""

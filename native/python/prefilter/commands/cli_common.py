@@ -17,10 +17,10 @@ from ..workflows import progress as works
 from ..workflows.outcome import Outcome, up_to_date
 from ..workflows.progress import Progress, Work, go_on
 from ..workflows.up_to_date import is_up_to_date
-from .voices import VOICES, Plain
+from .reporters import REPORTERS, PlainReporter
 
 _NONE: Mapping[str, Any] = MappingProxyType({})
-_voice = Plain()
+_reporter = PlainReporter()
 _share: tuple[int, int] = (0, 1)
 """Which of how many equal shares of the command's progress the current work is."""
 
@@ -41,7 +41,7 @@ def add_progress(parser: argparse.ArgumentParser) -> None:
     """Adds the flag that chooses how progress is reported."""
     parser.add_argument(
         "--progress",
-        choices=VOICES,
+        choices=REPORTERS,
         default="plain",
         metavar="KIND",
         help="how progress and results are told: plain, for people; openjd, as Open Job "
@@ -49,7 +49,7 @@ def add_progress(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_skipping(parser: argparse.ArgumentParser) -> None:
+def add_skip_flag(parser: argparse.ArgumentParser) -> None:
     """Adds the flag that skips files that are up to date."""
     parser.add_argument(
         "--skip-up-to-date",
@@ -59,7 +59,7 @@ def add_skipping(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def decisive(
+def result_settings(
     options: argparse.Namespace, settings: type, *names: str, preset: Mapping[str, Any] = _NONE
 ) -> dict[str, Any]:
     """Returns the settings that determine a command's result, besides the input file itself.
@@ -76,7 +76,9 @@ def decisive(
     return {"command": settings.__name__, "chosen": chosen, **more}
 
 
-def check_can_tell(options: argparse.Namespace, path: str, allowed: Sequence[str]) -> None:
+def check_stores_fingerprint(
+    options: argparse.Namespace, path: str, allowed: Sequence[str]
+) -> None:
     """Ends the program unless the file can store the fingerprint of its inputs."""
     if not path.lower().endswith(tuple(allowed)):
         options.usage_error(
@@ -88,17 +90,19 @@ def are_up_to_date(targets: Sequence[Path], number: str) -> bool:
     """Tells whether all files store this fingerprint of their inputs; prints a line if so."""
     if not is_up_to_date(targets, number):
         return False
-    say(up_to_date(targets))
+    print_line(up_to_date(targets))
     return True
 
 
-def speak(kind: str = "plain") -> None:
+def use_reporter(kind: str = "plain") -> None:
     """Selects how everything that follows is reported; see `add_progress`."""
-    global _voice, _share
-    _voice, _share = VOICES[kind](), (0, 1)
+    global _reporter, _share
+    _reporter, _share = REPORTERS[kind](), (0, 1)
 
 
-def check_ending(options: argparse.Namespace, name: str, path: str, allowed: Sequence[str]) -> str:
+def check_extension(
+    options: argparse.Namespace, name: str, path: str, allowed: Sequence[str]
+) -> str:
     """Returns the extension of a file; ends the program unless it is allowed."""
     # Among several allowed extensions, such as ".ply.gz" and ".gz", the longest that matches.
     fitting = [one for one in allowed if path.lower().endswith(one)]
@@ -108,7 +112,7 @@ def check_ending(options: argparse.Namespace, name: str, path: str, allowed: Seq
     return extension
 
 
-def done(work: Work) -> Outcome:
+def run_work(work: Work) -> Outcome:
     """Runs work to its end, reporting progress; returns its outcome."""
     with progress_line() as progress:
         try:
@@ -120,7 +124,7 @@ def done(work: Work) -> Outcome:
 
 
 @contextmanager
-def share(number: int, count: int) -> Iterator[None]:
+def subtask(number: int, count: int) -> Iterator[None]:
     """A context whose work is one of `count` equal shares of the command's progress."""
     global _share
     _share = (number, count)
@@ -130,26 +134,31 @@ def share(number: int, count: int) -> Iterator[None]:
         _share = (0, 1)
 
 
-def say(line: str) -> None:
+def print_line(line: str) -> None:
     """Prints a line."""
-    _voice.say(line)
+    _reporter.print_line(line)
 
 
-def tell(outcome: Outcome) -> None:
+def report_outcome(outcome: Outcome) -> None:
     """Prints the result, and its warnings on stderr."""
     warn(outcome.warnings)
-    _voice.tell(outcome)
+    _reporter.report(outcome)
+
+
+def run_and_report(work: Work) -> None:
+    """Runs work to its end, and prints the result."""
+    report_outcome(run_work(work))
 
 
 def warn(warnings: Iterable[str]) -> None:
     """Prints warnings on stderr."""
     for warning in warnings:
-        _voice.warn(warning)
+        _reporter.warn(warning)
 
 
 def fail(text: str) -> None:
     """Prints why the command ends."""
-    _voice.fail(text)
+    _reporter.fail(text)
 
 
 def is_canceled(error: BaseException) -> bool:
@@ -160,7 +169,7 @@ def is_canceled(error: BaseException) -> bool:
 
 def cancel() -> None:
     """Prints that a signal has ended the command."""
-    _voice.cancel()
+    _reporter.cancel()
 
 
 @contextmanager
@@ -171,7 +180,7 @@ def progress_line() -> Iterator[Progress]:
     """
 
     def report(fraction: float) -> bool:
-        _voice.progress(fraction)
+        _reporter.show_progress(fraction)
         return not stopping.asked()
 
     number, count = _share
@@ -179,7 +188,7 @@ def progress_line() -> Iterator[Progress]:
         try:
             yield works.share(report, number / count, (number + 1) / count)
         except BaseException:
-            _voice.end_progress()
+            _reporter.end_progress()
             raise
         if number + 1 == count:
-            _voice.end_progress()
+            _reporter.end_progress()
