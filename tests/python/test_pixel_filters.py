@@ -2,9 +2,12 @@
 
 """A filter that the library's table has is wherever it may be used, and nowhere else."""
 
+from typing import get_args
+
 import numpy as np
 import prefilter
 import pytest
+from prefilter._border import names as types
 
 USES = {"raster", "resize", "mipmap", "sampling"}
 
@@ -53,6 +56,24 @@ def test_lists_of_names_are_those_of_the_table():
     assert names("sampling") == prefilter.SAMPLING_FILTERS
     in_texture = {one.name for one in prefilter.MIPMAP_FILTERS}
     assert in_texture >= {f"{name}{end}" for name in names("mipmap") for end in ("", "-covered")}
+
+
+def test_types_of_names_are_those_of_the_tables():
+    def values(alias):
+        members = get_args(alias)
+        return {alias} if not members else set().union(*map(values, members))
+
+    def names(use):
+        return {each.name for each in prefilter.PIXEL_FILTERS if use in each.uses}
+
+    assert values(types.Kernel) == names("sampling")
+    assert values(types.RasterFilter) == names("raster")
+    assert values(types.ResizeFilter) == names("resize")
+    assert values(types.MipmapFilterName) == {each.name for each in prefilter.MIPMAP_FILTERS}
+    assert values(types.Covered) == {f"{name}-covered" for name in names("mipmap")}
+    formats = prefilter.TEXEL_FORMATS.values()
+    assert values(types.Ktx2Format) == {each.name for each in formats}
+    assert values(types.DdsFormat) == {each.name for each in formats if each.is_in_dds}
 
 
 @pytest.mark.parametrize("filter", prefilter.RASTER_FILTERS)

@@ -130,6 +130,15 @@ OBJECTS = {
         "Selected", "The objects that use the image and are selected or in Edit Mode"
     ),
 }
+
+
+def _size(texel_format: str) -> str:
+    """Returns the size of a format's texels in words, such as "half a byte per texel"."""
+    size = prefilter.TEXEL_FORMATS[texel_format].texel_bytes
+    words = {0.25: "a quarter of a byte", 0.5: "half a byte", 1.0: "1 byte"}
+    return f"{words.get(size, f'{size:.2g} bytes')} per texel"
+
+
 TEXTURE_FORMATS = {
     "auto": Choice(
         "Automatic",
@@ -141,46 +150,48 @@ TEXTURE_FORMATS = {
         "Compressed blocks that suit the content of the image: BC7 for color, BC5 for "
         "normal maps, BC4 for grayscale data, BC6H for light beyond 1",
     ),
-    "rgba8": Choice("8-Bit", "4 bytes per texel, uncompressed"),
-    "rgba16f": Choice("Half Float", "Scene-linear, 8 bytes per texel, for high dynamic range"),
-    "rgba32f": Choice("Float", "Scene-linear, 16 bytes per texel"),
-    "bc1": Choice("BC1", "Compressed color, half a byte per texel; alpha is 0 or 1"),
-    "bc1-rgb": Choice("BC1 RGB", "Compressed color without alpha, half a byte per texel"),
-    "bc3": Choice("BC3", "Compressed color and alpha, 1 byte per texel"),
-    "bc4": Choice("BC4", "Compressed red channel, half a byte per texel: masks, roughness"),
-    "bc5": Choice("BC5", "Compressed red and green channels, 1 byte per texel: normal maps"),
+    "rgba8": Choice("8-Bit", f"{_size('rgba8')}, uncompressed"),
+    "rgba16f": Choice("Half Float", f"Scene-linear, {_size('rgba16f')}, for high dynamic range"),
+    "rgba32f": Choice("Float", f"Scene-linear, {_size('rgba32f')}"),
+    "bc1": Choice("BC1", f"Compressed color, {_size('bc1')}; alpha is 0 or 1"),
+    "bc1-rgb": Choice("BC1 RGB", f"Compressed color without alpha, {_size('bc1-rgb')}"),
+    "bc3": Choice("BC3", f"Compressed color and alpha, {_size('bc3')}"),
+    "bc4": Choice("BC4", f"Compressed red channel, {_size('bc4')}: masks, roughness"),
+    "bc5": Choice("BC5", f"Compressed red and green channels, {_size('bc5')}: normal maps"),
     "bc6h": Choice(
-        "BC6H", "Scene-linear, compressed, 1 byte per texel, for high dynamic range without alpha"
+        "BC6H", f"Scene-linear, compressed, {_size('bc6h')}, for high dynamic range without alpha"
     ),
     "bc7": Choice(
-        "BC7", "Compressed color and alpha, 1 byte per texel; closer to the image than BC1 and BC3"
+        "BC7", f"Compressed color and alpha, {_size('bc7')}; closer to the image than BC1 and BC3"
     ),
     # Formats from here on need KTX 2.
     "etc2-rgb": Choice(
-        "ETC2 RGB", "Phones, even old ones: color without alpha, half a byte per texel"
+        "ETC2 RGB", f"Phones, even old ones: color without alpha, {_size('etc2-rgb')}"
     ),
-    "etc2-rgba": Choice("ETC2 RGBA", "Phones, even old ones: color and alpha, 1 byte per texel"),
+    "etc2-rgba": Choice(
+        "ETC2 RGBA", f"Phones, even old ones: color and alpha, {_size('etc2-rgba')}"
+    ),
     "eac-r11": Choice(
-        "EAC R11", "Phones, even old ones: red channel, half a byte per texel: masks, roughness"
+        "EAC R11", f"Phones, even old ones: red channel, {_size('eac-r11')}: masks, roughness"
     ),
     "eac-rg11": Choice(
-        "EAC RG11", "Phones, even old ones: red and green channels, 1 byte per texel: normal maps"
+        "EAC RG11",
+        f"Phones, even old ones: red and green channels, {_size('eac-rg11')}: normal maps",
     ),
     "astc-4x4": Choice(
-        "ASTC 4x4", "Phones and tablets: color and alpha, 1 byte per texel; also for normal maps"
+        "ASTC 4x4",
+        f"Phones and tablets: color and alpha, {_size('astc-4x4')}; also for normal maps",
     ),
-    "astc-6x6": Choice("ASTC 6x6", "Phones and tablets: color and alpha, 0.44 bytes per texel"),
-    "astc-8x8": Choice(
-        "ASTC 8x8", "Phones and tablets: color and alpha, a quarter of a byte per texel"
-    ),
+    "astc-6x6": Choice("ASTC 6x6", f"Phones and tablets: color and alpha, {_size('astc-6x6')}"),
+    "astc-8x8": Choice("ASTC 8x8", f"Phones and tablets: color and alpha, {_size('astc-8x8')}"),
     "astc-4x4-hdr": Choice(
-        "ASTC 4x4 HDR", "Scene-linear, 1 byte per texel, for phones that support ASTC HDR"
+        "ASTC 4x4 HDR", f"Scene-linear, {_size('astc-4x4-hdr')}, for phones that support ASTC HDR"
     ),
     "astc-6x6-hdr": Choice(
-        "ASTC 6x6 HDR", "Scene-linear, 0.44 bytes per texel, for phones that support ASTC HDR"
+        "ASTC 6x6 HDR", f"Scene-linear, {_size('astc-6x6-hdr')}, for phones that support ASTC HDR"
     ),
     "uastc": Choice(
-        "UASTC", "Web: 1 byte per texel; loaders transcode it to a format that the device supports"
+        "UASTC", f"Web: {_size('uastc')}; loaders transcode it to a format that the device supports"
     ),
     "etc1s": Choice(
         "ETC1S", "Web: the smallest files, for color; loaders transcode it as UASTC, and coarser"
