@@ -238,11 +238,11 @@ def test_ctrl_c_leaves_nothing(scan, tmp_path, addon, monkeypatch, number, statu
     class Interrupted(reporters.PlainReporter):
         _is_sent = False
 
-        def progress(self, fraction):
+        def show_progress(self, fraction):
             if not self._is_sent:
                 self._is_sent = True
                 os.kill(os.getpid(), number)
-            super().progress(fraction)
+            super().show_progress(fraction)
 
     monkeypatch.setitem(reporters.REPORTERS, "plain", Interrupted)
     for name in ("out.ply", "out.stl"):
