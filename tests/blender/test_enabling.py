@@ -25,7 +25,7 @@ WORK = re.compile(r"\w+\.(view\.(errors|figure|canvas)|model\.\w+)")
 # Of the package: what options take their limits and choices from.
 OF_PACKAGE = re.compile(
     r"prefilter(\.(_native|files(\..*)?|_border(\..*)?|options(\.(?!flags).*)?|workflows(\.\w+)?"
-    r"|images(\.(filters|color))?|meshes(\.surface)?|textures(\.texel_formats)?"
+    r"|images(\.(filters|color))?|meshes(\.surface)?"
     r"|points(\.scan_files)?|sampling(\.levels)?"
     r"|voxels(\.(octree|contours|thin_places|lost_parts))?))?"
 )

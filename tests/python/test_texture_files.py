@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import prefilter
 import pytest
+from prefilter.options.mipmaps import TEXTURE_FORMATS
 from prefilter.textures.ktx2_metadata import read_metadata
 from texture_readers import FORMATS, read_dds, read_ktx2
 
@@ -670,3 +671,13 @@ def test_ktx_parse_agrees_on_ktx2(tmp_path, format):
         has_alpha = FORMATS[ours.format][2] == 4
         assert descriptor["flags"] == int(alpha == "premultiplied" and has_alpha)
         assert len(descriptor["samples"]) == len(ours.samples)
+
+
+def test_descriptions_name_the_sizes_of_texels():
+    words = {0.25: "a quarter of a byte", 0.5: "half a byte", 1.0: "1 byte"}
+    described = TEXTURE_FORMATS.keys() & prefilter.TEXEL_FORMATS.keys() - {"etc1s"}
+    assert {"rgba8", "bc1", "astc-6x6", "uastc"} <= described
+    for name in described:
+        size = prefilter.TEXEL_FORMATS[name].texel_bytes
+        phrase = f"{words.get(size, f'{size:.2g} bytes')} per texel"
+        assert phrase in TEXTURE_FORMATS[name].description

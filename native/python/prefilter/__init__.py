@@ -5,8 +5,7 @@
 Arrays are numpy or nested lists of real numbers; images and occupancies come out as float32,
 positions as float64. Images have shape (height, width, channels) or (height, width), row 0 at v = 0
 (the bottom row, as in Blender and OpenGL); uint8 and uint16 stand for a 255th and a 65535th. Bad
-arguments raise ValueError, with a message that names the argument, what was found and what is
-allowed.
+arguments raise ValueError, with a message that names the argument, the value and the allowed ones.
 """
 
 from importlib import import_module

@@ -8,7 +8,7 @@ from typing import Any, TypeAlias, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from .arguments import WHOLE
+from .arguments import WHOLE, as_items
 
 # Counts are passed as int; larger ones mean the same.
 _LARGEST_INT = 2**30
@@ -35,23 +35,23 @@ def as_floats(
     `shape` gives the length of each axis, or a name where any length will do. Integers keep their
     values. Raises ValueError where the shape differs or the values are no real numbers.
     """
-    found = as_array(name, array)
-    if not is_real(found):
-        raise ValueError(f"{name}: dtype {found.dtype}; real numbers are needed")
-    check_shape(name, found, shape)
+    values = as_array(name, array)
+    if not is_real(values):
+        raise ValueError(f"{name}: dtype {values.dtype}; real numbers are needed")
+    check_shape(name, values, shape)
     with np.errstate(over="ignore"):  # Too large values become infinite and are refused later.
-        return np.ascontiguousarray(found, dtype)
+        return np.ascontiguousarray(values, dtype)
 
 
 def as_indices(name: str, array: npt.ArrayLike, shape: Sequence[int | str]) -> np.ndarray:
     """Returns a C-contiguous int64 array. Raises ValueError unless it holds integers."""
-    found = as_array(name, array)
-    if found.size and found.dtype.kind not in "iu":
-        raise ValueError(f"{name}: dtype {found.dtype}; integers are needed")
-    check_shape(name, found, shape)
-    if found.dtype == np.uint64 and found.size and int(found.max()) > np.iinfo(np.int64).max:
-        raise ValueError(f"{name}: found {found.max()}; 63 bits are the most")
-    return np.ascontiguousarray(found, np.int64)
+    values = as_array(name, array)
+    if values.size and values.dtype.kind not in "iu":
+        raise ValueError(f"{name}: dtype {values.dtype}; integers are needed")
+    check_shape(name, values, shape)
+    if values.dtype == np.uint64 and values.size and int(values.max()) > np.iinfo(np.int64).max:
+        raise ValueError(f"{name}: found {values.max()}; 63 bits are the most")
+    return np.ascontiguousarray(values, np.int64)
 
 
 def as_mesh(
@@ -77,18 +77,18 @@ def as_labels(name: str, array: npt.ArrayLike, count: int, of: str) -> np.ndarra
 
     Raises ValueError unless there are `count` integers that fit int32.
     """
-    found = as_array(name, array)
-    if not np.issubdtype(found.dtype, np.integer):
-        raise ValueError(f"{name}: dtype {found.dtype}; integers are needed")
-    check_shape(name, found, (of,))
-    if len(found) != count:
-        raise ValueError(f"{name}: found {len(found)} for {count} {of}; one each is needed")
-    if found.dtype != np.int32 and len(found):
+    values = as_array(name, array)
+    if not np.issubdtype(values.dtype, np.integer):
+        raise ValueError(f"{name}: dtype {values.dtype}; integers are needed")
+    check_shape(name, values, (of,))
+    if len(values) != count:
+        raise ValueError(f"{name}: found {len(values)} for {count} {of}; one each is needed")
+    if values.dtype != np.int32 and len(values):
         limits = np.iinfo(np.int32)
-        lowest, highest = int(found.min()), int(found.max())
+        lowest, highest = int(values.min()), int(values.max())
         if lowest < limits.min or highest > limits.max:
             raise ValueError(f"{name}: found {lowest} to {highest}; 32 bits are the most")
-    return np.ascontiguousarray(found, np.int32)
+    return np.ascontiguousarray(values, np.int32)
 
 
 def as_corner_uvs(
@@ -99,16 +99,16 @@ def as_corner_uvs(
     UVs of vertices have shape (vertices, 2). Indices are not checked. Raises ValueError for other
     shapes, or values that are no real numbers.
     """
-    found = as_array(name, uvs)
+    values = as_array(name, uvs)
     corners = (len(triangles), 3, 2)
-    if is_real(found) and found.shape not in (corners, (vertices, 2)):
+    if is_real(values) and values.shape not in (corners, (vertices, 2)):
         raise ValueError(
-            f"{name}: shape {found.shape}; {corners} for the triangles' corners or "
+            f"{name}: shape {values.shape}; {corners} for the triangles' corners or "
             f"{(vertices, 2)} for the vertices is needed"
         )
-    if found.ndim != 2 or not vertices:
-        return as_floats(name, found, corners, dtype)
-    of_vertices = as_floats(name, found, (vertices, 2), dtype)
+    if values.ndim != 2 or not vertices:
+        return as_floats(name, values, corners, dtype)
+    of_vertices = as_floats(name, values, (vertices, 2), dtype)
     return np.take(of_vertices, triangles, axis=0, mode="clip")
 
 
@@ -127,28 +127,36 @@ def as_image(name: str, array: npt.ArrayLike) -> FloatArray:
     return image
 
 
+def as_images(levels: Sequence[npt.ArrayLike]) -> list[FloatArray]:
+    """Returns each of several levels as `as_image` does."""
+    if not isinstance(levels, Sequence):
+        raise ValueError(f"levels: a {type(levels).__name__}; a list of arrays is needed")
+    items = as_items("levels", levels, "a list of images")
+    return [as_image(f"levels: level {k}", level) for k, level in enumerate(items)]
+
+
 def as_texels(name: str, array: npt.ArrayLike) -> npt.NDArray[Any]:
     """Returns an image as `as_image` does, but leaves texels of uint8 and uint16 unscaled."""
-    found = as_array(name, array)
-    if found.dtype.kind == "i" and isinstance(array, list | tuple):
-        others = found[(found != 0) & (found != 1)]
+    values = as_array(name, array)
+    if values.dtype.kind == "i" and isinstance(array, list | tuple):
+        others = values[(values != 0) & (values != 1)]
         if len(others):
             raise ValueError(
                 f"{name}: a list of whole numbers, among them {others[0]}; only 0 and 1 are "
                 "allowed in lists, others in arrays of uint8 or uint16, or written as 1.0"
             )
-        found = found.astype(np.float32)
-    if found.dtype.kind not in "fb" and found.dtype not in (np.uint8, np.uint16):
-        raise ValueError(f"{name}: dtype {found.dtype}; {_IMAGE_TYPES}")
-    if found.ndim not in (2, 3):
+        values = values.astype(np.float32)
+    if values.dtype.kind not in "fb" and values.dtype not in (np.uint8, np.uint16):
+        raise ValueError(f"{name}: dtype {values.dtype}; {_IMAGE_TYPES}")
+    if values.ndim not in (2, 3):
         raise ValueError(
-            f"{name}: shape {found.shape}; (height, width) or (height, width, channels) is needed"
+            f"{name}: shape {values.shape}; (height, width) or (height, width, channels) is needed"
         )
-    if 0 in found.shape:
-        raise ValueError(f"{name}: shape {found.shape} holds no pixels; at least one is needed")
-    stored = found.dtype if found.dtype.kind == "u" else np.float32
+    if 0 in values.shape:
+        raise ValueError(f"{name}: shape {values.shape} holds no pixels; at least one is needed")
+    stored = values.dtype if values.dtype.kind == "u" else np.float32
     with np.errstate(over="ignore"):  # Too large values become infinite and are refused later.
-        texels = np.ascontiguousarray(found, stored)
+        texels = np.ascontiguousarray(values, stored)
     return texels[:, :, None] if texels.ndim == 2 else texels
 
 
@@ -176,12 +184,12 @@ def check_texels(name: str, image: np.ndarray) -> None:
 def check_shape(name: str, array: np.ndarray, shape: Sequence[int | str]) -> None:
     """Raises ValueError unless the array has the shape; a name allows any length."""
     fits = array.ndim == len(shape) and all(
-        isinstance(wanted, str) or found == wanted
-        for found, wanted in zip(array.shape, shape, strict=True)
+        isinstance(needed, str) or length == needed
+        for length, needed in zip(array.shape, shape, strict=True)
     )
     if not fits:
-        wanted = ", ".join(str(length) for length in shape) + ("," if len(shape) == 1 else "")
-        raise ValueError(f"{name}: shape {array.shape}; ({wanted}) is needed")
+        lengths = ", ".join(str(length) for length in shape) + ("," if len(shape) == 1 else "")
+        raise ValueError(f"{name}: shape {array.shape}; ({lengths}) is needed")
 
 
 def as_threads(threads: int) -> int:
@@ -196,7 +204,7 @@ def as_threads(threads: int) -> int:
 def as_array(name: str, array: npt.ArrayLike) -> np.ndarray:
     """Returns an array in native byte order. Raises ValueError where it is none."""
     try:
-        found = np.asarray(array)
+        values = np.asarray(array)
     except (TypeError, ValueError) as error:
         raise ValueError(f"{name}: found no array: {error}") from error
-    return found if found.dtype.isnative else found.astype(found.dtype.newbyteorder("="))
+    return values if values.dtype.isnative else values.astype(values.dtype.newbyteorder("="))

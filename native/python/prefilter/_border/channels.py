@@ -30,10 +30,10 @@ def in_channel_groups(
     if channels <= _CHANNELS_AT_ONCE:
         return [filtered(image, premultiplied, as_progress(progress))]
     check_texels("image", image)  # Here, so that messages count the image's own channels.
-    found = []
+    results = []
     for begin in range(0, channels, _CHANNELS_AT_ONCE):
         end = min(begin + _CHANNELS_AT_ONCE, channels)
         part = np.ascontiguousarray(image[..., begin:end])
         reports = progress_part(progress, begin / channels, end / channels)
-        found.append(filtered(part, True, reports))
-    return found
+        results.append(filtered(part, True, reports))
+    return results

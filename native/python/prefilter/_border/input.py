@@ -9,12 +9,12 @@ from typing import BinaryIO
 
 def as_path(path: str | os.PathLike[str]) -> str:
     try:
-        given = os.fsdecode(path)
+        name = os.fsdecode(path)
     except TypeError:
-        given = "\0"
-    if "\0" in given:
+        name = "\0"
+    if "\0" in name:
         raise ValueError(f"path: {path!r}; the path of a file is needed")
-    return given
+    return name
 
 
 def open_file(path: str) -> BinaryIO:

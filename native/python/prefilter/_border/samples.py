@@ -30,17 +30,17 @@ def as_pyramid(levels: Sequence[npt.ArrayLike]) -> list[np.ndarray]:
     """
     if not isinstance(levels, Sequence) or isinstance(levels, str | bytes):
         raise ValueError(f"levels: a {type(levels).__name__}; a list of arrays is needed")
-    found = [
+    checked = [
         _as_level(f"levels: level {k}", level)
         for k, level in enumerate(as_items("levels", levels, "a list of images"))
     ]
-    for k, level in enumerate(found):
-        if (level.dtype, level.shape[2]) != (found[0].dtype, found[0].shape[2]):
+    for k, level in enumerate(checked):
+        if (level.dtype, level.shape[2]) != (checked[0].dtype, checked[0].shape[2]):
             raise ValueError(
                 f"levels: level {k} has {level.shape[2]} channels of {level.dtype}; as level 0 has,"
-                f" {found[0].shape[2]} of {found[0].dtype} are needed"
+                f" {checked[0].shape[2]} of {checked[0].dtype} are needed"
             )
-    return found
+    return checked
 
 
 def _as_level(name: str, level: npt.ArrayLike) -> np.ndarray:
@@ -48,9 +48,9 @@ def _as_level(name: str, level: npt.ArrayLike) -> np.ndarray:
     return texels if texels.dtype == np.uint8 else as_image(name, texels)
 
 
-def as_samples(levels: Sequence[npt.ArrayLike], found: FloatArray) -> FloatArray:
+def as_samples(levels: Sequence[npt.ArrayLike], samples: FloatArray) -> FloatArray:
     """Returns samples (n, channels); (n,) if the levels have no axis of channels."""
-    return in_form_of(levels[0], found)
+    return in_form_of(levels[0], samples)
 
 
 def as_coordinates(coordinates: npt.ArrayLike) -> npt.NDArray[np.float64]:
@@ -59,12 +59,12 @@ def as_coordinates(coordinates: npt.ArrayLike) -> npt.NDArray[np.float64]:
 
 def as_scales(scales: npt.ArrayLike, samples: int) -> npt.NDArray[np.float64]:
     """Returns a scale for each sample, or a single one for all."""
-    found = as_array("scales", scales)
-    if found.dtype.kind not in "iuf":
-        raise ValueError(f"scales: dtype {found.dtype}; numbers are needed")
-    if found.ndim > 0:
-        check_shape("scales", found, (samples,))
-    return np.ascontiguousarray(found, np.float64)
+    values = as_array("scales", scales)
+    if values.dtype.kind not in "iuf":
+        raise ValueError(f"scales: dtype {values.dtype}; numbers are needed")
+    if values.ndim > 0:
+        check_shape("scales", values, (samples,))
+    return np.ascontiguousarray(values, np.float64)
 
 
 def as_jacobians(jacobians: npt.ArrayLike, samples: int) -> npt.NDArray[np.float64]:

@@ -22,13 +22,13 @@ class _Stopping:
     @contextmanager
     def handled(self) -> Iterator[None]:
         self.number = self._holds = 0
-        before = [signal.signal(one, self._note) for one in _SIGNALS]
+        before = [signal.signal(signum, self._note) for signum in _SIGNALS]
         try:
             yield
         finally:
-            for one, handler in zip(_SIGNALS, before, strict=True):
+            for signum, handler in zip(_SIGNALS, before, strict=True):
                 # None means Blender's own handler, not Python's; it only waits for another Ctrl-C.
-                signal.signal(one, signal.SIG_DFL if handler is None else handler)
+                signal.signal(signum, signal.SIG_DFL if handler is None else handler)
 
     @contextmanager
     def held(self) -> Iterator[None]:
@@ -46,8 +46,8 @@ class _Stopping:
 
     def _note(self, number: int, *_: object) -> None:
         self.number = number
-        for one in _SIGNALS:  # A second signal ends the program.
-            signal.signal(one, signal.SIG_DFL)
+        for signum in _SIGNALS:  # A second signal ends the program.
+            signal.signal(signum, signal.SIG_DFL)
         if not self._holds:
             raise KeyboardInterrupt
 

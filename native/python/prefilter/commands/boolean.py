@@ -97,14 +97,14 @@ class BooleanFile:
         if len(triangles) == 0:
             raise NothingLeftError(NO_FILLED_CELL)
         name = self._operands[0].name
-        others = listed(one.name for one in self._operands[1:])
+        others = listed(operand.name for operand in self._operands[1:])
         volume = measure_mesh(positions, triangles, threads=settings.threads).volume
         self._line = (
             f"{settings.operation.capitalize()} of '{name}' with {others} in {cells}³ cells: "
             f"{amount(len(triangles), 'triangle')}, volume {volume:.4g}"
         )
-        made = [NamedMesh(name, positions, triangles, None)]
-        self._staged = mesh_files.stage(self._target, made)
+        result = [NamedMesh(name, positions, triangles, None)]
+        self._staged = mesh_files.stage(self._target, result)
         go_on(progress, 1.0)
 
     def write(self) -> Outcome:
@@ -122,25 +122,25 @@ class BooleanFile:
     def _combined(self, progress: Progress) -> tuple[prefilter.Octree, list[tuple[Any, ...]], int]:
         """Returns the combined tree, its source meshes, and the number of cells along an axis."""
         settings = self._settings
-        measures = [self._measured(one) for one in self._operands]
+        measures = [self._measured(operand) for operand in self._operands]
         grid = choose_grid(
-            booleans.box([one.box for one in measures], settings.operation), settings
+            booleans.box([measure.box for measure in measures], settings.operation), settings
         )
-        check_memory(grid, sum(one.area for one in measures))
+        check_memory(grid, sum(measure.area for measure in measures))
         trees, sources = [], []
         steps = parts(progress, len(self._operands))
         for operand, part in zip(self._operands, steps, strict=True):
             try:
-                made = surfaces.occupancy(
+                occupancy = surfaces.occupancy(
                     operand.positions, operand.triangles, grid, settings, part
                 )
             except ValueError as error:
                 raise ValueError(f"mesh '{operand.name}': {error}") from error
-            warnings, notes = surfaces.repair_lines(operand.name, made)
+            warnings, notes = surfaces.repair_lines(operand.name, occupancy)
             self._warnings += warnings
             self._notes += notes
-            trees.append(made.tree)
-            sources.append((made.positions, made.triangles))
+            trees.append(occupancy.tree)
+            sources.append((occupancy.positions, occupancy.triangles))
         tree = booleans.combined(
             trees, settings.operation, share(progress, 1.0, 1.0), settings.threads
         )
@@ -177,18 +177,18 @@ def check_output(options: argparse.Namespace, allowed: Sequence[str]) -> None:
 def _operands(options: argparse.Namespace) -> list[NamedMesh]:
     groups = [mesh_files.read("FILE", [path]) for path in options.files]
     if options.object:
-        found = [part for group in groups for part in group]
-        named = [mesh_files.select(found, [name]) for name in options.object]
+        meshes = [part for group in groups for part in group]
+        named = [mesh_files.select(meshes, [name]) for name in options.object]
         operands = [as_one(parts[0].name, parts) for parts in named]
     else:
         names = [mesh_files.name_of(path) for path in options.files]
         operands = [as_one(name, group) for name, group in zip(names, groups, strict=True)]
-    return [mesh_files.merge_seams(one) for one in operands]
+    return [mesh_files.merge_seams(operand) for operand in operands]
 
 
 def as_one(name: str, meshes: Sequence[NamedMesh]) -> NamedMesh:
     """Returns several meshes joined into one, without UVs."""
-    starts = np.cumsum([0, *(len(one.positions) for one in meshes)])
-    triangles = [one.triangles + start for one, start in zip(meshes, starts, strict=False)]
-    positions = np.concatenate([one.positions for one in meshes])
+    starts = np.cumsum([0, *(len(mesh.positions) for mesh in meshes)])
+    triangles = [mesh.triangles + start for mesh, start in zip(meshes, starts, strict=False)]
+    positions = np.concatenate([mesh.positions for mesh in meshes])
     return NamedMesh(name, positions, np.concatenate(triangles), None)

@@ -105,7 +105,7 @@ def check_extension(
 ) -> str:
     """Returns the extension of a file; ends the program unless it is allowed."""
     # Among several allowed extensions, such as ".ply.gz" and ".gz", the longest that matches.
-    fitting = [one for one in allowed if path.lower().endswith(one)]
+    fitting = [candidate for candidate in allowed if path.lower().endswith(candidate)]
     extension = max(fitting, key=len, default="")
     if not os.path.splitext(path)[1] or not extension:
         options.usage_error(f"{name}: found '{path}'; allowed: {', '.join(allowed)}")

@@ -13,12 +13,7 @@ if TYPE_CHECKING:
 
 
 def add_flags(parser: argparse.ArgumentParser, thing: str) -> None:
-    """Adds flags for the color space of a picture, and for clipping its colors.
-
-    Args:
-        parser: The parser that gets the flags.
-        thing: What the help calls the picture.
-    """
+    """Adds flags for the color space of a picture, and for clipping its colors."""
     parser.add_argument(
         "--colorspace",
         metavar="NAME",
@@ -46,14 +41,7 @@ def _space_name(name: str) -> str:
 def check_range(
     argument: str, picture: "Picture", target: Path, options: argparse.Namespace
 ) -> None:
-    """Raises ValueError if a file would clip colors of a picture and --clip is not given.
-
-    Args:
-        argument: The picture's name in messages.
-        picture: The picture.
-        target: A file whose format cannot hold colors outside of sRGB.
-        options: The arguments.
-    """
+    """Raises ValueError if a file would clip colors of a picture and --clip is not given."""
     if picture.outside > 0.0 and not options.clip:
         raise ValueError(
             f"{argument}: {100 * picture.outside:.3g} % of the pixels of '{picture.name}' have "

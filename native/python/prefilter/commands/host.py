@@ -12,15 +12,6 @@ from ..workflows import picture_files
 from ..workflows.picture import Picture
 
 
-def _nothing(parser: argparse.ArgumentParser) -> None:
-    del parser
-
-
-def _no_preset(options: argparse.Namespace) -> dict[str, Any]:
-    del options
-    return {}
-
-
 def _settings(options: argparse.Namespace, settings: type, **more: Any) -> Any:
     return settings(**given(options, settings) | more)
 
@@ -38,8 +29,8 @@ class Host:
     """
 
     read: Callable[..., Picture] = picture_files.read
-    add_preset: Callable[[argparse.ArgumentParser], None] = _nothing
-    preset: Callable[[argparse.Namespace], dict[str, Any]] = _no_preset
+    add_preset: Callable[[argparse.ArgumentParser], None] = lambda _: None
+    preset: Callable[[argparse.Namespace], dict[str, Any]] = lambda _: {}
     settings: Callable[..., Any] = _settings
     preferred: str = ""
 

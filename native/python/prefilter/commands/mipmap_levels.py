@@ -91,14 +91,6 @@ def read(
 ) -> LevelsFile:
     """Reads the files and checks them against the settings.
 
-    Args:
-        texture: The picture.
-        meshes: Files of meshes that use it as their texture.
-        objects: Names of the meshes to use; all if empty.
-        settings: What to make.
-        metadata: Key-value pairs to store in KTX 2 files.
-        options: The flags of colors: see `color_arguments.add_flags`.
-
     Raises:
         OSError: A file cannot be read or written.
         ValueError: A file does not fit the settings.

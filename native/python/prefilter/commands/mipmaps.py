@@ -105,31 +105,31 @@ def _fingerprint(options: argparse.Namespace, settings: Settings) -> str:
 
 def _settings(options: argparse.Namespace) -> Settings:
     """Returns the settings; ends the program if flags contradict one another."""
-    found = given(options, Settings)
-    if not found.get("filepath"):
+    values = given(options, Settings)
+    if not values.get("filepath"):
         options.usage_error("nothing to write: give -o FILE")
     for name, flag in (("filepath", "-o"), ("roughness_filepath", "--roughness-output")):
-        if found.get(name):
-            found[name] = outputs.checked_path(options, flag, found[name], options.texture)
+        if values.get(name):
+            values[name] = outputs.checked_path(options, flag, values[name], options.texture)
     if options.object and not options.meshes:
         options.usage_error("--object: needs a MESH")
-    if not options.meshes and found.setdefault("filter", _WITHOUT_MESH) not in (
+    if not options.meshes and values.setdefault("filter", _WITHOUT_MESH) not in (
         TEXTURE_SPACE_FILTERS
     ):
         options.usage_error(
-            f"--filter {found['filter']}: needs a MESH; without: {', '.join(_without_mesh())}"
+            f"--filter {values['filter']}: needs a MESH; without: {', '.join(_without_mesh())}"
         )
-    settings = Settings(**found, use_images=False)
+    settings = Settings(**values, use_images=False)
     paths = (settings.filepath, settings.roughness_filepath)
     for name, may in (
         ("texture_format", target_files.has_formats),
         ("effort", target_files.has_formats),
         ("supercompression", target_files.has_supercompression),
     ):
-        if name in found and not any(map(may, paths)):
+        if name in values and not any(map(may, paths)):
             flag = f"--{name.replace('_', '-')}"
             endings = ".ktx2" if name == "supercompression" else ".dds and .ktx2"
-            options.usage_error(f"{flag}: found '{found[name]}', which is for {endings} files")
+            options.usage_error(f"{flag}: found '{values[name]}', which is for {endings} files")
     return settings
 
 

@@ -26,7 +26,7 @@ def add_output(
 
     Args:
         parser: The parser that gets the flags.
-        metavar: What the help calls the file to write.
+        metavar: Placeholder of the path in help texts.
         description: Description of the files that can be written.
         is_required: Whether -o is the only way to name that file.
         destination: The attribute of the arguments that gets the path.

@@ -35,13 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def result_settings(options: argparse.Namespace, host: Host, settings: type) -> dict[str, Any]:
-    """Returns the settings that determine a command's result, besides the picture itself.
-
-    Args:
-        options: The arguments.
-        host: The environment of the command.
-        settings: The dataclass of the command's options.
-    """
+    """Returns the settings that determine a command's result, besides the picture itself."""
     names = ("data", "colorspace", "clip", "corners", "rectify", "scale")
     return cli_common.result_settings(options, settings, *names, preset=host.preset(options))
 

@@ -97,19 +97,19 @@ def make_parser(chosen: Sequence[str] = tuple(COMMANDS)) -> argparse.ArgumentPar
     Args:
         chosen: The commands whose arguments are needed; the modules of others are not imported.
     """
-    found = Parser(
+    command_line = Parser(
         prog="prefilter",
         description=(
             "Filters images for the surfaces that use them. In Blender the same options, and more "
             "commands: blender --background --command prefilter --help"
         ),
     )
-    found.add_argument("--version", action="version", version=f"prefilter {_native.VERSION}")
-    commands = found.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    command_line.add_argument("--version", action="version", version=f"prefilter {_native.VERSION}")
+    commands = command_line.add_subparsers(title="commands", metavar="COMMAND", required=True)
     for name, purpose in COMMANDS.items():
         if name in chosen:
             import_module(f".{name.replace('-', '_')}", __package__).add(commands, purpose)
             cli_common.add_progress(commands.choices[name])
         else:
             commands.add_parser(name, help=purpose)
-    return found
+    return command_line

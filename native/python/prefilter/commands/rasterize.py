@@ -61,19 +61,19 @@ def add(commands: Any, purpose: str) -> None:
 
 def settings_of(options: argparse.Namespace, host: Host) -> RasterizeSettings:
     """Returns the given settings, with those that follow from them."""
-    found = given(options, RasterizeSettings)
+    values = given(options, RasterizeSettings)
     more: dict[str, Any] = {}
     ways = {"width": "size", "height": "size", "density": "density", "side": "side"}
-    chosen = {way: name for name, way in ways.items() if name in found}
+    chosen = {way: name for name, way in ways.items() if name in values}
     if len(chosen) > 1:
         options.usage_error("--side, --density, and --width with --height: only one of these")
     if chosen:
         (more["resolution"],) = chosen
-    if options.uv and "side" in found:
-        more["width"] = more["height"] = found["side"]
+    if options.uv and "side" in values:
+        more["width"] = more["height"] = values["side"]
     if options.uv:
         more["color"] = "mask"
-    if "background_color" in found:
+    if "background_color" in values:
         more["background"] = "color"
     settings: RasterizeSettings = host.settings(options, RasterizeSettings, **more)
     return settings
@@ -123,10 +123,10 @@ def _layout(
 ) -> Source:
     """Returns the UV map of the mesh; adds to the warnings where it has no area."""
     names = [options.object] if options.object else []
-    found = mesh_files.select(mesh_files.read("INPUT", [path]), names)
-    if len(found) > 1:
-        options.usage_error(f"--object: choose one of the {len(found)} meshes; --uv takes one")
-    (part,) = found
+    meshes = mesh_files.select(mesh_files.read("INPUT", [path]), names)
+    if len(meshes) > 1:
+        options.usage_error(f"--object: choose one of the {len(meshes)} meshes; --uv takes one")
+    (part,) = meshes
     if part.uvs is None:
         raise ValueError(f"mesh '{part.name}' has no UV map")
     _, uvs = part.mapped()

@@ -83,18 +83,18 @@ def resolve_files(options: argparse.Namespace) -> None:
 
 def _expand_folders(options: argparse.Namespace) -> None:
     """Replaces each folder among the sources by its files of points, sorted by name."""
-    found: list[str] = []
+    paths: list[str] = []
     for source in options.sources:
         if not os.path.isdir(source):
-            found.append(source)
+            paths.append(source)
             continue
         files = sorted(
             path for path in Path(source).iterdir() if path.name.lower().endswith(POINT_EXTENSIONS)
         )
         if not files:
             options.usage_error(f"SOURCE: found no file of points in the folder '{source}'")
-        found += map(str, files)
-    options.sources = found
+        paths += map(str, files)
+    options.sources = paths
 
 
 def add_settings(parser: argparse.ArgumentParser, host: Host) -> None:
@@ -165,8 +165,8 @@ def do_step(
                 cli_common.print_line(file)
         return
     chosen = tasks.select(options, runs)
-    for done, run in enumerate(chosen):
-        with cli_common.subtask(done, len(chosen)):
+    for number, run in enumerate(chosen):
+        with cli_common.subtask(number, len(chosen)):
             if step != "join" and steps.is_done(step, run):
                 cli_common.print_line(up_to_date([steps.file(step, run)]))
             else:
@@ -175,11 +175,11 @@ def do_step(
 
 def settings_of(options: argparse.Namespace, host: Host) -> ScanSettings:
     """Returns the given settings, with those that follow from them."""
-    found, more = given(options, ScanSettings), {}
+    values, more = given(options, ScanSettings), {}
     for name, resolution in (("depth", "depth"), ("voxel_size", "size")):
-        if name in found:
+        if name in values:
             more["resolution"] = resolution
-    if "custom_isovalue" in found:
+    if "custom_isovalue" in values:
         more["isovalue"] = "custom"
     settings: ScanSettings = host.settings(options, ScanSettings, **more)
     return settings

@@ -88,38 +88,38 @@ def _resample_one(
 
 
 def _settings(options: argparse.Namespace, host: Host) -> ResampleSettings:
-    found = given(options, ResampleSettings)
+    values = given(options, ResampleSettings)
     warps = [name for name in ("corners", "rectify") if getattr(options, name) is not None]
     moves = [flag for flag, name in _TRANSFORM.items() if getattr(options, name, None) is not None]
     if len(warps + moves[:1]) > 1:
         first, second = [*(f"--{name}" for name in warps), *moves][:2]
         options.usage_error(f"{first}: not allowed with {second}")
-    if found.get("use_pixels") and not warps:
+    if values.get("use_pixels") and not warps:
         options.usage_error("--pixels: give --corners or --rectify too")
-    sizes = [name for name in _SIZES if name in found]
-    if sizes and "size" in found and found["size"] != "pixels":
-        options.usage_error(f"--{sizes[0]}: not allowed with --size {found['size']}")
-    if len(sizes) == 1 or (found.get("size") == "pixels" and not sizes):
+    sizes = [name for name in _SIZES if name in values]
+    if sizes and "size" in values and values["size"] != "pixels":
+        options.usage_error(f"--{sizes[0]}: not allowed with --size {values['size']}")
+    if len(sizes) == 1 or (values.get("size") == "pixels" and not sizes):
         options.usage_error("give both --width and --height")
     if sizes:
-        found["size"] = "pixels"
-    if (found.get("method") == "table") != ("table" in found):
+        values["size"] = "pixels"
+    if (values.get("method") == "table") != ("table" in values):
         options.usage_error(
             "--table: not allowed without --method table"
-            if "table" in found
+            if "table" in values
             else "--method table: give --table too"
         )
-    if "max_probes" in found and found.get("filter") != "gaussian":
+    if "max_probes" in values and values.get("filter") != "gaussian":
         options.usage_error("--max-probes: not allowed without --filter gaussian")
-    _complete_proportions(options, found)
+    _complete_proportions(options, values)
     if moves:
-        found["warp"] = "affine"
+        values["warp"] = "affine"
     if options.scale is not None:
-        found = {"scale_x": options.scale, "scale_y": options.scale, **found}
+        values = {"scale_x": options.scale, "scale_y": options.scale, **values}
     for name in warps:
         corners = np.reshape(getattr(options, name), (4, 2)).tolist()
-        found |= {"warp": name, **dict(zip(CORNERS, map(tuple, corners), strict=True))}
-    settings: ResampleSettings = host.settings(options, ResampleSettings, **found)
+        values |= {"warp": name, **dict(zip(CORNERS, map(tuple, corners), strict=True))}
+    settings: ResampleSettings = host.settings(options, ResampleSettings, **values)
     try:
         check(settings)
     except ValueError as error:
@@ -127,12 +127,12 @@ def _settings(options: argparse.Namespace, host: Host) -> ResampleSettings:
     return settings
 
 
-def _complete_proportions(options: argparse.Namespace, found: dict[str, Any]) -> None:
+def _complete_proportions(options: argparse.Namespace, values: dict[str, Any]) -> None:
     """Makes --aspect imply --proportions given; ends the program if flags contradict that."""
     for name in ("aspect", "proportions"):
-        if name in found and options.rectify is None:
+        if name in values and options.rectify is None:
             options.usage_error(f"--{name}: not allowed without --rectify")
-    if "aspect" in found and found.setdefault("proportions", "given") != "given":
-        options.usage_error(f"--aspect: not allowed with --proportions {found['proportions']}")
-    if found.get("proportions") == "given" and "aspect" not in found:
+    if "aspect" in values and values.setdefault("proportions", "given") != "given":
+        options.usage_error(f"--aspect: not allowed with --proportions {values['proportions']}")
+    if values.get("proportions") == "given" and "aspect" not in values:
         options.usage_error("--proportions given: give --aspect too")

@@ -35,24 +35,24 @@ def add(commands: Any, purpose: str, host: Host = PLAIN) -> None:
 
 def _resize(host: Host, options: argparse.Namespace) -> None:
     picture_arguments.check_target(options)
-    found = given(options, ResizeSettings)
-    sizes = [name for name in _SIZES if name in found]
+    values = given(options, ResizeSettings)
+    sizes = [name for name in _SIZES if name in values]
     if not sizes and "size" not in host.preset(options):
         options.usage_error("no size: give --percent, --width or --height")
     if "percent" in sizes and len(sizes) > 1:
         options.usage_error("--percent: not allowed with --width and --height")
     result_settings = picture_arguments.result_settings(options, host, ResizeSettings)
-    batch.run(options, partial(_resize_one, host, options, found, sizes), result_settings)
+    batch.run(options, partial(_resize_one, host, options, values, sizes), result_settings)
 
 
 def _resize_one(
-    host: Host, options: argparse.Namespace, found: dict[str, Any], sizes: list[str], pair: Pair
+    host: Host, options: argparse.Namespace, values: dict[str, Any], sizes: list[str], pair: Pair
 ) -> None:
     picture, target = picture_arguments.read_source(options, host, pair)
     if sizes == ["height"]:
         height, width = picture.shape[:2]
-        found = found | {"width": max(1, round(width * found["height"] / height))}
-    more = {"width": found["width"]} if "width" in found else {}
+        values = values | {"width": max(1, round(width * values["height"] / height))}
+    more = {"width": values["width"]} if "width" in values else {}
     if sizes:
         more |= {
             "size": "percent" if sizes == ["percent"] else "pixels",

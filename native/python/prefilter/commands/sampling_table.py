@@ -62,9 +62,9 @@ def _make(host: Host, options: argparse.Namespace) -> None:
     paths = _paths(options)
     for target in paths:
         cli_common.check_extension(options, "OUTPUT", target, ENDINGS)
-    found = given(options, TableSettings)
-    others = sorted(found.keys() - {"table", "threads"})
-    if "table" in found and others:
+    values = given(options, TableSettings)
+    others = sorted(values.keys() - {"table", "threads"})
+    if "table" in values and others:
         flag = f"--{others[0].removeprefix('use_')}"
         options.usage_error(f"--table: not allowed with {flag}, as no table is built")
     settings = host.settings(options, TableSettings)

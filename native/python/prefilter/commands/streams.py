@@ -111,14 +111,14 @@ def _prepare() -> None:
 def _moved(*, is_end: bool) -> Iterator[tuple[TextIO, TextIO]]:
     """Redirects both streams; yields new streams that lead where they led before."""
     own = [_duplicate(getattr(sys, name), number) for name, number in _NUMBERS.items()]
-    kept = {number: os.dup(number) for number in _NUMBERS.values()}
+    duplicates = {number: os.dup(number) for number in _NUMBERS.values()}
     for stream in (sys.stdout, sys.stderr):
         write(stream, "", "")
     sink = os.dup(2) if is_debugging() else os.open(os.devnull, os.O_WRONLY)
     for number in _NUMBERS.values():
         os.dup2(sink, number)
     _flush_c()  # Drop buffered output now, before it can appear after our last line.
-    given = sys.stdout, sys.stderr
+    originals = sys.stdout, sys.stderr
     sys.stdout, sys.stderr = (_open_text(one) for one in (sink, os.dup(sink)))
     moved = sys.stdout, sys.stderr
     try:
@@ -127,13 +127,13 @@ def _moved(*, is_end: bool) -> Iterator[tuple[TextIO, TextIO]]:
         for stream in moved:
             write(stream, "", "")
         _flush_c()
-        for number, old in kept.items():
+        for number, old in duplicates.items():
             if not is_end:
                 os.dup2(old, number)
             os.close(old)
         # At the process's end, objects that others hold of the moved streams stay usable.
-        done = [] if is_end else list(moved)
-        for stream in (*done, *(each for each in own if each not in given)):
+        finished = [] if is_end else list(moved)
+        for stream in (*finished, *(each for each in own if each not in originals)):
             write(stream, "", "")
             stream.close()
 

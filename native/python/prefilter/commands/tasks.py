@@ -69,12 +69,12 @@ def select(options: argparse.Namespace, tasks: Sequence[T]) -> list[T]:
     """Returns the tasks to do here; prints a line if there are none."""
     if options.task is None:
         return list(tasks)
-    found: list[T] = options.task.select(tasks)
-    if not found:
+    selected: list[T] = options.task.select(tasks)
+    if not selected:
         cli_common.print_line(
             f"Nothing to do in part {options.task.number} of {options.task.count}"
         )
-    return found
+    return selected
 
 
 def print_json(tasks: Sequence[Mapping[str, Any]], **more: Any) -> None:
@@ -84,7 +84,7 @@ def print_json(tasks: Sequence[Mapping[str, Any]], **more: Any) -> None:
 
 
 def _parse_part(text: str) -> TaskPart:
-    found = re.fullmatch(r"(\d{1,9})/(\d{1,9})", text, re.ASCII)
-    if found is None or not 1 <= int(found[1]) <= int(found[2]):
+    match = re.fullmatch(r"(\d{1,9})/(\d{1,9})", text, re.ASCII)
+    if match is None or not 1 <= int(match[1]) <= int(match[2]):
         raise argparse.ArgumentTypeError(f"found '{text}'; K/N is needed, with K from 1 to N")
-    return TaskPart(int(found[1]), int(found[2]))
+    return TaskPart(int(match[1]), int(match[2]))

@@ -70,12 +70,12 @@ def settings_of(
     options: argparse.Namespace, host: Host, settings: type[VoxelSettings], **more: Any
 ) -> Any:
     """Returns the given settings, with those that follow from them."""
-    found = given(options, settings)
+    values = given(options, settings)
     for name, resolution in zip(RESOLUTIONS, ("depth", "size"), strict=True):
-        if name in found:
+        if name in values:
             more["resolution"] = resolution
-    if "smooth_angle" in found:
-        more["use_smooth_shading"] = found["smooth_angle"] > 0.0
+    if "smooth_angle" in values:
+        more["use_smooth_shading"] = values["smooth_angle"] > 0.0
     return host.settings(options, settings, **more)
 
 
@@ -105,17 +105,17 @@ class VoxelFile:
             prefilter.Cancelled: `progress` returned False.
         """
         steps = parts(share(progress, 0.0, _COMPUTED), len(self._meshes))
-        made, left_out = [], EmptyResults()
+        results, left_out = [], EmptyResults()
         for mesh, part in zip(self._meshes, steps, strict=True):
             try:
-                made.append(self._voxelized(mesh, part))
+                results.append(self._voxelized(mesh, part))
             except NothingLeftError as error:
                 left_out.add(mesh.name, error)
             except ValueError as error:
                 raise ValueError(f"mesh '{mesh.name}': {error}") from error
-        self._warnings += left_out.warnings_for(made)
+        self._warnings += left_out.warnings_for(results)
         go_on(progress, _COMPUTED)
-        self._staged = mesh_files.stage(self._target, made, self.metadata)
+        self._staged = mesh_files.stage(self._target, results, self.metadata)
         go_on(progress, 1.0)
 
     def write(self) -> Outcome:
@@ -140,17 +140,17 @@ class VoxelFile:
         grid = choose_grid(measures.box, settings)
         check_memory(grid, measures.area)
         steps = share(progress, 0.0, _VOXELIZED)
-        made = surfaces.occupancy(mesh.positions, mesh.triangles, grid, settings, steps)
+        occupancy = surfaces.occupancy(mesh.positions, mesh.triangles, grid, settings, steps)
         positions, triangles, _ = surfaces.surface(
-            made.tree,
-            [(made.positions, made.triangles)],
+            occupancy.tree,
+            [(occupancy.positions, occupancy.triangles)],
             settings,
             share(progress, _VOXELIZED, 1.0),
             adaptivity=settings.adaptivity,
         )
         if len(triangles) == 0:
             raise NothingLeftError(NO_FILLED_CELL)
-        warnings, notes = surfaces.repair_lines(mesh.name, made)
+        warnings, notes = surfaces.repair_lines(mesh.name, occupancy)
         self._warnings += warnings
         self._notes += notes
         self._triangles += len(triangles)
@@ -174,8 +174,8 @@ def _voxelize(options: argparse.Namespace) -> None:
 
 def _voxelize_one(options: argparse.Namespace, settings: VoxelizeSettings, pair: Pair) -> None:
     target = pair.checked_target()
-    found = mesh_files.select(mesh_files.read("FILE", [pair.source]), options.object)
-    meshes = [mesh_files.merge_seams(one) for one in found]
+    parts = mesh_files.select(mesh_files.read("FILE", [pair.source]), options.object)
+    meshes = [mesh_files.merge_seams(part) for part in parts]
     work = VoxelFile(meshes, target, settings)
     work.metadata = pair.metadata
     cli_common.run_and_report(work)

@@ -136,8 +136,8 @@ def sweep(folder: Path, recover: Recover = lambda path, file: path.suffix != JOU
     owned: dict[str, list[Path]] = {}
     try:
         for entry in os.scandir(folder):
-            if found := _STEM.match(entry.name):
-                owned.setdefault(found[0], []).append(Path(entry))
+            if match := _STEM.match(entry.name):
+                owned.setdefault(match[0], []).append(Path(entry))
     except OSError:
         return
     for paths in owned.values():
@@ -194,11 +194,11 @@ def _sweep_own(path: Path) -> None:
 
 def _may_be_swept(path: Path) -> bool:
     """Tells whether a free lock proves that the process is dead; on another machine it may not."""
-    found = _STEM.match(path.name)
-    assert found is not None
+    match = _STEM.match(path.name)
+    assert match is not None
     half = MACHINE_DIGITS // 2
     own = random_name().removeprefix(".prefilter-")
-    if found[1][:half] == own[:half] or found[1][half:MACHINE_DIGITS] == own[half:MACHINE_DIGITS]:
+    if match[1][:half] == own[:half] or match[1][half:MACHINE_DIGITS] == own[half:MACHINE_DIGITS]:
         return True
     with suppress(OSError):
         return time.time() - path.stat().st_mtime > _SECONDS_ELSEWHERE

@@ -28,8 +28,8 @@ def portable(name: str) -> str:
     composed = _FORBIDDEN.sub("_", unicodedata.normalize("NFC", name))
     bare = composed.rstrip(". ")
     composed = bare + "_" * (len(composed) - len(bare))
-    stem, dot, rest = composed.partition(".")
-    return f"{stem}_{dot}{rest}" if _is_device(stem) else composed
+    stem, dot, extensions = composed.partition(".")
+    return f"{stem}_{dot}{extensions}" if _is_device(stem) else composed
 
 
 def check_windows_names(path: str, who: str = "", *, is_windows: bool = os.name == "nt") -> None:
@@ -59,12 +59,12 @@ def identities(path: str | os.PathLike[str]) -> set[Hashable]:
     composition, count as one file.
     """
     name = unicodedata.normalize("NFC", os.path.realpath(path))
-    found: set[Hashable] = {unicodedata.normalize("NFC", name.casefold())}
+    keys: set[Hashable] = {unicodedata.normalize("NFC", name.casefold())}
     with suppress(OSError, ValueError):
         about = os.stat(path)
         if about.st_ino:
-            found.add((about.st_dev, about.st_ino))
-    return found
+            keys.add((about.st_dev, about.st_ino))
+    return keys
 
 
 def stem_of(path: str) -> str:

@@ -197,8 +197,8 @@ def _restore_unless_changed(
 
 def _identity(path: Path) -> list[int]:
     """Returns values that identify a file even after a move: size and modification time."""
-    found = path.stat()
-    return [found.st_size, found.st_mtime_ns]
+    status = path.stat()
+    return [status.st_size, status.st_mtime_ns]
 
 
 def _journal_path(path: Path | None, folder: Path) -> str | None:

@@ -100,11 +100,11 @@ class StagedFolder:
 
     def make(self, write: Callable[[Path], object]) -> None:
         """Calls a function that writes the files."""
-        made = self._folder / self.target.name
+        main_file = self._folder / self.target.name
         with _naming_target(self.target, {self._folder: self.target.parent}):
             self._folder.mkdir()
-            write(made)
-            if not made.exists():
+            write(main_file)
+            if not main_file.exists():
                 raise OSError(f"'{self.target}' was not written")
             for path in self._folder.iterdir():
                 sync(path)
@@ -268,9 +268,9 @@ def as_target(path: str | os.PathLike[str]) -> Path:
         ValueError: The argument is no path.
         OSError: See `check_target`.
     """
-    given = as_path(path)
-    check_regular(Path(given), "path: ")
-    target = Path(os.path.realpath(given))
+    name = as_path(path)
+    check_regular(Path(name), "path: ")
+    target = Path(os.path.realpath(name))
     check_target(target, "path: ")
     return target
 

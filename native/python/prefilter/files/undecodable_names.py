@@ -31,19 +31,19 @@ def readable_name(path: str | os.PathLike[str]) -> Iterator[str]:
 
     Error messages show the file's own path.
     """
-    given = os.fspath(path)
-    if is_text(given):
-        yield given
+    name = os.fspath(path)
+    if is_text(name):
+        yield name
         return
     with temporary_folder() as folder:
-        link = folder / f"file{_ending(given)}"
-        link.symlink_to(os.path.abspath(given))
+        link = folder / f"file{_ending(name)}"
+        link.symlink_to(os.path.abspath(name))
         try:
             yield str(link)
         except (OSError, ValueError) as error:
             if type(error) not in (OSError, ValueError):
                 raise  # Subclasses hold more than a message.
-            raise type(error)(str(error).replace(str(link), given)) from error
+            raise type(error)(str(error).replace(str(link), name)) from error
 
 
 def reads_any_name(
@@ -72,9 +72,9 @@ def writes_any_name(
             function(path, *arguments, **more)
             return
         with temporary_folder() as folder:
-            made = folder / f"file{_ending(os.fspath(path))}"
-            function(made, *arguments, **more)
-            shutil.move(made, path)
+            temporary = folder / f"file{_ending(os.fspath(path))}"
+            function(temporary, *arguments, **more)
+            shutil.move(temporary, path)
 
     return write
 

@@ -27,16 +27,16 @@ def to_linear(image: npt.ArrayLike, *, threads: int = 0) -> FloatArray:
     """
     stored = as_texels("image", image)
     if stored.dtype == np.uint8:
-        made = _native.decode_bytes(stored, as_threads(threads))
+        converted = _native.decode_bytes(stored, as_threads(threads))
     else:
-        made = _native.decode_srgb(as_image("image", stored), as_threads(threads))
-    return in_form_of(image, made)
+        converted = _native.decode_srgb(as_image("image", stored), as_threads(threads))
+    return in_form_of(image, converted)
 
 
 def to_srgb(image: npt.ArrayLike, *, threads: int = 0) -> FloatArray:
     """Encodes scene-linear values as sRGB: the inverse of `to_linear`."""
-    made = _native.encode_srgb(as_image("image", image), as_threads(threads))
-    return in_form_of(image, made)
+    converted = _native.encode_srgb(as_image("image", image), as_threads(threads))
+    return in_form_of(image, converted)
 
 
 def as_light(stored: np.ndarray, srgb: bool, threads: int) -> FloatArray:

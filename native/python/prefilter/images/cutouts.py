@@ -12,13 +12,12 @@ from .._border.arguments import (
     Check,
     ProgressCallback,
     Wrap,
-    as_items,
     as_number,
     as_progress,
     as_wrap,
     set_options,
 )
-from .._border.arrays import FloatArray, as_image, as_threads, in_form_of
+from .._border.arrays import FloatArray, as_images, as_threads, in_form_of
 from ..meshes.surface import Surface, as_surfaces
 
 _CHECKS: dict[str, Check] = {
@@ -72,12 +71,7 @@ def keep_coverage(
         Cancelled: The progress callback returned False.
     """
     options = set_options(_native.CoverageOptions(), _CHECKS, locals())
-    if not isinstance(levels, Sequence):
-        raise ValueError(f"levels: a {type(levels).__name__}; a list of arrays is needed")
-    images = [
-        as_image(f"levels: level {k}", level)
-        for k, level in enumerate(as_items("levels", levels, "a list of images"))
-    ]
-    kept = _native.keep_coverage(images, as_surfaces(surface), options, as_progress(progress))
-    made = [images[0].copy(), *kept]
-    return [in_form_of(level, image) for level, image in zip(levels, made, strict=True)]
+    images = as_images(levels)
+    coarser = _native.keep_coverage(images, as_surfaces(surface), options, as_progress(progress))
+    results = [images[0].copy(), *coarser]
+    return [in_form_of(level, image) for level, image in zip(levels, results, strict=True)]

@@ -24,12 +24,12 @@ class PixelFilter(NamedTuple):
     uses: tuple[str, ...]
 
 
-PIXEL_FILTERS = tuple(PixelFilter(*found) for found in _native.pixel_filters())
+PIXEL_FILTERS = tuple(PixelFilter(*row) for row in _native.pixel_filters())
 
 
 def names_for(use: str) -> tuple[Any, ...]:
     """Returns the names of the filters for a use; `_border.names` has a type of them."""
-    return tuple(found.name for found in PIXEL_FILTERS if use in found.uses)
+    return tuple(filter.name for filter in PIXEL_FILTERS if use in filter.uses)
 
 
 class MipmapFilter(NamedTuple):
@@ -46,5 +46,5 @@ class MipmapFilter(NamedTuple):
     is_fit: bool
 
 
-MIPMAP_FILTERS = tuple(MipmapFilter(*found) for found in _native.mipmap_filters())
+MIPMAP_FILTERS = tuple(MipmapFilter(*row) for row in _native.mipmap_filters())
 """All filters: kernels, "-covered" kernels, least squares, and filters over the surface."""

@@ -16,7 +16,6 @@ from .._border.arguments import (
     ProgressCallback,
     Wrap,
     as_bounds,
-    as_items,
     as_level_count,
     as_name,
     as_number,
@@ -25,7 +24,7 @@ from .._border.arguments import (
     is_srgb,
     set_options,
 )
-from .._border.arrays import as_image, as_texels, as_threads, in_form_of
+from .._border.arrays import as_image, as_images, as_texels, as_threads, in_form_of
 from .._border.names import Encoding, MipmapFilterName, Reader
 from ..meshes.surface import Surface, as_surfaces
 from ..sampling.levels import FilteredLevels
@@ -154,16 +153,16 @@ def mipmaps(
     options = set_options(_native.MipmapOptions(), _CHECKS, locals())
     surfaces, report = as_surfaces(surface), as_progress(progress)
     stored, srgb = as_texels("image", image), is_srgb(encoding)
-    made: list[npt.NDArray[Any]]
+    coarser: list[npt.NDArray[Any]]
     if stored.dtype == np.uint8:
-        made = _native.coarser_byte_levels(stored, srgb, surfaces, options, report)
+        coarser = _native.coarser_byte_levels(stored, srgb, surfaces, options, report)
     else:
         light = as_light(stored, srgb, options.threads)
-        made = _native.coarser_levels(light, surfaces, options, report)
+        coarser = _native.coarser_levels(light, surfaces, options, report)
         if stored.dtype == np.uint16:
-            made = [as_words(level, srgb, options.threads) for level in made]
+            coarser = [as_words(level, srgb, options.threads) for level in coarser]
     # Copied once the memory for filtering is free again.
-    return FilteredLevels([in_form_of(image, level) for level in (stored.copy(), *made)], filter)
+    return FilteredLevels([in_form_of(image, level) for level in (stored.copy(), *coarser)], filter)
 
 
 def coarser_levels(
@@ -199,11 +198,11 @@ def coarser_levels(
     surfaces, report = as_surfaces(surface), as_progress(progress)
     stored, srgb = as_texels("image", image), is_srgb(encoding)
     if stored.dtype == np.uint8:
-        made = _native.coarser_float_levels_of_bytes(stored, srgb, surfaces, options, report)
+        coarser = _native.coarser_float_levels_of_bytes(stored, srgb, surfaces, options, report)
     else:
         light = as_light(stored, srgb, options.threads)
-        made = _native.coarser_levels(light, surfaces, options, report)
-    return FilteredLevels((in_form_of(image, level) for level in made), filter)
+        coarser = _native.coarser_levels(light, surfaces, options, report)
+    return FilteredLevels((in_form_of(image, level) for level in coarser), filter)
 
 
 def mipmap_error(
@@ -247,13 +246,8 @@ def mipmap_error(
         values = np.asarray(mip_values, np.float64)
     except (TypeError, ValueError) as error:
         raise ValueError(f"mip_values: numbers are needed: {error}") from error
-    if not isinstance(levels, Sequence):
-        raise ValueError(f"levels: a {type(levels).__name__}; a list of arrays is needed")
     errors = _native.mipmap_error(
-        [
-            as_image(f"levels: level {k}", level)
-            for k, level in enumerate(as_items("levels", levels, "a list of images"))
-        ],
+        as_images(levels),
         as_image("image", image),
         as_surfaces(surface),
         values.ravel().tolist(),
@@ -291,16 +285,8 @@ def seam_contrast(
         ValueError: An argument is out of range, or a texel that a seam reads is not finite.
         Cancelled: The progress callback returned False.
     """
-    if not isinstance(levels, Sequence):
-        raise ValueError(f"levels: a {type(levels).__name__}; a list of arrays is needed")
     return np.array(
         _native.seam_contrast(
-            [
-                as_image(f"levels: level {k}", level)
-                for k, level in enumerate(as_items("levels", levels, "a list of images"))
-            ],
-            as_surfaces(surface),
-            as_wrap(wrap),
-            as_progress(progress),
+            as_images(levels), as_surfaces(surface), as_wrap(wrap), as_progress(progress)
         )
     )

@@ -115,17 +115,17 @@ def normal_mipmaps(
         Cancelled: The progress callback returned False.
     """
     options = set_options(_native.NormalMipmapOptions(), _CHECKS, locals())
-    given = as_array("normals", normals)
-    check_shape("normals", given, ("height", "width", 3))
+    array = as_array("normals", normals)
+    check_shape("normals", array, ("height", "width", 3))
     image = as_image("normals", normals)
     rough = None if roughness is None else _as_roughness(roughness, image.shape[:2])
-    made, rougher = _native.normal_mipmaps(
+    coarser, roughness_levels = _native.normal_mipmaps(
         image, rough, as_surfaces(surface), options, as_progress(progress)
     )
-    directions = [image.copy(), *made]
+    directions = [image.copy(), *coarser]
     if roughness is None or rough is None:
         return directions
-    return directions, [in_form_of(roughness, level) for level in (rough.copy(), *rougher)]
+    return directions, [in_form_of(roughness, level) for level in (rough.copy(), *roughness_levels)]
 
 
 def _as_roughness(roughness: npt.ArrayLike, size: tuple[int, int]) -> FloatArray:
@@ -134,6 +134,6 @@ def _as_roughness(roughness: npt.ArrayLike, size: tuple[int, int]) -> FloatArray
         if number.dtype.kind not in "fiu" or not 0 <= number <= 1:
             raise ValueError(f"roughness: {roughness!r}; a number in [0, 1] or an image is needed")
         return np.full((*size, 1), number, np.float32)
-    given = as_array("roughness", roughness)
-    check_shape("roughness", given, size if given.ndim == 2 else (*size, 1))
+    array = as_array("roughness", roughness)
+    check_shape("roughness", array, size if array.ndim == 2 else (*size, 1))
     return as_image("roughness", roughness)

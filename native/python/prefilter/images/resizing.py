@@ -187,11 +187,11 @@ def resize(
     if encoding is None:
         return in_form_of(image, _native.resize(as_image("image", image), *asked))
     stored, srgb = as_texels("image", image), is_srgb(encoding)
-    made: npt.NDArray[Any]
+    resized: npt.NDArray[Any]
     if stored.dtype == np.uint8:
-        made = _native.resize_bytes(stored, srgb, *asked)
+        resized = _native.resize_bytes(stored, srgb, *asked)
     else:
-        made = _native.resize(as_light(stored, srgb, options.threads), *asked)
+        resized = _native.resize(as_light(stored, srgb, options.threads), *asked)
         if stored.dtype == np.uint16:
-            made = as_words(made, srgb, options.threads)
-    return in_form_of(image, made)
+            resized = as_words(resized, srgb, options.threads)
+    return in_form_of(image, resized)

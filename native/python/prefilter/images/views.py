@@ -16,14 +16,13 @@ from .._border.arguments import (
     ProgressCallback,
     Wrap,
     as_bounds,
-    as_items,
     as_name,
     as_number,
     as_progress,
     as_wrap,
     set_options,
 )
-from .._border.arrays import as_image, as_threads, in_form_of
+from .._border.arrays import as_images, as_threads, in_form_of
 from ..meshes.surface import Surface, as_surfaces
 from ..sampling.levels import FilteredLevels
 
@@ -85,17 +84,12 @@ def fit_to_views(
             finite.
         Cancelled: The progress callback returned False.
     """
-    if not isinstance(levels, Sequence):
-        raise ValueError(f"levels: a {type(levels).__name__}; a list of arrays is needed")
+    images = as_images(levels)
     options = set_options(_native.ViewFitOptions(), _CHECKS, locals())
-    images = [
-        as_image(f"levels: level {k}", level)
-        for k, level in enumerate(as_items("levels", levels, "a list of images"))
-    ]
-    made: list[npt.NDArray[Any]] = _native.fit_to_views(
+    coarser: list[npt.NDArray[Any]] = _native.fit_to_views(
         images, as_surfaces(surface), options, as_progress(progress)
     )
     return FilteredLevels(
-        [in_form_of(levels[0], level) for level in (images[0].copy(), *made)],
+        [in_form_of(levels[0], level) for level in (images[0].copy(), *coarser)],
         getattr(levels, "filter", None),
     )

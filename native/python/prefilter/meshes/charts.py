@@ -44,7 +44,7 @@ def uv_charts(
     """
     points, indices = as_mesh(positions, triangles)
     maps = [
-        as_corner_uvs(f"uvs[{i}]", one, indices, len(points), np.float32)
-        for i, one in enumerate(as_items("uvs", uvs, "a list of UV maps"))
+        as_corner_uvs(f"uvs[{i}]", uv_map, indices, len(points), np.float32)
+        for i, uv_map in enumerate(as_items("uvs", uvs, "a list of UV maps"))
     ]
     return _native.uv_charts(points, indices, maps, as_progress(progress), as_threads(threads))

@@ -46,7 +46,7 @@ def mesh_edges(
             value is not finite, or there are more than 715827882 triangles.
         Cancelled: `progress` returned False.
     """
-    found = _native.mesh_edges(
+    edges = _native.mesh_edges(
         *as_mesh(positions, triangles), as_progress(progress), as_threads(threads)
     )
-    return MeshEdges(*found)
+    return MeshEdges(*edges)

@@ -154,7 +154,7 @@ def corner_points(
     source = as_mesh(
         source_positions, source_triangles, names=("source_positions", "source_triangles")
     )
-    (found, weights, _), corners = _native.corner_points(
+    (nearest, weights, _), corners = _native.corner_points(
         *surface,
         as_labels("origins", origins, len(surface[1]), "triangles"),
         *source,
@@ -162,4 +162,4 @@ def corner_points(
         as_progress(progress),
         as_threads(threads),
     )
-    return CornerPoints(found, weights, corners)
+    return CornerPoints(nearest, weights, corners)

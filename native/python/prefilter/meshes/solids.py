@@ -108,11 +108,11 @@ def as_solid(
     options = set_options(_native.SolidOptions(), _CHECKS, locals())
     points, indices = as_mesh(positions, triangles)
     mesh, report = _native.as_solid(points, indices, options, as_progress(progress))
-    found, corners, origins = mesh or (points, indices, None)
+    vertices, corners, origins = mesh or (points, indices, None)
     turned = np.empty(0, np.int64)
     if origins is not None and report[3] + report[4]:
-        turned = _turned(points[indices], found[corners], origins)
-    return SolidMesh(found, corners, origins, *report, turned)
+        turned = _turned(points[indices], vertices[corners], origins)
+    return SolidMesh(vertices, corners, origins, *report, turned)
 
 
 def _turned(

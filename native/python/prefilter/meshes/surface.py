@@ -215,18 +215,18 @@ class Surface(_native.Surface):
         """
         if not isinstance(surfaces, Iterable):
             raise ValueError(f"surfaces: a {type(surfaces).__name__}; a list of Surface is needed")
-        kept: list[Surface] = []
+        joined_surfaces: list[Surface] = []
         for surface in surfaces:
             if not isinstance(surface, Surface):
                 raise ValueError(f"surfaces: holds a {type(surface).__name__}; a Surface is needed")
-            for i, other in enumerate(kept):
+            for i, other in enumerate(joined_surfaces):
                 joined = other.with_areas_of(surface)
                 if joined is not None:
-                    kept[i] = cls._take(joined)
+                    joined_surfaces[i] = cls._take(joined)
                     break
             else:
-                kept.append(surface)
-        return kept
+                joined_surfaces.append(surface)
+        return joined_surfaces
 
     @classmethod
     def _take(cls, native: _native.Surface) -> Self:
@@ -245,9 +245,9 @@ def as_surfaces(surface: Surface | Sequence[Surface] | None) -> list[Surface]:
     surfaces = [surface] if isinstance(surface, _native.Surface) else surface
     if not isinstance(surfaces, Sequence):
         raise ValueError(f"surface: a {type(surface).__name__}; a Surface or a list is needed")
-    for found in surfaces:
-        if not isinstance(found, _native.Surface):
-            raise ValueError(f"surface: holds a {type(found).__name__}; a Surface is needed")
+    for item in surfaces:
+        if not isinstance(item, _native.Surface):
+            raise ValueError(f"surface: holds a {type(item).__name__}; a Surface is needed")
     return list(surfaces)
 
 
@@ -257,20 +257,20 @@ def _weights(
     """Returns weights, and what they belong to: vertices, triangles (or faces), or corners."""
     if weights is None:
         return None, ""
-    found = as_array("weights", weights)
-    if is_real(found):
-        found = np.ascontiguousarray(found, np.float64)
-        if found.shape == (vertices,):
-            return found, "vertices"
-        if found.shape in {(parts,), (parts, 1)}:
-            return found.reshape(-1), "triangles"
-        if corners is not None and found.shape == (parts, corners):
-            return found, "corners"
+    values = as_array("weights", weights)
+    if is_real(values):
+        values = np.ascontiguousarray(values, np.float64)
+        if values.shape == (vertices,):
+            return values, "vertices"
+        if values.shape in {(parts,), (parts, 1)}:
+            return values.reshape(-1), "triangles"
+        if corners is not None and values.shape == (parts, corners):
+            return values, "corners"
     allowed = [f"({vertices},) for vertices", f"({parts},) or ({parts}, 1) for {noun}"]
     if corners is not None:
         allowed.append(f"({parts}, {corners}) for corners")
     raise ValueError(
-        f"weights: shape {found.shape} of {found.dtype}; real numbers of the shape "
+        f"weights: shape {values.shape} of {values.dtype}; real numbers of the shape "
         f"{', '.join(allowed)} are needed"
     )
 
@@ -294,9 +294,9 @@ def _sharp(
 def _mask(name: str, mask: npt.ArrayLike | None, length: int) -> np.ndarray | None:
     if mask is None:
         return None
-    found = np.asarray(mask)
-    if found.dtype != np.bool_ or found.shape != (length,):
+    values = np.asarray(mask)
+    if values.dtype != np.bool_ or values.shape != (length,):
         raise ValueError(
-            f"{name}: shape {found.shape} of {found.dtype}; ({length},) of bool is needed"
+            f"{name}: shape {values.shape} of {values.dtype}; ({length},) of bool is needed"
         )
-    return np.ascontiguousarray(found)
+    return np.ascontiguousarray(values)

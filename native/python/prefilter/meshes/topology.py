@@ -66,7 +66,7 @@ def mesh_topology(
             value is not finite, or there are more than 715827882 triangles.
         Cancelled: `progress` returned False.
     """
-    found = _native.mesh_topology(
+    topology = _native.mesh_topology(
         *as_mesh(positions, triangles), weld, as_progress(progress), as_threads(threads)
     )
-    return MeshTopology(*found)
+    return MeshTopology(*topology)

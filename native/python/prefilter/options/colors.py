@@ -13,14 +13,14 @@ _HEX = re.compile(r"#?([0-9a-fA-F]{6})([0-9a-fA-F]{2})?")
 
 def from_hex(text: str) -> Color | None:
     """Parses a color; None if the text is not one."""
-    found = _HEX.fullmatch(text.strip())
-    if found is None:
+    match = _HEX.fullmatch(text.strip())
+    if match is None:
         return None
     import numpy as np  # Imported late: most commands need no numpy to start.
 
     import prefilter
 
-    numbers = bytes.fromhex(found[1] + (found[2] or "ff"))
+    numbers = bytes.fromhex(match[1] + (match[2] or "ff"))
     values = prefilter.to_linear(np.array([[list(numbers)]], np.float32) / 255)[0, 0]
     red, green, blue, alpha = (float(value) for value in values)
     return red, green, blue, alpha

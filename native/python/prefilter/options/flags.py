@@ -36,24 +36,24 @@ def add_flags(
         preferred: Note that the help adds to the default of an option that follows a preference.
     """
     group = parser.add_mutually_exclusive_group() if exclusive else parser
-    for name, default, flag, found in _flags(settings, names):
+    for name, default, flag, option in _flags(settings, names):
         more: dict[str, Any] = {"default": argparse.SUPPRESS, "dest": name}
-        description = found.flag_description or found.description
+        description = option.flag_description or option.description
         text = description[:1].lower() + description[1:]
         if isinstance(default, bool):
             more["action"] = argparse.BooleanOptionalAction
             text += f" (default: {'on' if default else 'off'})"
         else:
-            more |= {"type": partial(_read, default, found), "metavar": found.metavar}
-            if isinstance(default, tuple) and found.choices:
+            more |= {"type": partial(_read, default, option), "metavar": option.metavar}
+            if isinstance(default, tuple) and option.choices:
                 more["nargs"] = "+"
-            elif isinstance(default, tuple) and found.subtype != "COLOR":
+            elif isinstance(default, tuple) and option.subtype != "COLOR":
                 more["nargs"] = len(default)
-            notes = [found.allowed] if found.has_limits else []
+            notes = [option.allowed] if option.has_limits else []
             # Another option says which color applies without the flag.
-            if default != "" and found.subtype != "COLOR" and name not in without_default:
-                follows = preferred if found.preference else ""
-                notes.append(f"default: {found.shown(default)}{follows}")
+            if default != "" and option.subtype != "COLOR" and name not in without_default:
+                follows = preferred if option.preference else ""
+                notes.append(f"default: {option.shown(default)}{follows}")
             if notes:
                 text += f" ({'; '.join(notes)})"
         target = group if name in exclusive else parser
@@ -74,20 +74,23 @@ def tables(settings: type, *names: str) -> list[str]:
     """Returns the choices of each flag that has any, for the end of a help text."""
     return [
         "\n".join(
-            [f"{flag}:", *(f"  {key:<18}{one.description}" for key, one in found.choices.items())]
+            [
+                f"{flag}:",
+                *(f"  {key:<18}{choice.description}" for key, choice in option.choices.items()),
+            ]
         )
-        for _, _, flag, found in _flags(settings, names)
-        if found.choices
+        for _, _, flag, option in _flags(settings, names)
+        if option.choices
     ]
 
 
 def _flags(settings: type, names: tuple[str, ...]) -> Iterator[tuple[str, Any, str, Option]]:
     """Yields name, default, flag and option of the fields that have flags."""
-    for name, default, found in declared(settings):
-        if found.flag == "" or (names and name not in names):
+    for name, default, option in declared(settings):
+        if option.flag == "" or (names and name not in names):
             continue
         flag = name.removeprefix("use_").replace("_", "-")
-        yield name, default, found.flag or f"--{flag}", found
+        yield name, default, option.flag or f"--{flag}", option
 
 
 def _read(default: Any, declaration: Option, text: str) -> Any:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import prefilter
 
+from .. import _native
 from .filters import LABELS
 from .options import Choice, number, one_of, switch, text, threads
 
@@ -42,14 +43,14 @@ def _kernel_choice(name: str) -> Choice:
 
 _FITS = _PAM | _LEAST_SQUARES
 FILTERS = _FITS | {
-    one.name: _kernel_choice(one.name)
-    for one in sorted(prefilter.MIPMAP_FILTERS, key=lambda one: one.needs_surface)
-    if one.name not in _FITS
+    filter.name: _kernel_choice(filter.name)
+    for filter in sorted(prefilter.MIPMAP_FILTERS, key=lambda filter: filter.needs_surface)
+    if filter.name not in _FITS
 }
 TEXTURE_SPACE_FILTERS = frozenset(
-    one.name for one in prefilter.MIPMAP_FILTERS if not one.needs_surface
+    filter.name for filter in prefilter.MIPMAP_FILTERS if not filter.needs_surface
 )
-FITTED_FILTERS = frozenset(one.name for one in prefilter.MIPMAP_FILTERS if one.is_fit)
+FITTED_FILTERS = frozenset(filter.name for filter in prefilter.MIPMAP_FILTERS if filter.is_fit)
 """Filters that depend on how the levels are looked up."""
 SEAM_FILTERS = FITTED_FILTERS - TEXTURE_SPACE_FILTERS
 """Filters that take UV seams into account."""
@@ -132,9 +133,13 @@ OBJECTS = {
 }
 
 
-def _size(texel_format: str) -> str:
-    """Returns the size of a format's texels in words, such as "half a byte per texel"."""
-    size = prefilter.TEXEL_FORMATS[texel_format].texel_bytes
+_LAYOUTS = _native.block_layouts()  # TEXEL_FORMATS would load numpy.
+
+
+def _size(name: str) -> str:
+    """Returns the size of a block format's texels in words, such as "half a byte per texel"."""
+    columns, rows, block_bytes, _ = _LAYOUTS[name]
+    size = block_bytes / (columns * rows)
     words = {0.25: "a quarter of a byte", 0.5: "half a byte", 1.0: "1 byte"}
     return f"{words.get(size, f'{size:.2g} bytes')} per texel"
 
@@ -150,9 +155,9 @@ TEXTURE_FORMATS = {
         "Compressed blocks that suit the content of the image: BC7 for color, BC5 for "
         "normal maps, BC4 for grayscale data, BC6H for light beyond 1",
     ),
-    "rgba8": Choice("8-Bit", f"{_size('rgba8')}, uncompressed"),
-    "rgba16f": Choice("Half Float", f"Scene-linear, {_size('rgba16f')}, for high dynamic range"),
-    "rgba32f": Choice("Float", f"Scene-linear, {_size('rgba32f')}"),
+    "rgba8": Choice("8-Bit", "4 bytes per texel, uncompressed"),
+    "rgba16f": Choice("Half Float", "Scene-linear, 8 bytes per texel, for high dynamic range"),
+    "rgba32f": Choice("Float", "Scene-linear, 16 bytes per texel"),
     "bc1": Choice("BC1", f"Compressed color, {_size('bc1')}; alpha is 0 or 1"),
     "bc1-rgb": Choice("BC1 RGB", f"Compressed color without alpha, {_size('bc1-rgb')}"),
     "bc3": Choice("BC3", f"Compressed color and alpha, {_size('bc3')}"),

@@ -87,9 +87,11 @@ class Option:
             chosen = {value} if isinstance(value, str) else set(value)
             return chosen <= self.choices.keys()
         if self.subtype == "COLOR":
-            return len(value) == 4 and all(0.0 <= one <= 1.0 + _ROUNDING for one in value)
+            return len(value) == 4 and all(
+                0.0 <= component <= 1.0 + _ROUNDING for component in value
+            )
         if isinstance(value, tuple):
-            return all(self.allows(one) for one in value)
+            return all(self.allows(component) for component in value)
         if not isinstance(value, int | float):
             return True
         # Blender stores numbers in single precision.
@@ -106,7 +108,7 @@ class Option:
         if self.subtype == "COLOR":
             return to_hex(value)
         if isinstance(value, tuple):
-            return " ".join(self.shown(one) for one in value)
+            return " ".join(self.shown(component) for component in value)
         return str(value)
 
 
@@ -160,13 +162,17 @@ def threads() -> Any:
 
 def declared(settings: type) -> Iterator[tuple[str, Any, Option]]:
     """Yields the name, the default and the option of each field of a dataclass."""
-    for one in dataclasses.fields(settings):
-        yield one.name, one.default, one.metadata[_KEY]
+    for setting in dataclasses.fields(settings):
+        yield setting.name, setting.default, setting.metadata[_KEY]
 
 
 def option(settings: type, name: str) -> tuple[Any, Option]:
     """Returns the default and the option of a field of a dataclass."""
-    return next((default, found) for other, default, found in declared(settings) if other == name)
+    return next(
+        (default, declaration)
+        for other, default, declaration in declared(settings)
+        if other == name
+    )
 
 
 def check(settings: Any) -> None:
@@ -188,9 +194,11 @@ def table(settings: type) -> str:
     """
     own = inspect.get_annotations(settings)
     rows = ["| Setting | Default | Meaning |", "|---|---|---|"]
-    for name, default, found in declared(settings):
-        if found.label and name in own:
-            rows.append(f"| {found.label} | {_shown_default(default, found)} | {_meaning(found)} |")
+    for name, default, option in declared(settings):
+        if option.label and name in own:
+            rows.append(
+                f"| {option.label} | {_shown_default(default, option)} | {_meaning(option)} |"
+            )
     return "\n".join(rows)
 
 
@@ -213,6 +221,6 @@ def _meaning(declaration: Option) -> str:
     parts = [f"{declaration.description}."]
     if declaration.has_limits:
         parts[0] += f" Allowed: {declaration.allowed}."
-    for key, one in declaration.choices.items():
-        parts.append(f"**{one.label}** (`{key}`): {one.description}.")
+    for key, choice in declaration.choices.items():
+        parts.append(f"**{choice.label}** (`{key}`): {choice.description}.")
     return "<br>".join(parts)

@@ -68,7 +68,7 @@ def sample_anisotropic(
     options = set_options(_native.AnisotropicOptions(), _CHECKS, locals())
     pyramid = as_pyramid(levels)
     places = as_coordinates(coordinates)
-    found = _native.sample_anisotropic(
+    samples = _native.sample_anisotropic(
         pyramid,
         native_table(table, levels),
         places,
@@ -76,4 +76,4 @@ def sample_anisotropic(
         options,
         as_progress(progress),
     )
-    return as_samples(levels, found)
+    return as_samples(levels, samples)

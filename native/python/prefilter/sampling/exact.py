@@ -55,14 +55,14 @@ def sample_exact(
     stored = as_image("image", image)
     check_texels("image", stored)
     places = as_coordinates(coordinates)
-    found = _native.sample_exact(
+    samples = _native.sample_exact(
         stored,
         places,
         as_scales(scales, len(places)).reshape(-1),
         options,
         as_progress(progress),
     )
-    return in_form_of(image, found)
+    return in_form_of(image, samples)
 
 
 def sample_ewa(
@@ -101,11 +101,11 @@ def sample_ewa(
     stored = as_image("image", image)
     check_texels("image", stored)
     places = as_coordinates(coordinates)
-    found = _native.sample_ewa(
+    samples = _native.sample_ewa(
         stored,
         places,
         as_jacobians(jacobians, len(places)),
         options,
         as_progress(progress),
     )
-    return in_form_of(image, found)
+    return in_form_of(image, samples)

@@ -101,11 +101,11 @@ def sampling_levels(
         options.premultiplied = multiplied
         return _native.sampling_levels(part, options, reports)
 
-    found = in_channel_groups(
+    groups = in_channel_groups(
         as_image("image", image), options.premultiplied, of_channels, progress
     )
     joined = [
         level[0] if len(level) == 1 else np.concatenate(level, axis=2)
-        for level in zip(*found, strict=True)
+        for level in zip(*groups, strict=True)
     ]
     return FilteredLevels((in_form_of(image, level) for level in joined), filter)

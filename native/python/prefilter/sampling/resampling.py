@@ -109,16 +109,16 @@ def resample(
         options.premultiplied = multiplied
         return _native.resample(part, homography, *size, sampler, options, reports)
 
-    found = in_channel_groups(stored, options.premultiplied, of_channels, progress)
-    return in_form_of(image, found[0] if len(found) == 1 else np.concatenate(found, axis=2))
+    groups = in_channel_groups(stored, options.premultiplied, of_channels, progress)
+    return in_form_of(image, groups[0] if len(groups) == 1 else np.concatenate(groups, axis=2))
 
 
 def _as_homography(transform: npt.ArrayLike) -> npt.NDArray[np.float64]:
-    found = as_array("transform", transform)
-    if found.dtype.kind not in "iuf":
-        raise ValueError(f"transform: dtype {found.dtype}; numbers are needed")
-    if found.shape not in ((3, 3), (2, 3)):
-        raise ValueError(f"transform: shape {found.shape}; (3, 3) or (2, 3) is needed")
-    if len(found) == 2:
-        found = np.vstack([found, (0, 0, 1)])
-    return np.ascontiguousarray(found, np.float64)
+    matrix = as_array("transform", transform)
+    if matrix.dtype.kind not in "iuf":
+        raise ValueError(f"transform: dtype {matrix.dtype}; numbers are needed")
+    if matrix.shape not in ((3, 3), (2, 3)):
+        raise ValueError(f"transform: shape {matrix.shape}; (3, 3) or (2, 3) is needed")
+    if len(matrix) == 2:
+        matrix = np.vstack([matrix, (0, 0, 1)])
+    return np.ascontiguousarray(matrix, np.float64)

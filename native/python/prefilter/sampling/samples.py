@@ -59,7 +59,7 @@ def sample(
     options = set_options(_native.SampleOptions(), SAMPLE_CHECKS, locals())
     pyramid = as_pyramid(levels)
     places = as_coordinates(coordinates)
-    found = _native.sample(
+    samples = _native.sample(
         pyramid,
         native_table(table, levels),
         places,
@@ -67,7 +67,7 @@ def sample(
         options,
         as_progress(progress),
     )
-    return as_samples(levels, found)
+    return as_samples(levels, samples)
 
 
 def native_table(

@@ -397,27 +397,27 @@ def _formatted(table: SamplingTable) -> str:
 def _parsed(data: bytes) -> _native.SamplingTable:
     """Parses a file's contents. Raises ValueError if they are no table."""
     try:
-        found = json.loads(data)
+        table = json.loads(data)
     except json.JSONDecodeError as error:
         raise ValueError(f"no JSON from line {error.lineno}, column {error.colno} on") from None
     except (UnicodeDecodeError, RecursionError):
         raise ValueError("it is no JSON") from None
-    name = _member(found, "format", str)
-    version = _member(found, "version", int)
+    name = _member(table, "format", str)
+    version = _member(table, "version", int)
     if (name, version) != (_FORMAT, _VERSION):
         raise ValueError(
             f"it is '{name}' of version {version}; '{_FORMAT}' of {_VERSION} is needed"
         )
     shape = _native.TableShape()
-    shape.filter = _member(found, "filter", str)
-    shape.texels = _count(found, "texels")
-    shape.degree = _count(found, "degree")
-    shape.grid, shape.slices = _as_subdomains(_member(found, "subdomains", list))
-    shape.ramp_weight = as_number("ramp_weight", _member(found, "ramp_weight", int, float))
+    shape.filter = _member(table, "filter", str)
+    shape.texels = _count(table, "texels")
+    shape.degree = _count(table, "degree")
+    shape.grid, shape.slices = _as_subdomains(_member(table, "subdomains", list))
+    shape.ramp_weight = as_number("ramp_weight", _member(table, "ramp_weight", int, float))
     # Absent in files from before these parameters existed.
-    shape.spectrum = _member({"spectrum": "white", **found}, "spectrum", str)
-    shape.target = _member({"target": None, **found}, "target", str, type(None)) or ""
-    sections = _member(found, "sections", list)
+    shape.spectrum = _member({"spectrum": "white", **table}, "spectrum", str)
+    shape.target = _member({"target": None, **table}, "target", str, type(None)) or ""
+    sections = _member(table, "sections", list)
     if len(sections) != len(_LEVELS):
         raise ValueError(f"sections: found {len(sections)}; {len(_LEVELS)} are needed")
     return _native.SamplingTable(
@@ -429,22 +429,22 @@ def _parsed(data: bytes) -> _native.SamplingTable:
     )
 
 
-def _section(found: Any, levels: int, texels: int) -> tuple[np.ndarray, ...]:
-    if _member(found, "levels", int) != levels:
-        raise ValueError(f"levels: found {found['levels']}, in the place of {levels}")
-    offsets = _array(found, "offsets")
+def _section(section: Any, levels: int, texels: int) -> tuple[np.ndarray, ...]:
+    if _member(section, "levels", int) != levels:
+        raise ValueError(f"levels: found {section['levels']}, in the place of {levels}")
+    offsets = _array(section, "offsets")
     if not np.array_equal(offsets, np.rint(offsets)) or np.abs(offsets).max(initial=0) > 2**15:
         raise ValueError("offsets: small whole numbers are needed")
     if offsets.ndim != 3 or offsets.shape[1:] != (texels, 3):
         raise ValueError(f"offsets: shape {offsets.shape}; (subdomains, {texels}, 3) is needed")
-    errors = [_array(found, name) for name in ("errors", "trilinear_errors")]
-    gaps = np.zeros(0) if found.get("gaps") is None else _array(found, "gaps")
-    return (offsets.astype(np.int32), _array(found, "coefficients"), *errors, gaps)
+    errors = [_array(section, name) for name in ("errors", "trilinear_errors")]
+    gaps = np.zeros(0) if section.get("gaps") is None else _array(section, "gaps")
+    return (offsets.astype(np.int32), _array(section, "coefficients"), *errors, gaps)
 
 
-def _array(found: Any, name: str) -> npt.NDArray[np.float64]:
+def _array(json_object: Any, name: str) -> npt.NDArray[np.float64]:
     try:
-        array = np.array(_member(found, name, list), np.float64)
+        array = np.array(_member(json_object, name, list), np.float64)
     except (TypeError, ValueError, OverflowError):
         raise ValueError(f"{name}: lists of numbers, of equal lengths, are needed") from None
     if not np.isfinite(array).all():
@@ -452,14 +452,14 @@ def _array(found: Any, name: str) -> npt.NDArray[np.float64]:
     return array
 
 
-def _count(found: Any, name: str) -> int:
-    return as_int(name, _member(found, name, int), "a small whole number is needed")
+def _count(json_object: Any, name: str) -> int:
+    return as_int(name, _member(json_object, name, int), "a small whole number is needed")
 
 
-def _member(found: Any, name: str, *kinds: type) -> Any:
-    if not isinstance(found, dict) or name not in found:
+def _member(json_object: Any, name: str, *kinds: type) -> Any:
+    if not isinstance(json_object, dict) or name not in json_object:
         raise ValueError(f"it has no '{name}'")
-    value = found[name]
+    value = json_object[name]
     if not isinstance(value, kinds):
         allowed = " or ".join(kind.__name__ for kind in kinds)
         raise ValueError(f"'{name}' is a {type(value).__name__}; a {allowed} is needed")

@@ -68,8 +68,8 @@ def sample_stochastic(
     """
     options = set_options(_native.SampleOptions(), SAMPLE_CHECKS, locals())
     places = _places(levels, table, coordinates, scales, numbers)
-    found = _native.sample_stochastic(*places, options, as_progress(progress))
-    return as_samples(levels, found)
+    samples = _native.sample_stochastic(*places, options, as_progress(progress))
+    return as_samples(levels, samples)
 
 
 def pick_texels(

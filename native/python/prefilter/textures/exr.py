@@ -248,7 +248,7 @@ def _header(image: np.ndarray, format: str, mode: int, more: "_Attributes") -> b
         struct.pack("<2siB3xii", bytes([name, 0]), _FORMATS[format], 0, 1, 1) for name in names
     )
     window = struct.pack("<4i", 0, 0, width - 1, height - 1)
-    found: _Attributes = {
+    attributes: _Attributes = {
         b"channels": (b"chlist", listed + b"\0"),
         b"compression": (b"compression", bytes([_ZIP])),
         b"dataWindow": (b"box2i", window),
@@ -260,9 +260,9 @@ def _header(image: np.ndarray, format: str, mode: int, more: "_Attributes") -> b
         b"tiles": (b"tiledesc", struct.pack("<2IB", _TILE_SIDE, _TILE_SIDE, mode)),
         **more,
     }
-    is_long = any(len(name) > _LONGEST_SHORT_NAME for name in found)
+    is_long = any(len(name) > _LONGEST_SHORT_NAME for name in attributes)
     flags = _VERSION | _TILED | (_LONG_NAMES if is_long else 0)
     parts = [struct.pack("<2i", _MAGIC, flags)]
-    for name, (kind, value) in sorted(found.items()):
+    for name, (kind, value) in sorted(attributes.items()):
         parts += [name, b"\0", kind, b"\0", struct.pack("<i", len(value)), value]
     return b"".join([*parts, b"\0"])

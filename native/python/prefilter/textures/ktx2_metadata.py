@@ -37,14 +37,14 @@ def read_metadata(path: str | os.PathLike[str]) -> dict[str, str]:
 
 
 def metadata_of(data: bytes) -> dict[str, str]:
-    found: dict[str, str] = {}
+    metadata: dict[str, str] = {}
     at = 0
     while at + 4 <= min(len(data), _MOST_METADATA):
         (size,) = struct.unpack_from("<I", data, at)
         key, _, value = part_of(data, at + 4, size).partition(b"\0")
-        found[key.decode("utf-8", "replace")] = value.rstrip(b"\0").decode("utf-8", "replace")
+        metadata[key.decode("utf-8", "replace")] = value.rstrip(b"\0").decode("utf-8", "replace")
         at += 4 + size + -size % 4
-    return found
+    return metadata
 
 
 def part_of(data: bytes, start: int, size: int) -> bytes:

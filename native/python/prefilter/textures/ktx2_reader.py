@@ -54,20 +54,24 @@ class _Stored(NamedTuple):
 
 
 def _stored() -> dict[int, _Stored]:
-    found: dict[int, _Stored] = {}
-    for one in TEXEL_FORMATS.values():
-        for is_srgb, code in enumerate(one.vulkan):
+    storage: dict[int, _Stored] = {}
+    for texel_format in TEXEL_FORMATS.values():
+        for is_srgb, code in enumerate(texel_format.vulkan):
             if code:
-                dtype: Any = None if one.is_block else one.channel_type
-                found[code] = _Stored(one.name, bool(is_srgb), one.channels, dtype)
+                dtype: Any = None if texel_format.is_block else texel_format.channel_type
+                storage[code] = _Stored(
+                    texel_format.name, bool(is_srgb), texel_format.channels, dtype
+                )
     for first, name, dtype in ((70, "16", np.uint16), (76, "16f", np.float16)):
         for number, channels in enumerate(("r", "rg", "rgb", "rgba")):
-            found.setdefault(first + 7 * number, _Stored(channels + name, False, number + 1, dtype))
+            storage.setdefault(
+                first + 7 * number, _Stored(channels + name, False, number + 1, dtype)
+            )
     for number, channels in enumerate(("r", "rg", "rgb")):
-        found[100 + 3 * number] = _Stored(f"{channels}32f", False, number + 1, np.float32)
-    found[23] = _Stored("rgb8", False, 3, np.uint8)
-    found[29] = _Stored("rgb8", True, 3, np.uint8)
-    return found
+        storage[100 + 3 * number] = _Stored(f"{channels}32f", False, number + 1, np.float32)
+    storage[23] = _Stored("rgb8", False, 3, np.uint8)
+    storage[29] = _Stored("rgb8", True, 3, np.uint8)
+    return storage
 
 
 _STORED = _stored()
@@ -172,8 +176,8 @@ def _decoded(
         texels = [width * height for width, height in sizes]
         levels = []
         for number, (level, size) in enumerate(zip(file.levels, sizes, strict=True)):
-            done, end = (sum(texels[: number + i]) / sum(texels) for i in (0, 1))
-            part = progress_part(report, done, end)
+            begin, end = (sum(texels[: number + i]) / sum(texels) for i in (0, 1))
+            part = progress_part(report, begin, end)
             levels.append(_of_level(file, level, size, part, threads))
     if report is not None:
         report(1.0)

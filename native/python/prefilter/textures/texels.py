@@ -20,8 +20,8 @@ def halving_levels(levels: Sequence[npt.ArrayLike], srgb: bool) -> list[np.ndarr
     uint16 becomes float32, decoded from sRGB if `srgb` is set.
     """
     if not isinstance(levels, Sequence) or isinstance(levels, str | bytes) or not levels:
-        found = "an empty list" if isinstance(levels, list) else f"a {type(levels).__name__}"
-        raise ValueError(f"levels: {found}; a list of images, level 0 first, is needed")
+        description = "an empty list" if isinstance(levels, list) else f"a {type(levels).__name__}"
+        raise ValueError(f"levels: {description}; a list of images, level 0 first, is needed")
     images: list[np.ndarray] = []
     for number, level in enumerate(levels):
         who = f"levels: level {number}"
@@ -35,11 +35,11 @@ def halving_levels(levels: Sequence[npt.ArrayLike], srgb: bool) -> list[np.ndarr
             before = images[-1].shape
             if before[:2] == (1, 1):
                 raise ValueError(f"{who} is one too many: the one before has 1 x 1 texel")
-            wanted = max(1, before[0] // 2), max(1, before[1] // 2)
-            if (height, width) != wanted:
+            half = max(1, before[0] // 2), max(1, before[1] // 2)
+            if (height, width) != half:
                 raise ValueError(
                     f"{who} has {width} x {height} texels; half of the one before, rounded down, "
-                    f"is {wanted[1]} x {wanted[0]}"
+                    f"is {half[1]} x {half[0]}"
                 )
             if channels != before[2]:
                 raise ValueError(
@@ -72,10 +72,10 @@ def as_format(name: str, level: np.ndarray, *, needs_srgb: bool) -> TexelFormat:
         name = {1: "r8", 2: "rg8"}.get(level.shape[2], "rgba8")
         return TEXEL_FORMATS["rgba8" if needs_srgb else name]
     as_one_of("format", name, ("auto", *TEXEL_FORMATS))
-    found = TEXEL_FORMATS[name]
-    if found.channels == 2 and level.shape[2] < 2:
+    texel_format = TEXEL_FORMATS[name]
+    if texel_format.channels == 2 and level.shape[2] < 2:
         raise ValueError(f"format: '{name}' needs 2 channels; the levels have {level.shape[2]}")
-    return found
+    return texel_format
 
 
 def encoded(
@@ -138,12 +138,12 @@ def _linear_floats(
 
 def _with_channels(texels: np.ndarray, channels: int) -> np.ndarray:
     """Returns a number of channels: gray is repeated, missing colors are 0, missing alpha is 1."""
-    found = texels.shape[2]
-    if found >= channels:
+    present = texels.shape[2]
+    if present >= channels:
         return np.ascontiguousarray(texels[..., :channels])
     full = 255 if texels.dtype == np.uint8 else 1
     rgba = np.zeros((*texels.shape[:2], 4), texels.dtype)
-    rgba[..., : 3 if found == 1 else found] = texels
+    rgba[..., : 3 if present == 1 else present] = texels
     rgba[..., 3] = full
     return rgba
 

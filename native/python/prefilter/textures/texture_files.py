@@ -247,10 +247,10 @@ def _payloads(
     texels = sum(image.shape[0] * image.shape[1] for image in images)
     payloads: list[bytes] = []
     sizes: list[int] = []
-    done = 0
+    texels_done = 0
     for image in images:
         size = image.shape[0] * image.shape[1]
-        part = _part(report, done / texels, size / texels)
+        part = _part(report, texels_done / texels, size / texels)
         if part is not None and part(0.0) is False:
             raise _native.Cancelled("cancelled")
         payload = encoded(
@@ -266,7 +266,7 @@ def _payloads(
         if scheme == "zstd":
             payload = _native.supercompress(payload, _part(part, 0.5, 0.5))
         payloads.append(payload)
-        done += size
+        texels_done += size
     return payloads, sizes
 
 

@@ -100,6 +100,6 @@ def _nearest(
         u, v = i[i + j <= step] / step, j[i + j <= step] / step
         a, b, c = (corners[chosen, k][:, None] for k in range(3))
         points = (1.0 - u - v)[:, None] * a + u[:, None] * b + v[:, None] * c
-        found = tree.find(points.reshape(-1, 3), as_progress(None), threads)[2]
-        nearest[chosen] = found.reshape(len(chosen), -1).min(axis=1)
+        distances = tree.find(points.reshape(-1, 3), as_progress(None), threads)[2]
+        nearest[chosen] = distances.reshape(len(chosen), -1).min(axis=1)
     return nearest

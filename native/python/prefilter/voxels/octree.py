@@ -111,8 +111,8 @@ class Octree(_native.Octree):
             MemoryError: The grid would not fit into memory.
             Cancelled: `progress` returned False.
         """
-        wanted = self.depth if depth is None else _as_depth(depth, 0)
-        return _native.dense_values(self, wanted, as_progress(progress), as_threads(threads))
+        grid_depth = self.depth if depth is None else _as_depth(depth, 0)
+        return _native.dense_values(self, grid_depth, as_progress(progress), as_threads(threads))
 
     def values(self, points: npt.ArrayLike, *, threads: int = 0) -> npt.NDArray[np.float32]:
         """The occupancies of the leaves that hold the points; 0 outside of the bounds.
@@ -358,12 +358,12 @@ class Octree(_native.Octree):
 
 
 def _combined(
-    one: Octree, other: Octree, operation: str, progress: ProgressCallback | None, threads: int
+    octree: Octree, other: Octree, operation: str, progress: ProgressCallback | None, threads: int
 ) -> Octree:
     if not isinstance(other, _native.Octree):
         raise ValueError(f"other: a {type(other).__name__}; an Octree is needed")
     return Octree(
-        _native.combine(one, other, operation, as_progress(progress), as_threads(threads))
+        _native.combine(octree, other, operation, as_progress(progress), as_threads(threads))
     )
 
 
@@ -496,11 +496,11 @@ def _as_depth(depth: int, lowest: int) -> int:
 
 
 def _as_points(points: npt.ArrayLike) -> np.ndarray:
-    found = as_floats("points", points, ("points", 3), np.float64)
-    if not np.isfinite(found).all():
-        row = int(np.argmin(np.isfinite(found).all(axis=1)))
-        raise ValueError(f"points: row {row} is {found[row]}; all values must be finite")
-    return found
+    values = as_floats("points", points, ("points", 3), np.float64)
+    if not np.isfinite(values).all():
+        row = int(np.argmin(np.isfinite(values).all(axis=1)))
+        raise ValueError(f"points: row {row} is {values[row]}; all values must be finite")
+    return values
 
 
 def _as_box(name: str, box: Box) -> tuple[list[float], list[float]]:

@@ -65,9 +65,9 @@ def _contents(
     import zipfile
 
     archive = zipfile.ZipFile(file)
-    found = str(_array(archive, "format", np.dtype(f"<U{len(_FORMAT)}"), ()))
-    if found != _FORMAT:
-        raise ValueError(f"its format is {found!r}; {_FORMAT!r} is needed")
+    file_format = str(_array(archive, "format", np.dtype(f"<U{len(_FORMAT)}"), ()))
+    if file_format != _FORMAT:
+        raise ValueError(f"its format is {file_format!r}; {_FORMAT!r} is needed")
     depth = int(_array(archive, "depth", np.dtype(np.int64), ()))
     if not 0 <= depth <= _native.MAX_DEPTH:
         raise ValueError(f"its depth is {depth}; 0 to {_native.MAX_DEPTH} are allowed")
@@ -102,9 +102,11 @@ def _array(
     data = archive.read(member)
     file = io.BytesIO(data)
     np.lib.format.read_magic(file)
-    found, is_transposed, kind = np.lib.format.read_array_header_1_0(file)
-    if found != shape or kind != dtype or (is_transposed and len(shape) > 1):
-        raise ValueError(f"'{name}' is {kind} of shape {found}; {dtype} of {shape} is expected")
+    stored_shape, is_transposed, kind = np.lib.format.read_array_header_1_0(file)
+    if stored_shape != shape or kind != dtype or (is_transposed and len(shape) > 1):
+        raise ValueError(
+            f"'{name}' is {kind} of shape {stored_shape}; {dtype} of {shape} is expected"
+        )
     if len(data) - file.tell() != expected:
         raise ValueError(f"'{name}' has {len(data) - file.tell()} bytes; {expected} are expected")
     return np.frombuffer(data, dtype, offset=file.tell()).reshape(shape)

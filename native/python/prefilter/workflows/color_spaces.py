@@ -60,8 +60,8 @@ class ParametricCurve:
         """Returns light."""
         x = np.abs(np.asarray(values, np.float64))
         power = _power(self.a * x + self.b, self.g) + self.e
-        made: NDArray[np.float64] = np.where(x >= self.d, power, self.c * x + self.f)
-        signed: NDArray[np.float64] = np.copysign(made, values)
+        magnitude: NDArray[np.float64] = np.where(x >= self.d, power, self.c * x + self.f)
+        signed: NDArray[np.float64] = np.copysign(magnitude, values)
         return signed
 
     def encode(self, light: Any) -> NDArray[np.float64]:
@@ -70,8 +70,8 @@ class ParametricCurve:
         border = _power(self.a * self.d + self.b, self.g) + self.e
         power = (_power(y - self.e, 1.0 / self.g) - self.b) / self.a
         line = (y - self.f) / self.c if self.c > 0.0 else np.zeros_like(y)
-        made: NDArray[np.float64] = np.where(y >= border, power, np.clip(line, 0.0, self.d))
-        signed: NDArray[np.float64] = np.copysign(np.maximum(made, 0.0), light)
+        magnitude: NDArray[np.float64] = np.where(y >= border, power, np.clip(line, 0.0, self.d))
+        signed: NDArray[np.float64] = np.copysign(np.maximum(magnitude, 0.0), light)
         return signed
 
 
@@ -136,8 +136,8 @@ class Space:
     def is_srgb(self) -> bool:
         """Whether it is sRGB, within 8-bit precision."""
         codes = np.arange(256) / 255.0
-        same = (np.abs(SRGB_CURVE.encode(one.decode(codes)) - codes) for one in self.curves)
-        return self.is_rec709 and all(float(one.max()) * 255 <= _SAME_CODE for one in same)
+        same = (np.abs(SRGB_CURVE.encode(curve.decode(codes)) - codes) for curve in self.curves)
+        return self.is_rec709 and all(float(curve.max()) * 255 <= _SAME_CODE for curve in same)
 
     def can_be_kept(self, *, is_gray: bool) -> bool:
         """Tells whether a PNG file, gray or not, can declare this space."""
@@ -148,8 +148,8 @@ class Space:
         """Tells whether another space is the same apart from its name."""
         codes = np.arange(256) / 255.0
         mine, others = (
-            np.array([(one.curves * 3)[index].decode(codes) for index in range(3)])
-            for one in (self, other)
+            np.array([(space.curves * 3)[index].decode(codes) for index in range(3)])
+            for space in (self, other)
         )
         apart = np.abs(np.subtract(self.to_rec709, other.to_rec709)).max()
         return bool(apart <= _SAME_MATRIX and np.abs(mine - others).max() <= _SAME_MATRIX)
@@ -160,7 +160,7 @@ class Space:
             return colors
         if self.curves == (SRGB_CURVE,):
             return to_linear(colors)
-        return self._through(colors, [one.decode for one in self.curves])
+        return self._through(colors, [curve.decode for curve in self.curves])
 
     def encoded(self, light: FloatArray) -> FloatArray:
         """Returns (..., 3) light as encoded colors."""
@@ -168,37 +168,37 @@ class Space:
             return light
         if self.curves == (SRGB_CURVE,):
             return to_srgb(light)
-        return self._through(light, [one.encode for one in self.curves])
+        return self._through(light, [curve.encode for curve in self.curves])
 
     def in_rec709(self, light: FloatArray) -> FloatArray:
         """Returns (..., 3) linear colors converted to the primaries of Rec. 709."""
         return light if self.is_rec709 else _multiplied(light, self.to_rec709)
 
     def _through(self, colors: FloatArray, curves: Sequence[Any]) -> FloatArray:
-        made = np.empty_like(colors)
+        converted = np.empty_like(colors)
         for channel in range(colors.shape[-1]):
             curve = curves[channel % len(curves)]
             # Row by row, to bound the memory for 64-bit values.
-            for row, values in zip(made, colors, strict=True):
+            for row, values in zip(converted, colors, strict=True):
                 row[..., channel] = curve(values[..., channel])
-        return made
+        return converted
 
 
 def _multiplied(colors: FloatArray, matrix: Matrix) -> FloatArray:
     """Returns colors times a matrix, summed in a fixed order; that of a library may vary."""
-    made = np.empty_like(colors)
+    products = np.empty_like(colors)
     red, green, blue = (colors[..., channel] for channel in range(3))
     for channel, (by_red, by_green, by_blue) in enumerate(np.asarray(matrix, np.float32)):
-        made[..., channel] = red * by_red + green * by_green + blue * by_blue
-    return made
+        products[..., channel] = red * by_red + green * by_green + blue * by_blue
+    return products
 
 
 def named(name: str) -> Space | None:
     """Returns the color space with a name; None if the name is unknown."""
-    found = space_names.parts(name)
-    if found is None:
+    names = space_names.parts(name)
+    if names is None:
         return None
-    curve_name, primaries = found
+    curve_name, primaries = names
     curve = _CURVES.get(curve_name)
     if curve is None:
         number = curve_name.lstrip("Gagm")

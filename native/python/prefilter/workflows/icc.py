@@ -40,8 +40,8 @@ def _space_of(profile: bytes) -> Space:
     if kind == b"GRAY" and b"kTRC" in tags and profile[20:24] == b"XYZ ":
         return Space(what, (_curve(tags[b"kTRC"]),), chunks=((b"iCCP", chunk),), is_for_gray=True)
     if kind != b"RGB ":
-        found = _KINDS.get(kind, repr(kind.decode("latin-1")))
-        raise ValueError(f"{what}, which is for {found} values")
+        kind_name = _KINDS.get(kind, repr(kind.decode("latin-1")))
+        raise ValueError(f"{what}, which is for {kind_name} values")
     tables = any(tag[:3] in {b"A2B", b"D2B"} for tag in tags)
     if tables or any(one not in tags for one in (*_COLORANTS, *_CURVES)):
         raise ValueError(f"{what}, which has tables and not only a matrix and curves")
@@ -78,7 +78,7 @@ def _text(data: bytes) -> str:
 
 
 def _xyz(data: bytes) -> tuple[float, ...]:
-    return tuple(one / 65536 for one in struct.unpack_from(">3i", data, 8))
+    return tuple(value / 65536 for value in struct.unpack_from(">3i", data, 8))
 
 
 def _curve(data: bytes) -> Curve:
@@ -88,7 +88,7 @@ def _curve(data: bytes) -> Curve:
             raise ValueError(f"an ICC profile whose curve is of the unknown kind {kind}")
         names = _PARAMETERS[kind]
         values = struct.unpack_from(f">{len(names)}i", data, 12)
-        return _parametric(kind, dict(zip(names, (one / 65536 for one in values), strict=True)))
+        return _parametric(kind, dict(zip(names, (value / 65536 for value in values), strict=True)))
     (count,) = struct.unpack_from(">I", data, 8)
     if data[:4] != b"curv":
         raise ValueError("an ICC profile whose curve is of an unknown type")
@@ -105,10 +105,14 @@ def _curve(data: bytes) -> Curve:
     return SampledCurve(tuple(samples.tolist()))
 
 
-def _parametric(kind: int, found: dict[str, float]) -> Curve:
-    if found["g"] <= 0.0 or found.get("a", 1.0) <= 0.0:
+def _parametric(kind: int, parameters: dict[str, float]) -> Curve:
+    if parameters["g"] <= 0.0 or parameters.get("a", 1.0) <= 0.0:
         raise ValueError("an ICC profile whose curve does not rise")
     if kind in {1, 2}:
-        constant = found.pop("c", 0.0)
-        found |= {"d": max(-found["b"] / found["a"], 0.0), "e": constant, "f": constant}
-    return ParametricCurve(**found)
+        constant = parameters.pop("c", 0.0)
+        parameters |= {
+            "d": max(-parameters["b"] / parameters["a"], 0.0),
+            "e": constant,
+            "f": constant,
+        }
+    return ParametricCurve(**parameters)

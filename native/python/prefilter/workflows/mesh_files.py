@@ -58,10 +58,6 @@ class NamedMesh:
 def read(argument: str, paths: Sequence[str]) -> list[NamedMesh]:
     """Reads the meshes of files, sorted by name within each.
 
-    Args:
-        argument: The path's name in messages.
-        paths: The files.
-
     Raises:
         OSError: A file cannot be read, or trimesh is missing.
         ValueError: A file has no triangle.
@@ -98,27 +94,19 @@ def merge_seams(part: NamedMesh) -> NamedMesh:
 def stage(
     target: Path, parts: Sequence[NamedMesh], metadata: Mapping[str, str] | None = None
 ) -> StagedFile:
-    """Stages positions and triangles in the format of the target's extension.
-
-    Args:
-        target: The file.
-        parts: The meshes.
-        metadata: Key-value pairs to store; see `with_note`.
-    Raises:
-        OSError: The file cannot be written.
-    """
+    """Stages positions and triangles in the format of the target's extension."""
     trimesh = _trimesh()
     kind = target.suffix.lower().removeprefix(".")
     meshes = [trimesh.Trimesh(one.positions, one.triangles, process=False) for one in parts]
     if kind in {"ply", "stl"}:
-        made = trimesh.util.concatenate(meshes)
+        scene = trimesh.util.concatenate(meshes)
     else:
-        made = trimesh.Scene()
+        scene = trimesh.Scene()
         for part, mesh in zip(parts, meshes, strict=True):
-            made.add_geometry(mesh, node_name=part.name, geom_name=part.name)
+            scene.add_geometry(mesh, node_name=part.name, geom_name=part.name)
     if not metadata:
-        return stage_bytes(target, lambda file: made.export(file, file_type=kind))
-    data = made.export(file_type=kind)
+        return stage_bytes(target, lambda file: scene.export(file, file_type=kind))
+    data = scene.export(file_type=kind)
     data = data.encode() if isinstance(data, str) else data
     for key, text in metadata.items():
         data = with_note(kind, data, key, text)
@@ -131,27 +119,27 @@ def surfaces(parts: Sequence[NamedMesh]) -> tuple[list[prefilter.Surface], list[
     Raises:
         ValueError: No mesh has a UV map, or a number is not finite.
     """
-    found: list[prefilter.Surface] = []
+    mapped_surfaces: list[prefilter.Surface] = []
     names: list[str] = []
     without: list[str] = []
-    told: list[str] = []
+    warnings: list[str] = []
     for part in parts:
         if part.uvs is None:
             without.append(part.name)
             continue
         try:
-            found.append(prefilter.Surface(part.positions, *part.mapped()))
+            mapped_surfaces.append(prefilter.Surface(part.positions, *part.mapped()))
         except ValueError as error:
             raise ValueError(f"mesh '{part.name}': {error}") from error
         if part.bare is not None:
             count = counted(range(int(part.bare.sum())), "triangle")
-            told.append(f"mesh '{part.name}': left out {count} without UVs")
+            warnings.append(f"mesh '{part.name}': left out {count} without UVs")
         names.append(part.name)
-    if without and not found:
+    if without and not mapped_surfaces:
         raise ValueError(f"no mesh has a UV map; found {listed(without)}")
     if without:
-        told.insert(0, f"left out, because there is no UV map: {listed(without)}")
-    return found, names, told
+        warnings.insert(0, f"left out, because there is no UV map: {listed(without)}")
+    return mapped_surfaces, names, warnings
 
 
 def _read_file(argument: str, path: str) -> list[NamedMesh]:
@@ -190,7 +178,7 @@ def _read_by_trimesh(path: str) -> list[PolygonMesh]:
     with readable_name(path) as known:
         scene = trimesh.load_scene(known, process=False)
         nodes = list(scene.graph.nodes_geometry)
-    found = []
+    meshes = []
     for node in nodes:
         mesh = scene.geometry[scene.graph[node][1]]
         triangles = np.asarray(getattr(mesh, "faces", np.empty((0, 3))), np.int64).reshape(-1, 3)
@@ -198,8 +186,8 @@ def _read_by_trimesh(path: str) -> list[PolygonMesh]:
         name = str(scene.graph[node][1])
         name = "" if name == os.path.basename(known) else name
         sizes = np.full(len(triangles), 3, np.int64)
-        found.append(PolygonMesh(name, points, triangles.reshape(-1), sizes, None))
-    return found
+        meshes.append(PolygonMesh(name, points, triangles.reshape(-1), sizes, None))
+    return meshes
 
 
 def _read_ply(path: str) -> list[PolygonMesh]:

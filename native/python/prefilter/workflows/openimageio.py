@@ -225,14 +225,14 @@ def read_pixels(path: Path) -> Pixels:
 
 def _left_out(reader: Any, spec: Any, channels: Sequence[int]) -> str:
     """Returns a text about unread channels and images of a file; empty if there are none."""
-    found = []
+    contents = []
     names = [name for k, name in enumerate(spec.channelnames) if k not in channels]
     if names:
         shown = names if len(names) <= _MOST_NAMES else [*names[:_MOST_NAMES], "others"]
-        found.append(f"the channel{'s' if len(names) > 1 else ''} {listed(shown)}")
+        contents.append(f"the channel{'s' if len(names) > 1 else ''} {listed(shown)}")
     if reader.seek_subimage(1, 0):
-        found.append("further images")
-    return " and ".join(found)
+        contents.append("further images")
+    return " and ".join(contents)
 
 
 @reads_any_name
@@ -272,8 +272,8 @@ def _check_memory(spec: Any, read_as: str) -> None:
     size = np.dtype(read_as.replace("float", "float32")).itemsize
     read = spec.width * spec.height * spec.nchannels * size
     # A copy in our row order; integers of more than 8 bits become floats.
-    kept = spec.full_width * spec.full_height * min(max(spec.nchannels, 3), _MOST_CHANNELS)
-    needed = read + kept * (1 if size == 1 else 8)
+    canvas_values = spec.full_width * spec.full_height * min(max(spec.nchannels, 3), _MOST_CHANNELS)
+    needed = read + canvas_values * (1 if size == 1 else 8)
     free, why = free_memory()
     if needed > free:
         raise MemoryError(
@@ -297,7 +297,7 @@ def _metadata(format: str, spec: Any) -> Metadata:
         color_space=str(spec.getattribute("oiio:ColorSpace") or ""),
         gamma=float(spec.get_float_attribute("oiio:Gamma", 1.0)),
         icc=b"" if profile is None else np.asarray(profile).astype(np.uint8).tobytes(),
-        chromaticities=None if points is None else tuple(float(one) for one in points),
+        chromaticities=None if points is None else tuple(float(number) for number in points),
         is_adobe_rgb=spec.get_int_attribute("Exif:ColorSpace", 0) == _EXIF_ADOBE_RGB
         or interop.startswith(_ADOBE_RGB_RULE),
     )
@@ -376,12 +376,12 @@ def check_whole(path: Path, levels: int = 1) -> None:
 
 def _levels_read(reader: Any) -> int:
     """Returns the number of levels of a file; 0 if it cannot be read completely."""
-    found = set()
+    levels = set()
     for image, level, first, end in _bands(reader):
         if not _is_read(reader, image, level, first, end):
             return 0
-        found.add((image, level))
-    return len(found)
+        levels.add((image, level))
+    return len(levels)
 
 
 def _bands(reader: Any) -> Iterator[tuple[int, int, int, int]]:
@@ -466,11 +466,11 @@ def write_texture(
         config.attribute("maketx:mipimages", _PATH_SEPARATOR.join(level_files))
 
         full = _buffer(levels[0], has_alpha)
-        made = str(folder / f"texture{path.suffix}")
-        if not oiio.ImageBufAlgo.make_texture(oiio.MakeTxTexture, full, made, config):
-            raise OSError(f"cannot write '{made}': {last_error(oiio)}")
-        remove_dates(Path(made))
-        shutil.move(made, path)
+        temporary = str(folder / f"texture{path.suffix}")
+        if not oiio.ImageBufAlgo.make_texture(oiio.MakeTxTexture, full, temporary, config):
+            raise OSError(f"cannot write '{temporary}': {last_error(oiio)}")
+        remove_dates(Path(temporary))
+        shutil.move(temporary, path)
     check_whole(path, len(levels))
 
 
@@ -483,9 +483,9 @@ def _work_folder(path: Path) -> str:
     for folder in folders:
         if _PATH_SEPARATOR not in folder and _PLACEHOLDER not in folder:
             return folder
-    found = " and ".join(f"'{folder}'" for folder in folders)
+    candidates = " and ".join(f"'{folder}'" for folder in folders)
     raise OSError(
-        f"no folder for temporary files: found {found}, and one without ';' and '%' is needed"
+        f"no folder for temporary files: found {candidates}, and one without ';' and '%' is needed"
     )
 
 

@@ -162,10 +162,6 @@ def with_coverage(picture: Picture) -> Picture:
 def scene_linear(picture: Picture, check: Check = lambda: None) -> FloatArray:
     """Returns the picture's values as light; alpha is unchanged.
 
-    Args:
-        picture: The picture.
-        check: Called between stages of a slow conversion.
-
     Raises:
         ValueError: The color space cannot be decoded.
         OSError: OpenImageIO's Python module is needed and missing.
@@ -179,10 +175,6 @@ def scene_linear(picture: Picture, check: Check = lambda: None) -> FloatArray:
 def light_or_bytes(picture: Picture, check: Check = lambda: None) -> tuple[Texels, str]:
     """Returns texels for `prefilter`'s filters, and their `encoding`: bytes where possible.
 
-    Args:
-        picture: The picture.
-        check: As for `scene_linear`.
-
     Raises:
         ValueError: As `scene_linear`.
         OSError: As `scene_linear`.
@@ -194,11 +186,6 @@ def light_or_bytes(picture: Picture, check: Check = lambda: None) -> tuple[Texel
 
 def encoded(picture: Picture, linear: FloatArray, check: Check = lambda: None) -> FloatArray:
     """Returns scene-linear values as `picture` stores them: the inverse of `scene_linear`.
-
-    Args:
-        picture: The picture that defines the encoding.
-        linear: The values.
-        check: Called between stages of a slow conversion.
 
     Raises:
         ValueError: The color space cannot be encoded.
@@ -217,11 +204,6 @@ def as_srgb(picture: Picture) -> Picture:
 def in_rec709(picture: Picture, light: FloatArray, check: Check = lambda: None) -> FloatArray:
     """Converts scene-linear values to the primaries of Rec. 709.
 
-    Args:
-        picture: The picture that defines the primaries; data are returned unchanged.
-        light: The values, with alpha as it is stored.
-        check: As for `scene_linear`.
-
     Raises:
         ValueError: As `scene_linear`.
         OSError: As `scene_linear`.
@@ -231,9 +213,9 @@ def in_rec709(picture: Picture, light: FloatArray, check: Check = lambda: None) 
     space = named(picture.linear_space)
     if space is None or not space.is_linear:
         return prefilter.to_linear(encoded(as_srgb(picture), light, check))
-    made = light.copy()
-    made[..., :3] = space.in_rec709(np.ascontiguousarray(light[..., :3]))
-    return made
+    converted = light.copy()
+    converted[..., :3] = space.in_rec709(np.ascontiguousarray(light[..., :3]))
+    return converted
 
 
 def automatic_bounds(
@@ -251,9 +233,9 @@ def automatic_bounds(
 def capped(level: FloatArray, linear: FloatArray) -> FloatArray:
     """Limits alpha and colors of an associated level to the image's highest values."""
     divisor = np.maximum(level[..., 3:] / np.float32(_highest(linear[..., 3:])), 1)
-    made: FloatArray = level / divisor
-    np.minimum(made[..., :3], _highest(linear[..., :3]), out=made[..., :3])
-    return made
+    limited: FloatArray = level / divisor
+    np.minimum(limited[..., :3], _highest(linear[..., :3]), out=limited[..., :3])
+    return limited
 
 
 def _highest(linear: FloatArray) -> float:

@@ -93,8 +93,8 @@ def space_of(
 def _check_agreement(claims: list[tuple[str, Space]]) -> None:
     """Raises ValueError if the name contradicts the other metadata."""
     (first, space), *others = claims
-    for other, found in others:
-        if first.startswith("colorInteropID") and not space.agrees(found):
+    for other, other_space in others:
+        if first.startswith("colorInteropID") and not space.agrees(other_space):
             raise ValueError(f"{first} and {other} are different color spaces; {_WAY_OUT}")
 
 
@@ -115,16 +115,16 @@ def _claims(metadata: Metadata, embedded: EmbeddedMetadata) -> Iterator[tuple[st
         yield "its sRGB chunk", color_spaces.SRGB
         return
     name = metadata.color_space
-    found = None if name in _UNKNOWN else color_spaces.named(name)
-    if chunks and found is not None and not found.is_rec709:
+    named_space = None if name in _UNKNOWN else color_spaces.named(name)
+    if chunks and named_space is not None and not named_space.is_rec709:
         # OpenImageIO before 3.1 stores the name in a text attribute.
-        yield f"its color space '{name}'", found
+        yield f"its color space '{name}'", named_space
         return
     if b"gAMA" in chunks:
         yield "its gAMA chunk", _of_gamma(chunks)
         return
     if metadata.chromaticities is not None:
-        points = tuple(round(one, 6) for one in metadata.chromaticities)
+        points = tuple(round(number, 6) for number in metadata.chromaticities)
         yield "its chromaticities", _of_chromaticities(points)
         return
     if metadata.is_adobe_rgb or exif_of(embedded.exif).is_adobe_rgb:
@@ -172,7 +172,7 @@ def _of_gamma(chunks: Mapping[bytes, bytes]) -> Space:
         raise ValueError(f"its gAMA chunk says 0, which is no exponent; {_WAY_OUT}")
     white_last = color_spaces.REC709
     if points is not None:
-        white_last = tuple(one / _PNG_UNIT for one in (*points[2:], *points[:2]))
+        white_last = tuple(value / _PNG_UNIT for value in (*points[2:], *points[:2]))
     gamma = _PNG_UNIT / number
     space = _of_chromaticities(white_last)
     return replace(

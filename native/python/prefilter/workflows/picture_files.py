@@ -58,7 +58,7 @@ def read(
         if not Path(path).is_file():
             raise OSError(f"there is no file '{path}'")
         values, is_straight, metadata, left_out = openimageio.read_pixels(Path(path))
-        found = read_embedded(Path(path))
+        embedded = read_embedded(Path(path))
     except UnicodeError as error:
         reason = damaged(path, str(error))
         raise OSError(f"{argument}: '{path}' cannot be read as a picture: {reason}") from error
@@ -67,7 +67,7 @@ def read(
     try:
         space = space_of(
             metadata,
-            found,
+            embedded,
             is_integer=values.dtype != np.float32,
             is_gray=values.shape[2] < 3,
             colorspace=colorspace,
@@ -76,7 +76,7 @@ def read(
         if not is_data or metadata.model:
             raise ValueError(f"{argument}: '{path}': {error}") from error
         space = None
-    orientation = orientation_of(metadata, found)
+    orientation = orientation_of(metadata, embedded)
     values = upright(values, orientation) if turns else values
     picture = _read_in(
         None if is_data else space,
@@ -112,11 +112,6 @@ class Probe:
 def probe(argument: str, path: str, *, is_data: bool) -> Probe | None:
     """Returns metadata of a picture file; None if OpenImageIO is missing or cannot read it.
 
-    Args:
-        argument: The path's name in messages.
-        path: The file.
-        is_data: Whether its values are not colors.
-
     Raises:
         MemoryError: It is too large for the free memory.
     """
@@ -126,17 +121,17 @@ def probe(argument: str, path: str, *, is_data: bool) -> Probe | None:
         return None
     except MemoryError as error:
         raise MemoryError(f"{argument}: {error}") from error
-    found, is_gray = read_embedded(Path(path)), channels in {1, 2}
+    embedded, is_gray = read_embedded(Path(path)), channels in {1, 2}
     is_usual = not metadata.model
     if is_usual and not is_data:
         try:
-            space = space_of(metadata, found, is_integer=not is_float, is_gray=is_gray)
+            space = space_of(metadata, embedded, is_integer=not is_float, is_gray=is_gray)
         except ValueError:
             is_usual = False
         else:
             usual = color_spaces.LINEAR if is_float else color_spaces.SRGB
             is_usual = space is not None and space.agrees(usual)
-    return Probe(is_usual and orientation_of(metadata, found) == 1, is_gray)
+    return Probe(is_usual and orientation_of(metadata, embedded) == 1, is_gray)
 
 
 def _read_in(

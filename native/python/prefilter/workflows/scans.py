@@ -121,8 +121,8 @@ class StepWork:
             return outcome(self._steps.sources, self._target, self._report, self._length)
         path = self._steps.file(self._name, self._number)
         count = self._steps.count(self._name)
-        done = f"Step {self._name}, {self._number + 1} of {count}, into '{path}'"
-        return Outcome(done, files=[str(path)])
+        summary = f"Step {self._name}, {self._number + 1} of {count}, into '{path}'"
+        return Outcome(summary, files=[str(path)])
 
     def discard(self) -> None:
         """Does nothing: the library leaves no temporary files."""
@@ -182,12 +182,7 @@ def as_classes(text: str) -> list[int] | None:
 
 
 def summary(report: "prefilter.ReconstructionReport", length: Callable[[float], str]) -> str:
-    """Returns a summary of a reconstruction's numbers.
-
-    Args:
-        report: The report on the surface.
-        length: Formats a length for messages.
-    """
+    """Returns a summary of a reconstruction's numbers."""
     points, triangles = amount(report.points, "point"), amount(report.triangles, "triangle")
     cell = length(report.cell)
     return Sentence("{} at depth {}, in cells of {}: {}", points, report.depth, cell, triangles)
@@ -248,70 +243,70 @@ def point_warnings(
         length: Formats a length for messages.
         origin: Position of the origin of the points' coordinates.
     """
-    found: list[str] = [*report.warnings, *_phantom_warnings(report, origin)]
+    warnings: list[str] = [*report.warnings, *_phantom_warnings(report, origin)]
     for cause, dropped in _DROPPED.items():
         if count := report.causes.get(cause, 0):
-            found.append(Sentence(dropped, amount(count, "point")))
-    found += _contradiction_warnings(report)
+            warnings.append(Sentence(dropped, amount(count, "point")))
+    warnings += _contradiction_warnings(report)
     if report.strays:
         strays = amount(report.strays, "point")
-        found.append(Sentence("left out, because they are far from all others: {}", strays))
+        warnings.append(Sentence("left out, because they are far from all others: {}", strays))
     if report.outliers > _USUAL_OUTLIERS:
         outliers = f"{100.0 * report.outliers:.2g} %"
         text = (
             "left out as outliers, because they are sampled much more sparsely than the rest: "
             "{} of the points"
         )
-        found.append(Sentence(text, outliers))
+        warnings.append(Sentence(text, outliers))
     if report.is_flipped:
-        found.append(Sentence("most normals point inward; all were flipped"))
+        warnings.append(Sentence("most normals point inward; all were flipped"))
     if report.float_step:
-        found.append(rounding_warning(length(report.float_step)))
+        warnings.append(rounding_warning(length(report.float_step)))
     if report.is_room and "given" in report.directions:
-        found.append(
+        warnings.append(
             Sentence(
                 "most normals point inward, as in a room, and were kept; the setting Normals, "
                 "Outward flips them"
             )
         )
-    return found
+    return warnings
 
 
 def directions(report: "prefilter.ReconstructionReport") -> list[str]:
     """Returns notes about the direction of normals."""
-    found: list[str] = [_DIRECTIONS[direction] for direction in report.directions]
+    notes: list[str] = [_DIRECTIONS[direction] for direction in report.directions]
     if report.estimated:
         text = "normals that are zero or no numbers were estimated: those of {}"
-        found.append(Sentence(text, amount(report.estimated, "point")))
+        notes.append(Sentence(text, amount(report.estimated, "point")))
     if report.origin == "scanner":
-        found.append(
+        notes.append(
             Sentence(
                 "the origin was taken for the scanner's position, as rays from there meet the "
                 "surface once; if that is wrong, set Normals to Outward or Up"
             )
         )
     elif report.origin == "either":
-        found.append(
+        notes.append(
             Sentence(
                 "the points are around the origin, and were taken for an object that is seen from "
                 "outside; for a room that is seen from the origin, set Normals to Viewpoint"
             )
         )
-    return found
+    return notes
 
 
 def openings(report: "prefilter.ReconstructionReport") -> list[str]:
     """Returns notes about openings of the surface."""
-    found: list[str] = []
+    notes: list[str] = []
     if report.cut:
         cut = f"{100.0 * report.cut:.2g} %"
-        found.append(Sentence("cut, because no points are near: {} of the surface", cut))
+        notes.append(Sentence("cut, because no points are near: {} of the surface", cut))
     if report.islands:
         share = f"{100.0 * report.island_share:.2g} %"
         parts = amount(report.islands, "part")
         text = "left out, because they are small: {}, {} of the surface"
-        found.append(Sentence(text, parts, share))
-    return found
+        notes.append(Sentence(text, parts, share))
+    return notes
 
 
 def outcome(

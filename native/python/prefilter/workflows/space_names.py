@@ -81,10 +81,10 @@ def parts(name: str) -> tuple[str, str] | None:
     gamma = _GAMMA.fullmatch(known)
     if gamma is not None:
         return (known, "rec709") if float(gamma[1]) > 0.0 else None
-    found = _PATTERN.fullmatch(known)
-    if found is None or found[2] not in CHROMATICITIES:
+    match = _PATTERN.fullmatch(known)
+    if match is None or match[2] not in CHROMATICITIES:
         return None
-    return found[1], found[2]
+    return match[1], match[2]
 
 
 def is_known(name: str) -> bool:
@@ -113,8 +113,8 @@ def checked_name(name: str) -> str:
 
 def chromaticities_of(name: str) -> tuple[float, ...] | None:
     """Returns x and y of red, green, blue and white of a linear space; None if unknown."""
-    found = parts(name)
-    return CHROMATICITIES[found[1]] if found is not None and found[0] == "lin" else None
+    names = parts(name)
+    return CHROMATICITIES[names[1]] if names is not None and names[0] == "lin" else None
 
 
 def interop_name(name: str) -> str:

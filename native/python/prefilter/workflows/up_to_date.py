@@ -53,23 +53,23 @@ def fingerprint(sources: Iterable[str | os.PathLike[str]], settings: Mapping[str
     Raises:
         OSError: A file cannot be read.
     """
-    found = _hash_of_settings(settings)
+    digest = _hash_of_settings(settings)
     for source in sources:
         for path in (Path(source), *referred_files(Path(source))):
             data = path.read_bytes()
-            found.update(len(data).to_bytes(8, "little"))
-            found.update(data)
-    return str(found.hexdigest())
+            digest.update(len(data).to_bytes(8, "little"))
+            digest.update(data)
+    return str(digest.hexdigest())
 
 
 def fingerprint_of(arrays: Iterable["NDArray[Any]"], settings: Mapping[str, Any]) -> str:
     """Returns a fingerprint of arrays and settings."""
-    found = _hash_of_settings(settings)
+    digest = _hash_of_settings(settings)
     for array in arrays:
-        found.update(f"{array.dtype.str} {array.shape} ".encode())
+        digest.update(f"{array.dtype.str} {array.shape} ".encode())
         if array.size:
-            found.update((array if array.flags.c_contiguous else array.copy()).data.cast("B"))
-    return str(found.hexdigest())
+            digest.update((array if array.flags.c_contiguous else array.copy()).data.cast("B"))
+    return str(digest.hexdigest())
 
 
 def arrays_of(read: Any) -> "Iterator[NDArray[Any]]":
@@ -87,8 +87,8 @@ def arrays_of(read: Any) -> "Iterator[NDArray[Any]]":
         yield from arrays_of(sorted(read))
     elif isinstance(read, Sequence) and not isinstance(read, str):
         yield np.array(len(read))
-        for one in read:
-            yield from arrays_of(one)
+        for item in read:
+            yield from arrays_of(item)
     else:
         yield np.frombuffer(repr(read).encode(), np.uint8)
 
@@ -148,15 +148,15 @@ def stored_fingerprint(path: Path) -> str:
         return note_of(path, KEY)
     from .openimageio import text_attribute
 
-    found = IN_DESCRIPTION.search(text_attribute(path, "ImageDescription"))
-    return found[1] if found else ""
+    match = IN_DESCRIPTION.search(text_attribute(path, "ImageDescription"))
+    return match[1] if match else ""
 
 
 def _hash_of_settings(settings: Mapping[str, Any]) -> Any:
     return hashlib.sha256(json.dumps([VERSION, settings], sort_keys=True).encode())
 
 
-def _exr_text(header: bytes, wanted: str) -> str:
+def _exr_text(header: bytes, key: str) -> str:
     """Returns a text attribute from the header of an OpenEXR file; empty if absent."""
     if len(header) < 8 or struct.unpack_from("<I", header)[0] != _EXR_MAGIC:
         raise ValueError("no OpenEXR file")
@@ -167,7 +167,7 @@ def _exr_text(header: bytes, wanted: str) -> str:
             at += len(name) + len(kind) + 2
             (size,) = struct.unpack_from("<I", header, at)
             at += 4
-            if name == wanted.encode():
+            if name == key.encode():
                 return header[at : at + size].decode("utf-8", "replace")
             at += size
     except (IndexError, ValueError, struct.error) as error:
@@ -181,7 +181,7 @@ def referred_files(path: Path) -> list[Path]:
         return []
     try:
         buffers = json.loads(path.read_bytes()).get("buffers", [])
-        names = [unquote(one.get("uri", "data:")) for one in buffers]
+        names = [unquote(buffer.get("uri", "data:")) for buffer in buffers]
     except (ValueError, AttributeError, TypeError):
         return []  # The mesh reader reports the error.
     return [path.parent / name for name in names if not name.startswith("data:")]

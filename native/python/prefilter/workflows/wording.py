@@ -23,9 +23,9 @@ class Sentence(str):
 
     def __new__(cls, template: str, *values: object) -> Self:
         """Fills in the values."""
-        made = super().__new__(cls, template.format(*values) if values else template)
-        made.template, made.values = template, values
-        return made
+        sentence = super().__new__(cls, template.format(*values) if values else template)
+        sentence.template, sentence.values = template, values
+        return sentence
 
     def __str__(self) -> Self:
         """Returns the sentence, so that `str` of an exception keeps its type."""

@@ -123,7 +123,7 @@ def exif_of(block: bytes) -> Exif:
         rules |= _entries(block, order, _number(main.get(_RULE_FOLDER), order))
     except (KeyError, IndexError, struct.error):
         return Exif()
-    spaces = [_number(one.get(_COLOR_SPACE), order) for one in (main, folder)]
+    spaces = [_number(entries.get(_COLOR_SPACE), order) for entries in (main, folder)]
     adobe = rules.get(_RULE, (0, b""))[1].startswith(_ADOBE_RGB_RULE) or _ADOBE_RGB in spaces
     return Exif(shown if 1 <= shown <= 8 else 1, adobe)
 
@@ -133,11 +133,11 @@ def _entries(block: bytes, order: str, start: int) -> dict[int, tuple[int, bytes
     if start == 0:
         return {}
     (count,) = struct.unpack_from(f"{order}H", block, start)
-    found = {}
+    entries = {}
     for number in range(min(count, _MOST_ENTRIES)):
         tag, kind, _, value = struct.unpack_from(f"{order}HHI4s", block, start + 2 + 12 * number)
-        found[tag] = (kind, value)
-    return found
+        entries[tag] = (kind, value)
+    return entries
 
 
 def _number(entry: tuple[int, bytes] | None, order: str) -> int:

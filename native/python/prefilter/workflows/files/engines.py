@@ -76,14 +76,16 @@ def format_warnings(
             f"{who} has no sRGB variant, and image '{picture.name}' has the color space "
             f"{picture.colorspace}; set Non-Color, or choose another format"
         )
-    told = []
+    warnings = []
     height, width, _ = picture.shape
     unit = unit_of_sides(picture, target, texture_format)
     if not is_stretched and (width % unit or height % unit):
-        told.append(f"{who} of {width} x {height} texels: readers need sides divisible by {unit}")
-    told += _lost_channels(picture, chosen, who, threshold, may_lose_channels)
-    told += _lost_values(picture, chosen, who)
-    return told
+        warnings.append(
+            f"{who} of {width} x {height} texels: readers need sides divisible by {unit}"
+        )
+    warnings += _lost_channels(picture, chosen, who, threshold, may_lose_channels)
+    warnings += _lost_values(picture, chosen, who)
+    return warnings
 
 
 def keeps_range(picture: Picture, target: Path, texture_format: str) -> bool:
@@ -112,8 +114,8 @@ def _lost_channels(
     may_lose_channels: bool,
 ) -> list[str]:
     if chosen.channels in _CHANNELS:
-        kept = f"{who} keeps only {_CHANNELS[chosen.channels]} of '{picture.name}'"
-        return [] if may_lose_channels else [kept]
+        warning = f"{who} keeps only {_CHANNELS[chosen.channels]} of '{picture.name}'"
+        return [] if may_lose_channels else [warning]
     if picture.shape[2] < 4 or chosen.alpha == "full":
         return []
     if chosen.alpha == "none" or not picture.alpha_is_coverage:

@@ -147,10 +147,10 @@ class _File:
         accessor = self._list("accessors")[number]
         kind, width = np.dtype(_TYPES[accessor["componentType"]]), _WIDTHS[accessor["type"]]
         count = accessor["count"]
-        found: NDArray[Any] = np.zeros((count, width), kind)
+        elements: NDArray[Any] = np.zeros((count, width), kind)
         if "bufferView" in accessor:
             start = accessor.get("byteOffset", 0)
-            found = self._rows(accessor["bufferView"], start, kind, (count, width)).copy()
+            elements = self._rows(accessor["bufferView"], start, kind, (count, width)).copy()
         elif "sparse" not in accessor:
             raise ValueError(f"accessor {number} has no values; is the file compressed?")
         if "sparse" in accessor:
@@ -163,19 +163,19 @@ class _File:
             )
             start = values.get("byteOffset", 0)
             rows = self._rows(values["bufferView"], start, kind, (sparse["count"], width))
-            found[order.reshape(-1)] = rows
+            elements[order.reshape(-1)] = rows
         if accessor.get("normalized") and kind.kind in "iu":
-            found = np.maximum(found.astype(np.float32) / np.iinfo(kind).max, np.float32(-1))
-        return found
+            elements = np.maximum(elements.astype(np.float32) / np.iinfo(kind).max, np.float32(-1))
+        return elements
 
     def _rows(
         self, view: int, start: int, kind: np.dtype[Any], shape: tuple[int, int]
     ) -> NDArray[Any]:
-        found = self._list("bufferViews")[view]
-        data = self._buffer(found["buffer"])
-        begin, end = found.get("byteOffset", 0), found["byteLength"]
+        buffer_view = self._list("bufferViews")[view]
+        data = self._buffer(buffer_view["buffer"])
+        begin, end = buffer_view.get("byteOffset", 0), buffer_view["byteLength"]
         data = data[begin : begin + end]
-        stride = found.get("byteStride", shape[1] * kind.itemsize)
+        stride = buffer_view.get("byteStride", shape[1] * kind.itemsize)
         needed = start + (shape[0] - 1) * stride + shape[1] * kind.itemsize
         if shape[0] and needed > len(data):
             raise ValueError(f"buffer view {view} ends too early")
@@ -216,12 +216,12 @@ def _matrix(node: Any) -> NDArray[np.float64]:
     if "matrix" in node:
         return np.array(node["matrix"], np.float64).reshape(4, 4).T
     x, y, z, w = node.get("rotation", (0.0, 0.0, 0.0, 1.0))
-    made = np.eye(4)
-    made[:3, :3] = [
+    matrix = np.eye(4)
+    matrix[:3, :3] = [
         [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
         [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
         [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
     ]
-    made[:3, :3] *= np.array(node.get("scale", (1.0, 1.0, 1.0)))
-    made[:3, 3] = node.get("translation", (0.0, 0.0, 0.0))
-    return made
+    matrix[:3, :3] *= np.array(node.get("scale", (1.0, 1.0, 1.0)))
+    matrix[:3, 3] = node.get("translation", (0.0, 0.0, 0.0))
+    return matrix

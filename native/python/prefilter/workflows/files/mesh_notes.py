@@ -48,10 +48,10 @@ def note_of(path: Path, key: str) -> str:
         OSError: It cannot be read.
     """
     if path.suffix.lower() == ".glb":
-        found: Any = _split_glb(path.read_bytes())[0]
+        value: Any = _split_glb(path.read_bytes())[0]
         for name in ("asset", "extras", key):
-            found = found.get(name) if isinstance(found, dict) else None
-        return found if isinstance(found, str) else ""
+            value = value.get(name) if isinstance(value, dict) else None
+        return value if isinstance(value, str) else ""
     with path.open("rb") as file:
         header = file.read(_STL_HEADER if path.suffix.lower() == ".stl" else _MOST_HEADER)
     header = header.partition(b"end_header")[0]

@@ -53,7 +53,7 @@ def read_obj(data: bytes) -> list[PolygonMesh]:
             current = objects.setdefault(name, _Object(name))
     points = rounded(_numbers(places, 3, "v"))
     coordinates = rounded(_numbers(uvs, 2, "vt"))
-    return [_mesh(found, points, coordinates) for found in objects.values() if found.sizes]
+    return [_mesh(item, points, coordinates) for item in objects.values() if item.sizes]
 
 
 def _without_comment(words: list[bytes]) -> list[bytes]:
@@ -90,9 +90,9 @@ def _integer(word: bytes) -> int:
 
 
 def _mesh(
-    found: _Object, points: NDArray[np.float64], coordinates: NDArray[np.float64]
+    item: _Object, points: NDArray[np.float64], coordinates: NDArray[np.float64]
 ) -> PolygonMesh:
-    indices = _indices(found.words)
+    indices = _indices(item.words)
     vertices, uvs = indices[:, 0], indices[:, 1]
     _check(vertices, len(points), "vertex")
     _check(uvs[uvs != _NONE], len(coordinates), "UV")
@@ -101,8 +101,8 @@ def _mesh(
     if (uvs != _NONE).any():
         corner_uvs = np.full((len(uvs), 2), np.nan)
         corner_uvs[uvs != _NONE] = coordinates[uvs[uvs != _NONE]]
-    sizes = np.array(found.sizes, np.int64)
-    return PolygonMesh(found.name, points[own], corners.reshape(-1), sizes, corner_uvs)
+    sizes = np.array(item.sizes, np.int64)
+    return PolygonMesh(item.name, points[own], corners.reshape(-1), sizes, corner_uvs)
 
 
 def _indices(words: list[bytes]) -> NDArray[np.int64]:

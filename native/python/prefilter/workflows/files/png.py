@@ -62,11 +62,11 @@ def texts(file: BinaryIO) -> dict[str, str]:
     Raises:
         ValueError: The file is no PNG file, or damaged.
     """
-    found: dict[str, str] = {}
+    pairs: dict[str, str] = {}
     for _, data in _chunks(file, {b"tEXt"}, _MOST_TEXT):
         key, _, value = data.partition(b"\0")
-        found[key.decode("latin-1")] = value.decode("latin-1")
-    return found
+        pairs[key.decode("latin-1")] = value.decode("latin-1")
+    return pairs
 
 
 def color_chunks(file: BinaryIO) -> dict[bytes, bytes]:

@@ -129,7 +129,7 @@ def _stage_exr(
         kind = "straight" if picture.alpha_is_straight else "premultiplied"
     write = partial(
         prefilter.write_exr,
-        levels=[in_file_channels(one, is_gray=is_gray) for one in (full, *linear_levels)],
+        levels=[in_file_channels(level, is_gray=is_gray) for level in (full, *linear_levels)],
         format="half" if half else "float",
         encoding=cast("Any", encoding),
         alpha=cast("Any", kind),
@@ -144,7 +144,7 @@ def _stage_exr(
 def _is_gray(picture: Picture, levels: Sequence[images.Texels]) -> bool:
     """Tells whether all levels can be stored with one channel for all colors."""
     return picture.is_gray and all(
-        in_file_channels(one, is_gray=True).shape[2] < 3 for one in levels
+        in_file_channels(level, is_gray=True).shape[2] < 3 for level in levels
     )
 
 

@@ -45,8 +45,8 @@ def common_format(keys: Iterable[str]) -> str:
     """Returns the one of several formats that suits all images that the others suit."""
 
     def extent(key: str) -> tuple[bool, float, int]:
-        found = prefilter.TEXEL_FORMATS[key]
-        return found.is_float, found.texel_bytes, found.channels
+        texel_format = prefilter.TEXEL_FORMATS[key]
+        return texel_format.is_float, texel_format.texel_bytes, texel_format.channels
 
     return max(keys, key=extent)
 
@@ -54,16 +54,18 @@ def common_format(keys: Iterable[str]) -> str:
 def _smallest(channels: int, *, is_float: bool = False, is_signed: bool = False) -> str:
     """Returns the key of the smallest DDS format that preserves this many channels well."""
     fitting = (
-        found
-        for found in prefilter.TEXEL_FORMATS.values()
-        if found.is_in_dds
-        and found.channels >= channels
-        and found.is_float == is_float
-        and (found.keeps_negatives or not is_signed)
-        and (found.alpha == "full" or channels < 4)
-        and not found.is_coarse
+        texel_format
+        for texel_format in prefilter.TEXEL_FORMATS.values()
+        if texel_format.is_in_dds
+        and texel_format.channels >= channels
+        and texel_format.is_float == is_float
+        and (texel_format.keeps_negatives or not is_signed)
+        and (texel_format.alpha == "full" or channels < 4)
+        and not texel_format.is_coarse
     )
-    return min(fitting, key=lambda found: (found.texel_bytes, found.channels)).name
+    return min(
+        fitting, key=lambda texel_format: (texel_format.texel_bytes, texel_format.channels)
+    ).name
 
 
 def is_gray(picture: Picture) -> bool:

@@ -100,41 +100,33 @@ def usage_warnings(
     *,
     is_encoded: bool,
 ) -> list[str]:
-    """Returns warnings about settings that do not fit the image, or one another.
-
-    Args:
-        settings: The settings of the bake.
-        picture: The image.
-        content: Its content.
-        targets: Its files.
-        rough: The result of `roughness_of`.
-        is_encoded: Whether the image's color space needs decoding, whatever its content.
-    """
-    told = []
+    """Returns warnings about settings that do not fit the image, or one another."""
+    warnings = []
     if content == "normal" and is_encoded:
-        told.append(
+        warnings.append(
             f"image '{picture.name}' has the color space {picture.colorspace}; "
             "shaders read normals correctly only in Non-Color"
         )
     if settings.reader != "linear":
-        told.extend(_reader_warnings(picture, targets))
+        warnings.extend(_reader_warnings(picture, targets))
         if settings.lookups in {"one-lookup", "anisotropic", "views"} and reads_encoded(picture):
-            told.append(
+            warnings.append(
                 "Lookups: readers of encoded texels are always supersampled, so "
                 f"'{picture.name}' is baked for that"
             )
     if settings.roughness and rough.roughness is None:
-        told.append(
+        warnings.append(
             f"Roughness: '{settings.roughness}' is not used, because '{picture.name}' "
             "is not a normal map"
         )
-    return told
+    return warnings
 
 
 def suitable_blocks(pictures: Sequence[Picture], content: str) -> str:
     """Returns the format that suits an image, or all tiles of one."""
     return blocks.common_format(
-        blocks.suitable_format(one, content, reads_alpha=one.shape[2] == 4) for one in pictures
+        blocks.suitable_format(picture, content, reads_alpha=picture.shape[2] == 4)
+        for picture in pictures
     )
 
 

@@ -13,6 +13,7 @@ import prefilter
 from ...options.mipmaps import TEXTURE_SPACE_FILTERS
 from ..picture import Encoding, FloatArray, Picture, Texels, as_srgb, automatic_bounds
 from ..progress import Progress, share
+from .blocks import is_gray
 
 Bounds = tuple[float | None, float | None] | None
 
@@ -51,7 +52,7 @@ def as_content(picture: Picture, content: str) -> Picture:
 
 def check_cutout(picture: Picture) -> None:
     """Raises ValueError if an alpha test of the picture makes no sense."""
-    if picture.shape[2] == 3 and not _is_gray(picture.texels):
+    if picture.shape[2] == 3 and not is_gray(picture):
         raise ValueError(
             f"image '{picture.name}': has no alpha, and is not a grayscale mask; a cut-out needs "
             f"alpha that is not 1 everywhere, or a grayscale image"
@@ -104,9 +105,9 @@ def cutout_levels(
     """
     is_mask = linear.shape[2] == 3
     tested = np.ascontiguousarray(linear[..., :1]) if is_mask else linear
-    made = plain_levels(picture, tested, surfaces, bounds, share(progress, 0.0, 0.6), **options)
-    kept = prefilter.keep_coverage(
-        [tested, *made],
+    unscaled = plain_levels(picture, tested, surfaces, bounds, share(progress, 0.0, 0.6), **options)
+    scaled = prefilter.keep_coverage(
+        [tested, *unscaled],
         None if options["filter"] in TEXTURE_SPACE_FILTERS else surfaces,
         threshold=threshold,
         wrap=options["wrap"],
@@ -114,7 +115,7 @@ def cutout_levels(
         progress=share(progress, 0.6, 1.0),
         threads=options["threads"],
     )
-    return [np.repeat(level, 3, axis=2) for level in kept] if is_mask else kept
+    return [np.repeat(level, 3, axis=2) for level in scaled] if is_mask else scaled
 
 
 def normal_levels(
@@ -130,11 +131,11 @@ def normal_levels(
     are filtered as data.
     """
     normals = np.ascontiguousarray(linear[..., :3])
-    made: list[FloatArray] = []
+    filtered_normals: list[FloatArray] = []
     rough: list[FloatArray] = []
     steps = 4
     if roughness is None:
-        made = prefilter.normal_mipmaps(
+        filtered_normals = prefilter.normal_mipmaps(
             normals, surfaces, progress=share(progress, 0.0, 3 / steps), **options
         )
     else:
@@ -146,20 +147,20 @@ def normal_levels(
             progress=share(progress, 0.0, 1 / steps),
             **options,
         )
-        done: list[tuple[FloatArray, list[FloatArray]]] = []
+        finished: list[tuple[FloatArray, list[FloatArray]]] = []
         for channel in CHANNELS[roughness.channels]:
             values = np.ascontiguousarray(roughness.linear[..., channel : channel + 1])
-            same = [levels for other, levels in done if np.array_equal(other, values)]
+            same = [levels for other, levels in finished if np.array_equal(other, values)]
             if not same:
-                start = (1 + len(done) / 2) / steps
-                made, levels = prefilter.normal_mipmaps(
+                start = (1 + len(finished) / 2) / steps
+                filtered_normals, levels = prefilter.normal_mipmaps(
                     normals,
                     surfaces,
                     roughness=values,
                     progress=share(progress, start, start + 0.5 / steps),
                     **options,
                 )
-                done.append((values, levels))
+                finished.append((values, levels))
                 same = [levels]
             for whole, part in zip(rough, same[0], strict=True):
                 whole[..., channel : channel + 1] = part
@@ -171,11 +172,8 @@ def normal_levels(
             progress=share(progress, 3 / steps, 1.0),
             **options,
         )
-        made = [
-            np.concatenate([level, last], axis=2) for level, last in zip(made, fourth, strict=True)
+        filtered_normals = [
+            np.concatenate([level, last], axis=2)
+            for level, last in zip(filtered_normals, fourth, strict=True)
         ]
-    return made, rough
-
-
-def _is_gray(texels: Texels) -> bool:
-    return bool((texels[..., :1] == texels[..., 1:3]).all())
+    return filtered_normals, rough

@@ -25,12 +25,6 @@ def filtered(
 ) -> tuple[Levels, Levels, str]:
     """Returns the result of `coarser_levels`, and a note about seams if they were weighted.
 
-    Args:
-        source: The image.
-        roughness: The roughness of a normal map; None for none.
-        progress: Called with the fraction done.
-        all_levels: Whether to compute all levels, as files need, whatever the settings say.
-
     Raises:
         prefilter.Cancelled: `progress` returned False.
         ValueError: The library refuses the image or the surfaces.
@@ -38,11 +32,11 @@ def filtered(
     compares = weights_seams(source)
     end = _FIRST_FILTERED if compares else 1.0
     with source.naming_objects():
-        made, rough = coarser_levels(
+        image_levels, roughness_levels = coarser_levels(
             source, roughness, share(progress, 0.0, end), all_levels=all_levels
         )
-        note = seam_note(source, made, share(progress, end, 1.0)) if compares else ""
-    return made, rough, note
+        note = seam_note(source, image_levels, share(progress, end, 1.0)) if compares else ""
+    return image_levels, roughness_levels, note
 
 
 def coarser_levels(
@@ -50,11 +44,7 @@ def coarser_levels(
 ) -> tuple[Levels, Levels]:
     """Returns levels 1 and up, scene-linear, of an image and of its roughness.
 
-    Args:
-        source: The image.
-        roughness: The roughness of a normal map; None for none.
-        progress: Called with the fraction done.
-        all_levels: Whether to compute all levels, as files need, whatever the settings say.
+    `all_levels`: all levels, as files need, whatever the settings say.
 
     Raises:
         prefilter.Cancelled: `progress` returned False.
@@ -70,8 +60,10 @@ def coarser_levels(
     }
     if source.content == "normal":
         linear, surfaces = source.linear(progress), source.surfaces or None
-        made, rough = contents.normal_levels(linear, surfaces, roughness, progress, **options)
-        return made[1:], rough[1:]
+        image_levels, roughness_levels = contents.normal_levels(
+            linear, surfaces, roughness, progress, **options
+        )
+        return image_levels[1:], roughness_levels[1:]
     options["reader"] = source.reader
     options["seam_budget"] = settings.seam_budget / 100.0
     if source.content == "cutout":
@@ -89,13 +81,7 @@ def weights_seams(source: Source) -> bool:
 
 
 def seam_note(source: Source, levels: Levels, progress: Progress) -> str:
-    """Returns a line that compares seam contrast with and without seam weights.
-
-    Args:
-        source: The image.
-        levels: Its levels 1 and up, with seam weights.
-        progress: Called with the fraction done.
-    """
+    """Returns a line that compares seam contrast with and without seam weights."""
     others = source.filtered(
         source.linear(progress),
         source.settings.filter,
@@ -104,8 +90,10 @@ def seam_note(source: Source, levels: Levels, progress: Progress) -> str:
         seam_budget=0.0,
     )
     without, weighed = (
-        prefilter.seam_contrast(made, source.surfaces, wrap=cast("Any", source.wrap), progress=part)
-        for made, part in (
+        prefilter.seam_contrast(
+            compared, source.surfaces, wrap=cast("Any", source.wrap), progress=part
+        )
+        for compared, part in (
             (others[1:], share(progress, 0.8, 0.9)),
             (levels, share(progress, 0.9, 1.0)),
         )
@@ -130,7 +118,7 @@ def _contrast_line(image_name: str, without: Sequence[float], weighed: Sequence[
 
 def _cutout(source: Source, progress: Progress, options: dict[str, Any]) -> Levels:
     linear = source.linear(progress)
-    made = contents.cutout_levels(
+    coarser = contents.cutout_levels(
         source.picture,
         linear,
         source.surfaces or None,
@@ -139,13 +127,13 @@ def _cutout(source: Source, progress: Progress, options: dict[str, Any]) -> Leve
         progress,
         **options,
     )
-    return source.capped(made[1:], linear)
+    return source.capped(coarser[1:], linear)
 
 
 def _plain(source: Source, progress: Progress, options: dict[str, Any]) -> Levels:
     fits = source.fits_views
     texels, encoding = images.light_or_bytes(source.picture, partial(go_on, progress, 0.0))
-    made = contents.plain_levels(
+    coarser = contents.plain_levels(
         source.picture,
         texels,
         source.surfaces or None,
@@ -157,5 +145,5 @@ def _plain(source: Source, progress: Progress, options: dict[str, Any]) -> Level
     if fits:
         linear = source.linear(share(progress, 0.2, 0.2))
         bounds = source.bounds(texels)
-        made = source.fitted_to_views([linear, *made], bounds, share(progress, 0.2, 1.0))[1:]
-    return source.capped(made, texels)
+        coarser = source.fitted_to_views([linear, *coarser], bounds, share(progress, 0.2, 1.0))[1:]
+    return source.capped(coarser, texels)

@@ -42,14 +42,7 @@ def footprint(settings: Settings, filter: str, reader: str) -> float:
 
 
 def fits_views(settings: Settings, content: str, reader: str, objects: Sequence[str]) -> bool:
-    """Tells whether levels are fitted to views of a model.
-
-    Args:
-        settings: The settings of the bake.
-        content: The content of the image.
-        reader: How the levels are looked up.
-        objects: The objects that use the image.
-    """
+    """Tells whether levels are fitted to views of a model."""
     return (
         settings.lookups == "views"
         and content in {"color", "data"}

@@ -37,7 +37,7 @@ class Outputs:
     @property
     def targets(self) -> list[Path]:
         """The files."""
-        return [one for one in (self.target, self.roughness_target) if one is not None]
+        return [target for target in (self.target, self.roughness_target) if target is not None]
 
 
 _IRRELEVANT_SETTINGS = (
@@ -63,7 +63,7 @@ def inputs_fingerprint(source: Source, outputs: Outputs) -> str:
     if rough is not None:
         arrays.append(rough.picture.texels)
         pictures += [_attributes(rough.picture), {"of": rough.channels, "as": rough.texture_format}]
-    kept = {
+    inputs = {
         "settings": chosen,
         "content": source.content,
         "wrap": source.wrap,
@@ -71,23 +71,23 @@ def inputs_fingerprint(source: Source, outputs: Outputs) -> str:
         "pictures": pictures,
         "targets": [target is not None for target in (outputs.target, outputs.roughness_target)],
     }
-    return fingerprint_of(arrays, kept)
+    return fingerprint_of(arrays, inputs)
 
 
 def _attributes(picture: Picture) -> dict[str, str]:
     """Returns all attributes of a picture except its texels and names."""
     return {
-        one.name: str(getattr(picture, one.name))
-        for one in fields(picture)
-        if one.name not in {"name", "full_name", "texels", "ocio_config"}
+        attribute.name: str(getattr(picture, attribute.name))
+        for attribute in fields(picture)
+        if attribute.name not in {"name", "full_name", "texels", "ocio_config"}
     }
 
 
 def stage_files(
     source: Source,
     outputs: Outputs,
-    made: list[FloatArray],
-    rough: list[FloatArray],
+    levels: list[FloatArray],
+    roughness_levels: list[FloatArray],
     *,
     check: Callable[[], None],
     metadata: Mapping[str, str] | None = None,
@@ -95,27 +95,19 @@ def stage_files(
     """Stages the files of an image, then those of its roughness, if there is one.
 
     Yields the files of each, and its levels as level images store them.
-
-    Args:
-        source: The image.
-        outputs: Its outputs.
-        made: Its levels 1 and up, scene-linear.
-        rough: The levels of the roughness.
-        check: Called regularly.
-        metadata: Key-value pairs to store in files, except DDS and PNG.
     """
     stage = partial(
         _stage_file, settings=source.settings, wrap=source.wrap, check=check, metadata=metadata
     )
-    yield stage(source.picture, made, outputs.target, source.settings.texture_format)
+    yield stage(source.picture, levels, outputs.target, source.settings.texture_format)
     if outputs.roughness is not None:
         picture, texture_format = outputs.roughness.picture, outputs.roughness.texture_format
-        yield stage(picture, rough, outputs.roughness_target, texture_format)
+        yield stage(picture, roughness_levels, outputs.roughness_target, texture_format)
 
 
 def _stage_file(
     picture: Picture,
-    made: list[FloatArray],
+    levels: list[FloatArray],
     target: Path | None,
     texture_format: str,
     *,
@@ -127,7 +119,7 @@ def _stage_file(
     """Stages the file of an image; returns it with the levels as level images store them."""
     stored: list[FloatArray] = []
     if settings.use_images or (target is not None and textures.keeps_encoding(target)):
-        stored = [encoded(picture, level, check) for level in made]
+        stored = [encoded(picture, level, check) for level in levels]
     files: list[StagedFile] = []
     threads = settings.threads
     if target is not None and engines.is_for_engines(target):
@@ -135,7 +127,7 @@ def _stage_file(
         files += engines.stage(
             target,
             picture,
-            [in_rec709(picture, level, check) for level in (linear, *made)],
+            [in_rec709(picture, level, check) for level in (linear, *levels)],
             [picture.stored, *stored],
             texture_format,
             check,
@@ -148,7 +140,7 @@ def _stage_file(
     elif target is not None:
         files.append(
             textures.stage(
-                target, picture, made, stored, wrap, check, metadata=metadata, threads=threads
+                target, picture, levels, stored, wrap, check, metadata=metadata, threads=threads
             )
         )
     return files, stored[: settings.levels - 1 if settings.levels else None]
@@ -157,14 +149,7 @@ def _stage_file(
 def summary(
     source: Source, outputs: Outputs, names: Sequence[str] = (), frames: Sequence[int] = ()
 ) -> str:
-    """Returns a line with the image, its objects, and the images and files of its levels.
-
-    Args:
-        source: The image.
-        outputs: Its outputs.
-        names: The names of the level images.
-        frames: The frames that surfaces are averaged over.
-    """
+    """Returns a line with the image, its objects, and the images and files of its levels."""
     name, settings = source.image_name, source.settings
     baked = Sentence("Baked '{}'", name)
     if not outputs.writes_image:

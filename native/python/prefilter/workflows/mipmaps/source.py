@@ -126,7 +126,7 @@ class Source:
         if footprint is None:
             footprint = self.footprint_of(filter)
         with self.naming_objects():
-            made: list[FloatArray] = prefilter.mipmaps(
+            result: list[FloatArray] = prefilter.mipmaps(
                 linear,
                 self.surfaces or None,
                 filter=cast("Any", filter),
@@ -141,8 +141,8 @@ class Source:
                 threads=self.settings.threads,
             )
         if fits:
-            made = self.fitted_to_views(made, self.bounds(linear), share(progress, 0.2, 1.0))
-        return [*made[:1], *self.capped(made[1:], linear)]
+            result = self.fitted_to_views(result, self.bounds(linear), share(progress, 0.2, 1.0))
+        return [*result[:1], *self.capped(result[1:], linear)]
 
     def fitted_to_views(
         self,
@@ -188,9 +188,9 @@ def reads_encoded(picture: Picture) -> bool:
 
 def _naming_objects(message: str, objects: Sequence[str]) -> str:
     """Replaces surfaces by objects in an error message of the library."""
-    one = re.match(r"surface (\d+)\b", message)
-    if one and int(one[1]) < len(objects):
-        return f"object '{objects[int(one[1])]}'{message[one.end() :]}"
+    match = re.match(r"surface (\d+)\b", message)
+    if match and int(match[1]) < len(objects):
+        return f"object '{objects[int(match[1])]}'{message[match.end() :]}"
     if message.startswith("surface:") and objects:
         names = list(dict.fromkeys(objects))
         noun = "object" if len(names) == 1 else "objects"

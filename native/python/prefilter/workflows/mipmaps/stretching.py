@@ -25,11 +25,6 @@ _WHITE = 255
 def stretch(source: Source, outputs: Outputs, progress: Progress) -> tuple[Outputs, list[str]]:
     """Stretches images for block formats to the sides that readers need.
 
-    Args:
-        source: The image; its picture is replaced.
-        outputs: Its outputs.
-        progress: Called to check for cancellation.
-
     Returns:
         The outputs, with stretched roughness; and notes on stretched images.
 
@@ -99,7 +94,7 @@ def stretched(
     """
     linear = scene_linear(picture, check)
     try:
-        made = prefilter.resize(
+        resized = prefilter.resize(
             linear,
             *size,
             filter="lanczos3",
@@ -111,12 +106,12 @@ def stretched(
     except ValueError as error:
         raise ValueError(f"image '{picture.name}': {error}") from error
     if is_normal_map:
-        made[..., :3] = _normalized(made[..., :3])
-    for channel in range(made.shape[2]):
+        resized[..., :3] = _normalized(resized[..., :3])
+    for channel in range(resized.shape[2]):
         low, high = linear[..., channel].min(), linear[..., channel].max()
         if not is_normal_map or channel == 3:
-            np.clip(made[..., channel], low, high, out=made[..., channel])
-    return replace(picture, texels=_as_stored(picture, encoded(picture, made, check)))
+            np.clip(resized[..., channel], low, high, out=resized[..., channel])
+    return replace(picture, texels=_as_stored(picture, encoded(picture, resized, check)))
 
 
 def note(picture: Picture, size: tuple[int, int]) -> str:

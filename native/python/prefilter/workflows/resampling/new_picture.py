@@ -68,7 +68,7 @@ class NewPicture:
 
     @property
     def summary(self) -> str:
-        """What is done to the image, for the user."""
+        """Summary of the operation, for the user."""
         raise NotImplementedError
 
     def filtered(self, linear: FloatArray, progress: Progress) -> FloatArray:
@@ -112,9 +112,9 @@ class NewPicture:
         """
         picture = self.picture
         if self.keeps_bytes:
-            made = self.filtered_bytes(share(progress, 0.0, _FILTERED))
-            if made is not None:
-                self._finish_bytes(made)
+            filtered = self.filtered_bytes(share(progress, 0.0, _FILTERED))
+            if filtered is not None:
+                self._finish_bytes(filtered)
                 go_on(progress, 1.0)
                 return
         linear = scene_linear(picture, partial(go_on, progress, 0.0))
@@ -130,14 +130,14 @@ class NewPicture:
             self._staged = _stage(self._target, picture, result, self.metadata)
         go_on(progress, 1.0)
 
-    def _finish_bytes(self, made: Bytes) -> None:
+    def _finish_bytes(self, filtered: Bytes) -> None:
         picture = self.picture
         if self._target is None:
-            self._stored = replace(picture, texels=made).stored
+            self._stored = replace(picture, texels=filtered).stored
         else:
             self._staged = pictures.stage(
                 self._target,
-                pictures.in_file_channels(made, is_gray=picture.is_gray),
+                pictures.in_file_channels(filtered, is_gray=picture.is_gray),
                 is_data=picture.is_data,
                 is_half=False,
                 metadata=self.metadata,
@@ -151,8 +151,8 @@ class NewPicture:
         """
         if self._staged is not None:
             self._staged.commit()
-            done = Sentence("{} into '{}'", self.summary, self._target)
-            return Outcome(done, files=[str(self._target)])
+            summary = Sentence("{} into '{}'", self.summary, self._target)
+            return Outcome(summary, files=[str(self._target)])
         assert self._stored is not None
         assert self._keep is not None
         return self._keep(self, self._stored)

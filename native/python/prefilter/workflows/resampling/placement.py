@@ -71,8 +71,8 @@ def frame(settings: ResampleSettings, width: int, height: int) -> tuple[int, int
 
 def corners(settings: ResampleSettings, width: int, height: int) -> NDArray[np.float64]:
     """Returns the four corners in pixels, for an image of this size: (4, 2)."""
-    found = np.array([getattr(settings, name) for name in CORNERS], np.float64)
-    return found if settings.use_pixels else found * frame(settings, width, height)
+    points = np.array([getattr(settings, name) for name in CORNERS], np.float64)
+    return points if settings.use_pixels else points * frame(settings, width, height)
 
 
 def knows_proportions(settings: ResampleSettings, width: int, height: int) -> bool:
@@ -153,11 +153,6 @@ def mean_footprint(placed: Placement, width: int, height: int) -> float:
 
     Each number is at least 1 and at most that of a square as long as the image; pixels of the
     result outside the image count as 0.
-
-    Args:
-        placed: The placement of the image.
-        width: Width of the image in pixels.
-        height: Height of the image in pixels.
     """
     grid = (np.arange(_PLACES) + 0.5) / _PLACES
     x, y = (axis.ravel() for axis in np.meshgrid(grid * placed.width, grid * placed.height))
@@ -191,9 +186,11 @@ def _from_unit_square(points: ArrayLike) -> Matrix:
     check_convex(points)
     p0, p1, p2, p3 = np.asarray(points, np.float64)
     across = np.stack([p1 - p2, p3 - p2], axis=1)
-    rest = p0 - p1 + p2 - p3
+    offset = p0 - p1 + p2 - p3
     (a, b), (c, d) = across
-    g, h = np.array([d * rest[0] - b * rest[1], a * rest[1] - c * rest[0]]) / (a * d - b * c)
+    g, h = np.array([d * offset[0] - b * offset[1], a * offset[1] - c * offset[0]]) / (
+        a * d - b * c
+    )
     columns = (p1 - p0 + g * p1, p3 - p0 + h * p3, p0)
     return np.vstack([np.stack(columns, axis=1), [g, h, 1.0]])
 

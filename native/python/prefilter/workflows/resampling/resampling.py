@@ -14,7 +14,7 @@ from ..wording import Sentence, joined
 from .new_picture import Keep, NewPicture
 from .placement import mean_footprint, placement
 
-_RADII = {one.name: one.radius for one in prefilter.PIXEL_FILTERS}
+_RADII = {filter.name: filter.radius for filter in prefilter.PIXEL_FILTERS}
 _PER_PIXEL, _PER_WEIGHT = 8.0, 0.2  # Cost of the exact filter, in texels read.
 _PER_TEXEL = 8.0  # Cost of making mipmaps, in texels read per texel.
 _DONE = {
@@ -58,13 +58,13 @@ class Resampling(NewPicture):
 
     @property
     def summary(self) -> str:
-        """What is done to the image, for the user."""
+        """Summary of the operation, for the user."""
         settings = self._settings
         means = [METHODS[settings.method].label]
         if settings.method != "table":
             means.insert(0, TABLE_FILTERS[settings.filter].label)
         size = self._placement.width, self._placement.height
-        labels = joined(", ", [Sentence(one) for one in means])
+        labels = joined(", ", [Sentence(label) for label in means])
         return Sentence(_DONE[settings.warp], self.picture.name, *size, labels)
 
     def filtered(self, linear: FloatArray, progress: Progress) -> FloatArray:
@@ -91,10 +91,6 @@ class Resampling(NewPicture):
 def load(label: str, path: str) -> "prefilter.SamplingTable":
     """Loads a table.
 
-    Args:
-        label: The path's name in messages.
-        path: The file.
-
     Raises:
         ValueError: No file is named, or it holds no table.
         OSError: It cannot be read.
@@ -114,13 +110,15 @@ def effort(settings: ResampleSettings, width: int, height: int) -> float:
         ValueError: The settings make it flat, fold it, or make it too large.
     """
     placed = placement(settings, width, height)
-    made = placed.width * placed.height
+    pixels = placed.width * placed.height
     if settings.method == "exact":
         reach = 2.0 * _RADII[settings.filter]
-        return made * (_PER_PIXEL + _PER_WEIGHT * reach**2 * mean_footprint(placed, width, height))
+        return pixels * (
+            _PER_PIXEL + _PER_WEIGHT * reach**2 * mean_footprint(placed, width, height)
+        )
     texels = int(settings.method) if settings.method.isdigit() else 8
     probes = settings.max_probes if settings.filter == "gaussian" else 1
-    return made * texels * probes + _PER_TEXEL * width * height
+    return pixels * texels * probes + _PER_TEXEL * width * height
 
 
 def _table(settings: ResampleSettings) -> "prefilter.SamplingTable | str | None":

@@ -43,7 +43,7 @@ class Resizing(NewPicture):
 
     @property
     def summary(self) -> str:
-        """What is done to the image, for the user."""
+        """Summary of the operation, for the user."""
         return Sentence(
             "Resized '{}' from {} x {} to {} x {} pixels with {}",
             *(self.picture.name, *self.old_size, *self.new_size),
@@ -52,14 +52,14 @@ class Resizing(NewPicture):
 
     def filtered(self, linear: FloatArray, progress: Progress) -> FloatArray:
         """Returns the pixels of the new image."""
-        made: FloatArray = self._resized(linear, None, progress)
-        return made
+        resized: FloatArray = self._resized(linear, None, progress)
+        return resized
 
     def filtered_bytes(self, progress: Progress) -> Bytes | None:
         """Returns the pixels of the new image as bytes."""
         texels, encoding = light_or_bytes(self.picture)
-        made: Bytes = self._resized(texels, encoding, progress)
-        return made
+        resized: Bytes = self._resized(texels, encoding, progress)
+        return resized
 
     def _resized(self, texels: Texels, encoding: str | None, progress: Progress) -> Any:
         settings = self._settings

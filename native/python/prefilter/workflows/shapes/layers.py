@@ -192,7 +192,7 @@ class _Svg:
         )
 
     def _warnings(self, picture: SvgPicture) -> list[str]:
-        warnings = [str(one) for one in picture.warnings]
+        warnings = [str(warning) for warning in picture.warnings]
         more = len(warnings) - _MOST_WARNINGS
         if more > 0:
             warnings[_MOST_WARNINGS:] = [f"and {more} more"]

@@ -43,12 +43,12 @@ def _loops(starts: list[int], ends: list[int]) -> list[list[int]]:
     onward: dict[int, list[int]] = defaultdict(list)
     for start, end in zip(starts, ends, strict=True):
         onward[start].append(end)
-    found = []
+    loops = []
     for first in starts:
         while onward[first]:
             walk, place = [first], onward[first].pop()
             while place != first:
                 walk.append(place)
                 place = onward[place].pop()
-            found.append(walk)
-    return found
+            loops.append(walk)
+    return loops

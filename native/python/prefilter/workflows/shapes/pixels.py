@@ -53,20 +53,20 @@ class Pixels:
         """Returns (height, width, channels) values."""
         if self.color is None:
             return self.values
-        found = np.empty((*self.values.shape[:2], 4), np.float32)
-        found[..., :3] = self.color
-        found[..., 3:] = self.values
-        return found
+        pixels = np.empty((*self.values.shape[:2], 4), np.float32)
+        pixels[..., :3] = self.color
+        pixels[..., 3:] = self.values
+        return pixels
 
     def encoded(self, kind: type[np.uint8] | type[np.uint16]) -> NDArray[Any]:
         """Returns integers, sRGB-encoded unless they are a mask."""
         if self.color is None:
             return _whole(self.values if self.is_mask else prefilter.to_srgb(self.values), kind)
-        found = np.empty((*self.values.shape[:2], 4), kind)
+        pixels = np.empty((*self.values.shape[:2], 4), kind)
         color = np.array([[self.color]], np.float32)
-        found[..., :3] = _whole(prefilter.to_srgb(color), kind)
-        found[..., 3:] = _whole(self.values, kind)
-        return found
+        pixels[..., :3] = _whole(prefilter.to_srgb(color), kind)
+        pixels[..., 3:] = _whole(self.values, kind)
+        return pixels
 
 
 def finished(
@@ -110,7 +110,7 @@ def finished(
         *rgb, alpha = settings.background_color
         if light == "srgb":
             rgb = prefilter.to_srgb(np.array([[rgb]], np.float32))[0, 0].tolist()
-        behind = np.array([*(alpha * one for one in rgb), alpha], np.float32)
+        behind = np.array([*(alpha * component for component in rgb), alpha], np.float32)
         raster = raster + (1.0 - raster[..., 3:]) * behind
         is_opaque = alpha == 1.0
     if light == "srgb":
@@ -150,14 +150,14 @@ def _of_one_color(
 def _whole(values: FloatArray, kind: type[np.uint8] | type[np.uint16]) -> NDArray[Any]:
     """Converts [0, 1] to integers, rounded."""
     most = np.float32(np.iinfo(kind).max)
-    found = np.empty(values.shape, kind)
+    pixels = np.empty(values.shape, kind)
     # In bands: temporary arrays of a whole image would cost more than the arithmetic.
     for start in range(0, len(values), _ROWS_AT_ONCE):
         band = np.clip(values[start : start + _ROWS_AT_ONCE], np.float32(0.0), np.float32(1.0))
         band *= most
         band += np.float32(0.5)
-        found[start : start + _ROWS_AT_ONCE] = band
-    return found
+        pixels[start : start + _ROWS_AT_ONCE] = band
+    return pixels
 
 
 def stage(

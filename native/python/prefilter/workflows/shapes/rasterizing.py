@@ -28,12 +28,6 @@ def rasterized(
 ) -> tuple[PlacedShapes, pixels.Pixels]:
     """Draws shapes.
 
-    Args:
-        source: The shapes.
-        settings: The settings.
-        progress: Called with the fraction done.
-        is_straight: Whether the result's colors are not multiplied by alpha.
-
     Raises:
         ValueError: There are no shapes, or they do not fit the settings.
         MemoryError: The image does not fit into memory.
@@ -56,7 +50,7 @@ def rasterized(
         )
     else:
         raster = np.zeros((drawn.height, drawn.width, 1), np.float32)
-    made = pixels.finished(
+    image = pixels.finished(
         raster,
         drawn.color if drawn.shapes or drawn.draw else (1.0, 1.0, 1.0, 1.0),
         settings,
@@ -64,7 +58,7 @@ def rasterized(
         is_straight=is_straight,
         progress=share(progress, _DRAWN, 1.0),
     )
-    return drawn, made
+    return drawn, image
 
 
 def is_straight(target: Path, settings: RasterizeSettings) -> bool:
@@ -98,7 +92,7 @@ class RasterFile:
 
     def compute(self, progress: Progress) -> None:
         """Draws the shapes and stages the file; raises what `rasterized` does."""
-        drawn, made = rasterized(
+        drawn, image = rasterized(
             self._source,
             self._settings,
             share(progress, 0.0, 0.9),
@@ -107,7 +101,7 @@ class RasterFile:
         go_on(progress, 0.9)
         self._warnings.extend(drawn.warnings)
         self._done = summary(self._source.name, str(self._target), (drawn.width, drawn.height))
-        self._staged = pixels.stage(self._target, made, self._settings, self.metadata)
+        self._staged = pixels.stage(self._target, image, self._settings, self.metadata)
         go_on(progress, 1.0)
 
     def write(self) -> Outcome:

@@ -37,13 +37,6 @@ def box(boxes: Sequence[Box], operation: str) -> Box:
 def combined(
     trees: Sequence[prefilter.Octree], operation: str, progress: Progress, threads: int
 ) -> prefilter.Octree:
-    """Combines the first tree with the others, one after another.
-
-    Args:
-        trees: One or more trees in the same grid.
-        operation: The method of `prefilter.Octree`.
-        progress: Called regularly with 0.
-        threads: How many to use.
-    """
+    """Combines the first tree with the others, one after another."""
     combine = getattr(prefilter.Octree, operation)
     return reduce(partial(combine, progress=lambda _: progress(0.0), threads=threads), trees)

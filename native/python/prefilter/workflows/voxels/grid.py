@@ -90,13 +90,7 @@ def cells_crossed(grid: Grid, area: float) -> float:
 
 
 def check_memory(grid: Grid, area: float, memory: Memory = free_memory) -> None:
-    """Raises MemoryError if a surface in this grid would not fit into memory.
-
-    Args:
-        grid: The cells.
-        area: The area of the surface.
-        memory: Returns the available memory.
-    """
+    """Raises MemoryError if a surface in this grid would not fit into memory."""
     crossed = cells_crossed(grid, area)
     needed, (free, why) = _BYTES_PER_CELL * crossed, memory()
     if needed > free or 6 * crossed > _MOST_CORNERS:

@@ -55,13 +55,6 @@ def occupancy(
 ) -> Occupancy:
     """Makes a mesh solid and voxelizes it.
 
-    Args:
-        positions: (n, 3).
-        triangles: (m, 3).
-        grid: The cells.
-        settings: The settings.
-        progress: Called with the fraction done.
-
     Raises:
         ValueError: The mesh encloses nothing.
         MemoryError: The tree does not fit into memory.
@@ -129,14 +122,14 @@ def surface(
         )
         return quads.positions, quads.quads, quads.origins
     if settings.interpolant != "sharp":
-        found = tree.contour(
+        contour = tree.contour(
             interpolant=settings.interpolant,
             adaptivity=adaptivity,
             cleanup=settings.use_cleanup,
             progress=progress,
             threads=settings.threads,
         )
-        return (*found, None)
+        return (*contour, None)
     traced = tree.traced_contour(
         meshes,
         adaptivity=adaptivity,
@@ -147,11 +140,11 @@ def surface(
     return traced.positions, traced.triangles, traced.origins
 
 
-def repair_lines(name: str, made: Occupancy) -> tuple[list[str], list[str]]:
+def repair_lines(name: str, occupancy: Occupancy) -> tuple[list[str], list[str]]:
     """Returns warnings and notes about repairs to an object's mesh."""
     warnings: list[str] = []
     notes: list[str] = []
-    solid = made.solid
+    solid = occupancy.solid
     turned = solid.turned_parts
     if turned and turned >= solid.parts:
         text = "object '{}' was inside out; its normals were flipped"
@@ -165,11 +158,11 @@ def repair_lines(name: str, made: Occupancy) -> tuple[list[str], list[str]]:
         (solid.welded_vertices, _WELDED),
         (solid.duplicate_faces, _DUPLICATE),
     ]
-    done = [Sentence(text, count) for count, text in rows if count]
-    if done:
-        notes.append(Sentence("object '{}': {}", name, joined(", ", done)))
-    if made.open_edges:
-        edges = counted(range(made.open_edges), "open edge")
+    repairs = [Sentence(text, count) for count, text in rows if count]
+    if repairs:
+        notes.append(Sentence("object '{}': {}", name, joined(", ", repairs)))
+    if occupancy.open_edges:
+        edges = counted(range(occupancy.open_edges), "open edge")
         text = "object '{}' has {}; the result is closed"
         notes.append(Sentence(text, name, edges))
     return warnings, notes
