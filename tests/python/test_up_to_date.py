@@ -17,9 +17,9 @@ from prefilter.workflows.up_to_date import (
     KEY,
     arrays_of,
     fingerprint_of,
+    is_self_contained,
     is_up_to_date,
     stored_fingerprint,
-    is_self_contained,
 )
 
 oiio = pytest.importorskip("OpenImageIO", reason="scripts/decoders.txt is not installed")
@@ -222,7 +222,7 @@ def test_damaged_files_are_never_up_to_date(tmp_path):
     )
     paths = [tmp_path / "a.exr", tmp_path / "a.png"]
     corners = np.eye(3)
-    triangle = mesh_files.Part("a", corners, np.array([[0, 1, 2]]), None)
+    triangle = mesh_files.NamedMesh("a", corners, np.array([[0, 1, 2]]), None)
     for kind in ("ply", "obj", "stl", "glb"):
         paths.append(tmp_path / f"a.{kind}")
         mesh_files.stage(paths[-1], [triangle], {KEY: number}).commit()
