@@ -50,7 +50,7 @@ _NAMES = {
     ".sampling.samples": "sample",
     ".sampling.sampling_table": "SamplingTable TableSection",
     ".sampling.stochastic": "PickedTexels pick_texels sample_stochastic",
-    ".shapes._svg.warnings": "SvgWarning",
+    ".shapes._svg.model.warnings": "SvgWarning",
     ".shapes.rasterization": "RASTER_FILTERS rasterize",
     ".shapes.shape": "Shape",
     ".shapes.svg": "SvgDrawing read_svg",
