@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Prefilter: mipmaps that know the mesh, voxels, surfaces of scans, vector shapes, in Blender."""
+"""Prefilter for Blender: mipmaps fitted to meshes, voxels, surfaces of scans, vector shapes."""
 
 import gc
 from collections.abc import Iterator
@@ -17,15 +17,14 @@ SUBJECTS = (
     "voxels",
     "comparison",
 )
-"""The folders of the subjects, in the order in which they are registered."""
+"""The folders of the subjects, in the order of registration."""
 
 
 @contextmanager
 def _collector_paused() -> Iterator[None]:
-    """Keeps Python from searching all of Blender for garbage meanwhile.
+    """Disables Python's garbage collector, which takes a third of the loading time.
 
-    Modules that load make many objects and no garbage; what those objects set off is a third of
-    the time.
+    Loading modules creates many objects and no garbage.
     """
     enabled = gc.isenabled()
     gc.disable()
@@ -42,8 +41,8 @@ with _collector_paused():
         menus,
         preset_menu,
         queue_panel,
-        remembered,
-        running,
+        runs,
+        scene_cache,
         shortcuts,
         sidebar,
         translations,
@@ -57,7 +56,7 @@ with _collector_paused():
         glTF2ImportUserExtension,
     )
     from .mipmaps.gltf.panel import draw_export, draw_import
-    from .preferences import OfSubjects
+    from .preferences import SubjectPreferences
 
     _packages = [import_module(f".{name}", __package__) for name in SUBJECTS]
 
@@ -68,11 +67,11 @@ __all__ = (
     "glTF2ImportUserExtension",
     "glTF2_pre_export_callback",
 )
-# Blender's glTF exporter and importer look these names up.
+# Blender's glTF exporter and importer look up these names.
 
 register, unregister = registration(
     translations,
-    *(OfSubjects(_packages), preset_menu, running, remembered, menus, sidebar, queue_panel),
+    *(SubjectPreferences(_packages), preset_menu, runs, scene_cache, menus, sidebar, queue_panel),
     shortcuts,
     *_packages,
     *(Commands(SUBJECTS), Manual(_packages), Keys(_packages)),

@@ -16,27 +16,27 @@ _PROGRAM = "blender --background --command prefilter"
 
 
 class Commands:
-    """The commands of all subjects, which the function `add` of their module `command` adds."""
+    """The commands of all subjects, from the function `add` of their optional module `command`."""
 
     def __init__(self, subjects: Sequence[str]) -> None:
-        """Takes the folders of the subjects."""
+        """Stores the folders of the subjects."""
         self._subjects = subjects
         self._handle: object = None
 
     def register(self) -> None:
-        """Makes the commands known to Blender's command line."""
+        """Registers the command `prefilter` with Blender."""
         self._handle = bpy.utils.register_cli_command("prefilter", self.run)
 
     def unregister(self) -> None:
-        """Takes them back."""
+        """Unregisters it."""
         bpy.utils.unregister_cli_command(self._handle)
 
     def run(self, arguments: Sequence[str]) -> int:
         """Runs `prefilter ARGUMENTS`.
 
         Returns:
-            The exit status: 0, 1 for a failure that was told on stderr, 2 for wrong arguments, 130
-            after Ctrl-C, 143 after SIGTERM.
+            The exit status: 0, 1 for a failure reported on stderr, 2 for wrong arguments, 130 after
+            Ctrl-C, 143 after SIGTERM.
         """
         from prefilter.commands.program import execute, parse_arguments, run_to_status
 
@@ -45,7 +45,7 @@ class Commands:
         )
 
     def parser(self) -> "argparse.ArgumentParser":
-        """Returns what reads the arguments."""
+        """Returns the argument parser."""
         from prefilter.commands.cli_common import add_progress
         from prefilter.commands.program import Parser
 

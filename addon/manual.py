@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The manual that comes along: where it is, and which page is about which operator and setting.
+"""The installed manual: its address, and the pages of operators and settings.
 
 Blender opens the page from the context menu of a button (Online Manual), and with F1 over it.
 """
@@ -20,46 +20,47 @@ _OWN = {
         *("assign_shortcut", "remove_shortcut"),
     ),
 }
-"""What belongs to no subject; see `Manual`."""
+"""The pages of operators and settings that belong to no subject; see `Manual`."""
 
 
 def page(name: str = "README") -> str:
-    """Returns the address of a page: of a file that comes along, else of the website."""
+    """Returns the address of a page: the installed file, or the website if there is none."""
     path = FOLDER / f"{name}.html"
     return path.as_uri() if path.exists() else _website()
 
 
 class Manual:
-    """Which page is about what: each subject says that of its own.
+    """The pages of all operators and settings.
 
-    A subject has `MANUAL`: by the name of a page in docs/, the names of its operators and of its
-    groups of properties, without the prefixes `prefilter.` and `PREFILTER_PG_`.
+    Each subject has `MANUAL`, which maps names of pages in docs/ to the names of its operators and
+    property groups, without the prefixes `prefilter.` and `PREFILTER_PG_`.
     """
 
     def __init__(self, subjects: Sequence[ModuleType]) -> None:
-        """Takes the packages of the subjects."""
-        self._tables: list[Mapping[str, Sequence[str]]] = [one.MANUAL for one in subjects]
+        """Collects `MANUAL` from the packages of the subjects."""
+        self._tables: list[Mapping[str, Sequence[str]]] = [subject.MANUAL for subject in subjects]
 
     def register(self) -> None:
-        """Makes the pages known to Blender."""
+        """Registers the pages with Blender."""
         bpy.utils.register_manual_map(self.pages)
 
     def unregister(self) -> None:
-        """Takes them back."""
+        """Unregisters them."""
         bpy.utils.unregister_manual_map(self.pages)
 
     def pages(self) -> tuple[str, tuple[tuple[str, str], ...]]:
-        """Returns what Blender asks for: where the manual is, and patterns with what is at each."""
+        """Returns the address of the manual, and pairs of name patterns and files, for Blender."""
         if not FOLDER.exists():
             return "", ()
-        found = []
+        pairs = []
         for table in (*self._tables, _OWN):
-            for which, names in table.items():
+            for page_name, names in table.items():
+                file = f"{page_name}.html"
                 for name in names:
                     for pattern in (f"bpy.ops.prefilter.{name}", f"bpy.types.prefilter_pg_{name}"):
-                        found += [(pattern, f"{which}.html"), (f"{pattern}.*", f"{which}.html")]
-        found.append(("bpy.types.prefilter_ap_preferences.*", "preferences.html"))
-        return f"{FOLDER.as_uri()}/", tuple(found)
+                        pairs += [(pattern, file), (f"{pattern}.*", file)]
+        pairs.append(("bpy.types.prefilter_ap_preferences.*", "preferences.html"))
+        return f"{FOLDER.as_uri()}/", tuple(pairs)
 
 
 @cache

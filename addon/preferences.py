@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The preferences of the add-on: what its operators and commands do where a user says nothing."""
+"""The add-on's preferences: defaults for its operators and commands."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ from .core.translations import CONTEXT
 
 @dataclass(frozen=True)
 class Preferences:
-    """What holds for several subjects where a user sets nothing."""
+    """Defaults that several subjects share."""
 
     threads: int = number(
         0,
@@ -38,7 +38,7 @@ class Preferences:
 
 
 class PREFILTER_AP_preferences(bpy.types.AddonPreferences):
-    """What Blender shows below the add-on in its preferences."""
+    """The preferences that Blender shows below the add-on."""
 
     bl_idname = PACKAGE
     __annotations__ = properties(Preferences)
@@ -57,22 +57,20 @@ class PREFILTER_AP_preferences(bpy.types.AddonPreferences):
         link.url = manual.page()
 
 
-class OfSubjects:
-    """The preferences, with those that subjects have of their own.
-
-    A subject may have `PREFERENCES`: a dataclass of options.
-    """
+class SubjectPreferences:
+    """The preferences, with those of all subjects: their optional `PREFERENCES`, dataclasses of
+    options."""
 
     def __init__(self, subjects: Sequence[ModuleType]) -> None:
-        """Takes the packages of the subjects."""
-        for one in subjects:
-            if (found := getattr(one, "PREFERENCES", None)) is not None:
-                PREFILTER_AP_preferences.__annotations__ |= properties(found)
+        """Adds the preferences of the subjects' packages."""
+        for subject in subjects:
+            if (options := getattr(subject, "PREFERENCES", None)) is not None:
+                PREFILTER_AP_preferences.__annotations__ |= properties(options)
 
     def register(self) -> None:
-        """Makes them known to Blender."""
+        """Registers the preferences."""
         bpy.utils.register_class(PREFILTER_AP_preferences)
 
     def unregister(self) -> None:
-        """Takes them back."""
+        """Unregisters them."""
         bpy.utils.unregister_class(PREFILTER_AP_preferences)

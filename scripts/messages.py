@@ -42,7 +42,7 @@ _BUTTONS = {"operator", "prop", "label", "draw", "draw_main", "subpanel"}
 _WIDE = re.compile(r".*\bmenus\.py|core/shortcuts\.py|preferences\.py")
 """Modules that draw menus and the preferences, where there is room."""
 _DRAWN = {"text", "heading", "placeholder", "message"}
-_SAID = {"doing", "makes", "wanted", "nothing"}
+_SAID = {"activity", "makes", "required_object", "nothing"}
 
 
 def shown() -> dict[str, list[str]]:
@@ -203,9 +203,10 @@ def main() -> None:
     for language in translations.LANGUAGES:
         path = ADDON / "translations" / f"{language}.json"
         before = json.loads(path.read_text(encoding="utf-8"))
+        header = {translations.HEADER: before.pop(translations.HEADER)}
         after = {text: before.get(text, "") for text in sorted(texts)}
-        told = json.dumps(after, ensure_ascii=False, indent=0)
-        path.write_text(f"{told}\n", encoding="utf-8")
+        table = json.dumps(header | after, ensure_ascii=False, indent=0)
+        path.write_text(f"{table}\n", encoding="utf-8")
         empty = [text for text, translated in after.items() if not translated]
         print(f"{path}: {len(empty)} to translate, {len(before.keys() - texts)} removed")
         sys.stdout.writelines(f"  {text!r} ({texts[text][0]})\n" for text in empty)

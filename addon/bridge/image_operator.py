@@ -57,7 +57,7 @@ class ImageOperator:
         """Returns the image."""
         return [self.chosen_image(context)]
 
-    def aim(self, targets: Sequence[bpy.types.ID]) -> None:
+    def retarget(self, targets: Sequence[bpy.types.ID]) -> None:
         """Names the image."""
         self.image = targets[0].name
 
@@ -66,7 +66,7 @@ class MakesImage(WorkOperator):
     """A mixin: work that makes an image, which the editor then shows that the operator is called
     from."""
 
-    line = "images"
+    queue_name = "images"
 
     def finish(self, context: bpy.types.Context, result: None) -> str:
         """Writes the image, shows it, and returns what to report."""
@@ -75,5 +75,5 @@ class MakesImage(WorkOperator):
         outcome = self.work.write()
         image = bpy.data.images[outcome.images[0]]
         is_elsewhere = editors.show_anywhere(context, image)
-        done = self.tell(outcome)
+        done = self.report_outcome(outcome)
         return Sentence("{}, shown in the Image editor", done) if is_elsewhere else done

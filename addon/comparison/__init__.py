@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Results and what they were made of, one in the place of the other."""
+"""Switching between a result and its source."""
 
 from ..core.registration import registration
 from . import operators, panel, properties

@@ -1,3 +1,3 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a user may set of comparisons: nothing."""
+"""Options of comparisons: none."""

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`prefilter.switch_source` and `prefilter.forget_source`: what an object was made of."""
+"""`prefilter.switch_source` and `prefilter.forget_source`: the source of a result."""
 
 import bpy
 
@@ -11,7 +11,7 @@ from ..core.wording import listed
 class _ResultOperator:
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether the active object is a result, or what one was made of."""
+        """Returns whether the active object is a result or a source."""
         from ..bridge.kept_sources import result_of
 
         if context.mode != "OBJECT":
@@ -24,7 +24,7 @@ class _ResultOperator:
 
 
 class PREFILTER_OT_switch_source(_ResultOperator, bpy.types.Operator):
-    """Shows a source instead of its result, or the result again."""
+    """Shows the source instead of the result, or the result again."""
 
     bl_idname = "prefilter.switch_source"
     bl_label = "Show Source or Result"
@@ -35,7 +35,7 @@ class PREFILTER_OT_switch_source(_ResultOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Switches."""
+        """Switches between the two."""
         from ..bridge.kept_sources import result_of, show
 
         result = result_of(context.active_object)
@@ -48,7 +48,7 @@ class PREFILTER_OT_switch_source(_ResultOperator, bpy.types.Operator):
 
 
 class PREFILTER_OT_forget_source(_ResultOperator, bpy.types.Operator):
-    """Removes what is kept of a source."""
+    """Deletes the stored source of a result."""
 
     bl_idname = "prefilter.forget_source"
     bl_label = "Forget Source"
@@ -59,7 +59,7 @@ class PREFILTER_OT_forget_source(_ResultOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Forgets it."""
+        """Deletes it."""
         from ..bridge.kept_sources import forget, result_of
 
         result = result_of(context.active_object)

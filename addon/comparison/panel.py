@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The switch between a result and what it was made of, in the 3D view's tab and the Object menu."""
+"""The switch between a result and its source, in the 3D view's tab and the Object menu."""
 
 import bpy
 
@@ -11,14 +11,14 @@ from .operators import PREFILTER_OT_forget_source, PREFILTER_OT_switch_source
 
 
 class PREFILTER_PT_before_after(Tab, bpy.types.Panel):
-    """The switch, where there is something to switch to."""
+    """The switch, if the active object has a source or a result."""
 
     bl_label = "Before and After"
     bl_context = "objectmode"
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether the active object is a result, or what one was made of."""
+        """Returns whether the active object is a result or a source."""
         from ..bridge.kept_sources import result_of
 
         return result_of(context.active_object) is not None

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What objects know of what they were made of; see `bridge.kept_sources`."""
+"""Properties of objects that link a result and its sources; see `bridge.kept_sources`."""
 
 import bpy
 from bpy.props import BoolProperty, CollectionProperty, PointerProperty
@@ -9,19 +9,19 @@ from ..core.registration import classes, registration, state
 
 
 class PREFILTER_PG_source_object(bpy.types.PropertyGroup):
-    """An object that another was made of."""
+    """A source object of a result."""
 
     obj: PointerProperty(type=bpy.types.Object)
 
 
 class PREFILTER_PG_made_of(bpy.types.PropertyGroup):
-    """What an object was made of, and whether that is shown.
+    """The sources of an object.
 
     Attributes:
-        sources: Of a result: what it was made of.
-        is_source_shown: Of a result: whether these are shown instead.
-        is_source: Whether something was made of the object.
-        is_copy: Whether the object is a copy of what a result was, which nothing else uses.
+        sources: For a result, its source objects.
+        is_source_shown: For a result, whether the sources are shown instead of it.
+        is_source: Whether the object is the source of a result.
+        is_copy: Whether the object is a private copy of the object that the result replaced.
     """
 
     sources: CollectionProperty(type=PREFILTER_PG_source_object)

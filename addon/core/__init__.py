@@ -1,3 +1,3 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What every subject stands on: jobs, operators, commands, choices. It knows no subject."""
+"""Code that every subject uses: jobs, operators, commands, options. It imports no subject."""

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Buttons of operators with the settings of the scene, and the panels that consist of both."""
+"""Buttons that call operators with the settings of the scene, and panels with such a button."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
@@ -14,13 +14,13 @@ from .sidebar import main_button
 
 @dataclass(frozen=True)
 class Button:
-    """An operator that has the settings of the scene, in panels and menus.
+    """A button or menu entry that calls an operator with the settings of the scene.
 
     Attributes:
         operator: The operator.
         icon: Its icon.
-        group: The settings of the scene, a property of it.
-        settings: The dataclasses of what is handed to the operator, each with fields that are not.
+        group: The scene property with the settings.
+        settings: The dataclasses of settings to pass to the operator, each with fields to exclude.
     """
 
     operator: type[bpy.types.Operator]
@@ -37,51 +37,52 @@ class Button:
         *,
         is_changed: bool = False,
     ) -> bpy.types.OperatorProperties:
-        """Draws it, with another text or icon if one is given.
+        """Draws the button.
 
-        An operator that looks up the settings by itself gets none: Blender then finds its key, and
-        shows that in menus and tooltips.
+        An operator that reads the settings from the scene itself gets none: Blender then finds its
+        shortcut, and shows it in menus and tooltips.
 
         Args:
-            layout: Where.
-            context: Has the scene.
-            text: What it says; its label if None.
-            icon: Its icon; its usual one if empty.
-            is_changed: Whether the caller changes some of the settings, so that all are needed.
+            layout: The layout to draw into.
+            context: The context with the scene.
+            text: The text; None for the operator's label.
+            icon: The icon; empty for the usual one.
+            is_changed: Whether the caller will change some settings, so that all must be passed.
         """
-        made = layout.operator(self.operator.bl_idname, text=text, icon=icon or self.icon)
+        name = self.operator.bl_idname
+        properties = layout.operator(name, text=text, icon=icon or self.icon)
         if is_changed or not issubclass(self.operator, PresetsOperator):
             for settings, without in self.settings.items():
-                copy(getattr(context.scene, self.group), made, settings, without)
-        return made
+                copy(getattr(context.scene, self.group), properties, settings, without)
+        return properties
 
     def draw_main(
         self, layout: bpy.types.UILayout, context: bpy.types.Context, text: str | None = None
     ) -> None:
-        """Draws it as the main button of a panel, or how far the operator is."""
+        """Draws the main button of a panel, or the progress of the operator."""
 
         def draw_more(row: bpy.types.UILayout) -> None:
             self.draw(row, context, "", "ADD")
 
-        more = draw_more if self.operator.line else None
-        place = main_button(layout, context, self.operator, more)
-        if place:
-            self.draw(place, context, text)
+        more = draw_more if self.operator.queue_name else None
+        row = main_button(layout, context, self.operator, more)
+        if row:
+            self.draw(row, context, text)
 
 
 class SettingsPanel(PresetsPanel):
-    """A mixin for panels: a main button, what its settings come to, and these, closed at first."""
+    """A mixin for panels: a main button, a summary of the result, and the settings, collapsed."""
 
     button: Button
     makes: str
-    """What the button says: what it makes."""
+    """The text of the button, which names the result."""
     layout: bpy.types.UILayout
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
         self.button.draw_main(self.layout, context, self.makes)
         self.draw_notes(context)
-        getattr(context.scene, self.button.group).draw_closed(self.layout)
+        getattr(context.scene, self.button.group).draw_collapsed(self.layout)
 
     def draw_notes(self, context: bpy.types.Context) -> None:
-        """Draws what the settings come to; nothing where that is not said."""
+        """Draws a summary of the result, if there is one."""

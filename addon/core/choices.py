@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a user may choose for an option, as items of Blender's properties."""
+"""The choices of an option, as items of Blender's enumeration properties."""
 
 import zlib
 from collections.abc import Mapping
@@ -13,8 +13,8 @@ __all__ = ("Choice", "flag_items", "items", "number_of")
 def items(choices: Mapping[str, Choice]) -> list[tuple[str, str, str, str, int]]:
     """Returns the items of an enumeration property.
 
-    Files keep the number of an item. It depends on the key alone, so what is new may stand
-    anywhere. Buttons side by side keep it in single precision, so it has 24 bits.
+    .blend files store the number of an item. It depends on the key alone, so items may be inserted
+    anywhere. Expanded buttons store it in single precision, so it has 24 bits.
     """
     return [
         (key, choice.label, choice.description, "", number_of(key))
@@ -28,5 +28,5 @@ def number_of(key: str) -> int:
 
 
 def flag_items(choices: Mapping[str, Choice]) -> list[tuple[str, str, str]]:
-    """Returns the items of an enumeration property of which a user chooses several."""
+    """Returns the items of an enumeration property with multiple selection."""
     return [(key, choice.label, choice.description) for key, choice in choices.items()]

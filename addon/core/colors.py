@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Colors as users of commands write them; the package reads them."""
+"""Hexadecimal colors of the command line."""
 
 from prefilter.options.colors import Color, from_hex, to_hex
 

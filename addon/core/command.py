@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What the commands share: options, progress, messages."""
+"""Helpers of commands, from the package: options, progress, messages."""
 
 from prefilter.commands.cli_common import (
     add_command,

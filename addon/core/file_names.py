@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Names of data-blocks as names of files."""
+"""File names for data-blocks."""
 
 import unicodedata
 from collections.abc import Sequence
@@ -10,12 +10,12 @@ from prefilter.files.file_names import portable
 
 
 def clean_name(name: str) -> str:
-    """Returns the name of a data-block as one that every system allows for files."""
+    """Returns a file name that every system allows."""
     return portable(bpy.path.clean_name(unicodedata.normalize("NFC", name)))
 
 
 def clean_names(names: Sequence[str]) -> list[str]:
-    """Returns the same of several, numbered where two are alike but for the case of letters."""
+    """Returns file names, numbered where two differ only by case."""
     taken: set[str] = set()
     cleaned: list[str] = []
     for name in names:

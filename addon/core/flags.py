@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Options as flags of commands, which follow the preferences of the add-on."""
+"""Options as command-line flags, whose defaults may follow the add-on's preferences."""
 
 import argparse
 from functools import partial
@@ -16,11 +16,11 @@ __all__ = ("PREFERRED", "add_flags", "given", "settings_given", "tables")
 Settings = TypeVar("Settings")
 
 PREFERRED = ", or as in the preferences"
-"""What the help adds to the default of an option that follows a preference."""
+"""Added in the help to the default of an option that follows a preference."""
 add_flags = partial(flags.add_flags, preferred=PREFERRED)
 """Adds the flags of options to a parser."""
 
 
 def settings_given(options: argparse.Namespace, settings: type[Settings], **more: Any) -> Settings:
-    """Returns settings: by `more`, else by flags, else by the preferences of the add-on."""
+    """Returns settings from `more`, else from flags, else from the add-on's preferences."""
     return settings(**preferred(settings) | given(options, settings) | more)

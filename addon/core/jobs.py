@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Long work, mostly off the main thread: progress, cancel, result."""
+"""Threads for long work, with progress, pause, cancellation and result."""
 
 import os
 import threading
@@ -17,15 +17,15 @@ T = TypeVar("T")
 
 
 def at_once(works: Sequence[Callable[[Progress], None]], progress: Progress, threads: int) -> None:
-    """Does several pieces of work at the same time, each in one thread.
+    """Runs functions in parallel, each in one thread.
 
     Args:
-        works: Each gets what it reports its progress to. The order in which they are begun is kept.
-        progress: Called with the fraction of all that is done, from any thread, one at a time.
-        threads: How many threads; 0 for as many as there are processors.
+        works: Each takes its own progress callback. They start in this order.
+        progress: Called with the overall fraction done, from any thread, one call at a time.
+        threads: The number of threads; 0 for the number of processors.
 
     Raises:
-        BaseException: What the first of them raises that fails; the others are stopped.
+        BaseException: The exception of the first function that fails; the others are stopped.
     """
     from concurrent.futures import ThreadPoolExecutor, wait
 
@@ -63,7 +63,7 @@ def at_once(works: Sequence[Callable[[Progress], None]], progress: Progress, thr
             failed.set()
             raise
     failures = [error for future in futures if (error := future.exception()) is not None]
-    # Those that were stopped say no more than that.
+    # The functions that were stopped raise Cancelled, which hides the cause.
     failures.sort(key=lambda error: isinstance(error, prefilter.Cancelled))
     if failures:
         raise failures[0]
@@ -76,11 +76,7 @@ class Job(Generic[T]):
     """
 
     def __init__(self, work: Callable[[Progress], T]) -> None:
-        """Starts the thread.
-
-        Args:
-            work: What to run.
-        """
+        """Starts the thread."""
         self._work = work
         self._progress = 0.0
         self._cancelled = threading.Event()
@@ -99,7 +95,7 @@ class Job(Generic[T]):
 
     @property
     def progress(self) -> float:
-        """How much is done, in [0, 1]."""
+        """The fraction done, in [0, 1]."""
         return self._progress
 
     @property
@@ -109,7 +105,7 @@ class Job(Generic[T]):
 
     @property
     def seconds(self) -> float:
-        """How long the callable has run, once it is done, without pauses."""
+        """Running time without pauses, once the callable is done."""
         return self._seconds
 
     @property
@@ -118,11 +114,7 @@ class Job(Generic[T]):
         return self._is_held
 
     def pause(self, *, is_paused: bool) -> None:
-        """Has the callable wait at its next progress call, or go on.
-
-        Args:
-            is_paused: Which of the two.
-        """
+        """Makes the callable wait at its next progress call, or continue."""
         if is_paused:
             self._may_go_on.clear()
         else:
@@ -134,10 +126,10 @@ class Job(Generic[T]):
         self._may_go_on.set()
 
     def abandon(self, release: Callable[[], None]) -> None:
-        """Asks the callable to stop, and waits for nothing.
+        """Asks the callable to stop, without waiting for it.
 
         Args:
-            release: What to call once it has, from its thread or from here.
+            release: Called after it has stopped, from its thread or from this one.
         """
         self.cancel()
         with self._lock:
@@ -147,7 +139,7 @@ class Job(Generic[T]):
         release()
 
     def result(self) -> T:
-        """Waits for the callable, and returns what it returned or raises what it raised."""
+        """Waits for the callable; returns its result or raises its exception."""
         self._thread.join()
         if self._error is not None:
             raise self._error
@@ -157,7 +149,7 @@ class Job(Generic[T]):
         began = time.monotonic()
         try:
             self._result = self._work(self._advance)
-        except BaseException as error:  # Handed on by result().
+        except BaseException as error:  # result() raises it.
             self._error = error
         self._seconds = time.monotonic() - began - self._seconds_held
         with self._lock:

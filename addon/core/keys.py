@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The keys that operators have at first, and those that users give them.
+"""Default shortcuts of operators, and the shortcuts that users assign.
 
-A key is pressed without settings: the operator has those of its panel.
+A shortcut stores no settings: the operator uses those of its panel.
 """
 
 from collections.abc import Iterator, Sequence
@@ -23,17 +23,17 @@ _RIVALS = {
     "Image": ("Image", "Image Generic", "UV Editor"),
     WINDOW: (WINDOW,),
 }
-"""Where other operators have keys that are pressed in the same place."""
+"""For each keymap, the keymaps that are active in the same editor."""
 _EVERYWHERE = ("Frames", "Screen", "Screen Editing", WINDOW)
 
 
 class Key(NamedTuple):
-    """A key that an operator has at first, together with Shift and Alt.
+    """A default shortcut: a key with Shift and Alt.
 
     Attributes:
         operator: The operator, without the prefix `prefilter.`.
         letter: The key.
-        keymap: Where it is pressed: "Object Mode", "Sculpt", or "Image", an Image editor.
+        keymap: The keymap: "Object Mode", "Sculpt", or "Image" for the Image editor.
     """
 
     operator: str
@@ -42,34 +42,35 @@ class Key(NamedTuple):
 
 
 class Keys:
-    """The keys at first: each subject says those of its own.
-
-    A subject may have `KEYS`, a sequence of `Key`.
-    """
+    """The default shortcuts of all subjects: their optional `KEYS`, sequences of `Key`."""
 
     def __init__(self, subjects: Sequence[ModuleType]) -> None:
-        """Takes the packages of the subjects."""
-        self._keys: list[Key] = [key for one in subjects for key in getattr(one, "KEYS", ())]
-        self._made: list[tuple[bpy.types.KeyMap, bpy.types.KeyMapItem]] = []
+        """Collects the shortcuts from the packages of the subjects."""
+        self._keys: list[Key] = [
+            key for subject in subjects for key in getattr(subject, "KEYS", ())
+        ]
+        self._items: list[tuple[bpy.types.KeyMap, bpy.types.KeyMapItem]] = []
 
     def register(self) -> None:
-        """Makes the keys known to Blender, which has none without a window."""
-        known = bpy.context.window_manager.keyconfigs.addon
-        for key in self._keys if known is not None else ():
-            keymap = known.keymaps.new(key.keymap, space_type=_SPACES.get(key.keymap, "EMPTY"))
+        """Adds the keymap items; without a window Blender has no keymaps."""
+        config = bpy.context.window_manager.keyconfigs.addon
+        for key in self._keys if config is not None else ():
+            keymap = config.keymaps.new(key.keymap, space_type=_SPACES.get(key.keymap, "EMPTY"))
             name = f"{OPERATORS}{key.operator}"
-            made = keymap.keymap_items.new(name, key.letter, "PRESS", shift=True, alt=True)
-            self._made.append((keymap, made))
+            item = keymap.keymap_items.new(name, key.letter, "PRESS", shift=True, alt=True)
+            self._items.append((keymap, item))
 
     def unregister(self) -> None:
-        """Takes them back."""
-        for keymap, made in self._made:
-            keymap.keymap_items.remove(made)
-        self._made.clear()
+        """Removes them."""
+        for keymap, item in self._items:
+            keymap.keymap_items.remove(item)
+        self._items.clear()
 
 
-def every(context: bpy.types.Context) -> Iterator[tuple[bpy.types.KeyMap, bpy.types.KeyMapItem]]:
-    """Yields what users have for the operators of the add-on, with the keymaps that have them."""
+def addon_items(
+    context: bpy.types.Context,
+) -> Iterator[tuple[bpy.types.KeyMap, bpy.types.KeyMapItem]]:
+    """Yields the user's keymap items for the add-on's operators, with their keymaps."""
     for keymap in context.window_manager.keyconfigs.user.keymaps:
         for item in keymap.keymap_items:
             if item.idname.startswith(OPERATORS):
@@ -79,7 +80,7 @@ def every(context: bpy.types.Context) -> Iterator[tuple[bpy.types.KeyMap, bpy.ty
 def find(
     context: bpy.types.Context, operator: str
 ) -> tuple[bpy.types.KeyMap, bpy.types.KeyMapItem] | None:
-    """Returns the key of an operator in the editor; None if it has none."""
+    """Returns the keymap item of an operator in the editor; None if there is none."""
     for name in dict.fromkeys((keymap_name(context), WINDOW)):
         keymap = _keymap(context, name)
         for item in keymap.keymap_items if keymap is not None else ():
@@ -89,7 +90,7 @@ def find(
 
 
 def keymap_name(context: bpy.types.Context) -> str:
-    """Returns the name of the keymap for operators of the editor."""
+    """Returns the name of the editor's keymap."""
     if context.area is None:
         return WINDOW
     if context.area.type == "VIEW_3D" and context.mode == "SCULPT":
@@ -100,53 +101,53 @@ def keymap_name(context: bpy.types.Context) -> str:
 def assign(
     context: bpy.types.Context, operator: str, event: bpy.types.Event, settings: dict[str, Any]
 ) -> bpy.types.KeyMapItem:
-    """Gives an operator the key of an event, in place of the one that it has.
+    """Assigns the key of an event to an operator, replacing its present one.
 
     Args:
-        context: Has the editor in which the key is pressed.
+        context: The context with the editor.
         operator: The operator.
-        event: The press.
-        settings: Properties that the operator gets.
+        event: The press of the key.
+        settings: Properties of the operator.
     """
-    pressed = {name: int(getattr(event, name)) for name in _MODIFIERS}
-    found = find(context, operator)
-    if found is None:
+    modifiers = {name: int(getattr(event, name)) for name in _MODIFIERS}
+    present = find(context, operator)
+    if present is None:
         name = keymap_name(context)
-        item = _items(context, name).new(operator, event.type, "PRESS", **pressed)
+        item = _items(context, name).new(operator, event.type, "PRESS", **modifiers)
         for key, value in settings.items():
             setattr(item.properties, key, value)
         number = item.id
         context.window_manager.keyconfigs.update()
         item = _items(context, name).from_id(number)
     else:
-        _, item = found
+        _, item = present
         item.type = event.type
-        for name, value in pressed.items():
+        for name, value in modifiers.items():
             setattr(item, name, value)
     context.preferences.is_dirty = True
     return item
 
 
 def remove(context: bpy.types.Context, operator: str) -> bool:
-    """Takes the key of an operator; returns whether it had one."""
-    found = find(context, operator)
-    if found is None:
+    """Removes the shortcut of an operator; returns whether it had one."""
+    present = find(context, operator)
+    if present is None:
         return False
-    keymap, item = found
+    keymap, item = present
     keymap.keymap_items.remove(item)
     context.preferences.is_dirty = True
     return True
 
 
-def rivals(context: bpy.types.Context, item: bpy.types.KeyMapItem) -> list[str]:
-    """Returns the names of what else has the key of an item in the editor."""
-    found: dict[str, None] = {}
+def conflicting_operators(context: bpy.types.Context, item: bpy.types.KeyMapItem) -> list[str]:
+    """Returns the names of other operators with the same key in the editor."""
+    names: dict[str, None] = {}
     for name in (*_RIVALS[keymap_name(context)], *_EVERYWHERE):
         keymap = _keymap(context, name)
         for other in keymap.keymap_items if keymap is not None else ():
             if other.active and other.idname != item.idname and item.compare(other):
-                found[other.name] = None
-    return list(found)
+                names[other.name] = None
+    return list(names)
 
 
 def _keymap(context: bpy.types.Context, name: str) -> bpy.types.KeyMap | None:

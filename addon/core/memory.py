@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""How much memory there is."""
+"""Memory available for work."""
 
 from prefilter import available_memory
 
@@ -10,7 +10,7 @@ _MIB = 1 << 20
 
 
 def usable_memory() -> tuple[float, str]:
-    """Returns the bytes that work may use, and in words what sets that limit."""
+    """Returns the number of bytes that work may use, and the reason for that limit as text."""
     free, limit = available_memory(), preference("memory_limit", 0) * _MIB
     if 0 < limit < free:
         return limit, f"the preferences allow {limit / _MIB:g} MiB"

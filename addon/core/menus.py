@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The menus that subjects put their operators in: Object > Prefilter and Image > Prefilter.
+"""The menus Object > Prefilter and Image > Prefilter, to which subjects add their operators.
 
-A search (F3) finds what is in a menu of the editor's header, once for each time that it is there.
+A search (F3) lists an operator once for each of its entries in the menus of the editor's header.
 """
 
 import bpy
@@ -11,7 +11,7 @@ from .translations import CONTEXT
 
 
 class PREFILTER_MT_object(bpy.types.Menu):
-    """What works on objects."""
+    """Operators on objects."""
 
     bl_label = "Prefilter"
     bl_translation_context = CONTEXT
@@ -21,7 +21,7 @@ class PREFILTER_MT_object(bpy.types.Menu):
 
 
 class PREFILTER_MT_image(bpy.types.Menu):
-    """What works on images."""
+    """Operators on images."""
 
     bl_label = "Prefilter"
     bl_translation_context = CONTEXT
@@ -48,7 +48,7 @@ def _draw_image(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     menu.layout.menu(PREFILTER_MT_image.__name__)
 
 
-# What is last in Object is out of sight on small screens.
+# On small screens the end of the menu Object is out of sight.
 _FIRST = {"VIEW3D_MT_object": _draw_object_first}
 _LAST = {
     "VIEW3D_MT_object_context_menu": _draw_object,
@@ -60,7 +60,7 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
 
 
 def register() -> None:
-    """Registers the menus, and puts them into Blender's."""
+    """Registers the menus, and adds them to Blender's."""
     _register_classes()
     for name, draw in _FIRST.items():
         getattr(bpy.types, name).prepend(draw)
@@ -69,7 +69,7 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Takes them out again."""
+    """Removes them."""
     for name, draw in (_FIRST | _LAST).items():
         getattr(bpy.types, name).remove(draw)
     _unregister_classes()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Options; the package declares those that its command has too."""
+"""Declaration of options; the package declares the ones that its command shares."""
 
 from prefilter.options.options import (
     Option,

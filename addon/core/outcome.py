@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What work ends with."""
+"""The outcome of work, from the package."""
 
 from prefilter.workflows.outcome import FAILURES, Outcome, reason
 

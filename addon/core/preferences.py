@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What the preferences of the add-on say, for options that a user has not set."""
+"""Access to the add-on's preferences, for options that a user has not set."""
 
 from typing import Any
 
@@ -9,24 +9,24 @@ import bpy
 from .options import declared
 
 PACKAGE = __package__.rpartition(".")[0]
-"""The add-on, as Blender calls it."""
+"""The name of the add-on's package."""
 
 
 def preferred(settings: type) -> dict[str, Any]:
-    """Returns the values of the options of a dataclass that follow a preference."""
+    """Returns the options of a dataclass that follow a preference, with their values."""
     return {
-        name: preference(found.preference, default)
-        for name, default, found in declared(settings)
-        if found.preference
+        name: preference(option.preference, default)
+        for name, default, option in declared(settings)
+        if option.preference
     }
 
 
 def preference(name: str, default: Any) -> Any:
-    """Returns what options that follow a preference are; the default where the add-on is off.
+    """Returns the value of a preference; the default if the add-on is disabled.
 
     Args:
-        name: A key of `Option.preference`.
-        default: That of the option.
+        name: The name in `Option.preference`.
+        default: The default of the option.
     """
-    found = bpy.context.preferences.addons.get(PACKAGE)
-    return default if found is None else getattr(found.preferences, name, default)
+    addon = bpy.context.preferences.addons.get(PACKAGE)
+    return default if addon is None else getattr(addon.preferences, name, default)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The panel of the presets: choose, add, remove, reset to the defaults, share as a file."""
+"""The panel of presets: apply, add, remove, reset to the defaults, export and import."""
 
 from pathlib import Path
 from typing import Any
@@ -17,48 +17,48 @@ from .registration import Step, classes, registration
 from .translations import report
 from .wording import Sentence
 
-_HERE = str(Path(__file__).resolve().parents[1])
+_ADDON = str(Path(__file__).resolve().parents[1])
 
 
-class _OfKind:
-    """A mixin for operators on the presets of a kind, that of a panel."""
+class _KindOperator:
+    """A mixin for operators on the presets of a panel."""
 
     panel: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
 
     @property
     def kind(self) -> Kind:
-        """The kind."""
+        """The kind of presets of the panel."""
         return getattr(bpy.types, self.panel).kind
 
 
 class PREFILTER_OT_apply_preset(bpy.types.Operator):
-    """Sets the settings of a scene to those of a preset: a step of its own to undo."""
+    """Applies a preset to the scene, as one undo step."""
 
     bl_idname = "prefilter.apply_preset"
     bl_label = "Apply Preset"
     bl_description = "Set the settings to those of this preset"
     bl_options = frozenset({"UNDO", "INTERNAL"})
 
-    # As Blender's panels of presets name them.
+    # The names that Blender's PresetPanel uses.
     filepath: StringProperty(subtype="FILE_PATH", options={"HIDDEN", "SKIP_SAVE"})
     menu_idname: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Sets them."""
+        """Applies it."""
         kind = getattr(bpy.types, self.menu_idname).kind
         try:
-            found = kind.read(Path(self.filepath))
+            values = kind.read(Path(self.filepath))
         except (ValueError, OSError) as error:
             self.report({"ERROR"}, reason(error))
             return {"CANCELLED"}
         group = getattr(context.scene, kind.group)
-        for name, value in found.items():
+        for name, value in values.items():
             setattr(group, name, value)
         return {"FINISHED"}
 
 
-class PREFILTER_OT_add_preset(_OfKind, AddPresetBase, bpy.types.Operator):
-    """Keeps the settings of a panel as a preset, or removes one."""
+class PREFILTER_OT_add_preset(_KindOperator, AddPresetBase, bpy.types.Operator):
+    """Saves the settings of a panel as a preset, or removes a preset."""
 
     bl_idname = "prefilter.add_preset"
     bl_label = "Add Preset"
@@ -66,7 +66,7 @@ class PREFILTER_OT_add_preset(_OfKind, AddPresetBase, bpy.types.Operator):
 
     @property
     def preset_menu(self) -> str:
-        """The panel of the presets."""
+        """The panel of presets."""
         return self.panel
 
     @property
@@ -75,13 +75,13 @@ class PREFILTER_OT_add_preset(_OfKind, AddPresetBase, bpy.types.Operator):
         return self.kind.folder
 
     def add(self, context: bpy.types.Context, filepath: str) -> None:
-        """Writes a preset; Blender 4.x cannot where Python is 3.13."""
-        text = self.kind.written(getattr(context.scene, self.kind.group))
+        """Writes a preset, which Blender 4.x with Python 3.13 cannot do itself."""
+        text = self.kind.to_text(getattr(context.scene, self.kind.group))
         _write(Path(filepath), text.encode())
 
 
-class PREFILTER_OT_reset_settings(_OfKind, bpy.types.Operator):
-    """Sets what presets set back to the defaults."""
+class PREFILTER_OT_reset_settings(_KindOperator, bpy.types.Operator):
+    """Resets the settings that presets store to their defaults."""
 
     bl_idname = "prefilter.reset_settings"
     bl_label = "Reset to Defaults"
@@ -96,8 +96,8 @@ class PREFILTER_OT_reset_settings(_OfKind, bpy.types.Operator):
         return {"FINISHED"}
 
 
-class _PresetFile(_OfKind):
-    """A mixin for operators that ask for the file of a preset."""
+class _PresetFileOperator(_KindOperator):
+    """A mixin for operators that ask for a preset file."""
 
     filepath: StringProperty(subtype="FILE_PATH", options={"HIDDEN", "SKIP_SAVE"})
     filter_glob: StringProperty(default=f"*{SUFFIX}", options={"HIDDEN"})
@@ -111,22 +111,22 @@ class _PresetFile(_OfKind):
         return {"RUNNING_MODAL"}
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Does it, and reports what fails."""
+        """Reads or writes the file, and reports the result."""
         try:
-            done = self.transfer(context, Path(bpy.path.abspath(self.filepath)))
-            self.report({"INFO"}, report(done))
+            summary = self.transfer(context, Path(bpy.path.abspath(self.filepath)))
+            self.report({"INFO"}, report(summary))
         except (ValueError, OSError) as error:
             self.report({"ERROR"}, report(reason(error)))
             return {"CANCELLED"}
         return {"FINISHED"}
 
     def transfer(self, context: bpy.types.Context, path: Path) -> str:
-        """Reads or writes the file; returns what to report."""
+        """Reads or writes the file; returns the message to report."""
         raise NotImplementedError
 
 
-class PREFILTER_OT_export_preset(_PresetFile, bpy.types.Operator):
-    """Writes the settings of a panel to a file for others."""
+class PREFILTER_OT_export_preset(_PresetFileOperator, bpy.types.Operator):
+    """Writes the settings of a panel to a preset file."""
 
     bl_idname = "prefilter.export_preset"
     bl_label = "Export Preset"
@@ -138,13 +138,13 @@ class PREFILTER_OT_export_preset(_PresetFile, bpy.types.Operator):
     def transfer(self, context: bpy.types.Context, path: Path) -> str:
         """Writes the file."""
         path = path.with_suffix(SUFFIX)
-        text = self.kind.written(getattr(context.scene, self.kind.group))
+        text = self.kind.to_text(getattr(context.scene, self.kind.group))
         _write(path, text.encode())
         return Sentence("Wrote {}", path.name)
 
 
-class PREFILTER_OT_import_preset(_PresetFile, bpy.types.Operator):
-    """Adds the preset of a file to those of the user."""
+class PREFILTER_OT_import_preset(_PresetFileOperator, bpy.types.Operator):
+    """Adds a preset file to the user's presets."""
 
     bl_idname = "prefilter.import_preset"
     bl_label = "Import Preset"
@@ -165,14 +165,14 @@ class PREFILTER_OT_import_preset(_PresetFile, bpy.types.Operator):
 
 
 def _write(target: Path, data: bytes) -> None:
-    """Replaces a file, or makes a new one."""
+    """Writes or replaces a file."""
     from prefilter.files.staging import write_output
 
     write_output(target, lambda file: file.write(data))
 
 
 def panel(kind: Kind) -> type[bpy.types.Panel]:
-    """Returns the panel that opens from a header, with the presets of a kind."""
+    """Returns the popover panel with the presets of a kind."""
     return type(
         kind.panel,
         (_KindPanel, PresetPanel, bpy.types.Panel),
@@ -192,19 +192,23 @@ class _KindPanel:
     kind: Kind
     layout: bpy.types.UILayout
 
+    def path_menu(self, searchpaths: list[str], operator: str, **options: Any) -> None:
+        """Draws the presets of all folders of the kind, instead of one folder as Blender does."""
+        del searchpaths
+        PresetPanel.path_menu(self, self.kind.search_paths(), operator, **options)
+
     def draw(self, context: bpy.types.Context) -> None:
-        """Draws the presets, and what else is done with settings."""
+        """Draws the presets, and the operators on them."""
         PresetPanel.draw(self, context)
         self.layout.separator()
         column = self.layout.column(align=True)
         column.operator_context = "INVOKE_DEFAULT"
-        made: list[Any] = [
-            column.operator(PREFILTER_OT_reset_settings.bl_idname, icon="LOOP_BACK"),
-            column.operator(PREFILTER_OT_import_preset.bl_idname, icon="IMPORT"),
-            column.operator(PREFILTER_OT_export_preset.bl_idname, icon="EXPORT"),
-        ]
-        for one in made:
-            one.panel = self.kind.panel
+        for operator, icon in (
+            (PREFILTER_OT_reset_settings, "LOOP_BACK"),
+            (PREFILTER_OT_import_preset, "IMPORT"),
+            (PREFILTER_OT_export_preset, "EXPORT"),
+        ):
+            column.operator(operator.bl_idname, icon=icon).panel = self.kind.panel
 
 
 register, unregister = registration(
@@ -216,7 +220,7 @@ register, unregister = registration(
         PREFILTER_OT_export_preset,
     ),
     Step(
-        lambda: bpy.utils.register_preset_path(_HERE),
-        lambda: bpy.utils.unregister_preset_path(_HERE),
+        lambda: bpy.utils.register_preset_path(_ADDON),
+        lambda: bpy.utils.unregister_preset_path(_ADDON),
     ),
 )

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Presets: settings for a purpose, by Blender's own menus of them, for commands and scripts too.
+"""Presets of settings, in Blender's own preset menus and for commands and scripts.
 
-Those that come with the add-on lie in its folder presets/, those of users in Blender's. A preset is
-a program of lines such as `settings.depth = 9`, as those of Blender are; the values are read, and
-nothing is run.
+The add-on's presets are in its folder presets/, user presets in Blender's. A preset is a Python
+file with lines such as `settings.depth = 9`, like Blender's own; it is parsed, never executed.
 """
 
 import ast
@@ -28,36 +27,39 @@ if TYPE_CHECKING:
 
 Settings = TypeVar("Settings")
 
-_ROOM = "prefilter"
+_ROOT = "prefilter"
+_BUILT_IN = Path(__file__).resolve().parents[1] / "presets" / _ROOT
 SUFFIX = ".py"
 
 
 class Kind(NamedTuple):
-    """What presets are for.
+    """The presets of a property group.
 
     Attributes:
-        name: The folder that they are in.
-        group: The settings of the scene that they set, a property of it.
-        settings: The dataclasses of these settings, each with fields that no preset sets; nor does
-            any set names, files or what depends on the memory of the machine.
+        name: The name of their folder.
+        group: The scene property that they set.
+        settings: The dataclasses of its settings, each with fields to exclude. Names, files and
+            memory limits are always excluded.
+        shared: The name of another kind whose built-in presets fit this one too; empty for none.
     """
 
     name: str
     group: str
     settings: Sequence[tuple[type, Collection[str]]]
+    shared: str = ""
 
     @property
     def folder(self) -> str:
-        """The folder below those of all presets."""
-        return f"{_ROOM}/{self.name}"
+        """Its folder, relative to a folder of presets."""
+        return f"{_ROOT}/{self.name}"
 
     @property
     def panel(self) -> str:
-        """The name of the panel that shows them."""
+        """The name of their panel."""
         return f"PREFILTER_PT_{self.name}_presets"
 
     def options(self) -> Iterator[tuple[str, Any, Option]]:
-        """Yields the name, the default and the option of what a preset sets."""
+        """Yields the name, the default and the option of each setting that a preset stores."""
         for settings, without in self.settings:
             for name, default, option in declared(settings):
                 is_text = isinstance(default, str) and not option.choices
@@ -66,27 +68,32 @@ class Kind(NamedTuple):
                     yield name, default, option
 
     def of_scene(self, context: bpy.types.Context) -> dict[str, Any]:
-        """Returns all settings that the scene has, also those that no preset sets."""
+        """Returns all settings of the scene, including those that presets exclude."""
         group = getattr(context.scene, self.group)
         names = [name for settings, _ in self.settings for name in properties(settings)]
         return {name: getattr(group, name) for name in names if hasattr(group, name)}
 
+    def search_paths(self) -> list[str]:
+        """Returns the folders with its presets, those of the user first."""
+        paths = bpy.utils.preset_paths(self.folder)
+        return [*paths, str(_BUILT_IN / self.shared)] if self.shared else paths
+
     def files(self) -> dict[str, Path]:
-        """Returns the files of all presets by their names; one of the user goes first."""
-        found: dict[str, Path] = {}
-        for folder in bpy.utils.preset_paths(self.folder):
+        """Returns the files of all presets by name; user presets take precedence."""
+        files: dict[str, Path] = {}
+        for folder in self.search_paths():
             for path in sorted(Path(folder).glob(f"*{SUFFIX}")):
-                found.setdefault(shown_name(path), path)
-        return found
+                files.setdefault(shown_name(path), path)
+        return files
 
     def values(self, name: str) -> dict[str, Any]:
-        """Returns what a preset sets.
+        """Returns the settings of a preset.
 
         Args:
-            name: Its name; upper and lower case, spaces and underscores are the same.
+            name: Its name; case does not matter, nor do spaces versus underscores.
 
         Raises:
-            ValueError: There is none of that name, or it sets what is no setting or not allowed.
+            ValueError: No preset has this name, or it has an unknown setting or an invalid value.
         """
         files = self.files()
         path = next((files[key] for key in files if _plain(key) == _plain(name)), None)
@@ -96,36 +103,29 @@ class Kind(NamedTuple):
         return self.read(path)
 
     def read(self, path: Path) -> dict[str, Any]:
-        """Returns what the preset of a file sets.
-
-        Args:
-            path: The file.
+        """Returns the settings of a preset file.
 
         Raises:
-            ValueError: It is no preset, or sets what is no setting or not allowed.
+            ValueError: It is not a preset, or has an unknown setting or an invalid value.
             OSError: The file cannot be read.
         """
         name = shown_name(path)
-        found = _assigned(path)
-        if not found:
+        assigned = _assigned(path)
+        if not assigned:
             raise ValueError(f"preset '{name}': it sets none of these settings")
         options = {key: (default, option) for key, default, option in self.options()}
-        for key, value in found.items():
+        for key, value in assigned.items():
             if key not in options:
                 raise ValueError(f"preset '{name}': '{key}' is not a setting")
             default, option = options[key]
-            if not (_is_alike(value, default) and option.allows(value)):
+            if not (_has_type_of(value, default) and option.allows(value)):
                 raise ValueError(
                     f"preset '{name}': {option.label}: found {value!r}; allowed: {option.allowed}"
                 )
-        return found
+        return assigned
 
-    def written(self, group: Any) -> str:
-        """Returns the text of a preset.
-
-        Args:
-            group: The settings of a scene that it is to set.
-        """
+    def to_text(self, group: Any) -> str:
+        """Returns the text of a preset with the settings of a property group."""
         lines = ["import bpy", "", f"settings = bpy.context.scene.{self.group}", ""]
         for name, default, option in self.options():
             value = getattr(group, name)
@@ -135,10 +135,11 @@ class Kind(NamedTuple):
         return "\n".join([*lines, ""])
 
     def complete(self, operator: bpy.types.Operator, preset: str) -> None:
-        """Sets what the caller of an operator has not: by a preset, then by the preferences.
+        """Sets the properties that the caller has not set, from a preset, then from the
+        preferences.
 
         Args:
-            operator: Has the settings as properties.
+            operator: The operator with the settings as properties.
             preset: The name of a preset; empty for none.
 
         Raises:
@@ -148,12 +149,12 @@ class Kind(NamedTuple):
             set_unset(operator, self.values(preset))
         known = operator.properties.bl_rna.properties
         for settings, _ in self.settings:
-            followed = preferred(settings).items()
-            set_unset(operator, {name: value for name, value in followed if name in known})
+            defaults = preferred(settings).items()
+            set_unset(operator, {name: value for name, value in defaults if name in known})
 
 
 class PresetsOperator:
-    """A mixin for operators that a preset sets; it comes before `BackgroundOperator`."""
+    """A mixin for operators with presets; list it before `BackgroundOperator`."""
 
     presets: Kind
 
@@ -165,19 +166,19 @@ class PresetsOperator:
     )
 
     def follow_scene(self, context: bpy.types.Context) -> None:
-        """Sets the settings as the scene has them, if the caller names none and no preset."""
-        named = self.properties.is_property_set
-        if self.preset or any(named(name) for name, _, _ in self.presets.options()):
+        """Copies the settings of the scene, unless the caller gives settings or a preset."""
+        is_set = self.properties.is_property_set
+        if self.preset or any(is_set(name) for name, _, _ in self.presets.options()):
             return
         set_unset(self, self.presets.of_scene(context))
 
     def complete_settings(self) -> None:
-        """Sets what the caller has left."""
+        """Sets the properties that the caller has not set."""
         self.presets.complete(self, self.preset)
 
 
 class PresetsPanel:
-    """A mixin for panels of settings: the button of the presets, in the header."""
+    """A mixin for panels of settings: a button for presets in the header."""
 
     presets: Kind
 
@@ -188,12 +189,12 @@ class PresetsPanel:
 
 
 def shown_name(path: Path) -> str:
-    """Returns what users see of the name of a preset's file."""
+    """Returns the name of a preset as users see it."""
     return bpy.path.display_name(path.name, title_case=False)
 
 
 def add_flag(parser: "argparse.ArgumentParser") -> None:
-    """Adds the flag that names a preset; `settings_given` heeds it."""
+    """Adds the flag --preset, which `settings_given` reads."""
     parser.add_argument(
         "--preset",
         metavar="NAME",
@@ -203,7 +204,7 @@ def add_flag(parser: "argparse.ArgumentParser") -> None:
 
 
 def values_named(options: "argparse.Namespace", kind: Kind) -> dict[str, Any]:
-    """Returns what the preset sets that `--preset` names; nothing without one."""
+    """Returns the settings of the preset of `--preset`; empty without one."""
     if not options.preset:
         return {}
     try:
@@ -216,28 +217,28 @@ def values_named(options: "argparse.Namespace", kind: Kind) -> dict[str, Any]:
 def settings_given(
     options: "argparse.Namespace", kind: Kind, settings: type[Settings], **more: Any
 ) -> Settings:
-    """Returns settings: by `more`, else by flags, else by a preset, else by the preferences.
+    """Returns settings from `more`, else from flags, else from a preset, else from the preferences.
 
     Args:
         options: The arguments of a command.
-        kind: That of `--preset`.
+        kind: The kind of presets for `--preset`.
         settings: The dataclass.
-        more: Fields that are given otherwise.
+        more: Values of fields.
     """
     from . import flags
 
     names = {name for name, _, _ in declared(settings)}
-    named = values_named(options, kind).items()
-    found = {name: value for name, value in named if name in names}
-    return flags.settings_given(options, settings, **found | flags.given(options, settings) | more)
+    preset = values_named(options, kind).items()
+    values = {name: value for name, value in preset if name in names}
+    return flags.settings_given(options, settings, **values | flags.given(options, settings) | more)
 
 
 def host(kind: Kind, **more: Any) -> "Host":
-    """Returns what commands with presets of a kind know of Blender.
+    """Returns the callbacks by which the package's commands use Blender.
 
     Args:
-        kind: That of the presets.
-        more: More of it, such as `read`.
+        kind: The kind of presets.
+        more: More callbacks, such as `read`.
     """
     from prefilter.commands.host import Host
 
@@ -258,8 +259,7 @@ def _plain(name: str) -> str:
     return " ".join(name.replace("_", " ").split()).casefold()
 
 
-def _is_alike(value: Any, default: Any) -> bool:
-    """Tells whether a value is of the type of an option."""
+def _has_type_of(value: Any, default: Any) -> bool:
     if isinstance(default, float):
         return isinstance(value, int | float) and not isinstance(value, bool)
     return type(value) is type(default)
@@ -267,12 +267,12 @@ def _is_alike(value: Any, default: Any) -> bool:
 
 def _assigned(path: Path) -> dict[str, Any]:
     """Returns the values that the lines of a preset assign to `settings`."""
-    found: dict[str, Any] = {}
+    assigned: dict[str, Any] = {}
     try:
         for line in ast.parse(path.read_text(encoding="utf-8")).body:
             match line:
                 case ast.Assign([ast.Attribute(ast.Name("settings"), name)], value):
-                    found[name] = ast.literal_eval(value)
+                    assigned[name] = ast.literal_eval(value)
     except (SyntaxError, ValueError) as error:
         raise ValueError(f"preset '{path}': {error}") from error
-    return found
+    return assigned

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Options as properties of Blender: of operators, and of the scene."""
+"""Options as Blender properties, of operators and of the scene."""
 
 import math
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import bpy
@@ -22,68 +22,69 @@ from .preferences import preference
 from .translations import CONTEXT
 
 _ABOVE = 1e-3
-"""How far above a limit that it must not have a property begins."""
+"""Distance of a property's minimum from an exclusive lower limit."""
 _PATHS = frozenset({"FILE_PATH", "DIR_PATH"})
 _SET = "_set"
-"""What follows the name of an option where a scene keeps it that otherwise follows a preference."""
+"""Suffix of the property that stores a value set by the user, for an option that otherwise follows
+a preference."""
 
 
 def properties(settings: type, without: Collection[str] = ()) -> dict[str, Any]:
-    """Returns the annotations of a class that has the options of a dataclass as properties.
+    """Returns annotations with a property for each option of a dataclass.
 
     Args:
         settings: The dataclass.
         without: Fields to leave out.
     """
     return {
-        name: _property(default, found)
-        for name, default, found in declared(settings)
-        if found.label and name not in without
+        name: _property(default, declaration)
+        for name, default, declaration in declared(settings)
+        if declaration.label and name not in without
     }
 
 
-def following(settings: type, **more: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns the annotations that let options in scenes follow the preferences until they are set.
+def preference_properties(settings: type, **more: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns annotations for options of a scene that follow the preferences until they are set.
 
-    They stand for those of the same name that `properties` returns. What a user sets is kept in a
-    second property, as a property of its own functions has no value of its own.
+    They replace the annotations of the same names from `properties`. A second property stores the
+    user's value, because a property with a getter has no storage.
 
     Args:
         settings: A dataclass.
         more: For a field, more arguments of its property, such as `update`.
     """
-    found: dict[str, Any] = {}
+    annotations: dict[str, Any] = {}
     for name, default, declaration in declared(settings):
         if declaration.label and declaration.preference:
-            found[f"{name}{_SET}"] = _property(default, declaration, options={"HIDDEN"})
-            get, put = _accessors(name, default, declaration)
-            found[name] = _property(default, declaration, get=get, set=put, **more.get(name, {}))
-    return found
+            annotations[f"{name}{_SET}"] = _property(default, declaration, options={"HIDDEN"})
+            accessors = _accessors(name, default, declaration)
+            annotations[name] = _property(default, declaration, **accessors, **more.get(name, {}))
+    return annotations
 
 
-def shared(
+def shared_properties(
     settings: type, owner: str, without: Collection[str] = (), **more: Mapping[str, Any]
 ) -> dict[str, Any]:
-    """Returns the annotations of options that a scene keeps in another of its groups.
+    """Returns annotations for options whose values another property group of the scene stores.
 
-    They stand for those of the same name that `properties` returns: both groups show one value.
+    They replace the annotations of the same names from `properties`: both groups show one value.
 
     Args:
         settings: A dataclass.
-        owner: The property of the scene that has the values.
+        owner: The scene property that stores the values.
         without: Fields to leave out.
         more: For a field, more arguments of its property.
     """
-    found: dict[str, Any] = {}
+    annotations: dict[str, Any] = {}
     for name, default, declaration in declared(settings):
         if declaration.label and name not in without:
-            get, put = _shared_accessors(owner, name, declaration)
-            found[name] = _property(default, declaration, get=get, set=put, **more.get(name, {}))
-    return found
+            accessors = _shared_accessors(owner, name, declaration)
+            annotations[name] = _property(default, declaration, **accessors, **more.get(name, {}))
+    return annotations
 
 
 def set_unset(operator: bpy.types.Operator, values: Mapping[str, Any]) -> None:
-    """Sets those of an operator's properties that its caller has not set."""
+    """Sets the properties of an operator that its caller has not set."""
     for name, value in values.items():
         if not operator.properties.is_property_set(name):
             setattr(operator, name, value)
@@ -95,22 +96,22 @@ def single_property(settings: type, name: str, **more: Any) -> Any:
 
 
 def values(source: Any, settings: type, without: Collection[str] = ()) -> Any:
-    """Returns the settings that properties have; paths are absolute.
+    """Returns the settings stored in properties, with absolute paths.
 
-    Fields in `without` keep their defaults, and those that are no properties the preferences.
+    Fields in `without` get their defaults; fields without a property get their preference.
     """
-    found = {}
+    fields = {}
     for name, default, declaration in declared(settings):
         if not declaration.label and declaration.preference:
-            found[name] = preference(declaration.preference, default)
+            fields[name] = preference(declaration.preference, default)
         if declaration.label and name not in without:
             value = getattr(source, name)
             if declaration.subtype in _PATHS:
                 value = bpy.path.abspath(value)
             elif isinstance(default, tuple) and not declaration.choices:
                 value = tuple(value)
-            found[name] = value
-    return settings(**found)
+            fields[name] = value
+    return settings(**fields)
 
 
 def copy(source: Any, target: Any, settings: type, without: Collection[str] = ()) -> None:
@@ -120,19 +121,17 @@ def copy(source: Any, target: Any, settings: type, without: Collection[str] = ()
 
 
 def reset(group: bpy.types.PropertyGroup, defaults: Mapping[str, Any]) -> None:
-    """Sets properties of a group to defaults, or has them follow the preferences again."""
+    """Sets properties of a group to their defaults, or makes them follow the preferences again."""
     for name, default in defaults.items():
-        kept = f"{name}{_SET}"
-        if kept in group.bl_rna.properties:
-            group.property_unset(kept)
+        storage = f"{name}{_SET}"
+        if storage in group.bl_rna.properties:
+            group.property_unset(storage)
         else:
             setattr(group, name, default)
 
 
-def _shared_accessors(
-    owner: str, name: str, declaration: Option
-) -> tuple[Callable[[Any], Any], Callable[[Any, Any], None]]:
-    """Returns the functions of a property whose value another group of the scene has."""
+def _shared_accessors(owner: str, name: str, declaration: Option) -> dict[str, Any]:
+    """Returns the getter and setter of a property whose value another group stores."""
     keys = {number_of(key): key for key in declaration.choices}
 
     def get(group: Any) -> Any:
@@ -142,25 +141,23 @@ def _shared_accessors(
     def put(group: Any, value: Any) -> None:
         setattr(getattr(group.id_data, owner), name, keys[value] if keys else value)
 
-    return get, put
+    return {"get": get, "set": put}
 
 
-def _accessors(
-    name: str, default: Any, declaration: Option
-) -> tuple[Callable[[Any], Any], Callable[[Any, Any], None]]:
-    """Returns the functions of a property that follows a preference."""
+def _accessors(name: str, default: Any, declaration: Option) -> dict[str, Any]:
+    """Returns the getter and setter of a property that follows a preference."""
     keys = {number_of(key): key for key in declaration.choices}
-    kept = f"{name}{_SET}"
+    storage = f"{name}{_SET}"
 
     def get(group: Any) -> Any:
-        is_set = group.is_property_set(kept)
-        value = getattr(group, kept) if is_set else preference(declaration.preference, default)
+        is_set = group.is_property_set(storage)
+        value = getattr(group, storage) if is_set else preference(declaration.preference, default)
         return number_of(value) if keys else value
 
     def put(group: Any, value: Any) -> None:
-        setattr(group, kept, keys[value] if keys else value)
+        setattr(group, storage, keys[value] if keys else value)
 
-    return get, put
+    return {"get": get, "set": put}
 
 
 def _property(default: Any, declaration: Option, **more: Any) -> Any:

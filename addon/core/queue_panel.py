@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The queue in the tab: what waits, what runs, what has ended, with buttons to pause and cancel."""
+"""The queue in the tab: waiting, running and ended jobs, with buttons to pause and cancel."""
 
 import bpy
 
 from . import queue
-from .queue import Queued, State
+from .queue import QueuedJob, State
 from .registration import Step, classes, registration
-from .running import redraw_panels
+from .runs import redraw_panels
 from .sidebar import ImagePanel, Tab, note
 from .translations import CONTEXT, tr
 
@@ -20,7 +20,7 @@ _ICONS = {
 
 
 class PREFILTER_OT_clear_queue(bpy.types.Operator):
-    """Forgets what has ended."""
+    """Removes ended jobs from the list."""
 
     bl_idname = "prefilter.clear_queue"
     bl_label = "Clear Queue"
@@ -29,7 +29,7 @@ class PREFILTER_OT_clear_queue(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether something has ended."""
+        """Returns whether a job has ended."""
         del context
         if not queue.has_ended():
             cls.poll_message_set(tr("Nothing in the queue has ended"))
@@ -37,7 +37,7 @@ class PREFILTER_OT_clear_queue(bpy.types.Operator):
         return True
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Forgets it."""
+        """Removes them."""
         queue.clear()
         redraw_panels(context)
         return {"FINISHED"}
@@ -46,14 +46,14 @@ class PREFILTER_OT_clear_queue(bpy.types.Operator):
 class _QueuePanel:
     bl_label = "Queue"
     bl_translation_context = CONTEXT
-    # Last: what comes and goes is not to move a button from under the mouse.
+    # Last, because the panel comes and goes, and must not move a button from under the mouse.
     bl_order = 1000
 
     layout: bpy.types.UILayout
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether there is something in the queue."""
+        """Returns whether the queue has jobs."""
         del context
         return bool(queue.listed())
 
@@ -80,7 +80,7 @@ class PREFILTER_PT_queue_of_images(_QueuePanel, ImagePanel, bpy.types.Panel):
     """The queue in the Image editor."""
 
 
-def _draw_job(layout: bpy.types.UILayout, context: bpy.types.Context, job: Queued) -> None:
+def _draw_job(layout: bpy.types.UILayout, context: bpy.types.Context, job: QueuedJob) -> None:
     row = layout.row(align=True)
     if job.run is not None:
         row.progress(factor=job.run.fraction, text=f"{job.run.text}: {job.title}")
@@ -98,14 +98,14 @@ def _draw_job(layout: bpy.types.UILayout, context: bpy.types.Context, job: Queue
 
 
 @bpy.app.handlers.persistent
-def _forget(*_: object) -> None:
+def _clear_queue(*_: object) -> None:
     queue.clear()
 
 
 register, unregister = registration(
     classes(PREFILTER_OT_clear_queue, PREFILTER_PT_queue, PREFILTER_PT_queue_of_images),
     Step(
-        lambda: bpy.app.handlers.load_post.append(_forget),
-        lambda: bpy.app.handlers.load_post.remove(_forget),
+        lambda: bpy.app.handlers.load_post.append(_clear_queue),
+        lambda: bpy.app.handlers.load_post.remove(_clear_queue),
     ),
 )

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Adjust Last Operation: how long a redo is expected to take, and what its panel says."""
+"""Adjust Last Operation: the expected duration of a redo, and the texts of its panel."""
 
 import time
 from collections.abc import Callable, Iterator
@@ -15,17 +15,17 @@ from .translations import tr
 from .wording import Sentence
 
 QUICK_SECONDS = 1.0
-"""Work up to this long is redone at once when a user changes a setting; longer work waits for
-Apply, as it would freeze Blender."""
+"""Shorter work is redone at once when a setting changes; longer work would freeze Blender, so it
+waits for Apply."""
 _LINE_LENGTH = 44
-"""What fits into a redo panel."""
+"""Letters in a line of a redo panel."""
 _pasts: dict[str, "Past"] = {}
 """The last runs of operators, by their identifiers."""
 
 
 @dataclass(frozen=True)
 class Past:
-    """How long the last run of an operator took, to tell how long a redo will."""
+    """The duration of an operator's last run, from which that of a redo is estimated."""
 
     seconds: float
     load: Any
@@ -38,28 +38,28 @@ def past(key: str) -> Past | None:
 
 
 def note(key: str, run: Past) -> None:
-    """Keeps the last run of an operator."""
+    """Stores the last run of an operator."""
     _pasts[key] = run
 
 
 def expected_seconds(key: str, duration: Callable[[Any], float]) -> float:
-    """Returns how long an operator is expected to take; 0 where nothing tells.
+    """Returns how long an operator is expected to take; 0 if unknown.
 
     Args:
         key: Its identifier.
-        duration: What `Doing.duration` says of the present settings.
+        duration: `OperatorHooks.duration` with the present settings.
     """
     run = past(key)
     if run is None:
         return 0.0
     try:
         return run.seconds * duration(run.load) / run.duration
-    except ValueError:  # Settings that are refused: the work says why, at once.
+    except ValueError:  # Invalid settings, which the work reports at once.
         return 0.0
 
 
 class Deadline:
-    """Progress that says to stop after some time."""
+    """A progress callback that stops the work after some time."""
 
     def __init__(self, seconds: float) -> None:
         self._began = time.monotonic()
@@ -71,7 +71,7 @@ class Deadline:
         return time.monotonic() - self._began < self._seconds
 
     def expected_seconds(self) -> float:
-        """Returns how long all of the work would take, as far as that can be told."""
+        """Estimates the duration of the whole work."""
         passed = time.monotonic() - self._began
         return max(passed / max(self._fraction, 0.1), 2.0 * self._seconds)
 
@@ -83,18 +83,18 @@ def draw_problem(layout: bpy.types.UILayout, problem: str) -> None:
 
 
 def apply_text(seconds: float) -> str:
-    """Returns what the button says: how many seconds it takes; 0 if there is nothing to apply."""
-    return tr("Apply (about {})").format(_spoken(seconds)) if seconds else tr("Applied")
+    """Returns the label of Apply with the expected seconds, or "Applied" if these are 0."""
+    return tr("Apply (about {})").format(_rounded(seconds)) if seconds else tr("Applied")
 
 
 @contextmanager
 def in_place_of(replaced: int, context: bpy.types.Context, *, is_undoable: bool) -> Iterator[None]:
-    """Undoes an operator that is replaced; brings that back where nothing replaces it.
+    """Undoes the operator to replace; redoes it if the context raises.
 
     Args:
-        replaced: The last operator as a pointer; 0 for none.
+        replaced: The pointer of the last operator; 0 for none.
         context: The context.
-        is_undoable: Whether there is something to undo.
+        is_undoable: Whether the operator supports undo.
     """
     is_undone = False
     if replaced:
@@ -112,5 +112,5 @@ def in_place_of(replaced: int, context: bpy.types.Context, *, is_undoable: bool)
         raise
 
 
-def _spoken(seconds: float) -> str:
+def _rounded(seconds: float) -> str:
     return f"{max(seconds, 1.0):.0f} s" if seconds < 90 else f"{seconds / 60:.0f} min"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Registering what consists of parts."""
+"""Registration of modules and classes in order."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -11,27 +11,27 @@ from bpy.props import PointerProperty
 
 
 class Part(Protocol):
-    """A module, a package or a `Step` that comes and goes with the add-on."""
+    """A module, a package or a `Step` that is registered with the add-on."""
 
     @property
     def register(self) -> Callable[[], None]:
-        """What makes it known to Blender."""
+        """Registers it with Blender."""
 
     @property
     def unregister(self) -> Callable[[], None]:
-        """What takes back what `register` did."""
+        """Undoes `register`."""
 
 
 @dataclass(frozen=True)
 class Step:
-    """A part that is two functions."""
+    """A part given by two functions."""
 
     register: Callable[[], None]
     unregister: Callable[[], None]
 
 
 def registration(*parts: Part) -> tuple[Callable[[], None], Callable[[], None]]:
-    """Returns functions that register parts in their order, and unregister them in reverse."""
+    """Returns functions that register parts in order, and unregister them in reverse."""
 
     def register() -> None:
         for part in parts:
@@ -45,17 +45,17 @@ def registration(*parts: Part) -> tuple[Callable[[], None], Callable[[], None]]:
 
 
 def classes(*types: type) -> Step:
-    """Returns the part that registers Blender's classes."""
+    """Returns the part that registers classes of Blender's types."""
     return Step(*bpy.utils.register_classes_factory(types))
 
 
 def entry(menu: Any, draw: Callable[[Any, bpy.types.Context], None]) -> Step:
-    """Returns the part that draws something at the end of a menu, a panel or a header."""
+    """Returns the part that appends a draw function to a menu, a panel or a header."""
     return Step(lambda: menu.append(draw), lambda: menu.remove(draw))
 
 
 def state(owner: type, name: str, group: type[bpy.types.PropertyGroup]) -> Step:
-    """Returns the part that registers a group of properties, and has each `owner` keep one."""
+    """Returns the part that registers a property group and adds it to a type of data-block."""
 
     def register() -> None:
         bpy.utils.register_class(group)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Assign Shortcut in the context menu of buttons, and the keys in the preferences.
+"""Assign Shortcut in the context menu of buttons, and the keymap in the preferences.
 
-Blender has an entry of this name for operators whose names begin as its own do, such as `object.`,
-as it guesses from that where a key is pressed.
+Blender's own entry of this name works only for operators with Blender's prefixes, such as
+`object.`, from which it guesses the keymap.
 """
 
 import json
@@ -27,13 +27,13 @@ _MORE_KEYS = frozenset(
         *("BACK_SLASH", "EQUAL", "LEFT_BRACKET", "RIGHT_BRACKET", "GRLESS"),
     }
 )
-_OF_KEYMAPS = bpy.app.translations.contexts.id_windowmanager
-"""The context of the names of keymaps."""
+_KEYMAP_CONTEXT = bpy.app.translations.contexts.id_windowmanager
+"""The translation context of keymap names."""
 _ENDS = frozenset({"ESC", "LEFTMOUSE", "RIGHTMOUSE"})
 
 
-class _OfOperator:
-    """A mixin for operators on the key of another."""
+class _ShortcutOperator:
+    """A mixin for operators that change the shortcut of another operator."""
 
     bl_options = frozenset({"INTERNAL"})
 
@@ -41,13 +41,13 @@ class _OfOperator:
 
     @property
     def label(self) -> str:
-        """What users call the other operator."""
+        """The label of the other operator."""
         name = self.operator.removeprefix(keys.OPERATORS)
         return tr(getattr(bpy.ops.prefilter, name).get_rna_type().name)
 
 
-class PREFILTER_OT_assign_shortcut(_OfOperator, bpy.types.Operator):
-    """Waits for a key, and gives it to an operator."""
+class PREFILTER_OT_assign_shortcut(_ShortcutOperator, bpy.types.Operator):
+    """Waits for a key, and assigns it to an operator."""
 
     bl_idname = "prefilter.assign_shortcut"
     bl_label = "Assign Shortcut"
@@ -59,7 +59,7 @@ class PREFILTER_OT_assign_shortcut(_OfOperator, bpy.types.Operator):
     settings: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Begins to wait."""
+        """Starts waiting for a key."""
         del event
         text = tr("Press a key for {operator}, with Ctrl, Shift or Alt. Esc: Cancel")
         context.workspace.status_text_set(text.format(operator=self.label))
@@ -72,7 +72,7 @@ class PREFILTER_OT_assign_shortcut(_OfOperator, bpy.types.Operator):
         return {"CANCELLED"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Waits for the press of a key."""
+        """Assigns the key when one is pressed."""
         if event.value != "PRESS":
             return {"RUNNING_MODAL"}
         if event.type in _ENDS:
@@ -84,27 +84,27 @@ class PREFILTER_OT_assign_shortcut(_OfOperator, bpy.types.Operator):
         item = keys.assign(context, self.operator, event, json.loads(self.settings or "{}"))
         key = item.to_string()
         self.report({"INFO"}, f"{key}: {self.label}")
-        others = keys.rivals(context, item)
+        others = keys.conflicting_operators(context, item)
         if others:
             text = report("{key} is also the key of {operator}, which may go first")
             self.report({"WARNING"}, text.format(key=key, operator=others[0]))
         return {"FINISHED"}
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Ends, such as when another file is loaded."""
+        """Clears the status bar, for example when another file is loaded."""
         if context.workspace is not None:
             context.workspace.status_text_set(None)
 
 
-class PREFILTER_OT_remove_shortcut(_OfOperator, bpy.types.Operator):
-    """Takes the key of an operator."""
+class PREFILTER_OT_remove_shortcut(_ShortcutOperator, bpy.types.Operator):
+    """Removes the shortcut of an operator."""
 
     bl_idname = "prefilter.remove_shortcut"
     bl_label = "Remove Shortcut"
     bl_description = "Take the key of this button"
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Takes it."""
+        """Removes it."""
         if not keys.remove(context, self.operator):
             return {"CANCELLED"}
         text = report("{operator} has no key any more")
@@ -113,21 +113,21 @@ class PREFILTER_OT_remove_shortcut(_OfOperator, bpy.types.Operator):
 
 
 def draw_keys(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Draws the keys of all operators, which are changed there too."""
+    """Draws the keymap items of all operators, for editing."""
     import rna_keymap_ui
 
     body = layout.column()
     body.use_property_split = False
     body.label(text="Keymap")
-    known = context.window_manager.keyconfigs.user
-    before = None
-    for keymap, item in keys.every(context):
-        if keymap != before:
-            body.label(text=keymap.name, text_ctxt=_OF_KEYMAPS)
-        before = keymap
+    config = context.window_manager.keyconfigs.user
+    previous = None
+    for keymap, item in keys.addon_items(context):
+        if keymap != previous:
+            body.label(text=keymap.name, text_ctxt=_KEYMAP_CONTEXT)
+        previous = keymap
         column = body.column()
         column.context_pointer_set("keymap", keymap)
-        rna_keymap_ui.draw_kmi([], known, keymap, item, column, 0)
+        rna_keymap_ui.draw_kmi([], config, keymap, item, column, 0)
     body.label(text="The context menu of any button has Assign Shortcut", icon="INFO")
 
 
@@ -137,27 +137,27 @@ def _draw_entries(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     name = getattr(owner, "bl_idname", "")
     if not name.startswith(keys.OPERATORS) or "INTERNAL" in owner.bl_options:
         return
-    found = keys.find(context, name)
-    if found is not None and _is_found_by_blender(pressed, found[1]):
+    shortcut = keys.find(context, name)
+    if shortcut is not None and _is_found_by_blender(pressed, shortcut[1]):
         return
     layout = menu.layout
     layout.separator()
     layout.operator_context = "INVOKE_DEFAULT"
     text = tr("Assign Shortcut")
-    if found is not None:
-        text = tr("Change Shortcut: {key}").format(key=found[1].to_string())
-    made = layout.operator(
+    if shortcut is not None:
+        text = tr("Change Shortcut: {key}").format(key=shortcut[1].to_string())
+    assign = layout.operator(
         PREFILTER_OT_assign_shortcut.bl_idname, text=text, translate=False, icon="HAND"
     )
-    made.operator = name
-    made.settings = json.dumps(_kept(pressed, owner))
-    if found is not None:
-        removed = layout.operator(PREFILTER_OT_remove_shortcut.bl_idname, icon="BLANK1")
-        removed.operator = name
+    assign.operator = name
+    assign.settings = json.dumps(_shortcut_properties(pressed, owner))
+    if shortcut is not None:
+        remove = layout.operator(PREFILTER_OT_remove_shortcut.bl_idname, icon="BLANK1")
+        remove.operator = name
 
 
 def _is_found_by_blender(pressed: bpy.types.OperatorProperties, item: bpy.types.KeyMapItem) -> bool:
-    """Tells whether Blender itself offers to change a key: if the settings are the same."""
+    """Returns whether Blender offers to change the shortcut itself: if the properties are equal."""
     names = set(pressed.keys())
     if not names or item.properties is None:
         return not names
@@ -166,19 +166,19 @@ def _is_found_by_blender(pressed: bpy.types.OperatorProperties, item: bpy.types.
     )
 
 
-def _kept(pressed: bpy.types.OperatorProperties, owner: type) -> dict[str, Any]:
-    """Returns which properties of a button a key has too: choices that no panel has."""
+def _shortcut_properties(pressed: bpy.types.OperatorProperties, owner: type) -> dict[str, Any]:
+    """Returns the properties of a button that its shortcut stores: choices that no panel has."""
     kind = getattr(owner, "presets", None)
     settings = {name for name, _, _ in kind.options()} if kind is not None else set()
-    found = {}
+    stored = {}
     for name in set(pressed.keys()) - settings:
         declared = pressed.bl_rna.properties.get(name)
         if declared is None or declared.is_skip_save:
             continue
         is_choice = declared.type == "ENUM" and not declared.is_enum_flag
         if is_choice or (declared.type == "BOOLEAN" and not declared.is_array):
-            found[name] = getattr(pressed, name)
-    return found
+            stored[name] = getattr(pressed, name)
+    return stored
 
 
 register, unregister = registration(

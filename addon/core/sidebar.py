@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The add-on's tab in the sidebars of the 3D view and the Image editor, and what panels share."""
+"""The add-on's tab in the sidebars of the 3D view and the Image editor, with helpers for panels."""
 
 import math
 import textwrap
@@ -9,19 +9,20 @@ from typing import Any
 
 import bpy
 
-from . import running
+from . import runs
 from .translations import CONTEXT, tr
 
 _LETTER_WIDTH = 6.5
+"""Mean width of a Latin letter, in pixels at a scale of 1."""
 _AROUND_TEXT = 76
-"""What margins, tabs and an icon take of a sidebar's width; both at a scale of 1."""
+"""Width of margins, tabs and an icon in a sidebar, in pixels at a scale of 1."""
 _FEWEST_LETTERS = 12
 _FIRST_WIDE = "\u2e80"
-"""From here on letters are about twice as wide: those of Chinese and Japanese."""
+"""First code point of the letters of double width: Chinese and Japanese."""
 
 
 class Tab:
-    """A mixin for panels: in the tab of the 3D view."""
+    """A mixin for panels in the tab of the 3D view."""
 
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
@@ -29,63 +30,63 @@ class Tab:
 
 
 class SidebarPanel(Tab):
-    """A mixin for panels of the tab in the 3D view."""
+    """A mixin for panels in the tab of the 3D view that need a certain active object."""
 
     bl_context = "objectmode"
     bl_label = ""
     mode = "OBJECT"
-    """That in which it shows, which `bl_context` says too."""
-    wanted = ""
-    """The objects that the panel is for, such as "a curve or a text"."""
+    """The mode in which the panel shows; `bl_context` has to match."""
+    required_object = ""
+    """The kind of active object that the panel needs, such as "a curve or a text"."""
 
     @staticmethod
     def fits(obj: bpy.types.Object) -> bool:
-        """Tells whether the panel is for an object, the active one."""
+        """Returns whether the panel can work on an active object."""
         raise NotImplementedError
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether there is an active object that the panel is for."""
+        """Returns whether the mode and the active object fit the panel."""
         active = context.active_object
         return context.mode == cls.mode and active is not None and cls.fits(active)
 
 
 class PREFILTER_PT_nothing(Tab, bpy.types.Panel):
-    """Stands in for the panels where none is for what is active, and says what they are for."""
+    """A placeholder if no panel fits the active object: lists the objects that the panels need."""
 
     bl_label = "Prefilter"
     bl_translation_context = CONTEXT
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether there is no other panel."""
+        """Returns whether no other panel shows."""
         return not any(panel.poll(context) for panel in _panels())
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draws what to select for each panel."""
+        """Draws the kind of object that each panel needs."""
         if context.mode != "OBJECT":
             note(self.layout, context, "Prefilter works in Object Mode", "INFO")
-            back = self.layout.operator(
+            mode_set = self.layout.operator(
                 "object.mode_set", text="Object Mode", icon="OBJECT_DATAMODE"
             )
-            back.mode = "OBJECT"
+            mode_set.mode = "OBJECT"
             return
         note(self.layout, context, "Make one of these the active object", "INFO")
-        for panel in (one for one in _panels() if one.mode == "OBJECT"):
-            text = f"{tr(panel.bl_label)}: {tr(panel.wanted)}"
+        for panel in (panel for panel in _panels() if panel.mode == "OBJECT"):
+            text = f"{tr(panel.bl_label)}: {tr(panel.required_object)}"
             note(self.layout, context, text, "DOT")
 
 
 def _panels(base: type[Any] = SidebarPanel) -> Iterator[type[SidebarPanel]]:
-    """Yields the panels of the tab that are registered; few classes, as every redraw asks."""
-    for one in base.__subclasses__():
-        if getattr(one, "is_registered", False):
-            yield one
-        yield from _panels(one)
+    """Yields the registered panels of the tab."""
+    for panel in base.__subclasses__():
+        if getattr(panel, "is_registered", False):
+            yield panel
+        yield from _panels(panel)
 
 
 class ImagePanel:
-    """A mixin for panels of the tab in the Image editor."""
+    """A mixin for panels in the tab of the Image editor."""
 
     bl_space_type = "IMAGE_EDITOR"
     bl_region_type = "UI"
@@ -98,42 +99,42 @@ def main_button(
     operator: type[bpy.types.Operator],
     more: Callable[[bpy.types.UILayout], object] | None = None,
 ) -> bpy.types.UILayout | None:
-    """Returns where the main button of a panel goes.
+    """Returns the layout for the main button of a panel.
 
     Args:
-        layout: The panel.
+        layout: The layout of the panel.
         context: The context.
-        operator: What the button starts.
+        operator: The operator of the button.
         more: Draws a button that adds to the queue, beside the progress.
 
     Returns:
-        None while the operator runs, whose progress is then drawn there.
+        None while the operator runs; then its progress is drawn instead.
     """
     column = layout.column(align=True)
     row = column.row()
     row.scale_y = 1.5
-    if running.draw(row, context, operator.bl_idname, more):
+    if runs.draw(row, context, operator.bl_idname, more):
         return None
-    running.draw_successor(column, operator.bl_idname)
+    runs.draw_successor(column, operator.bl_idname)
     return row
 
 
 def button(
     layout: bpy.types.UILayout, context: bpy.types.Context, operator: type[bpy.types.Operator]
 ) -> bpy.types.UILayout | None:
-    """Returns where another button goes, as `main_button` does."""
-    if running.draw(layout, context, operator.bl_idname):
+    """Returns the layout for a secondary button; see `main_button`."""
+    if runs.draw(layout, context, operator.bl_idname):
         return None
     column = layout.column(align=True)
-    running.draw_successor(column, operator.bl_idname)
+    runs.draw_successor(column, operator.bl_idname)
     return column.column()
 
 
 def note(layout: bpy.types.UILayout, context: bpy.types.Context, text: str, icon: str) -> None:
-    """Draws a text of any length, in as many lines as the region needs."""
+    """Draws a text of any length, wrapped to the width of the region."""
     scale = context.preferences.system.ui_scale  # 0 without a window.
-    room = context.region.width / scale - _AROUND_TEXT if scale else math.inf
-    letters = max(_FEWEST_LETTERS, room / _LETTER_WIDTH)
+    width = context.region.width / scale - _AROUND_TEXT if scale else math.inf
+    letters = max(_FEWEST_LETTERS, width / _LETTER_WIDTH)
     column = layout.column(align=True)
     for i, line in enumerate(wrapped(tr(text), letters)):
         column.label(text=line, icon="BLANK1" if i else icon)
@@ -146,7 +147,7 @@ def wrapped(text: str, letters: float) -> list[str]:
         text: The text.
         letters: How many Latin letters fit in a line.
     """
-    wide = sum(one >= _FIRST_WIDE for one in text)
+    wide = sum(letter >= _FIRST_WIDE for letter in text)
     fitting = letters * len(text) / (len(text) + wide) if text else letters
     return textwrap.wrap(text, int(min(len(text), fitting)) or 1)
 
@@ -154,52 +155,52 @@ def wrapped(text: str, letters: float) -> list[str]:
 def subpanel(
     layout: bpy.types.UILayout, name: str, title: str
 ) -> tuple[bpy.types.UILayout, bpy.types.UILayout | None]:
-    """Draws a panel in a panel, which is closed at first.
+    """Draws a panel within a panel, closed by default.
 
     Args:
-        layout: The panel, across its whole width.
-        name: Tells it from others in the same region.
-        title: What its header says.
+        layout: The layout of the panel, across its whole width.
+        name: A name that is unique in the region.
+        title: The text of its header.
 
     Returns:
-        The header, for more to draw in it, and the body; None while that is closed.
+        The layouts of the header and of the body; None for the body while it is closed.
     """
     header, body = layout.panel(f"PREFILTER_{name}", default_closed=True)
     header.label(text=title, text_ctxt=CONTEXT)
     return header, body
 
 
-class PartedSettings:
-    """A mixin for settings: the usual ones, and parts that are closed at first."""
+class GroupedSettings:
+    """A mixin for settings: basic ones, and groups in subpanels that are closed by default."""
 
     def draw_in(self, layout: bpy.types.UILayout, *source: str) -> None:
-        """Draws the settings, the usual ones at once.
+        """Draws the basic settings, followed by the groups.
 
         Args:
             layout: The layout of a panel.
-            source: What the settings are for, where they depend on that.
+            source: The kind of source, if the settings depend on it.
         """
         layout.use_property_split = True
         layout.use_property_decorate = False
-        self.draw_usual(layout, *source)
-        self.draw_parts(layout, *source)
+        self.draw_basic(layout, *source)
+        self.draw_groups(layout, *source)
 
-    def draw_closed(self, layout: bpy.types.UILayout, *source: str) -> None:
-        """Draws the same below a main button: the usual ones are a part as well."""
+    def draw_collapsed(self, layout: bpy.types.UILayout, *source: str) -> None:
+        """Draws the settings below a main button, with the basic ones in a subpanel too."""
         layout.use_property_split = True
         layout.use_property_decorate = False
         name = type(self).__name__.removeprefix("PREFILTER_PG_")
         _, body = subpanel(layout, f"{name}_usual", "Settings")
         if body:
-            self.draw_usual(body, *source)
-        self.draw_parts(layout, *source)
+            self.draw_basic(body, *source)
+        self.draw_groups(layout, *source)
 
-    def draw_usual(self, *arguments: Any, **named: Any) -> None:
-        """Draws the usual ones, into the layout that it gets."""
+    def draw_basic(self, *arguments: Any, **named: Any) -> None:
+        """Draws the basic settings."""
         raise NotImplementedError
 
-    def draw_parts(self, *arguments: Any, **named: Any) -> None:
-        """Draws the parts likewise; nothing where there are none."""
+    def draw_groups(self, *arguments: Any, **named: Any) -> None:
+        """Draws the groups, if there are any."""
 
 
 register, unregister = bpy.utils.register_classes_factory((PREFILTER_PT_nothing,))

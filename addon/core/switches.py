@@ -2,8 +2,8 @@
 
 """The buttons that cancel and pause jobs, as properties.
 
-Blender tells over which property the mouse is, but not over which operator. They are of fixed
-number, as buttons that Blender has drawn go on pointing to where properties were.
+Blender reports the property under the mouse, but not the operator. Their number is fixed, because
+drawn buttons keep pointing to the memory of their properties.
 """
 
 import bpy
@@ -12,7 +12,7 @@ from bpy.props import BoolVectorProperty, PointerProperty
 from .translations import CONTEXT
 
 SLOTS = 32
-"""How many jobs there may be at once; Blender's vectors have no more numbers."""
+"""The largest number of jobs: the largest size of Blender's vector properties."""
 _NAMES = frozenset({"use_cancel", "use_pause"})
 _taken: set[int] = set()
 
@@ -37,13 +37,13 @@ class PREFILTER_PG_switches(bpy.types.PropertyGroup):
 
 
 class Switches:
-    """The buttons of one job."""
+    """The buttons of a job."""
 
     def __init__(self, context: bpy.types.Context) -> None:
-        """Takes two that no other job has.
+        """Reserves the buttons at a free index.
 
         Raises:
-            ValueError: There are too many jobs.
+            ValueError: Too many jobs exist.
         """
         free = [index for index in range(SLOTS) if index not in _taken]
         if not free:
@@ -54,11 +54,11 @@ class Switches:
         self._reset(context)
 
     def is_cancelled(self, context: bpy.types.Context) -> bool:
-        """Tells whether someone has pressed Cancel."""
+        """Returns whether Cancel was pressed."""
         return bool(_all(context).use_cancel[self._index])
 
     def is_paused(self, context: bpy.types.Context) -> bool:
-        """Tells whether Pause is pressed."""
+        """Returns whether Pause is pressed."""
         return bool(_all(context).use_pause[self._index])
 
     def press_cancel(self, context: bpy.types.Context) -> None:
@@ -74,12 +74,12 @@ class Switches:
         )
 
     def draw_pause(self, layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-        """Draws Pause, which looks as what its press leads to."""
+        """Draws Pause, with the icon of the action that a press would cause."""
         icon = "PLAY" if self.is_paused(context) else "PAUSE"
         layout.prop(_all(context), "use_pause", index=self._index, text="", icon=icon, toggle=True)
 
     def release(self, context: bpy.types.Context) -> None:
-        """Leaves them to others; another call does nothing."""
+        """Frees the index; a second call does nothing."""
         if not self._is_released:
             self._is_released = True
             _taken.discard(self._index)
@@ -91,12 +91,12 @@ class Switches:
 
 
 def taken() -> int:
-    """Returns how many jobs run or wait."""
+    """Returns the number of running and waiting jobs."""
     return len(_taken)
 
 
-def is_one(path: str) -> bool:
-    """Tells whether a property, by its path, is one of these buttons."""
+def is_job_button(path: str) -> bool:
+    """Returns whether a property path is one of these buttons."""
     return path.rpartition(".")[2].partition("[")[0] in _NAMES
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a press of a button is about, for work that begins later: the selection may change."""
+"""The selection at a button press, for work in the queue that starts later."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -11,13 +11,13 @@ import bpy
 from .translations import tr
 
 _KINDS = {"OBJECT": "objects", "IMAGE": "images"}
-_now: Sequence[bpy.types.Object] | None = None
-"""What counts as selected, while work begins that has waited."""
+_override: Sequence[bpy.types.Object] | None = None
+"""The selected objects, while work from the queue starts."""
 
 
 @dataclass(frozen=True)
 class _Ref:
-    """A data-block, which may be renamed, replaced by undo, or gone."""
+    """A reference to a data-block, which may be renamed, replaced by undo, or deleted."""
 
     kind: str
     name: str
@@ -29,15 +29,15 @@ class _Ref:
 
     def find(self) -> bpy.types.ID | None:
         blocks = getattr(bpy.data, _KINDS[self.kind])
-        found = blocks.get(self.name)
-        if found is not None and found.session_uid == self.uid:
-            return found
+        named = blocks.get(self.name)
+        if named is not None and named.session_uid == self.uid:
+            return named
         return next((block for block in blocks if block.session_uid == self.uid), None)
 
 
 @dataclass(frozen=True)
 class Targets:
-    """What was selected, and of that what the work is about, when a button was pressed.
+    """The selection at a button press, and the objects or images to work on.
 
     Attributes:
         mode: The mode of the context.
@@ -45,24 +45,24 @@ class Targets:
 
     mode: str
     _scene: tuple[int, str]
-    _wanted: Sequence[_Ref]
+    _required: Sequence[_Ref]
     _visible: Sequence[_Ref]
     _selected: Sequence[_Ref]
     _active: _Ref | None
 
     @classmethod
-    def of(cls, context: bpy.types.Context, wanted: Sequence[bpy.types.ID]) -> "Targets":
-        """Notes what is selected.
+    def of(cls, context: bpy.types.Context, required: Sequence[bpy.types.ID]) -> "Targets":
+        """Stores the selection.
 
         Args:
             context: The context.
-            wanted: Images or objects that the work cannot do without.
+            required: Images or objects that the work needs.
         """
         active = context.active_object
         return cls(
             context.mode,
-            _place(context),
-            [_Ref.of(block) for block in wanted],
+            _scene_and_layer(context),
+            [_Ref.of(block) for block in required],
             [_Ref.of(obj) for obj in context.selected_objects],
             [_Ref.of(obj) for obj in selected(context)],
             _Ref.of(active) if active is not None else None,
@@ -70,42 +70,42 @@ class Targets:
 
     @property
     def name(self) -> str:
-        """What the work is about, in few words; empty if that is nothing that was chosen."""
-        if len(self._wanted) == 1:
-            return self._wanted[0].name
-        return tr("{} objects").format(len(self._wanted)) if self._wanted else ""
+        """The target in a few words; empty if there is none."""
+        if len(self._required) == 1:
+            return self._required[0].name
+        return tr("{} objects").format(len(self._required)) if self._required else ""
 
-    def found(self, context: bpy.types.Context) -> list[bpy.types.ID]:
-        """Returns what the work cannot do without.
+    def resolve(self, context: bpy.types.Context) -> list[bpy.types.ID]:
+        """Returns the images or objects that the work needs.
 
         Raises:
-            ValueError: Something of that is gone or hidden, or the window shows another scene.
+            ValueError: One is deleted or hidden, or the window shows another scene.
         """
-        if _place(context) != self._scene:
+        if _scene_and_layer(context) != self._scene:
             raise ValueError("The window shows another scene or view layer than when it was queued")
-        found = []
-        for ref in self._wanted:
+        resolved = []
+        for ref in self._required:
             block = ref.find()
-            what = f"{ref.kind.lower()} '{ref.name}'"
+            title = f"{ref.kind.lower()} '{ref.name}'"
             if block is None:
-                raise ValueError(f"{what} was deleted while this waited")
+                raise ValueError(f"{title} was deleted while this waited")
             if ref.kind == "OBJECT" and not block.visible_get():
-                raise ValueError(f"{what} was hidden while this waited")
-            found.append(block)
-        return found
+                raise ValueError(f"{title} was hidden while this waited")
+            resolved.append(block)
+        return resolved
 
     @contextmanager
-    def selecting(self, context: bpy.types.Context) -> Iterator[None]:
-        """Has the context say that what was selected is, as far as it is still there."""
-        global _now
+    def override_selection(self, context: bpy.types.Context) -> Iterator[None]:
+        """Overrides the selection of the context with the stored one, without deleted objects."""
+        global _override
         layer = context.view_layer.objects
 
-        def there(refs: Sequence[_Ref]) -> list[bpy.types.Object]:
+        def existing(refs: Sequence[_Ref]) -> list[bpy.types.Object]:
             return [obj for ref in refs if (obj := ref.find()) and obj.name in layer]
 
         active = self._active.find() if self._active is not None else None
-        visible = there(self._visible)
-        before, _now = _now, there(self._selected)
+        visible = existing(self._visible)
+        before, _override = _override, existing(self._selected)
         try:
             with context.temp_override(
                 active_object=active,
@@ -115,15 +115,15 @@ class Targets:
             ):
                 yield
         finally:
-            _now = before
+            _override = before
 
 
 def selected(context: bpy.types.Context) -> Sequence[bpy.types.Object]:
-    """Returns the objects that are selected, or were when the button was pressed."""
-    if _now is not None:
-        return _now
+    """Returns the selected objects; for work from the queue, those of the button press."""
+    if _override is not None:
+        return _override
     return [obj for obj in context.view_layer.objects if obj.select_get()]
 
 
-def _place(context: bpy.types.Context) -> tuple[int, str]:
+def _scene_and_layer(context: bpy.types.Context) -> tuple[int, str]:
     return context.scene.session_uid, context.view_layer.name

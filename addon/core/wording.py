@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Messages, and words that several of them share."""
+"""Building blocks of messages, from the package."""
 
 from prefilter.workflows.wording import Sentence, amount, counted, either, joined, listed, together
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Mipmaps that know the mesh: bakes, and levels in view."""
+"""Mipmaps fitted to meshes: bakes, and previews of levels."""
 
 from ..core.keys import Key
 from ..core.registration import registration
@@ -22,13 +22,13 @@ MANUAL = {
 }
 """The pages about its operators and settings; see `manual.Manual`."""
 PREFERENCES = choices.Preferences
-"""What it adds to the preferences; see `preferences.OfSubjects`."""
+"""Its part of the preferences; see `preferences.SubjectPreferences`."""
 KEYS = (
     Key("bake_mipmaps", "M", "Image"),
     Key("bake_model", "M", "Object Mode"),
     Key("preview_levels", "P", "Image"),
 )
-"""What its operators have at first; see `keys.Keys`."""
+"""The default shortcuts of its operators; see `keys.Keys`."""
 
 register, unregister = registration(
     properties, gltf_properties, gltf_panel, view, operators, panels, menus

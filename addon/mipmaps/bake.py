@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Baking mipmaps: what `reading` has read is computed anywhere, and then written to Blender.
+"""The bake of one image: computed on any thread from the inputs, then written to Blender.
 
-The operator and the command are two ways to call this.
+Both the operator and the command use it.
 """
 
 from collections.abc import Callable, Sequence
@@ -25,28 +25,28 @@ from ..core.wording import Sentence, listed
 from . import frames
 from .source import Source, without_pixels
 
-_FILTERED = 0.9  # What the progress is once the levels are filtered.
+_FILTERED = 0.9  # The progress after filtering.
 
 
 class Bake:
     """One bake.
 
-    `write` belongs on the main thread; `compute` touches no Blender data and runs on any thread.
-    Nothing is written before everything is computed.
+    `write` runs on the main thread; `compute` uses no Blender data and runs on any thread. Nothing
+    is written before everything is computed.
     """
 
     def __init__(self, source: Source, outputs: Outputs, *, may_skip: bool = False) -> None:
-        """Keeps copies of what was read; use `reading.read`.
+        """Stores copies of the inputs; use `bake_inputs.read`.
 
         Args:
             source: The image on its surfaces.
-            outputs: What is made of it.
-            may_skip: Whether files are left alone that were made of the same; files then keep what
-                they were made of.
+            outputs: The levels and files to make.
+            may_skip: Whether to leave files alone that were made from the same inputs; files then
+                store a fingerprint of their inputs.
         """
         self.source = source
         self.is_up_to_date = False
-        """Whether `compute` has found that nothing is to be done."""
+        """Whether `compute` found all files up to date."""
         self._may_skip = may_skip
         self._metadata: dict[str, str] | None = None
         self.warnings = source.warnings
@@ -59,22 +59,22 @@ class Bake:
 
     @property
     def image_name(self) -> str:
-        """The name of the image that is baked."""
+        """The name of the baked image."""
         return self.source.image_name
 
     @property
     def picture(self) -> Picture:
-        """The pixels of the image that is baked."""
+        """The pixels of the baked image."""
         return self.source.picture
 
     @property
     def objects(self) -> Sequence[str]:
-        """The name of the object that each surface comes from."""
+        """The name of each surface's object."""
         return self.source.objects
 
     @property
     def notes(self) -> Sequence[str]:
-        """What is good to know of what was computed."""
+        """Remarks about the computed levels."""
         return self._notes
 
     @property
@@ -84,7 +84,7 @@ class Bake:
 
     @property
     def files(self) -> list[Path]:
-        """The files that there are once what was computed is written."""
+        """The files that exist after `write`."""
         if self.is_up_to_date:
             return self._outputs.targets
         return [file.target for file in self._staged]
@@ -99,15 +99,15 @@ class Bake:
         """
         go_on(progress, 0.0)
         if self._may_skip:
-            number = inputs_fingerprint(self.source, self._outputs)
-            self.is_up_to_date = up_to_date.is_up_to_date(self._outputs.targets, number)
-            self._metadata = {up_to_date.KEY: number}
+            fingerprint = inputs_fingerprint(self.source, self._outputs)
+            self.is_up_to_date = up_to_date.is_up_to_date(self._outputs.targets, fingerprint)
+            self._metadata = {up_to_date.KEY: fingerprint}
         if self.is_up_to_date:
             go_on(progress, 1.0)
             return
-        self._outputs, told = stretching.stretch(self.source, self._outputs, progress)
-        self._notes += told
-        made, rough, note = levels.filtered(
+        self._outputs, notes = stretching.stretch(self.source, self._outputs, progress)
+        self._notes += notes
+        color_levels, roughness_levels, note = levels.filtered(
             self.source,
             self._outputs.roughness,
             share(progress, 0.0, _FILTERED),
@@ -115,35 +115,44 @@ class Bake:
         )
         self._notes += [note] if note else []
         try:
-            self._stage(made, rough, partial(go_on, progress, _FILTERED))
+            check = partial(go_on, progress, _FILTERED)
+            self._stage(color_levels, roughness_levels, check)
             go_on(progress, 1.0)
         except BaseException:
             self.discard()
             raise
 
     def _stage(
-        self, made: list[FloatArray], rough: list[FloatArray], check: Callable[[], None]
+        self,
+        color_levels: list[FloatArray],
+        roughness_levels: list[FloatArray],
+        check: Callable[[], None],
     ) -> None:
-        """Stages the files, and keeps the levels as level images hold them."""
-        own_levels = [self._levels, self._roughness_levels]
-        found = stage_files(
-            self.source, self._outputs, made, rough, check=check, metadata=self._metadata
+        """Stages the files, and stores the levels for the level images."""
+        results = stage_files(
+            self.source,
+            self._outputs,
+            color_levels,
+            roughness_levels,
+            check=check,
+            metadata=self._metadata,
         )
-        for kept, (files, stored) in zip(own_levels, found, strict=False):
+        own_levels = [self._levels, self._roughness_levels]
+        for own, (files, stored) in zip(own_levels, results, strict=False):
             self._staged += files
-            kept[:] = stored
+            own[:] = stored
 
     def write(self) -> Outcome:
-        """Puts the file into place and writes the level images.
+        """Puts the files into place and writes the level images.
 
         Raises:
-            OSError: The file cannot be put into place, or an image cannot be made; nothing was
-                written then.
+            OSError: A file cannot be put into place, or an image cannot be made; then nothing is
+                written.
         """
         return write_all([self])[0]
 
     def stage_images(self) -> None:
-        """Makes the level images, which replace none yet; once is enough.
+        """Makes the level images, without replacing earlier ones; a second call does nothing.
 
         Raises:
             OSError: An image cannot be made.
@@ -161,20 +170,22 @@ class Bake:
             raise
 
     def finish(self) -> Outcome:
-        """Puts the level images into place; the files are there already."""
+        """Puts the level images into place, after the files."""
         if self.is_up_to_date:
             return Outcome(outcome.up_to_date(self._outputs.targets), warnings=self.warnings)
         names: list[str] = []
         for images in self._staged_levels:
-            made = images.commit()
-            names += made
+            new_names = images.commit()
+            names += new_names
             base = images.picture.name
-            if any(name != level_name(base, i) for i, name in enumerate(made, start=1)):
-                self.warnings.append(Sentence("the level images are named {}", listed(made)))
+            if any(name != level_name(base, i) for i, name in enumerate(new_names, start=1)):
+                self.warnings.append(Sentence("the level images are named {}", listed(new_names)))
         self._staged_levels.clear()
         self.discard()
         return Outcome(
-            summary(self.source, self._outputs, names, frames.averaged(self.source.settings)),
+            summary(
+                self.source, self._outputs, names, frames.averaged_frames(self.source.settings)
+            ),
             images=names,
             files=[str(target) for target in self._outputs.targets],
             warnings=self.warnings,
@@ -182,7 +193,7 @@ class Bake:
         )
 
     def release_pixels(self) -> None:
-        """Frees the memory of what is in staged files; of level images nothing is left."""
+        """Frees the pixels and levels, which are in staged files and images by now."""
         self.source.release_pixels()
         rough = self._outputs.roughness
         if rough is not None:
@@ -192,7 +203,7 @@ class Bake:
         self._levels, self._roughness_levels = [], []
 
     def discard(self) -> None:
-        """Removes what was staged, if it was not put into place."""
+        """Deletes staged files and images that were not put into place."""
         for file in self._staged:
             file.discard()
         for images in self._staged_levels:
@@ -202,7 +213,7 @@ class Bake:
 
 
 class Writable(Protocol):
-    """A bake, of an image or of all of its tiles, that is computed."""
+    """A computed bake, of an image or of all its tiles."""
 
     @property
     def staged_files(self) -> Sequence[StagedFile]:
@@ -219,18 +230,18 @@ class Writable(Protocol):
 
 
 def write_all(bakes: Sequence[Writable]) -> list[Outcome]:
-    """Writes what bakes have computed: everything, or nothing.
+    """Writes the results of bakes: all of them, or none.
 
     Raises:
-        OSError: A file cannot be put into place, or an image cannot be made; nothing was written
-            then, but for files that the message names.
+        OSError: A file cannot be put into place, or an image cannot be made; then nothing is
+            written, except files that the message names.
     """
     try:
-        for one in bakes:
-            one.stage_images()
-        commit_all([file for one in bakes for file in one.staged_files])
+        for bake in bakes:
+            bake.stage_images()
+        commit_all([file for bake in bakes for file in bake.staged_files])
     except BaseException:
-        for one in bakes:
-            one.discard()
+        for bake in bakes:
+            bake.discard()
         raise
-    return [one.finish() for one in bakes]
+    return [bake.finish() for bake in bakes]

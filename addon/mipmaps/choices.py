@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a user may set for a bake, a preview and an error plot."""
+"""Options of bakes, previews and error plots."""
 
 from dataclasses import dataclass
 
@@ -89,7 +89,7 @@ FILE_FORMATS = {
 
 @dataclass(frozen=True)
 class ResultSettings:
-    """What to do with the levels of an image; commands know it from their other flags."""
+    """The destination of an image's levels; commands infer it from other flags."""
 
     result: str = one_of("images", "Result", "What to do with the levels", RESULTS, flag="")
     file_format: str = one_of(
@@ -103,12 +103,12 @@ NOT_OF_MODELS = frozenset(
         *("objects", "levels", "use_images", "filepath"),
     }
 )
-"""The fields of `Settings` that a bake of a model finds by itself, or has others for."""
+"""The fields of `Settings` that a model bake determines itself, or replaces by others."""
 
 
 @dataclass(frozen=True)
 class ModelSettings:
-    """Which images of a model to bake, and where to put them; the rest is as in `Settings`."""
+    """Which images of a model to bake, and where to put them; used together with `Settings`."""
 
     objects: str = one_of(
         "auto",
@@ -146,7 +146,7 @@ class ModelSettings:
 
 @dataclass(frozen=True)
 class Preferences:
-    """What holds where a user sets nothing."""
+    """Defaults in the preferences."""
 
     file_format: str = one_of(
         ModelSettings.file_format,
@@ -169,7 +169,7 @@ REMOVED = {
 
 @dataclass(frozen=True)
 class RemoveSettings:
-    """What `prefilter.remove_levels` removes."""
+    """Options of `prefilter.remove_levels`."""
 
     kinds: tuple[str, ...] = one_of(("preview", "images"), "Levels", "What to remove", REMOVED)
     use_all: bool = switch(
@@ -187,7 +187,7 @@ LEVEL_CHOICES = {
 
 @dataclass(frozen=True)
 class PreviewSettings:
-    """What a preview shows beside the levels of a bake."""
+    """Options of previews, in addition to those of a bake."""
 
     compare: str = one_of(
         "box", "Compare With", "The filter on the left of the wipe", FILTERS, flag=""
@@ -208,7 +208,7 @@ class PreviewSettings:
 
 @dataclass(frozen=True)
 class PlotSettings:
-    """What an error plot compares: by default the filters of figure 7.7."""
+    """Options of error plots; the default filters are those of figure 7.7."""
 
     filters: tuple[str, ...] = one_of(
         ("pam-bilinear", "pam-trilinear", "pam-box", "box"),

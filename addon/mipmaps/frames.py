@@ -10,7 +10,7 @@ from ..bridge import meshes
 from .choices import Settings
 
 
-def surfaces_over(
+def surfaces_over_frames(
     image: bpy.types.Image,
     objects: Sequence[bpy.types.Object],
     settings: Settings,
@@ -18,43 +18,43 @@ def surfaces_over(
     *,
     all_faces: bool,
 ) -> Generator[float, None, meshes.ImageSurfaces]:
-    """Reads the surfaces of one frame or several; see `reading.reading`.
+    """Reads the surfaces of one or several frames; see `bake_inputs.read_steps`.
 
     Yields:
         The fraction done.
 
     Returns:
-        The surfaces, those of several frames as one.
+        The surfaces, averaged over the frames.
 
     Raises:
-        ValueError: There is no such frame, or a mesh is unfit.
+        ValueError: The range of frames is empty, or a mesh is unfit.
     """
     options = meshes.SurfaceOptions(settings.use_subdivision_limit, settings.importance)
     if not settings.use_frames:
         return meshes.image_surfaces(objects, image, depsgraph, options, all_faces=all_faces)
-    frames = chosen(settings)
-    found = meshes.ImageSurfaces()
+    frames = frame_range(settings)
+    surfaces = meshes.ImageSurfaces()
     scene = depsgraph.scene
     before = scene.frame_current, scene.frame_subframe
     try:
         for count, frame in enumerate(frames, start=1):
             scene.frame_set(frame)
-            found.add_pose(
+            surfaces.add_pose(
                 meshes.image_surfaces(objects, image, depsgraph, options, all_faces=all_faces)
             )
             yield count / len(frames)
     finally:
         scene.frame_set(before[0], subframe=before[1])
-    return found
+    return surfaces
 
 
-def averaged(settings: Settings) -> Sequence[int]:
-    """Returns the frames that a bake is an average of; none where it is of the current one."""
-    return chosen(settings) if settings.use_frames else ()
+def averaged_frames(settings: Settings) -> Sequence[int]:
+    """Returns the frames over which a bake averages; empty for the current frame only."""
+    return frame_range(settings) if settings.use_frames else ()
 
 
-def chosen(settings: Settings) -> range:
-    """Returns the frames to average over; raises ValueError if there are none."""
+def frame_range(settings: Settings) -> range:
+    """Returns the frames to average over; raises ValueError if the range is empty."""
     if settings.frame_end < settings.frame_start:
         raise ValueError(f"End: {settings.frame_end} is before Start, {settings.frame_start}")
     return range(settings.frame_start, settings.frame_end + 1, settings.frame_step)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What works on images, in the menus Image > Prefilter and Object > Prefilter."""
+"""Entries for mipmaps in the menus Image > Prefilter, Object > Prefilter and File > Export."""
 
 import bpy
 
@@ -73,7 +73,7 @@ def _draw_material_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> Non
 
 def _draw_export(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     del context
-    offer_panels()  # The exporter may have been enabled since.
+    offer_panels()  # The glTF exporter may have been enabled since registration.
     for operator, text in (
         (PREFILTER_OT_export_mipmaps, marked("Mipmaps (.ktx2/.dds/.exr/.tx/.tif/.png)")),
         (PREFILTER_OT_export_model, marked("Mipmaps of All Images")),

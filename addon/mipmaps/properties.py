@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The settings of a bake as properties, of the operator and of the scene."""
+"""The settings of a bake as properties, of operators and of the scene."""
 
 import os
 from dataclasses import replace
@@ -9,9 +9,15 @@ from typing import Any
 import bpy
 
 from ..core import preset_menu, presets
-from ..core.properties import following, properties, shared, single_property, values
+from ..core.properties import (
+    preference_properties,
+    properties,
+    shared_properties,
+    single_property,
+    values,
+)
 from ..core.registration import classes, registration, state
-from ..core.sidebar import PartedSettings, subpanel
+from ..core.sidebar import GroupedSettings, subpanel
 from .choices import (
     FITTED_FILTERS,
     NOT_OF_MODELS,
@@ -22,31 +28,34 @@ from .choices import (
 from .importance import suggested_names
 
 _FRAMES = ("use_frames", "frame_start", "frame_end", "frame_step")
-_OF_FILES = (
+_FILE_SETTINGS = (
     *("texture_format", "effort", "supercompression", "quality"),
     "use_multiples_of_4",
 )
-_OF_ANY_SIDES = ("rgba", "etc2", "eac", "astc")
-"""How the names of formats begin whose readers take any number of texels."""
+_ANY_SIZE_PREFIXES = ("rgba", "etc2", "eac", "astc")
+"""Prefixes of texel formats whose readers accept images of any size."""
 BAKE = presets.Kind("bake", "prefilter_bake", [(ResultSettings, ()), (Settings, _FRAMES)])
 MODEL = presets.Kind(
-    "model", "prefilter_model", [(ModelSettings, ()), (Settings, {*NOT_OF_MODELS, *_FRAMES})]
+    "model",
+    "prefilter_model",
+    [(ModelSettings, ()), (Settings, {*NOT_OF_MODELS, *_FRAMES})],
+    shared=BAKE.name,
 )
 _SEARCH = {"search": suggested_names, "search_options": {"SORT", "SUGGESTION"}}
 
 
 def _follow_path(self: "BakeProperties", context: bpy.types.Context) -> None:
-    """Has the format follow the ending of the file."""
+    """Sets the format from the extension of the file."""
     from . import file_names
 
     del context
-    found = file_names.format_of(self.filepath)
-    if found and self.file_format != found:
-        self.file_format = found
+    file_format = file_names.format_of(self.filepath)
+    if file_format and self.file_format != file_format:
+        self.file_format = file_format
 
 
 def _follow_format(self: "BakeProperties", context: bpy.types.Context) -> None:
-    """Has the endings of the files follow the format."""
+    """Sets the extensions of the files from the format."""
     from . import file_names
 
     del context
@@ -56,8 +65,8 @@ def _follow_format(self: "BakeProperties", context: bpy.types.Context) -> None:
             setattr(self, name, f"{os.path.splitext(path)[0]}.{self.file_format}")
 
 
-class BakeProperties(PartedSettings):
-    """The properties of a bake; a mixin for an operator and a property group."""
+class BakeProperties(GroupedSettings):
+    """The properties of a bake, as a mixin for an operator and a property group."""
 
     __annotations__ = (
         properties(ResultSettings)
@@ -70,13 +79,13 @@ class BakeProperties(PartedSettings):
     )
 
     def to_settings(self) -> Settings:
-        """Returns the values, with the files' paths made absolute.
+        """Returns the values, with absolute paths.
 
-        A path that is to be that of the image has `file_names.PLACE` in it.
+        A default path contains `file_names.PLACE` for the name of the image.
         """
         settings = values(self, Settings)
         if not self._shows_roughness():
-            # What an earlier choice has left in fields that are not shown.
+            # Hidden fields may have values from an earlier choice.
             settings = replace(settings, roughness="", roughness_filepath="")
         if self.result != "file":
             return replace(settings, use_images=True, filepath="", roughness_filepath="")
@@ -89,12 +98,11 @@ class BakeProperties(PartedSettings):
             else "",
         )
 
-    def draw_usual(self, layout: bpy.types.UILayout) -> None:
-        """Draws the usual properties."""
+    def draw_basic(self, layout: bpy.types.UILayout) -> None:
+        """Draws the basic properties."""
         _draw_result(self, layout)
         if self.result == "file":
             self._draw_file(layout)
-        layout.prop(self, "filter")
         if self.reader != "linear" and self.filter == "pam-trilinear":
             layout.label(text="PAM Trilinear requires Linear Light", icon="ERROR")
         layout.prop(self, "content")
@@ -105,8 +113,8 @@ class BakeProperties(PartedSettings):
             if self.roughness:
                 layout.prop(self, "roughness_channel")
 
-    def draw_parts(self, layout: bpy.types.UILayout) -> None:
-        """Draws the parts."""
+    def draw_groups(self, layout: bpy.types.UILayout) -> None:
+        """Draws the groups."""
         _, body = subpanel(layout, "surface", "Surface")
         if body:
             body.prop(self, "objects")
@@ -121,12 +129,15 @@ class BakeProperties(PartedSettings):
             row = body.row()
             row.active = self.content != "normal"
             row.prop(self, "bounds")
+        _, body = subpanel(layout, "advanced", "Advanced")
+        if body:
+            body.prop(self, "filter")
 
     def _shows_roughness(self) -> bool:
         return self.content == "normal" or (self.content == "auto" and bool(self.roughness))
 
     def _file(self, path: str) -> str:
-        """Returns a path with the ending of the format."""
+        """Returns a path with the extension of the format."""
         from . import file_names
 
         if not path:
@@ -141,8 +152,8 @@ class BakeProperties(PartedSettings):
         _draw_compression(self, layout)
 
 
-class ModelProperties(PartedSettings):
-    """The properties of a bake of a model; a mixin for an operator and a property group."""
+class ModelProperties(GroupedSettings):
+    """The properties of a model bake, as a mixin for an operator and a property group."""
 
     __annotations__ = (
         properties(ModelSettings)
@@ -151,12 +162,12 @@ class ModelProperties(PartedSettings):
     )
 
     def to_settings(self) -> tuple[ModelSettings, Settings]:
-        """Returns the values, with the folder's path made absolute."""
+        """Returns the values, with an absolute folder."""
         settings = values(self, Settings, NOT_OF_MODELS)
         return values(self, ModelSettings), replace(settings, use_images=self.result == "images")
 
-    def draw_usual(self, layout: bpy.types.UILayout) -> None:
-        """Draws the usual properties."""
+    def draw_basic(self, layout: bpy.types.UILayout) -> None:
+        """Draws the basic properties."""
         layout.prop(self, "objects")
         layout.prop_search(self, "material", bpy.data, "materials")
         _draw_result(self, layout)
@@ -164,10 +175,9 @@ class ModelProperties(PartedSettings):
             layout.prop(self, "folder")
             layout.prop(self, "file_format")
             _draw_compression(self, layout)
-        layout.prop(self, "filter")
 
-    def draw_parts(self, layout: bpy.types.UILayout) -> None:
-        """Draws the parts."""
+    def draw_groups(self, layout: bpy.types.UILayout) -> None:
+        """Draws the groups."""
         _, body = subpanel(layout, "model_surface", "Surface")
         if body:
             _draw_surface(self, body)
@@ -178,6 +188,9 @@ class ModelProperties(PartedSettings):
         _, body = subpanel(layout, "model_levels", "Levels")
         if body:
             body.prop(self, "bounds")
+        _, body = subpanel(layout, "model_advanced", "Advanced")
+        if body:
+            body.prop(self, "filter")
 
 
 def _draw_result(settings: Any, layout: bpy.types.UILayout) -> None:
@@ -188,18 +201,18 @@ def _draw_result(settings: Any, layout: bpy.types.UILayout) -> None:
 
 
 def _draw_compression(settings: Any, layout: bpy.types.UILayout) -> None:
-    """Draws what some formats of files have a choice of."""
+    """Draws the choices of formats and compression that the file format has."""
     from prefilter.workflows.files import target_files
 
-    ending = f".{settings.file_format}"
-    if target_files.has_formats(ending):
+    extension = f".{settings.file_format}"
+    if target_files.has_formats(extension):
         layout.prop(settings, "texture_format")
         layout.prop(settings, "effort")
         row = layout.row()
-        row.active = not settings.texture_format.startswith(_OF_ANY_SIDES)
+        row.active = not settings.texture_format.startswith(_ANY_SIZE_PREFIXES)
         row.prop(settings, "use_multiples_of_4")
-    if target_files.has_supercompression(ending):
-        # ETC1S has a compression of its own.
+    if target_files.has_supercompression(extension):
+        # ETC1S includes its own compression.
         is_etc1s = settings.texture_format == "etc1s"
         layout.prop(settings, "quality" if is_etc1s else "supercompression")
 
@@ -233,21 +246,21 @@ def _draw_lookups(settings: Any, layout: bpy.types.UILayout) -> None:
 
 
 class PREFILTER_PG_model(ModelProperties, bpy.types.PropertyGroup):
-    """The settings that the panel shows; they stay with the scene.
+    """The settings of the panel, stored in the scene.
 
-    What a level is made of is that of `PREFILTER_PG_bake`: a bake of all images makes the levels
-    that the preview of an image shows.
+    The settings that affect levels are shared with `PREFILTER_PG_bake`, so that a bake of all
+    images makes the levels that the preview of an image shows.
     """
 
-    __annotations__ = following(ModelSettings) | shared(
-        Settings, BAKE.group, {*NOT_OF_MODELS, *_OF_FILES}, importance=_SEARCH
+    __annotations__ = preference_properties(ModelSettings) | shared_properties(
+        Settings, BAKE.group, {*NOT_OF_MODELS, *_FILE_SETTINGS}, importance=_SEARCH
     )
 
 
 class PREFILTER_PG_bake(BakeProperties, bpy.types.PropertyGroup):
-    """The settings that the panel shows; they stay with the scene."""
+    """The settings of the panel, stored in the scene."""
 
-    __annotations__ = following(ResultSettings, file_format={"update": _follow_format})
+    __annotations__ = preference_properties(ResultSettings, file_format={"update": _follow_format})
 
 
 register, unregister = registration(

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Removing the levels of images: previews, level images, and those in Cycles' texture cache."""
+"""Removal of levels: previews, level images, and levels in Cycles' texture cache."""
 
 from collections.abc import Collection, Iterable
 from contextlib import suppress
@@ -9,14 +9,14 @@ import bpy
 
 from ..bridge import level_images
 from ..bridge.files import tx
-from ..core import remembered
+from ..core import scene_cache
 from ..core.outcome import Outcome
 from ..core.wording import Sentence, counted, together
 from .view import preview
 
 
 def has_levels(image: bpy.types.Image | None) -> bool:
-    """Tells whether there is a preview of an image, or a level image."""
+    """Returns whether an image has a preview or level images."""
     if image is None:
         return False
     return preview.find(image) is not None or bool(level_images.levels_of(image))
@@ -26,7 +26,7 @@ def remove(images: Iterable[bpy.types.Image], kinds: Collection[str]) -> Outcome
     """Removes the levels of images.
 
     Args:
-        images: The images; level images among them are left out.
+        images: The images; level images among them are ignored.
         kinds: Keys of `choices.REMOVED`.
 
     Raises:
@@ -51,16 +51,16 @@ def remove(images: Iterable[bpy.types.Image], kinds: Collection[str]) -> Outcome
         if files:
             results.append(Sentence("{} of the texture cache", counted(files, "file")))
     if not results:
-        who = f"image '{own[0].name}' has" if len(own) == 1 else "no image has"
-        raise ValueError(f"{who} {'no ' if len(own) == 1 else ''}levels to remove")
+        subject = f"image '{own[0].name}' has no" if len(own) == 1 else "no image has"
+        raise ValueError(f"{subject} levels to remove")
     return Outcome(Sentence("Removed {}", together(results)))
 
 
 def _removed_from_cache(image: bpy.types.Image) -> list[str]:
     removed: list[str] = []
-    # An image without a file has none in the cache.
+    # Images without a file, for which `tx.sources` raises, are not in the cache.
     with suppress(ValueError):
         for source in tx.sources(image).values():
             removed += [str(path) for path in tx.remove_baked(source)]
-    remembered.forget_all()
+    scene_cache.clear_all()
     return removed

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""An image on its surfaces in Blender: what levels are computed of, on any thread."""
+"""An image with its surfaces, the input of all computations of levels."""
 
 from collections.abc import Sequence
 
@@ -10,31 +10,33 @@ from ..bridge import materials, meshes
 from ..bridge.images import Picture
 from .choices import Settings
 
-__all__ = ("Source", "chosen_wrap", "on_surfaces", "reads_encoded", "without_pixels")
+__all__ = ("Source", "on_surfaces", "reads_encoded", "resolve_wrap", "without_pixels")
 
 
 def on_surfaces(
-    picture: Picture, found: meshes.ImageSurfaces, settings: Settings, content: str
+    picture: Picture, surfaces: meshes.ImageSurfaces, settings: Settings, content: str
 ) -> Source:
-    """Returns an image on what was found of its surfaces."""
-    wrap, told = chosen_wrap(settings, found.extensions)
-    warnings = [*found.problems, *told]
-    return Source(picture, found.surfaces, found.objects, settings, content, wrap, warnings)
+    """Returns an image with its surfaces."""
+    wrap, wrap_warnings = resolve_wrap(settings, surfaces.extensions)
+    warnings = [*surfaces.problems, *wrap_warnings]
+    return Source(picture, surfaces.surfaces, surfaces.objects, settings, content, wrap, warnings)
 
 
-def chosen_wrap(settings: Settings, extensions: Sequence[str]) -> tuple[tuple[str, str], list[str]]:
-    """Returns the wrap mode along u and v, and a warning where nodes do not agree on it.
+def resolve_wrap(
+    settings: Settings, extensions: Sequence[str]
+) -> tuple[tuple[str, str], list[str]]:
+    """Returns the wrap modes along u and v, and a warning if Image Texture nodes disagree.
 
     Args:
-        settings: What a user has chosen.
-        extensions: What Image Texture nodes do outside of the image, that of most faces first.
+        settings: The user's choice.
+        extensions: The extension modes of the nodes, most frequent first.
     """
-    wrap, told = settings.wrap, []
+    wrap, warnings = settings.wrap, []
     if wrap == "auto":
         wrap = materials.WRAP_OF_EXTENSION[extensions[0]] if extensions else "repeat"
         if len(extensions) > 1 or "MIRROR" in extensions[:1]:
-            told.append(
+            warnings.append(
                 f"Image Texture nodes extend the image by {', '.join(extensions)}; "
                 f"filtered as '{wrap}'"
             )
-    return (wrap, wrap if settings.wrap_v == "same" else settings.wrap_v), told
+    return (wrap, wrap if settings.wrap_v == "same" else settings.wrap_v), warnings

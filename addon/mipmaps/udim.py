@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""UDIM images: a bake a tile, and all of them as one."""
+"""UDIM images: one bake per tile, and all of them as one bake."""
 
 import os
 from collections.abc import Sequence
@@ -20,79 +20,79 @@ from .choices import TEXTURE_SPACE_FILTERS, Settings
 
 @dataclass(frozen=True)
 class Tile:
-    """What a tile is baked from.
+    """The inputs of a tile's bake.
 
     Attributes:
         picture: Its pixels.
-        found: The part of the surface that lies in it, in the unit square.
-        target: The file to write, if there is one.
+        surfaces: The part of the surfaces that lies in it, in the unit square.
+        target: The file to write; None for no file.
     """
 
     picture: Picture
-    found: meshes.ImageSurfaces
+    surfaces: meshes.ImageSurfaces
     target: Path | None
 
 
 class TiledBake:
-    """The bakes of the tiles of a UDIM image, as one; it is used like a `Bake`."""
+    """The bakes of a UDIM image's tiles, with the interface of a `Bake`."""
 
     def __init__(self, image_name: str, bakes: Sequence[Bake], warnings: list[str]) -> None:
-        """Takes the bakes over, of one tile at least; use `reading.read`."""
+        """Stores the bakes, at least one; use `bake_inputs.read`."""
         self.image_name = image_name
         self.warnings = warnings
         self._bakes = bakes
 
     @property
     def picture(self) -> Picture:
-        """The pixels of the first tile that is baked."""
+        """The pixels of the first baked tile."""
         return self._bakes[0].picture
 
     @property
     def objects(self) -> Sequence[str]:
-        """The name of the object of each surface in any tile."""
-        return [name for one in self._bakes for name in one.objects]
+        """The name of each surface's object, over all tiles."""
+        return [name for bake in self._bakes for name in bake.objects]
 
     @property
     def is_up_to_date(self) -> bool:
-        """Whether all tiles are; see `Bake.is_up_to_date`."""
-        return all(one.is_up_to_date for one in self._bakes)
+        """Whether all tiles are up to date; see `Bake.is_up_to_date`."""
+        return all(bake.is_up_to_date for bake in self._bakes)
 
     @property
     def files(self) -> list[Path]:
         """See `Bake.files`."""
-        return [path for one in self._bakes for path in one.files]
+        return [path for bake in self._bakes for path in bake.files]
 
     @property
     def tile_count(self) -> int:
-        """How many tiles are baked."""
+        """The number of baked tiles."""
         return len(self._bakes)
 
     def compute(self, progress: Progress) -> None:
         """Computes tile by tile; see `Bake.compute`."""
         try:
-            for one, part in zip(self._bakes, parts(progress, len(self._bakes)), strict=True):
-                one.compute(part)
+            for bake, part in zip(self._bakes, parts(progress, len(self._bakes)), strict=True):
+                bake.compute(part)
         except BaseException:
             self.discard()
             raise
 
     @property
     def staged_files(self) -> Sequence[StagedFile]:
-        """The files of all tiles, to be renamed into place."""
-        return [file for one in self._bakes for file in one.staged_files]
+        """The finished files of all tiles, beside their targets."""
+        return [file for bake in self._bakes for file in bake.staged_files]
 
     def stage_images(self) -> None:
         """See `Bake.stage_images`."""
-        for one in self._bakes:
-            one.stage_images()
+        for bake in self._bakes:
+            bake.stage_images()
 
     def write(self) -> Outcome:
-        """Writes all tiles, once everything is staged; see `Bake.write`."""
+        """Writes all tiles or none; see `Bake.write`."""
         return write_all([self])[0]
 
     def finish(self) -> Outcome:
         """See `Bake.finish`."""
-        outcomes = [one.finish() for one in self._bakes]
+        outcomes = [bake.finish() for bake in self._bakes]
         for outcome in outcomes:
             self.warnings.extend(outcome.warnings)
         names = [name for outcome in outcomes for name in outcome.images]
@@ -109,41 +109,41 @@ class TiledBake:
 
     def release_pixels(self) -> None:
         """See `Bake.release_pixels`."""
-        for one in self._bakes:
-            one.release_pixels()
+        for bake in self._bakes:
+            bake.release_pixels()
 
     def discard(self) -> None:
-        """Removes what was staged, if it was not put into place."""
-        for one in self._bakes:
-            one.discard()
+        """Deletes staged files and images that were not put into place."""
+        for bake in self._bakes:
+            bake.discard()
 
 
 def tiles(
     image_name: str,
     pictures: Sequence[Picture],
     numbers: Sequence[int],
-    found: meshes.ImageSurfaces,
+    surfaces: meshes.ImageSurfaces,
     settings: Settings,
     targets: Sequence[Path],
 ) -> tuple[list[Tile], list[str]]:
-    """Returns the tiles that some of the surface lies in, and warnings of the others.
+    """Returns the tiles that contain part of the surfaces, and warnings about the others.
 
     Args:
         image_name: The name of the tiled image.
-        pictures: Of each tile.
-        numbers: Of each tile.
-        found: The surfaces on all of the tiles.
-        settings: What to bake.
-        targets: The file of each tile; empty for none.
+        pictures: The pixels of each tile.
+        numbers: The number of each tile.
+        surfaces: The surfaces on all tiles.
+        settings: The settings of the bake.
+        targets: The file of each tile; empty for no files.
 
     Raises:
-        ValueError: The surface lies in none of the tiles.
+        ValueError: No tile contains part of the surfaces.
     """
-    chosen, warnings = [], list(found.problems)
-    surfaces = TileSurfaces()
+    chosen, warnings = [], list(surfaces.problems)
+    tile_surfaces = TileSurfaces()
     for index, (picture, number) in enumerate(zip(pictures, numbers, strict=True)):
-        inside = surfaces.inside(found, number)
-        # A lookup past the edge of a tile is one in the next.
+        inside = tile_surfaces.inside(surfaces, number)
+        # A lookup beyond the edge of a tile reads the next tile.
         inside.extensions = ["EXTEND"]
         area = sum(part.area for part in inside.surfaces)
         if area == 0 and settings.filter not in TEXTURE_SPACE_FILTERS:
@@ -158,7 +158,7 @@ def tiles(
 
 
 def paths(path: str, tiles: Sequence[int]) -> list[str]:
-    """Returns the file of each tile: with its number for <UDIM>, or else before the extension."""
+    """Returns the file of each tile: its number replaces <UDIM>, or precedes the extension."""
     if not path or not tiles:
         return [path] if path else []
     if "<UDIM>" not in path:

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The objects that a bake looks at: for the bake, and cheaply for panels."""
+"""The objects that a bake of an image reads, with a cache for panels."""
 
 from collections.abc import Sequence
 
 import bpy
 
 from ..bridge import users
-from ..core.remembered import Remembered
+from ..core.scene_cache import SceneCache
 from ..core.targets import selected
 from ..core.translations import tr
 from ..core.wording import counted, listed
@@ -20,14 +20,14 @@ def _names_of_users(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> d
     return {image.session_uid: [obj.name for obj in objects] for image, objects in shown.items()}
 
 
-_users = Remembered(_names_of_users)
-"""The names of the users of all images, by session_uid."""
+_users = SceneCache(_names_of_users)
+"""The names of the objects that use each image, by the image's session_uid."""
 
 
 def objects_to_read(
     context: bpy.types.Context, image: bpy.types.Image, choice: str
 ) -> tuple[list[bpy.types.Object], list[str]]:
-    """Returns the objects that a bake of an image looks at, and warnings of those left out.
+    """Returns the objects that a bake of an image reads, and warnings about excluded ones.
 
     Args:
         context: The context.
@@ -44,15 +44,15 @@ def objects_to_read(
 def users_of(
     image: bpy.types.Image, context: bpy.types.Context
 ) -> tuple[list[bpy.types.Object], list[str]]:
-    """Returns the visible objects that use an image, and a warning if there are hidden ones."""
+    """Returns the visible objects that use an image, and a warning about hidden ones."""
     shown = users.shown_images(context.evaluated_depsgraph_get()).get(image, [])
     hidden = users.hidden_users(image, context.view_layer, shown)
     names = listed(obj.name for obj in hidden)
     return shown, [f"image '{image.name}': left out, as they are hidden: {names}"] if hidden else []
 
 
-def why_none(context: bpy.types.Context, image: bpy.types.Image, choice: str) -> str:
-    """Returns why no object can be read for an image; empty where one can, or may."""
+def missing_reason(context: bpy.types.Context, image: bpy.types.Image, choice: str) -> str:
+    """Returns why a bake has no object to read; empty if it has one, or if that is unknown."""
     if _names(context, image, choice) != []:
         return ""
     if choice == "selected":
@@ -60,10 +60,10 @@ def why_none(context: bpy.types.Context, image: bpy.types.Image, choice: str) ->
     return tr("No visible object uses '{}'").format(image.name)
 
 
-def what_is_read(
+def describe_inputs(
     context: bpy.types.Context, image: bpy.types.Image, choice: str, filters: Sequence[str]
 ) -> str:
-    """Returns what a bake would read, such as "3 objects, 2048 x 2048".
+    """Returns a summary of a bake's inputs, such as "3 objects, 2048 x 2048".
 
     Args:
         context: The context.
@@ -83,10 +83,10 @@ def what_is_read(
 
 def _names(context: bpy.types.Context, image: bpy.types.Image, choice: str) -> list[str] | None:
     """Returns the names of the objects to read; None before a view layer is evaluated."""
-    found = _users.get(context)
-    if found is None:
+    users_by_image = _users.get(context)
+    if users_by_image is None:
         return None
-    names = found.get(image.session_uid, [])
+    names = users_by_image.get(image.session_uid, [])
     if choice != "selected":
         return names
     objects = map(context.view_layer.objects.get, names)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Images of other sizes and in other places."""
+"""Resizing and resampling of images, and sampling tables."""
 
 from ..core.registration import registration
 from . import operators, panels, properties, view

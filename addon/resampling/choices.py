@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a user may set for images that are resized and resampled, and for sampling tables."""
+"""Options of resizing, resampling and sampling tables."""
 
 from dataclasses import dataclass
 
@@ -47,7 +47,7 @@ __all__ = (
 
 @dataclass(frozen=True)
 class PlaneSettings:
-    """What the preview plane shows."""
+    """Options of the preview plane."""
 
     filter: str = one_of(
         "lanczos2",

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Images that are made of others: what is read of Blender for that, and what becomes of it."""
+"""Reading of source images and writing of resized or resampled ones."""
 
 import bpy
 from prefilter.workflows.resampling.new_picture import NewPicture
@@ -12,7 +12,7 @@ from ..core.wording import Sentence
 
 
 def read(image: bpy.types.Image) -> Picture:
-    """Copies an image's pixels; raises ValueError where it has none, or several tiles."""
+    """Copies an image's pixels; raises ValueError if it has none, or has tiles."""
     images.check_untiled(image)
     return images.read(image)
 
@@ -21,12 +21,12 @@ def keep(work: NewPicture, stored: FloatArray, *, in_place: bool = False) -> Out
     """Makes an image.
 
     Args:
-        work: What has made the pixels.
-        stored: They, as the old image stores its own.
-        in_place: Whether whatever uses the old image then uses the new one.
+        work: The work that computed the pixels.
+        stored: The pixels, encoded like those of the old image.
+        in_place: Whether all users of the old image use the new one instead.
 
     Raises:
-        OSError: It cannot be made.
+        OSError: The image cannot be made.
     """
     image = derived.write_picture(work.picture, work.suffix, stored, like_source=True)
     if in_place:

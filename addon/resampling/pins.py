@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Corners that are dragged: where they are in an editor, and where they go.
+"""Geometry of dragged corners, in the image and in the editor.
 
-A place is in pixels, of the image from its lower left corner, or of the editor's region.
+Positions are in pixels, of the image from its lower left corner, or of the editor's region.
 """
 
 from dataclasses import dataclass
@@ -21,43 +21,43 @@ from prefilter.workflows.resampling.placement import (
 from .choices import CORNERS, ResampleSettings
 
 REACH = 14.0
-"""How far from a corner a press takes it, in pixels of the region at a scale of 1."""
+"""Largest distance of a press from the corner that it grabs, in region pixels at a scale of 1."""
 GRID = 4
-"""How many parts the grid has along each side."""
+"""Number of grid cells along each side."""
 
 _SLOWNESS = 0.1
-_SNAP = 8.0  # How near an edge has to be, in pixels of the region.
+_SNAP = 8.0  # Largest distance of an edge to snap to, in region pixels.
 _START = (0.2, 0.8)
-"""Where corners start that are those of the whole image, as shares: there they are in sight."""
+"""Initial position of corners that are at the corners of the image, as shares of its sides."""
 
 
 @dataclass(frozen=True)
 class Canvas:
-    """Where an editor shows an image.
+    """The position of an image in the region of an editor.
 
     Attributes:
         origin: The lower left corner of the image in the region.
-        scale: How wide and high a pixel of the image is there.
+        scale: The width and height of an image pixel in the region.
     """
 
     origin: tuple[float, float]
     scale: tuple[float, float]
 
-    def to_region(self, places: ArrayLike) -> NDArray[np.float64]:
-        """Returns where places of the image are in the region."""
-        return np.asarray(places, np.float64) * self.scale + self.origin
+    def to_region(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Converts image positions to region positions."""
+        return np.asarray(points, np.float64) * self.scale + self.origin
 
-    def to_image(self, places: ArrayLike) -> NDArray[np.float64]:
-        """Returns which places of the image are there."""
-        return (np.asarray(places, np.float64) - self.origin) / self.scale
+    def to_image(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Converts region positions to image positions."""
+        return (np.asarray(points, np.float64) - self.origin) / self.scale
 
 
 class Drag:
     """A corner that follows the mouse."""
 
-    def __init__(self, place: ArrayLike, mouse: ArrayLike) -> None:
-        """Takes where the corner is in the image, and the mouse in the region."""
-        self._place = np.array(place, np.float64)
+    def __init__(self, corner: ArrayLike, mouse: ArrayLike) -> None:
+        """Stores the corner's position in the image, and the mouse's in the region."""
+        self._corner = np.array(corner, np.float64)
         self._mouse = np.array(mouse, np.float64)
 
     def to(
@@ -69,67 +69,67 @@ class Drag:
         is_slow: bool = False,
         snaps: bool = False,
     ) -> NDArray[np.float64]:
-        """Returns where the corner then is in the image.
+        """Returns the new position of the corner in the image.
 
         Args:
-            mouse: Where the mouse is in the region.
-            canvas: Where the image is.
-            edges: The width and height of what has the edges to snap to.
-            is_slow: Whether it moves a tenth as far as the mouse.
-            snaps: Whether it goes to the nearest whole pixel, or to an edge nearby.
+            mouse: The position of the mouse in the region.
+            canvas: The position of the image.
+            edges: The width and height of the frame whose edges attract the corner.
+            is_slow: Whether the corner moves a tenth as far as the mouse.
+            snaps: Whether it snaps to whole pixels, and to edges nearby.
         """
         step = (np.asarray(mouse, np.float64) - self._mouse) / canvas.scale
         self._mouse = np.array(mouse, np.float64)
-        self._place += step * (_SLOWNESS if is_slow else 1.0)
-        return snapped(self._place, canvas, edges) if snaps else self._place.copy()
+        self._corner += step * (_SLOWNESS if is_slow else 1.0)
+        return snapped(self._corner, canvas, edges) if snaps else self._corner.copy()
 
 
-def snapped(place: ArrayLike, canvas: Canvas, edges: tuple[int, int]) -> NDArray[np.float64]:
-    """Returns the nearest whole pixel, or the edge of (0, 0) to `edges` that is near."""
-    found = np.rint(np.asarray(place, np.float64))
-    for axis, edge in enumerate(edges):
-        for at in (0.0, float(edge)):
-            if abs(found[axis] - at) * canvas.scale[axis] <= _SNAP:
-                found[axis] = at
-    return found
+def snapped(point: ArrayLike, canvas: Canvas, edges: tuple[int, int]) -> NDArray[np.float64]:
+    """Returns the nearest whole pixel, or a nearby edge of the frame from (0, 0) to `edges`."""
+    result = np.rint(np.asarray(point, np.float64))
+    for axis, high in enumerate(edges):
+        for edge in (0.0, float(high)):
+            if abs(result[axis] - edge) * canvas.scale[axis] <= _SNAP:
+                result[axis] = edge
+    return result
 
 
-def nearest(places: ArrayLike, canvas: Canvas, mouse: ArrayLike, reach: float) -> int | None:
-    """Returns the number of the corner that is nearest to the mouse; None if none is in reach."""
-    far = np.linalg.norm(canvas.to_region(places) - np.asarray(mouse, np.float64), axis=1)
-    index = int(np.argmin(far))
-    return index if far[index] <= reach else None
+def nearest(points: ArrayLike, canvas: Canvas, mouse: ArrayLike, reach: float) -> int | None:
+    """Returns the index of the corner nearest to the mouse; None if none is in reach."""
+    distances = np.linalg.norm(canvas.to_region(points) - np.asarray(mouse, np.float64), axis=1)
+    index = int(np.argmin(distances))
+    return index if distances[index] <= reach else None
 
 
 def shares(
-    place: ArrayLike, settings: ResampleSettings, size: tuple[int, int]
+    point: ArrayLike, settings: ResampleSettings, size: tuple[int, int]
 ) -> tuple[float, ...]:
-    """Returns a place in pixels as the settings keep it, for an image of a size."""
-    return tuple(float(one) for one in np.asarray(place, np.float64) / frame(settings, *size))
+    """Converts a position in pixels to the relative position that the settings store."""
+    return tuple(float(x) for x in np.asarray(point, np.float64) / frame(settings, *size))
 
 
-def begun(settings: ResampleSettings) -> dict[str, object]:
-    """Returns what to set before corners are dragged: the warp, and corners that are in sight."""
+def initial_changes(settings: ResampleSettings) -> dict[str, object]:
+    """Returns settings to change before dragging, so that there is a warp with visible corners."""
     changed: dict[str, object] = {}
     if settings.warp == "affine":
         changed["warp"] = "rectify"
     whole = rectangle(1.0, 1.0)
     if settings.warp != "corners" and np.array_equal(corners(settings, 1, 1), whole):
         low, high = _START
-        for name, place in zip(CORNERS, low + whole * (high - low), strict=True):
-            changed[name] = tuple(place.tolist())
+        for name, corner in zip(CORNERS, low + whole * (high - low), strict=True):
+            changed[name] = tuple(corner.tolist())
     return changed
 
 
-def grid(places: ArrayLike) -> NDArray[np.float64]:
-    """Returns the lines of a grid in perspective between four corners: (n, 2, 2) ends.
+def grid(points: ArrayLike) -> NDArray[np.float64]:
+    """Returns the lines of a grid in perspective between four corners: (n, 2, 2) end points.
 
     Raises:
-        ValueError: The corners are not around a convex quadrilateral.
+        ValueError: The corners do not form a convex quadrilateral.
     """
-    transform = homography(rectangle(1.0, 1.0), places)
-    at = np.arange(1, GRID) / GRID
-    ends = [((x, 0.0), (x, 1.0)) for x in at] + [((0.0, y), (1.0, y)) for y in at]
+    transform = homography(rectangle(1.0, 1.0), points)
+    steps = np.arange(1, GRID) / GRID
+    ends = [((x, 0.0), (x, 1.0)) for x in steps] + [((0.0, y), (1.0, y)) for y in steps]
     flat = np.array(ends).reshape(-1, 2)
     rows = flat @ transform[:, :2].T + transform[:, 2]
     return (rows[:, :2] / rows[:, 2:]).reshape(-1, 2, 2)
@@ -141,11 +141,11 @@ def uv_of_box(
     """Returns the transform from a box, [0, 1]^2 from its lower left corner, to UVs of an image.
 
     Args:
-        transform: From places to pixels of the image.
-        low: The place of the box's lower left corner.
-        extent: Its width and height.
+        transform: The transform from positions to pixels of the image.
+        low: The position of the box's lower left corner.
+        extent: The width and height of the box.
         size: The width and height of the image.
     """
     x, y = np.asarray(low, np.float64)
-    to_places = moved(x, y) @ np.diag([*np.asarray(extent, np.float64), 1.0])
-    return np.diag([1.0 / size[0], 1.0 / size[1], 1.0]) @ transform @ to_places
+    to_positions = moved(x, y) @ np.diag([*np.asarray(extent, np.float64), 1.0])
+    return np.diag([1.0 / size[0], 1.0 / size[1], 1.0]) @ transform @ to_positions

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The settings as properties, of operators and of the scene."""
+"""The settings of resizing, resampling and tables as properties of operators and the scene."""
 
 from typing import Any
 
@@ -9,7 +9,7 @@ import bpy
 from ..core import preset_menu, presets
 from ..core.properties import properties, values
 from ..core.registration import classes, registration, state
-from ..core.sidebar import PartedSettings, subpanel
+from ..core.sidebar import GroupedSettings, subpanel
 from ..core.translations import CONTEXT
 from .choices import CORNERS, SUFFIXES, ResampleSettings, ResizeSettings, TableSettings
 
@@ -17,7 +17,7 @@ RESIZE = presets.Kind("resize", "prefilter_resize", [(ResizeSettings, ())])
 RESAMPLE = presets.Kind("resample", "prefilter_resample", [(ResampleSettings, ())])
 
 
-class ResizeProperties(PartedSettings):
+class ResizeProperties(GroupedSettings):
     """The properties of `prefilter.resize_image`."""
 
     __annotations__ = properties(ResizeSettings)
@@ -26,7 +26,7 @@ class ResizeProperties(PartedSettings):
         """Returns the settings."""
         return values(self, ResizeSettings)
 
-    def draw_usual(self, layout: bpy.types.UILayout) -> None:
+    def draw_basic(self, layout: bpy.types.UILayout) -> None:
         """Draws the settings."""
         layout.prop(self, "size")
         if self.size == "percent":
@@ -44,7 +44,7 @@ class ResizeProperties(PartedSettings):
         layout.prop(self, "wrap")
 
 
-class ResampleProperties(PartedSettings):
+class ResampleProperties(GroupedSettings):
     """The properties of `prefilter.resample_image`."""
 
     __annotations__ = properties(ResampleSettings)
@@ -54,15 +54,15 @@ class ResampleProperties(PartedSettings):
         return values(self, ResampleSettings)
 
     def source_of(self, image: bpy.types.Image) -> bpy.types.Image:
-        """Returns what an image was made of by this warp; the image itself if it was not.
+        """Returns the image from which this warp has made an image; otherwise the image itself.
 
-        Corners are places in the source: to work on its result would be to straighten that again.
+        Corners are positions in the source, so warping the result would warp twice.
         """
         from ..bridge.derived import copied
 
         return copied(image, SUFFIXES[self.warp]) or image
 
-    def draw_usual(self, layout: bpy.types.UILayout) -> None:
+    def draw_basic(self, layout: bpy.types.UILayout) -> None:
         """Draws the settings."""
         layout.prop(self, "warp")
         if self.warp == "affine":
@@ -94,13 +94,13 @@ class ResampleProperties(PartedSettings):
         column.prop(self, "scale_y", text="Y")
         layout.prop(self, "rotation")
         column = layout.column(align=True)
-        # Where the result is fitted to the image, it moves along.
+        # A result that is fitted to the image ignores offsets.
         column.active = self.size != "fit"
         column.prop(self, "offset_x")
         column.prop(self, "offset_y", text="Y")
 
 
-class TableProperties(PartedSettings):
+class TableProperties(GroupedSettings):
     """The properties of `prefilter.sampling_table`."""
 
     __annotations__ = properties(TableSettings)
@@ -109,7 +109,7 @@ class TableProperties(PartedSettings):
         """Returns the settings."""
         return values(self, TableSettings)
 
-    def draw_usual(self, layout: bpy.types.UILayout) -> None:
+    def draw_basic(self, layout: bpy.types.UILayout) -> None:
         """Draws the settings."""
         layout.prop(self, "table")
         column = layout.column()
@@ -125,8 +125,8 @@ class TableProperties(PartedSettings):
         layout.prop(self, "language")
         layout.prop(self, "filepath")
 
-    def draw_closed(self, layout: bpy.types.UILayout, *source: str) -> None:
-        """Draws the settings below a button, where labels do not fit beside the values."""
+    def draw_collapsed(self, layout: bpy.types.UILayout, *source: str) -> None:
+        """Draws the settings below a button, with labels above the values to save width."""
         del source
         _, body = subpanel(layout, "table_usual", "Settings")
         if body:
@@ -153,15 +153,15 @@ def _draw_below_label(settings: Any, layout: bpy.types.UILayout, name: str) -> N
 
 
 class PREFILTER_PG_resize(ResizeProperties, bpy.types.PropertyGroup):
-    """The settings of resizing that the panel shows; they stay with the scene."""
+    """The settings of resizing, stored in the scene."""
 
 
 class PREFILTER_PG_resample(ResampleProperties, bpy.types.PropertyGroup):
-    """The settings of resampling that the panel shows; they stay with the scene."""
+    """The settings of resampling, stored in the scene."""
 
 
 class PREFILTER_PG_sampling_table(TableProperties, bpy.types.PropertyGroup):
-    """The settings of sampling tables that the panel shows; they stay with the scene."""
+    """The settings of sampling tables, stored in the scene."""
 
 
 register, unregister = registration(

@@ -20,7 +20,7 @@ from .properties import RECONSTRUCT
 
 
 class _SidebarPanel(SidebarPanel):
-    wanted = "a point cloud, or a mesh without faces"
+    required_object = "a point cloud, or a mesh without faces"
 
     @staticmethod
     def fits(obj: bpy.types.Object) -> bool:

@@ -9,9 +9,9 @@ import bpy
 from bpy.props import CollectionProperty, StringProperty
 
 from ..core import preset_menu, presets
-from ..core.properties import following, properties, values
+from ..core.properties import preference_properties, properties, values
 from ..core.registration import classes, registration, state
-from ..core.sidebar import PartedSettings, subpanel
+from ..core.sidebar import GroupedSettings, subpanel
 from .choices import (
     AlignSettings,
     CropSettings,
@@ -26,7 +26,7 @@ from .choices import (
 RECONSTRUCT = presets.Kind("reconstruct", "prefilter_reconstruct", [(ScanSettings, ())])
 
 
-class ScanProperties(PartedSettings):
+class ScanProperties(GroupedSettings):
     """The properties of `prefilter.reconstruct`."""
 
     __annotations__ = properties(ScanSettings)
@@ -35,7 +35,7 @@ class ScanProperties(PartedSettings):
         """Returns the settings."""
         return values(self, ScanSettings)
 
-    def draw_usual(self, layout: bpy.types.UILayout) -> None:
+    def draw_basic(self, layout: bpy.types.UILayout) -> None:
         """Draws the usual settings."""
         layout.prop(self, "resolution")
         if self.resolution != "auto":
@@ -45,11 +45,10 @@ class ScanProperties(PartedSettings):
         layout.prop(self, "direction")
         layout.prop(self, "points")
 
-    def draw_parts(self, layout: bpy.types.UILayout) -> None:
+    def draw_groups(self, layout: bpy.types.UILayout) -> None:
         """Draws the parts."""
         _, body = subpanel(layout, "scan_surface", "Surface")
         if body:
-            body.prop(self, "wavelet")
             column = body.column(align=True)
             for name in ("use_smooth", "use_fit", "use_smooth_shading"):
                 column.prop(self, name)
@@ -60,6 +59,9 @@ class ScanProperties(PartedSettings):
         _, body = subpanel(layout, "scan_performance", "Performance")
         if body:
             body.prop(self, "memory_limit", text="Memory (MiB)")
+        _, body = subpanel(layout, "scan_advanced", "Advanced")
+        if body:
+            body.prop(self, "wavelet")
 
 
 class FilesProperties:
@@ -157,7 +159,7 @@ class PaintProperties:
 class PREFILTER_PG_reconstruct(ScanProperties, bpy.types.PropertyGroup):
     """The settings that the panel shows; they stay with the scene."""
 
-    __annotations__ = following(ScanSettings)
+    __annotations__ = preference_properties(ScanSettings)
 
 
 register, unregister = registration(

@@ -187,7 +187,7 @@ class Reconstruction:
         go_on(progress, 1.0)
         self._read.clear()
 
-    def making(self) -> Generator[None, None, None]:
+    def build_steps(self) -> Generator[None, None, None]:
         """Makes the mesh that `write` shows, in steps."""
         assert self._contour is not None
         yield from new_meshes.making_mesh(self._contour)

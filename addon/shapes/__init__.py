@@ -12,6 +12,6 @@ KEYS = (
     Key("rasterize", "X", "Object Mode"),
     Key("update_drawn", "U", "Image"),
 )
-"""What its operators have at first; see `keys.Keys`."""
+"""The default shortcuts of its operators; see `keys.Keys`."""
 
 register, unregister = registration(properties, operators, panels)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a user may set for images of shapes."""
+"""Options of images of shapes."""
 
 from dataclasses import dataclass
 
@@ -51,7 +51,7 @@ DECALS = {
 
 @dataclass(frozen=True)
 class DecalSettings:
-    """What `prefilter.use_as_decal` does."""
+    """Options of `prefilter.use_as_decal`."""
 
     target: str = one_of("plane", "Put on", "Where the image goes", DECALS, flag="")
     use_hide: bool = switch(

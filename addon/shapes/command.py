@@ -22,8 +22,8 @@ from ..core import command, presets
 from ..core.flags import add_flags, tables
 from ..core.wording import either
 from .choices import RasterizeSettings
-from .memory import Request
 from .properties import RASTERIZE
+from .provenance import Request
 from .rasterization import Rasterization
 
 _SOURCES = (SVG, *scenes.SOURCES)
@@ -47,8 +47,8 @@ def add(commands: Any) -> None:
     parser = command.add_command(
         commands, "rasterize", COMMANDS["rasterize"], *tables(RasterizeSettings), _NOTES
     )
-    endings = either(_SOURCES), either(pictures.ENDINGS)
-    batch.add_arguments(parser, ("INPUT", "OUTPUT"), f"a file: {endings[0]}", endings[1])
+    extensions = either(_SOURCES), either(pictures.ENDINGS)
+    batch.add_arguments(parser, ("INPUT", "OUTPUT"), f"a file: {extensions[0]}", extensions[1])
     parser.add_argument(
         "--object",
         metavar="NAME",
@@ -83,20 +83,20 @@ def _rasterize_one(options: argparse.Namespace, settings: RasterizeSettings, pai
         (objects,) = scenes.load([pair.source], _is_wanted(is_curve), _CURVES)
         request = Request("curves", scenes.chosen(objects, options.object, _CURVES))
     work = Rasterization.read(request, settings, bpy.context, target=target)
-    number = work.inputs() if options.skip_up_to_date else None
-    if number is not None:
-        if command.are_up_to_date([target], number):
+    fingerprint = work.fingerprint() if options.skip_up_to_date else None
+    if fingerprint is not None:
+        if command.are_up_to_date([target], fingerprint):
             return
-        work.metadata = {KEY: number}
+        work.metadata = {KEY: fingerprint}
     command.run_and_report(work)
 
 
 def _mesh(options: argparse.Namespace, path: str) -> bpy.types.Object:
     (objects,) = scenes.load([path], _is_wanted(has_uv_map), _MESHES)
-    found = scenes.chosen(objects, options.object, _MESHES)
-    if len(found) > 1:
-        options.usage_error(f"--object: choose one of the {len(found)} meshes; --uv takes one")
-    return found[0]
+    meshes = scenes.chosen(objects, options.object, _MESHES)
+    if len(meshes) > 1:
+        options.usage_error(f"--object: choose one of the {len(meshes)} meshes; --uv takes one")
+    return meshes[0]
 
 
 def _is_wanted(is_kind: Any) -> Any:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""An image of shapes on a plane in their place, or over the base color of a material."""
+"""Decals: an image of shapes on a plane in their place, or over the base color of a material."""
 
 from collections.abc import Sequence
 
@@ -14,20 +14,20 @@ from ..core.outcome import Outcome
 from ..core.translations import tr
 from ..core.wording import Sentence, listed
 from .choices import DecalSettings
-from .memory import sources_of
+from .provenance import sources_of
 
 _MARK = "prefilter_decal_of"
-"""The property of a plane's mesh that names its image."""
+"""The custom property of a plane's mesh with the name of its image."""
 _CORNERS = ((0, 0), (1, 0), (1, 1), (0, 1))
 
 
 def use_as_decal(
     image: bpy.types.Image, settings: DecalSettings, context: bpy.types.Context
 ) -> Outcome:
-    """Puts an image that Rasterize has made where it is to be seen.
+    """Puts a rasterized image on a plane or into a material.
 
     Raises:
-        ValueError: There is no such place.
+        ValueError: There is no object, or no UV map, for it.
     """
     if settings.target == "material":
         return _into_material(image, context.active_object)
@@ -35,7 +35,7 @@ def use_as_decal(
 
 
 def refit(image: bpy.types.Image) -> None:
-    """Gives the planes of an image the size and the place, around their origin, that it has now."""
+    """Resizes the planes of an image, about their origin, to its present box."""
     if not image.prefilter_drawn.has_place:
         return
     for mesh in bpy.data.meshes:
@@ -59,53 +59,55 @@ def _onto_plane(
             Sentence("image '{}': where it is is not known; press Update first", image.name)
         )
     sources = sources_of(image)
-    made = _new_plane(image, sources, context)
-    placed = _stand(sources[0], drawn.rotation) if sources else context.scene.cursor.matrix
-    made.matrix_world = placed @ Matrix.Translation((0.0, 0.0, settings.offset))
+    plane = _new_plane(image, sources, context)
+    matrix = _plane_matrix(sources[0], drawn.rotation) if sources else context.scene.cursor.matrix
+    plane.matrix_world = matrix @ Matrix.Translation((0.0, 0.0, settings.offset))
     hidden = [obj for obj in sources if settings.use_hide and obj.visible_get()]
     for obj in hidden:
         obj.hide_set(True)
         obj.hide_render = True
     left, low, right, high = drawn.box
     size = f"{units.length(right - left)} x {units.length(high - low)}"
-    done = Sentence("Made '{}', a plane of {} with image '{}'", made.name, size, image.name)
+    summary = Sentence("Made '{}', a plane of {} with image '{}'", plane.name, size, image.name)
     if hidden:
-        done = Sentence("{}; hid {}", done, listed(obj.name for obj in hidden))
-    return Outcome(done, objects=[made.name], warnings=_warnings(image))
+        summary = Sentence("{}; hid {}", summary, listed(obj.name for obj in hidden))
+    return Outcome(summary, objects=[plane.name], warnings=_warnings(image))
 
 
 def _into_material(image: bpy.types.Image, obj: bpy.types.Object | None) -> Outcome:
     if not has_uv_map(obj):
         raise ValueError(tr("Make a mesh with a UV map the active object"))
     material = image_materials.put_over(obj, image, is_mask=_is_mask(image))
-    done = Sentence(
+    summary = Sentence(
         "Put image '{}' over the base color of material '{}'", image.name, material.name
     )
-    return Outcome(done, warnings=_warnings(image))
+    return Outcome(summary, warnings=_warnings(image))
 
 
 def _new_plane(
     image: bpy.types.Image, sources: Sequence[bpy.types.Object], context: bpy.types.Context
 ) -> bpy.types.Object:
-    """Makes the plane, and selects it."""
+    """Creates and selects the plane."""
     mesh = bpy.data.meshes.new(f"{image.name}.decal")
     mesh.from_pydata([(0.0, 0.0, 0.0)] * len(_CORNERS), [], [range(len(_CORNERS))])
-    mesh.uv_layers.new(name="UVMap").uv.foreach_set("vector", [x for one in _CORNERS for x in one])
+    mesh.uv_layers.new(name="UVMap").uv.foreach_set(
+        "vector", [x for corner in _CORNERS for x in corner]
+    )
     mesh[_MARK] = image.name_full
     _set_corners(mesh, image)
     mesh.materials.append(
         image_materials.material_of(image, is_mask=_is_mask(image), is_opaque=_is_opaque(image))
     )
     if sources:
-        made = new_object_beside(sources[0], mesh, ".decal")
+        plane = new_object_beside(sources[0], mesh, ".decal")
     else:
-        made = bpy.data.objects.new(mesh.name, mesh)
-        context.collection.objects.link(made)
+        plane = bpy.data.objects.new(mesh.name, mesh)
+        context.collection.objects.link(plane)
     for obj in context.selected_objects:
         obj.select_set(False)
-    made.select_set(True)
-    context.view_layer.objects.active = made
-    return made
+    plane.select_set(True)
+    context.view_layer.objects.active = plane
+    return plane
 
 
 def _set_corners(mesh: bpy.types.Mesh, image: bpy.types.Image) -> None:
@@ -115,10 +117,10 @@ def _set_corners(mesh: bpy.types.Mesh, image: bpy.types.Image) -> None:
     mesh.update()
 
 
-def _stand(obj: bpy.types.Object, rotation: Sequence[float]) -> Matrix:
-    """Returns where the plane of an image is, on which an object stands."""
-    location, turned, _ = obj.matrix_world.decompose()
-    return Matrix.LocRotScale(location, turned @ Quaternion(rotation), None)
+def _plane_matrix(obj: bpy.types.Object, rotation: Sequence[float]) -> Matrix:
+    """Returns the world matrix of the image plane through an object's origin."""
+    location, own_rotation, _ = obj.matrix_world.decompose()
+    return Matrix.LocRotScale(location, own_rotation @ Quaternion(rotation), None)
 
 
 def _is_mask(image: bpy.types.Image) -> bool:

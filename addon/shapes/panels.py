@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Where a user finds shapes: the sidebars of the 3D view and the Image editor, menus, a header."""
+"""The user interface of shapes: panels in the 3D view and the Image editor, menus, a header."""
 
 import bpy
 
@@ -22,47 +22,47 @@ _SVG = Button(PREFILTER_OT_rasterize_svg, "FILE_IMAGE", RASTERIZE.group, {Raster
 
 
 class _CurvesPanel(SidebarPanel):
-    wanted = "a curve or a text"
+    required_object = "a curve or a text"
 
     @staticmethod
     def fits(obj: bpy.types.Object) -> bool:
-        """Tells whether the panel is for an object."""
+        """Returns whether an object is a curve or text."""
         from ..bridge.curves import is_curve
 
         return is_curve(obj)
 
 
 class PREFILTER_PT_rasterize(_CurvesPanel, PresetsPanel, bpy.types.Panel):
-    """Button and settings for curves and texts."""
+    """The button and the settings for curves and texts."""
 
     bl_label = "Rasterize"
     presets = RASTERIZE
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        from .memory import made_of
+        from .provenance import latest_image_of
 
-        place = main_button(self.layout, context, PREFILTER_OT_rasterize)
-        if place:
-            _RASTERIZE.draw(place, context, "Make Image").source = "curves"
-        image = made_of(context.active_object)
+        row = main_button(self.layout, context, PREFILTER_OT_rasterize)
+        if row:
+            _RASTERIZE.draw(row, context, "Make Image").source = "curves"
+        image = latest_image_of(context.active_object)
         if image is not None:
             width, height = image.size
             size = tr("{} x {} pixels").format(width, height)
             note(self.layout, context, f"'{image.name}': {size}", "CHECKMARK")
             _draw_decal(self.layout, image)
-        context.scene.prefilter_rasterize.draw_closed(self.layout, "curves")
+        context.scene.prefilter_rasterize.draw_collapsed(self.layout, "curves")
 
 
 class PREFILTER_PT_drawn(ImagePanel, bpy.types.Panel):
-    """The button that makes the image of the editor again, and what it was made with."""
+    """The button that updates the editor's image, and its settings."""
 
     bl_label = "Rasterized Image"
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether the editor shows an image that remembers how it was made."""
-        from .memory import is_drawn
+        """Returns whether the editor's image was made by Rasterize."""
+        from .provenance import is_drawn
 
         return is_drawn(context.space_data.image)
 
@@ -71,39 +71,39 @@ class PREFILTER_PT_drawn(ImagePanel, bpy.types.Panel):
         layout = self.layout
         image = context.space_data.image
         drawn = image.prefilter_drawn
-        place = main_button(layout, context, PREFILTER_OT_update_drawn)
-        if place:
+        row = main_button(layout, context, PREFILTER_OT_update_drawn)
+        if row:
             update = PREFILTER_OT_update_drawn.bl_idname
-            operator = place.operator(update, text="Update", icon="FILE_REFRESH")
+            operator = row.operator(update, text="Update", icon="FILE_REFRESH")
             operator.image = image.name
         _draw_decal(layout, image, context.active_object)
         if drawn.source == "svg":
             layout.prop(drawn, "filepath", text="")
-        drawn.draw_closed(layout, drawn.source)
+        drawn.draw_collapsed(layout, drawn.source)
 
 
 class PREFILTER_PT_shapes(ImagePanel, PresetsPanel, bpy.types.Panel):
-    """SVG files, and the UV map of the active mesh as a mask."""
+    """The buttons and the settings for SVG files, and for a mask of the active mesh's UV map."""
 
     bl_label = "Rasterize"
     presets = RASTERIZE
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        place = main_button(self.layout, context, PREFILTER_OT_rasterize_svg)
-        if place:
-            # Without a name, so that the file browser opens.
-            _SVG.draw(place, context, "Make Image of SVG...").filepath = ""
-        place = button(self.layout, context, PREFILTER_OT_rasterize)
-        if place:
-            _draw_uv_mask(place, context)
-        context.scene.prefilter_rasterize.draw_closed(self.layout, "svg")
+        row = main_button(self.layout, context, PREFILTER_OT_rasterize_svg)
+        if row:
+            # An empty path makes the operator open the file browser.
+            _SVG.draw(row, context, "Make Image of SVG...").filepath = ""
+        row = button(self.layout, context, PREFILTER_OT_rasterize)
+        if row:
+            _draw_uv_mask(row, context)
+        context.scene.prefilter_rasterize.draw_collapsed(self.layout, "svg")
 
 
 def _draw_decal(
     layout: bpy.types.UILayout, image: bpy.types.Image, active: bpy.types.Object | None = None
 ) -> None:
-    """Draws the button that puts an image on a plane, or on an active mesh."""
+    """Draws the buttons that put an image on a plane, or into the active mesh's material."""
     from ..bridge.uv_layouts import has_uv_map
 
     row = layout.row(align=True)
@@ -140,7 +140,7 @@ def _draw_uv_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
 
 
 def _draw_header(header: bpy.types.Header, context: bpy.types.Context) -> None:
-    from .memory import is_drawn
+    from .provenance import is_drawn
 
     image = context.space_data.image
     if is_drawn(image):
@@ -153,12 +153,12 @@ def _draw_import(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
 
 
 def _draw_svg(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    # Empty, so that the file browser opens.
+    # An empty path makes the operator open the file browser.
     _SVG.draw(layout, context, "Rasterize SVG...").filepath = ""
 
 
 def _draw_uv_mask(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Draws the button of a mask, of the size of the image that the editor shows."""
+    """Draws the button for a mask, with the size of the editor's image."""
     operator = _RASTERIZE.draw(layout, context, "Rasterize UV Map", "UV", is_changed=True)
     operator.source = "uv"
     image = getattr(context.space_data, "image", None)

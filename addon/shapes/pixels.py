@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What image datablocks hold of shapes."""
+"""Conversion of rasterized pixels to image data-blocks."""
 
 import numpy as np
 from prefilter.workflows.files import png
@@ -11,10 +11,11 @@ from .choices import RasterizeSettings
 
 
 def drawing(pixels: Pixels, settings: RasterizeSettings) -> Drawing:
-    """Returns what an image datablock is to hold."""
+    """Returns the contents of an image data-block."""
     height, width, _ = pixels.values.shape
     is_byte = settings.pixel_type == "byte"
-    # Blender keeps bytes straight and floats associated, and converts nothing that is packed so.
+    # Blender stores bytes with straight alpha and floats with associated alpha, and does not
+    # convert packed images that conform.
     alpha_mode = "STRAIGHT" if is_byte else "PREMUL"
     if pixels.channels == 4 and pixels.is_straight != is_byte:
         alpha_mode = "CHANNEL_PACKED"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The settings of rasterizing as properties: of operators, of the scene, and of images."""
+"""The settings of Rasterize as properties of operators, of the scene and of images."""
 
 import bpy
 from bpy.props import BoolProperty, CollectionProperty, FloatVectorProperty, PointerProperty
@@ -8,7 +8,7 @@ from bpy.props import BoolProperty, CollectionProperty, FloatVectorProperty, Poi
 from ..core import preset_menu, presets
 from ..core.properties import properties, values
 from ..core.registration import classes, registration, state
-from ..core.sidebar import PartedSettings, subpanel
+from ..core.sidebar import GroupedSettings, subpanel
 from .choices import RasterizeSettings
 
 RASTERIZE = presets.Kind(
@@ -16,8 +16,8 @@ RASTERIZE = presets.Kind(
 )
 
 
-class RasterizeProperties(PartedSettings):
-    """The properties of `prefilter.rasterize`; a mixin."""
+class RasterizeProperties(GroupedSettings):
+    """The properties of `prefilter.rasterize`, as a mixin."""
 
     __annotations__ = properties(RasterizeSettings)
 
@@ -25,8 +25,8 @@ class RasterizeProperties(PartedSettings):
         """Returns the settings."""
         return values(self, RasterizeSettings)
 
-    def draw_usual(self, layout: bpy.types.UILayout, source: str) -> None:
-        """Draws the settings that count for a source: a key of `choices.SOURCES` but "auto"."""
+    def draw_basic(self, layout: bpy.types.UILayout, source: str) -> None:
+        """Draws the basic settings for a source: a key of `choices.SOURCES` except "auto"."""
         if self._is_free(source):
             layout.prop(self, "resolution")
         if self._is_free(source) and self.resolution != "size":
@@ -42,8 +42,8 @@ class RasterizeProperties(PartedSettings):
             layout.prop(self, "tile")
             layout.prop(self, "uv_margin")
 
-    def draw_parts(self, layout: bpy.types.UILayout, source: str) -> None:
-        """Draws the parts that count for a source."""
+    def draw_groups(self, layout: bpy.types.UILayout, source: str) -> None:
+        """Draws the groups for a source."""
         if source != "uv":
             _, body = subpanel(layout, "shape_color", "Color")
             if body:
@@ -75,12 +75,12 @@ class RasterizeProperties(PartedSettings):
         return source == "curves" and self.view == "camera"
 
     def _is_free(self, source: str) -> bool:
-        """Tells whether the size may follow from the shapes."""
+        """Returns whether the size may depend on the shapes."""
         return source != "uv" and not self._is_camera(source)
 
 
 class PREFILTER_PG_rasterize(RasterizeProperties, bpy.types.PropertyGroup):
-    """The settings that the panel shows; they stay with the scene."""
+    """The settings of the panel, stored in the scene."""
 
 
 class PREFILTER_PG_drawn_object(bpy.types.PropertyGroup):
@@ -90,7 +90,7 @@ class PREFILTER_PG_drawn_object(bpy.types.PropertyGroup):
 
 
 class PREFILTER_PG_drawn(RasterizeProperties, bpy.types.PropertyGroup):
-    """What an image was made with, which its panel shows. The source is never "auto"."""
+    """The inputs and settings of an image, stored in the image. The source is never "auto"."""
 
     is_drawn: BoolProperty()
     objects: CollectionProperty(type=PREFILTER_PG_drawn_object)
@@ -99,7 +99,7 @@ class PREFILTER_PG_drawn(RasterizeProperties, bpy.types.PropertyGroup):
     box: FloatVectorProperty(size=4)
 
     def _draw_name(self, layout: bpy.types.UILayout) -> None:
-        """Draws nothing: the image has its name."""
+        """Draws nothing: the image has a name already."""
 
 
 register, unregister = registration(

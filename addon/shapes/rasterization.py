@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Shapes to an image in three steps: read from Blender, compute, write to Blender or to a file."""
+"""Rasterization of shapes: read from Blender, computed, and written to Blender or to a file."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -20,29 +20,29 @@ from ..core.wording import Sentence
 from . import pixels
 from .choices import RasterizeSettings
 from .decal import refit
-from .framing import Place
-from .memory import Request, remember
+from .provenance import Request, store_request
 from .sources import curves_source, svg_source, uv_source
+from .views import PlanePose
 
-# What a load takes in seconds, as measured once on two cores; ratios are what counts.
-_ALWAYS = 0.005
-_PER_PIXEL = 30e-9
+# Durations in seconds, measured on two cores; only their ratio matters.
+_SECONDS_PER_IMAGE = 0.005
+_SECONDS_PER_PIXEL = 30e-9
 
 
 @dataclass(frozen=True)
 class Load:
-    """What decides how long an image takes.
+    """The size of a finished work, from which that of others is estimated.
 
     Attributes:
-        pixels: How many it had.
-        settings: What it was made with.
+        pixels: The number of pixels.
+        settings: The settings.
     """
 
     pixels: int
     settings: RasterizeSettings
 
     def seconds(self, settings: RasterizeSettings) -> float:
-        """Returns about how long it takes with other settings."""
+        """Estimates the duration with other settings."""
         before, now = self.settings, settings
         count = float(self.pixels)
         if now.resolution == "size":
@@ -53,13 +53,13 @@ class Load:
             count *= (now.density / before.density) ** 2
         else:
             count *= (now.side / before.side) ** 2
-        return _ALWAYS + _PER_PIXEL * count
+        return _SECONDS_PER_IMAGE + _SECONDS_PER_PIXEL * count
 
 
 class Rasterization:
-    """An image of shapes: a new one, one that is made again in place, or a file.
+    """An image of shapes: a new image, an update in place, or a file.
 
-    `read` and `write` belong on the main thread; `compute` touches no Blender data and runs on any
+    `read` and `write` run on the main thread; `compute` uses no Blender data and runs on any
     thread. Nothing is written before everything is computed.
     """
 
@@ -73,11 +73,11 @@ class Rasterization:
         image: bpy.types.Image | None = None,
         target: Path | None = None,
     ) -> None:
-        """Keeps copies of what was read; use `Rasterization.read`."""
+        """Stores copies of the inputs; use `Rasterization.read`."""
         self.warnings = warnings
         self.load: Load | None = None
         self.metadata: Mapping[str, str] | None = None
-        """What a file is to keep, by keys."""
+        """Metadata to store in a file."""
         self._source = source
         self._kind = request.source
         self._names = [obj.name for obj in request.objects]
@@ -88,7 +88,7 @@ class Rasterization:
         self._drawing: drawn_images.Drawing | None = None
         self._staged: staging.StagedFile | None = None
         self._size = (0, 0)
-        self._place: Place | None = None
+        self._pose: PlanePose | None = None
 
     @classmethod
     def read(
@@ -100,18 +100,18 @@ class Rasterization:
         image: bpy.types.Image | None = None,
         target: Path | None = None,
     ) -> "Rasterization":
-        """Copies everything that the work needs out of Blender.
+        """Copies all inputs from Blender.
 
         Args:
-            request: What to make an image of.
-            settings: How.
-            context: The scene and the dependency graph.
-            image: The image that is made again; None for a new one.
-            target: A path of `pictures.ENDINGS` for a file instead.
+            request: The shapes.
+            settings: The settings.
+            context: The context with the scene and the dependency graph.
+            image: The image to update; None for a new one.
+            target: A file to write instead, with an extension in `pictures.ENDINGS`.
 
         Raises:
             ValueError: There is nothing to draw, or a setting is not allowed.
-            OSError: There is no such SVG file.
+            OSError: The SVG file does not exist.
         """
         check(settings)
         settings = replace(settings, source=request.source, filepath=request.filepath)
@@ -131,8 +131,8 @@ class Rasterization:
             )
         return cls(source, request, settings, warnings, image=image, target=target)
 
-    def inputs(self) -> str | None:
-        """Returns a number of what was read, and of how it is drawn; None where it may not be all.
+    def fingerprint(self) -> str | None:
+        """Returns a fingerprint of inputs and settings; None if some inputs are unknown.
 
         Raises:
             OSError: A file cannot be read.
@@ -143,22 +143,22 @@ class Rasterization:
         """Draws the shapes.
 
         Raises:
-            ValueError: There are none, or they do not fit the settings.
+            ValueError: There are no shapes, or they do not suit the settings.
             MemoryError: The image does not fit into memory.
             OSError: A file cannot be read or written.
-            prefilter.Cancelled: `progress` has said so.
+            prefilter.Cancelled: `progress` returned False.
         """
         settings = self._settings
-        drawn, made = rasterizing.rasterized(
+        drawn, image_pixels = rasterizing.rasterized(
             self._source, settings, share(progress, 0.0, 0.9), is_straight=self._is_straight()
         )
         self.warnings.extend(drawn.warnings)
         go_on(progress, 0.9)
         if self._target is None:
-            self._drawing = pixels.drawing(made, settings)
+            self._drawing = pixels.drawing(image_pixels, settings)
         else:
-            self._staged = stage(self._target, made, settings, self.metadata)
-        self._size, self._place = (drawn.width, drawn.height), drawn.place
+            self._staged = stage(self._target, image_pixels, settings, self.metadata)
+        self._size, self._pose = (drawn.width, drawn.height), drawn.place
         self.load = Load(drawn.width * drawn.height, settings)
         go_on(progress, 1.0)
 
@@ -166,7 +166,7 @@ class Rasterization:
         """Puts the image into Blender, or the file into place.
 
         Raises:
-            ValueError: The image that was to be made again is gone.
+            ValueError: The image to update was deleted.
             OSError: Blender cannot take the pixels, or the file cannot be put into place.
         """
         if self._staged is not None:
@@ -183,15 +183,15 @@ class Rasterization:
         else:
             image = self._found_image()
             drawn_images.draw_into(image, self._drawing)
-        remember(image, self._kind, self._names, self._settings, self._place)
+        store_request(image, self._kind, self._names, self._settings, self._pose)
         refit(image)
-        done = Sentence("Rasterized '{}': {} x {} pixels", image.name, *self._size)
+        summary = Sentence("Rasterized '{}': {} x {} pixels", image.name, *self._size)
         if self._image_uid is not None:
-            done = Sentence("Updated '{}': {} x {} pixels", image.name, *self._size)
-        return Outcome(done, images=[image.name], warnings=self.warnings)
+            summary = Sentence("Updated '{}': {} x {} pixels", image.name, *self._size)
+        return Outcome(summary, images=[image.name], warnings=self.warnings)
 
     def discard(self) -> None:
-        """Removes what was staged."""
+        """Deletes the staged file."""
         if self._staged is not None:
             self._staged.discard()
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What is made an image of: curves and texts, a UV map, an SVG file."""
+"""The sources of rasterized images: curves and texts, a UV map, an SVG file."""
 
 from collections.abc import Sequence
 from functools import partial
@@ -18,7 +18,7 @@ from ..bridge.uv_layouts import read_layout
 from ..core.memory import usable_memory
 from ..core.wording import Sentence, counted, listed
 from .choices import RasterizeSettings
-from .framing import Place, find_view
+from .views import PlanePose, find_view
 
 FloatArray = NDArray[np.float64]
 
@@ -29,30 +29,30 @@ def curves_source(
     scene: bpy.types.Scene,
     depsgraph: bpy.types.Depsgraph,
 ) -> tuple[Source, list[str]]:
-    """Copies what curves and texts fill.
+    """Copies the filled areas of curves and texts.
 
     Args:
         objects: Curve and text objects; the view may be along the Z axis of the first.
-        settings: The view.
+        settings: The settings with the view.
         scene: The scene with the camera.
         depsgraph: The evaluated dependency graph.
 
     Returns:
-        What was read, and warnings.
+        The source, and warnings.
 
     Raises:
-        ValueError: Nothing is filled, or there is no such view.
+        ValueError: Nothing is filled, or the view does not exist.
     """
     view = find_view(settings, objects[0], scene, depsgraph)
-    placed = partial(view.place, **_stand(objects[0], depsgraph))
-    found = read_curves(objects, depsgraph)
-    warnings = _problems(found)
-    found.sort(key=lambda curves: view.nearness(curves.center))
+    pose = partial(view.pose, **_origin_and_rotation(objects[0], depsgraph))
+    all_curves = read_curves(objects, depsgraph)
+    warnings = _problems(all_curves)
+    all_curves.sort(key=lambda curves: view.nearness(curves.center))
     layers: list[Layer] = []
     behind: dict[str, None] = {}
-    for curves in found:
+    for curves in all_curves:
         for fill in curves.fills:
-            contours = [view.seen(contour) for contour in fill.contours]
+            contours = [view.project(contour) for contour in fill.contours]
             if any(contour[..., 2].min() <= 0.0 for contour in contours):
                 behind[curves.name] = None
             else:
@@ -69,16 +69,16 @@ def curves_source(
     frame = None
     if view.projection is not None:
         frame = whole_frame(settings.width, settings.height, (-1.0, -1.0), (1.0, 1.0))
-    return Layers(objects[0].name, layers, frame, usable_memory, placed), warnings
+    return Layers(objects[0].name, layers, frame, usable_memory, pose), warnings
 
 
 def uv_source(
     obj: bpy.types.Object, settings: RasterizeSettings, depsgraph: bpy.types.Depsgraph
 ) -> tuple[Source, list[str]]:
-    """Copies what the faces of a mesh cover in its active UV map.
+    """Copies the area that the faces of a mesh cover in its active UV map.
 
     Returns:
-        What was read, and warnings.
+        The source, and warnings.
 
     Raises:
         ValueError: It has no UV map, or its UVs are not finite.
@@ -91,37 +91,37 @@ def uv_source(
 
 
 def svg_source(path: str) -> tuple[Source, list[str]]:
-    """Returns an SVG file, which is read when it is drawn.
+    """Returns an SVG file as a source, which is read when it is drawn.
 
     Raises:
-        ValueError: No file is named.
-        OSError: There is no such file.
+        ValueError: No file is given.
+        OSError: The file does not exist.
     """
     if not path:
         raise ValueError(Sentence("SVG File: none is named"))
-    return svg_drawing("SVG File", path, usable_memory, _svg_place), []
+    return svg_drawing("SVG File", path, usable_memory, _svg_pose), []
 
 
-def _svg_place(half: FloatArray) -> Place:
-    return Place(Quaternion(), np.stack([-half, half]))
+def _svg_pose(half: FloatArray) -> PlanePose:
+    return PlanePose(Quaternion(), np.stack([-half, half]))
 
 
-def _stand(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> dict[str, Any]:
-    """Returns the origin and the rotation of an object in the world."""
-    shown = obj.evaluated_get(depsgraph) if obj.visible_get() else obj
-    location, rotation, _ = shown.matrix_world.decompose()
+def _origin_and_rotation(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> dict[str, Any]:
+    """Returns the world-space origin and rotation of an object, as arguments of `View.pose`."""
+    evaluated = obj.evaluated_get(depsgraph) if obj.visible_get() else obj
+    location, rotation, _ = evaluated.matrix_world.decompose()
     return {"point": np.array(location, np.float64), "rotation": rotation}
 
 
-def _problems(found: Sequence[Curves]) -> list[str]:
+def _problems(all_curves: Sequence[Curves]) -> list[str]:
     warnings: list[str] = []
-    open_splines = [curves.name for curves in found if curves.open_splines]
+    open_splines = [curves.name for curves in all_curves if curves.open_splines]
     if open_splines:
-        count = sum(curves.open_splines for curves in found)
+        count = sum(curves.open_splines for curves in all_curves)
         splines = counted(range(count), "open spline")
         text = "left out, because Blender fills only closed ones: {} of {}"
         warnings.append(Sentence(text, splines, listed(open_splines)))
-    for problem in dict.fromkeys(one for curves in found for one in curves.problems):
-        names = listed(curves.name for curves in found if problem in curves.problems)
+    for problem in dict.fromkeys(text for curves in all_curves for text in curves.problems):
+        names = listed(curves.name for curves in all_curves if problem in curves.problems)
         warnings.append(f"{problem} of {names} do not show")
     return warnings

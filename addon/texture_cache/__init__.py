@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Mipmaps that know the mesh in Cycles' texture cache."""
+"""Mipmaps fitted to meshes in Cycles' texture cache."""
 
 from ..core.registration import registration
 from . import menus, operator, panel

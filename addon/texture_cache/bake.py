@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Baking PAM into Cycles' texture cache in three steps: read, compute anywhere, write.
+"""The bake of PAM into Cycles' texture cache: read, computed on any thread, and written.
 
-The operator and the command are two ways to call this. Every image of a scene is baked at once;
-what cannot be weighed by a surface keeps the levels that Blender made, and a warning says why.
+Both the operator and the command use it. It bakes all images of a scene; an image without a usable
+surface keeps Blender's levels, with a warning.
 """
 
 from collections import Counter
@@ -33,27 +33,27 @@ from . import states
 
 NEEDED = marked("Blender 5.2 LTS or later with Cycles is needed, for its texture cache")
 
-# Images of up to so many texels are baked at the same time, each in a thread of its own: within one
-# threads would wait for each other more than they work.
+# Images up to this size are baked in parallel, each in one thread; several threads per image would
+# mostly wait for each other.
 _MOST_SMALL_TEXELS = 1 << 21
 _CYCLES = "CYCLES"
 _CONSTANT, _UP_TO_DATE = "constant", "up to date"
-"""Why files stay as they are."""
-_MADE = 0.2  # What the progress is once Blender has made its cache files.
+"""Reasons why files are left alone."""
+_MADE = 0.2  # The progress after Blender has made its cache files.
 
 
 @dataclass
-class _Worn:
-    """An image file on its surfaces.
+class _CacheFile:
+    """A cache file of an image, with the surfaces that show it.
 
     Attributes:
-        names: Of the image, and those that share its cache file.
-        source: What the cache file is made from.
-        surfaces: Where it is worn, in the unit square if the file is a UDIM tile.
-        objects: The name of the object of each surface.
-        extensions: What Image Texture nodes do outside of the image.
-        obstacle: Why its levels are to stay as Blender makes them, or empty.
-        alpha_covers: Whether a material takes its alpha for coverage, whatever the alpha mode.
+        names: The names of the images that share it.
+        source: The source file.
+        surfaces: The surfaces, in the unit square if the file is a UDIM tile.
+        objects: The name of each surface's object.
+        extensions: The extension modes of the Image Texture nodes.
+        obstacle: Why it has to keep Blender's levels; empty if it need not.
+        alpha_covers: Whether a material uses its alpha as coverage, whatever the alpha mode.
     """
 
     names: list[str]
@@ -64,8 +64,8 @@ class _Worn:
     obstacle: str = ""
     alpha_covers: bool = False
 
-    def share(self, other: "_Worn") -> None:
-        """Adds the surfaces of an image with the same cache file."""
+    def merge(self, other: "_CacheFile") -> None:
+        """Adds the surfaces of another image with the same cache file."""
         self.names.extend(other.names)
         self.surfaces.extend(other.surfaces)
         self.objects.extend(other.objects)
@@ -74,30 +74,33 @@ class _Worn:
         self.alpha_covers = self.alpha_covers or other.alpha_covers
 
     @property
-    def who(self) -> str:
-        """What to call it in a message."""
+    def title(self) -> str:
+        """Its name in messages."""
         return f"image '{self.names[0]}'"
 
 
 class CacheBake:
     """One bake of a scene.
 
-    `CacheBake.read` and `write` belong on the main thread; `compute` touches no Blender data and
-    runs on any thread. No levels are replaced before all are computed.
+    `read` and `write` run on the main thread; `compute` uses no Blender data and runs on any
+    thread. No levels are replaced before all are computed.
     """
 
-    def __init__(self, scene: str, worn: list[_Worn], warnings: list[str], threads: int) -> None:
-        """Keeps copies of what was read; use `CacheBake.read`."""
+    def __init__(
+        self, scene: str, files: list[_CacheFile], warnings: list[str], threads: int
+    ) -> None:
+        """Stores copies of the inputs; use `CacheBake.read`."""
         self.warnings = warnings
         self.notes: list[str] = []
         self._scene = scene
-        self._worn = worn
+        self._files = files
         self._threads = threads
-        self._staged: list[tuple[_Worn, StagedFile]] = []
-        self._left: Counter[str] = Counter()
+        self._staged: list[tuple[_CacheFile, StagedFile]] = []
+        self._left_alone: Counter[str] = Counter()
         self._is_part = False
         self.may_skip = False
-        """Whether files are left alone that were made of the same; files then keep of what."""
+        """Whether to leave files alone that were made from the same inputs; files then store a
+        fingerprint of their inputs."""
 
     @classmethod
     def read(
@@ -108,16 +111,16 @@ class CacheBake:
         unpack: bool = False,
         threads: int = 0,
     ) -> "CacheBake":
-        """Copies everything that the bake needs out of Blender.
+        """Copies all inputs from Blender.
 
         Args:
-            scene: The scene that is rendered.
+            scene: The scene to render.
             depsgraph: The evaluated dependency graph.
             unpack: Whether to unpack packed images first, beside the .blend file.
-            threads: How many threads to use; 0 for all.
+            threads: The number of threads; 0 for all.
 
         Raises:
-            ValueError: No image can be baked; the message says why, in a line an image.
+            ValueError: No image can be baked; the message has one line per image.
             OSError: This Blender has no texture cache.
         """
         if not tx.is_available():
@@ -131,50 +134,50 @@ class CacheBake:
             )
             warnings.append(Sentence(text, scene.name))
         viewers = rendered.viewers(scene, depsgraph)
-        files: dict[bpy.types.Image, dict[int | None, tx.Source]] = {}
+        sources_of: dict[bpy.types.Image, dict[int | None, tx.Source]] = {}
         for image in viewers:
             try:
                 if unpack and image.packed_files:
                     names = listed(path.name for path in packed.unpack(image))
                     notes.append(Sentence("image '{}': unpacked into {}", image.name, names))
-                files[image] = tx.sources(image)
+                sources_of[image] = tx.sources(image)
             except (ValueError, OSError) as error:
                 warnings.append(reason(error))
-        users = {image: viewers[image].objects for image in files if not viewers[image].others}
-        found = meshes.surfaces_of_images(users, depsgraph)
-        parts = TileSurfaces()
-        worn: list[_Worn] = []
-        for image, sources in files.items():
-            surfaces = found.get(image, meshes.ImageSurfaces())
+        users = {image: viewers[image].objects for image in sources_of if not viewers[image].others}
+        surfaces_of = meshes.surfaces_of_images(users, depsgraph)
+        tile_surfaces = TileSurfaces()
+        files: list[_CacheFile] = []
+        for image, sources in sources_of.items():
+            surfaces = surfaces_of.get(image, meshes.ImageSurfaces())
             if isinstance(surfaces, ValueError):
                 warnings.append(str(surfaces))
                 continue
             warnings.extend(f"image '{image.name}': {problem}" for problem in surfaces.problems)
-            worn.extend(_on_surfaces(image.name, sources, viewers[image], surfaces, parts))
-        if not worn:
-            raise ValueError(_nothing(scene, warnings))
-        made = cls(scene.name, worn, list(dict.fromkeys(warnings)), threads)
-        made.notes = notes
-        return made
+            files.extend(_cache_files(image.name, sources, viewers[image], surfaces, tile_surfaces))
+        if not files:
+            raise ValueError(_no_image_message(scene, warnings))
+        bake = cls(scene.name, files, list(dict.fromkeys(warnings)), threads)
+        bake.notes = notes
+        return bake
 
     @property
     def tasks(self) -> dict[Path, list[str]]:
-        """The names of the images by the file that they are read from.
+        """The names of images by their source file.
 
-        Those of one file may share a cache file, those of two never do.
+        Images with the same source file may share a cache file; others never do.
         """
-        found: dict[Path, list[str]] = {}
-        for worn in self._worn:
-            found.setdefault(worn.source.path, []).extend(worn.names)
-        return found
+        names: dict[Path, list[str]] = {}
+        for file in self._files:
+            names.setdefault(file.source.path, []).extend(file.names)
+        return names
 
-    def keep(self, files: Collection[Path]) -> None:
-        """Leaves all images out but those that are read from some files, as a part of the work."""
-        self._worn = [worn for worn in self._worn if worn.source.path in files]
+    def keep(self, sources: Collection[Path]) -> None:
+        """Limits the bake to images with certain source files, as one task of several."""
+        self._files = [file for file in self._files if file.source.path in sources]
         self._is_part = True
 
     def compute(self, progress: Progress) -> None:
-        """Lets Blender make the cache files, and stages those with other levels.
+        """Lets Blender make the cache files, and stages them with new levels.
 
         Raises:
             prefilter.Cancelled: `progress` returned False.
@@ -184,7 +187,7 @@ class CacheBake:
         try:
             shared = self._make(share(progress, 0.0, _MADE))
             self._bake(shared, share(progress, _MADE, 1.0))
-            if not (self._staged or self._left or self._is_part):
+            if not (self._staged or self._left_alone or self._is_part):
                 reasons = "\n".join(self.warnings)
                 raise ValueError(f"scene '{self._scene}': no image could be baked\n{reasons}")
             go_on(progress, 1.0)
@@ -193,10 +196,10 @@ class CacheBake:
             raise
 
     def write(self) -> Outcome:
-        """Puts the files into place, and turns the scene's texture cache on.
+        """Puts the files into place, and turns on the scene's texture cache.
 
         Raises:
-            OSError: A file cannot be put into place; nothing was written then.
+            OSError: A file cannot be put into place; then nothing is written.
         """
         files = [staged for _, staged in self._staged]
         try:
@@ -207,152 +210,152 @@ class CacheBake:
         scene = bpy.data.scenes.get(self._scene)
         if scene is not None:
             scene.render.use_texture_cache = True
-        states.look_again()
+        states.refresh()
         return Outcome(self._summary(), files=written, warnings=self.warnings, notes=self.notes)
 
     def discard(self) -> None:
-        """Removes what was staged, if it was not put into place."""
+        """Deletes staged files that were not put into place."""
         for _, staged in self._staged:
             staged.discard()
 
-    def _make(self, progress: Progress) -> dict[Path, _Worn]:
-        """Makes the cache files; images that share one are joined."""
-        made: dict[int, Path | OSError] = {}
+    def _make(self, progress: Progress) -> dict[Path, _CacheFile]:
+        """Lets Blender make the cache files, and merges images that share one."""
+        results: dict[int, Path | OSError] = {}
 
         def make(index: int, advance: Progress) -> None:
             go_on(advance, 0.0)
             try:
-                made[index] = path = tx.make(self._worn[index].source)
+                results[index] = path = tx.make(self._files[index].source)
             except OSError as error:
-                made[index] = error
+                results[index] = error
             else:
-                tx.check(self._worn[index].source, path)
+                tx.check(self._files[index].source, path)
             go_on(advance, 1.0)
 
-        # Blender's maker is not said to bear several calls at once.
-        works = [partial(make, index) for index in range(len(self._worn))]
+        # Blender does not document that its function may be called in parallel.
+        works = [partial(make, index) for index in range(len(self._files))]
         at_once(works, progress, threads=1)
-        shared: dict[Path, _Worn] = {}
-        for index, worn in enumerate(self._worn):
-            path = made[index]
+        files: dict[Path, _CacheFile] = {}
+        for index, file in enumerate(self._files):
+            path = results[index]
             if isinstance(path, OSError):
-                self.warnings.append(f"{worn.who}: {path}")
-            elif path in shared:
-                shared[path].share(worn)
+                self.warnings.append(f"{file.title}: {path}")
+            elif path in files:
+                files[path].merge(file)
             else:
-                shared[path] = worn
-        return shared
+                files[path] = file
+        return files
 
-    def _bake(self, shared: Mapping[Path, _Worn], progress: Progress) -> None:
-        """Stages the files: many small ones at the same time, large ones each with all threads."""
+    def _bake(self, files: Mapping[Path, _CacheFile], progress: Progress) -> None:
+        """Stages the files: small ones in parallel, large ones each with all threads."""
         problems: dict[int, str] = {}
         staged: dict[int, StagedFile] = {}
+        left_alone: list[str] = []
 
-        def bake(index: int, path: Path, worn: _Worn, threads: int, advance: Progress) -> None:
+        def bake(index: int, path: Path, file: _CacheFile, threads: int, advance: Progress) -> None:
             go_on(advance, 0.0)
             try:
-                if worn.obstacle:
-                    raise ValueError(f"{worn.who}: {worn.obstacle}")
-                file = _staged(tx.read(path), worn, advance, threads, may_skip=self.may_skip)
+                if file.obstacle:
+                    raise ValueError(f"{file.title}: {file.obstacle}")
+                result = _stage(tx.read(path), file, advance, threads, may_skip=self.may_skip)
             except ValueError as error:
                 problems[index] = f"{error}; it keeps Blender's levels"
             else:
-                if isinstance(file, str):
-                    left.append(file)
+                if isinstance(result, str):
+                    left_alone.append(result)
                 else:
-                    staged[index] = file
+                    staged[index] = result
 
-        left: list[str] = []
         small: list[Callable[[Progress], None]] = []
         large: list[Callable[[Progress], None]] = []
-        for index, (path, worn) in enumerate(shared.items()):
-            if not worn.obstacle and tx.texel_count(path) > _MOST_SMALL_TEXELS:
-                large.append(partial(bake, index, path, worn, self._threads))
+        for index, (path, file) in enumerate(files.items()):
+            if not file.obstacle and tx.texel_count(path) > _MOST_SMALL_TEXELS:
+                large.append(partial(bake, index, path, file, self._threads))
             else:
-                small.append(partial(bake, index, path, worn, 1))
-        end = len(small) / max(len(shared), 1)
+                small.append(partial(bake, index, path, file, 1))
+        end = len(small) / max(len(files), 1)
         try:
             at_once(small, share(progress, 0.0, end), self._threads)
             at_once(large, share(progress, end, 1.0), threads=1)
         finally:
-            users = list(shared.values())
-            self._staged = [(users[index], staged[index]) for index in sorted(staged)]
-            self._left.update(left)
+            in_order = list(files.values())
+            self._staged = [(in_order[index], staged[index]) for index in sorted(staged)]
+            self._left_alone.update(left_alone)
             self.warnings.extend(problems[index] for index in sorted(problems))
 
     def _summary(self) -> str:
-        names = {name for worn, _ in self._staged for name in worn.names}
-        objects = {name for worn, _ in self._staged for name in worn.objects}
-        done = Sentence(
+        names = {name for file, _ in self._staged for name in file.names}
+        objects = {name for file, _ in self._staged for name in file.objects}
+        summary = Sentence(
             "Baked PAM into the texture cache of {} ({}), over {}",
             *(counted(names, "image"), counted(self._staged, "file"), counted(objects, "object")),
         )
-        if self._left[_CONSTANT]:
-            constant = self._left[_CONSTANT]
-            done = Sentence("{}; {} of one color stay as they are", done, constant)
-        if self._left[_UP_TO_DATE]:
-            done = joined("; ", [done, f"{self._left[_UP_TO_DATE]} up to date"])
-        return done
+        if self._left_alone[_CONSTANT]:
+            constant = self._left_alone[_CONSTANT]
+            summary = Sentence("{}; {} of one color stay as they are", summary, constant)
+        if self._left_alone[_UP_TO_DATE]:
+            summary = joined("; ", [summary, f"{self._left_alone[_UP_TO_DATE]} up to date"])
+        return summary
 
 
-def _on_surfaces(
+def _cache_files(
     name: str,
     sources: dict[int | None, tx.Source],
-    seen: rendered.Viewers,
-    found: meshes.ImageSurfaces,
-    parts: TileSurfaces,
-) -> list[_Worn]:
-    """Returns the files of an image with their surfaces; an image with an obstacle has none."""
-    obstacle = "; ".join(seen.others)
-    worn = []
+    viewers: rendered.Viewers,
+    surfaces: meshes.ImageSurfaces,
+    tile_surfaces: TileSurfaces,
+) -> list[_CacheFile]:
+    """Returns the cache files of an image with their surfaces."""
+    obstacle = "; ".join(viewers.others)
+    files = []
     for number, source in sources.items():
-        one = _Worn(
+        file = _CacheFile(
             [name if number is None else f"{name}, tile {number}"],
             source,
-            extensions=list(found.extensions),
+            extensions=list(surfaces.extensions),
             obstacle=obstacle,
-            alpha_covers=seen.alpha_covers,
+            alpha_covers=viewers.alpha_covers,
         )
-        inside = found if number is None else parts.inside(found, number)
-        one.surfaces.extend(inside.surfaces)
-        one.objects.extend(inside.objects)
-        if not obstacle and not sum(part.area for part in one.surfaces):
-            one.obstacle = "no surface of the scene lies in it"
-        worn.append(one)
-    return worn
+        inside = surfaces if number is None else tile_surfaces.inside(surfaces, number)
+        file.surfaces.extend(inside.surfaces)
+        file.objects.extend(inside.objects)
+        if not obstacle and not sum(surface.area for surface in file.surfaces):
+            file.obstacle = "no surface of the scene lies in it"
+        files.append(file)
+    return files
 
 
-def _staged(
-    texture: tx.Texture, worn: _Worn, progress: Progress, threads: int, *, may_skip: bool
+def _stage(
+    texture: tx.Texture, file: _CacheFile, progress: Progress, threads: int, *, may_skip: bool
 ) -> StagedFile | str:
-    """Stages a file, or returns why it stays as it is."""
+    """Stages a file with new levels, or returns the reason for leaving it alone."""
     if texture.is_constant:
         return _CONSTANT
-    wrap = _wrap(worn)
-    number = _made_of(texture, worn, wrap) if may_skip else ""
-    if number and texture.made_of == number:
+    wrap = _wrap(file)
+    fingerprint = _fingerprint(texture, file, wrap) if may_skip else ""
+    if fingerprint and texture.made_of == fingerprint:
         return _UP_TO_DATE
     try:
-        levels = _levels(texture, worn, wrap, progress, threads)
+        levels = _levels(texture, file, wrap, progress, threads)
     except ValueError as error:
-        raise ValueError(f"{worn.who}: {error}") from error
-    return tx.stage(texture, levels, partial(go_on, progress, 1.0), made_of=number)
+        raise ValueError(f"{file.title}: {error}") from error
+    return tx.stage(texture, levels, partial(go_on, progress, 1.0), made_of=fingerprint)
 
 
-def _made_of(texture: tx.Texture, worn: _Worn, wrap: str) -> str:
-    """Returns a number, as text, of all that the levels are made of."""
+def _fingerprint(texture: tx.Texture, file: _CacheFile, wrap: str) -> str:
+    """Returns a fingerprint of all inputs of the levels."""
     arrays: list[NDArray[Any]] = [texture.stored]
-    for surface in worn.surfaces:
+    for surface in file.surfaces:
         arrays += [surface.positions, surface.triangles, surface.uvs, surface.areas]
-    flags = [texture.is_encoded, texture.is_float, worn.alpha_covers, worn.source.is_data]
+    flags = [texture.is_encoded, texture.is_float, file.alpha_covers, file.source.is_data]
     return up_to_date.fingerprint_of(
-        arrays, {"wrap": wrap, "flags": flags, "alpha": worn.source.alpha_is_associated}
+        arrays, {"wrap": wrap, "flags": flags, "alpha": file.source.alpha_is_associated}
     )
 
 
 def _levels(
     texture: tx.Texture,
-    worn: _Worn,
+    file: _CacheFile,
     wrap: str,
     progress: Progress,
     threads: int,
@@ -362,11 +365,11 @@ def _levels(
     is_opaque = stored.shape[2] == 4 and bool(np.all(stored[..., 3] == 1))
     if is_opaque:
         stored = np.ascontiguousarray(stored[..., :3])
-    is_associated = stored.shape[2] == 4 and worn.source.alpha_is_associated
-    covers = stored.shape[2] == 4 and worn.alpha_covers and not worn.source.is_data
+    is_associated = stored.shape[2] == 4 and file.source.alpha_is_associated
+    covers = stored.shape[2] == 4 and file.alpha_covers and not file.source.is_data
     fit = partial(
         prefilter.coarser_levels,
-        surface=worn.surfaces,
+        surface=file.surfaces,
         wrap=cast("Any", wrap),
         premultiplied=is_associated or not covers,
         progress=progress,
@@ -398,16 +401,16 @@ def _levels(
     return levels
 
 
-def _wrap(worn: _Worn) -> str:
-    """Returns the wrap mode of the nodes; where they differ it matters only beyond the edges.
+def _wrap(file: _CacheFile) -> str:
+    """Returns the wrap mode of the nodes, which affects only UVs outside the image.
 
     Raises:
-        ValueError: It matters, and they differ or mirror the image.
+        ValueError: Some UVs are outside, and the nodes disagree or mirror the image.
     """
-    modes = list(dict.fromkeys(worn.extensions))
-    if (len(modes) > 1 or "MIRROR" in modes) and not _is_inside(worn.surfaces):
+    modes = list(dict.fromkeys(file.extensions))
+    if (len(modes) > 1 or "MIRROR" in modes) and not _is_inside(file.surfaces):
         raise ValueError(
-            f"{worn.who}: some UVs lie outside the image, where Image Texture nodes extend "
+            f"{file.title}: some UVs lie outside the image, where Image Texture nodes extend "
             f"it by {', '.join(modes)}"
         )
     return materials.WRAP_OF_EXTENSION[modes[0]]
@@ -417,7 +420,7 @@ def _is_inside(surfaces: Iterable[prefilter.Surface]) -> bool:
     return all(np.all((surface.uvs >= 0) & (surface.uvs <= 1)) for surface in surfaces)
 
 
-def _nothing(scene: bpy.types.Scene, warnings: Sequence[str]) -> str:
+def _no_image_message(scene: bpy.types.Scene, warnings: Sequence[str]) -> str:
     start = f"scene '{scene.name}': found no image texture to bake"
     if warnings:
         return "\n".join([start, *dict.fromkeys(warnings)])

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a user may set for a bake into the texture cache."""
+"""Options of bakes into the texture cache."""
 
 from dataclasses import dataclass
 
@@ -9,6 +9,6 @@ from ..core.options import threads
 
 @dataclass(frozen=True)
 class CacheSettings:
-    """How to bake."""
+    """Options of the command."""
 
     threads: int = threads()

@@ -63,8 +63,8 @@ def _bake_cache(options: argparse.Namespace) -> None:
         staging.check_writable(Path(path))
     scene = bpy.context.scene if options.scene is None else bpy.data.scenes.get(options.scene)
     if scene is None:
-        known = listed(other.name for other in bpy.data.scenes)
-        raise ValueError(f"--scene: found no scene named '{options.scene}'; the file has {known}")
+        names = listed(other.name for other in bpy.data.scenes)
+        raise ValueError(f"--scene: found no scene named '{options.scene}'; the file has {names}")
     bpy.context.window.scene = scene
     depsgraph = bpy.context.evaluated_depsgraph_get()
     work = CacheBake.read(
@@ -89,8 +89,8 @@ def _bake_cache(options: argparse.Namespace) -> None:
 
 def _list(options: argparse.Namespace, work: CacheBake) -> None:
     if options.json:
-        found = work.tasks.items()
-        tasks.print_json([{"inputs": [str(path)], "images": names} for path, names in found])
+        items = work.tasks.items()
+        tasks.print_json([{"inputs": [str(path)], "images": names} for path, names in items])
     else:
         for path, names in work.tasks.items():
             command.print_line(f"{path}  {', '.join(names)}")

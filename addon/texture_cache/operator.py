@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import bpy
 from bpy.props import BoolProperty
 
-from ..core.doing import LONG_WORK
 from ..core.operator import WorkOperator
+from ..core.operator_hooks import LONG_WORK
 from ..core.preferences import preference
 from ..core.translations import CONTEXT, tr
 
@@ -48,12 +48,12 @@ class PREFILTER_OT_bake_texture_cache(WorkOperator, bpy.types.Operator):
         options={"HIDDEN", "SKIP_SAVE"},
     )
 
-    doing = "Baking PAM into the texture cache"
-    line = LONG_WORK
+    activity = "Baking PAM into the texture cache"
+    queue_name = LONG_WORK
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether this Blender has a texture cache, and there is an image to bake."""
+        """Returns whether this Blender has a texture cache, and the file has an image."""
         from ..bridge.files import tx
         from .bake import NEEDED
 
@@ -66,16 +66,16 @@ class PREFILTER_OT_bake_texture_cache(WorkOperator, bpy.types.Operator):
         return True
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Bakes; asks first what to do with images that are packed."""
+        """Bakes; first asks how to handle packed images."""
         from . import states
 
         if bpy.app.background or self.use_unpack or self.use_others:
             return super().invoke(context, event)
-        found = states.states_now(context)
-        count = sum(one.state == "packed" for one in found)
-        if not count:
+        images = states.current_states(context)
+        packed = sum(image.state == "packed" for image in images)
+        if not packed:
             return super().invoke(context, event)
-        _ask(context, count, len(found))
+        _ask(context, packed, len(images))
         return {"CANCELLED"}
 
     def read_work(self, context: bpy.types.Context) -> "CacheBake":
@@ -89,7 +89,7 @@ class PREFILTER_OT_bake_texture_cache(WorkOperator, bpy.types.Operator):
 
 
 def _ask(context: bpy.types.Context, packed: int, total: int) -> None:
-    """Opens a menu of what can be done with packed images, which Cycles does not cache."""
+    """Opens a menu with the choices for packed images, which Cycles does not cache."""
 
     def draw(menu: bpy.types.Menu, _: bpy.types.Context) -> None:
         name = PREFILTER_OT_bake_texture_cache.bl_idname
@@ -97,8 +97,8 @@ def _ask(context: bpy.types.Context, packed: int, total: int) -> None:
         unpacking = menu.layout.operator(name, text="Unpack and Bake", icon="PACKAGE")
         unpacking.use_unpack = True
         if packed < total:
-            rest = menu.layout.operator(name, text="Bake the Other Images", icon=ICON)
-            rest.use_others = True
+            without_packed = menu.layout.operator(name, text="Bake the Other Images", icon=ICON)
+            without_packed.use_others = True
 
     title = tr("{} of {} images are packed, and Cycles caches only files").format(packed, total)
     context.window_manager.popup_menu(draw, title=title, icon="QUESTION")

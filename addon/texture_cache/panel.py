@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The button of the bake: in the 3D view's sidebar, and among Cycles' settings of the cache."""
+"""The panels of the bake, in the 3D view's sidebar and in Cycles' settings of the cache."""
 
 from typing import TYPE_CHECKING
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 _ICONS = {"stale": "FILE_REFRESH", "missing": "X", "packed": "PACKAGE", "unfit": "ERROR"}
 _MOST_IMAGES = 8
 _PARENT = "CYCLES_RENDER_PT_performance_texture_cache"
-# Of another subject, which also removes other levels: operators are known by their names.
+# An operator of another subject, which must not be imported here.
 _REMOVE_LEVELS = "prefilter.remove_levels"
 _ENGINES = frozenset({"CYCLES"})
 
@@ -29,45 +29,46 @@ class _CachePanel:
         from . import states
 
         layout = self.layout
-        found = states.states(context)
-        place = main_button(layout, context, PREFILTER_OT_bake_texture_cache)
-        if place:
+        images = states.states(context)
+        row = main_button(layout, context, PREFILTER_OT_bake_texture_cache)
+        if row:
             name = PREFILTER_OT_bake_texture_cache.bl_idname
-            place.operator(name, text="Make Texture Cache", icon=ICON)
-        if found:
-            note(layout, context, f"{tr('Images')}: {states.summary(found)}", "INFO")
-        if place and any(one.state == "packed" for one in found):
+            row.operator(name, text="Make Texture Cache", icon=ICON)
+        if images:
+            note(layout, context, f"{tr('Images')}: {states.summary(images)}", "INFO")
+        if row and any(image.state == "packed" for image in images):
             operator = layout.operator(
                 PREFILTER_OT_bake_texture_cache.bl_idname, text="Unpack and Bake", icon="PACKAGE"
             )
             operator.use_unpack = True
         header, body = subpanel(layout, "cache_images", "Images")
-        header.label(text=str(len(found)))
+        header.label(text=str(len(images)))
         if body:
-            _draw_images(body, context, found)
+            _draw_images(body, context, images)
 
 
 def _draw_images(
-    layout: bpy.types.UILayout, context: bpy.types.Context, found: list["ImageState"]
+    layout: bpy.types.UILayout, context: bpy.types.Context, images: list["ImageState"]
 ) -> None:
-    """Draws what is to be known of each image, and what takes the cache away."""
+    """Draws the states of images, and the button that removes the cache."""
     from . import states
 
     column = layout.column()
-    others = [one for one in found if one.state != "baked"]
-    for one in others[:_MOST_IMAGES]:
-        column.label(text=f"{one.name}: {tr(states.WORDS[one.state])}", icon=_ICONS[one.state])
+    others = [image for image in images if image.state != "baked"]
+    for image in others[:_MOST_IMAGES]:
+        state = tr(states.WORDS[image.state])
+        column.label(text=f"{image.name}: {state}", icon=_ICONS[image.state])
     if len(others) > _MOST_IMAGES:
         column.label(text=tr("and {} more").format(len(others) - _MOST_IMAGES), icon="BLANK1")
     text = "Overwrites the cache files. Bake again when images change"
     note(column, context, text, "INFO")
-    if any(one.state in {"baked", "stale"} for one in found):
+    if any(image.state in {"baked", "stale"} for image in images):
         operator = column.operator(_REMOVE_LEVELS, text="Remove from Texture Cache", icon="TRASH")
         operator.kinds, operator.use_all = {"cache"}, True
 
 
 class PREFILTER_PT_texture_cache(_CachePanel, bpy.types.Panel):
-    """The bake into the texture cache, beside Blender's settings of it."""
+    """The panel below Cycles' settings of the texture cache."""
 
     bl_label = "Prefilter"
     bl_translation_context = CONTEXT
@@ -80,19 +81,19 @@ class PREFILTER_PT_texture_cache(_CachePanel, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether the scene is rendered by Cycles."""
+        """Returns whether the scene is rendered by Cycles."""
         return context.engine in cls.COMPAT_ENGINES
 
 
 class PREFILTER_PT_texture_cache_sidebar(_CachePanel, SidebarPanel, bpy.types.Panel):
-    """The same in the tab."""
+    """The panel in the tab of the 3D view."""
 
     bl_label = "Texture Cache"
-    wanted = "a mesh, in a scene for Cycles"
+    required_object = "a mesh, in a scene for Cycles"
 
     @staticmethod
     def fits(obj: bpy.types.Object) -> bool:
-        """Tells whether the panel is for an object."""
+        """Returns whether Cycles renders the scene, and an object may show an image."""
         from ..bridge.meshes import may_show_image
 
         return bpy.context.engine in _ENGINES and may_show_image(obj)
@@ -102,7 +103,7 @@ _PANELS = (PREFILTER_PT_texture_cache, PREFILTER_PT_texture_cache_sidebar)
 
 
 def register() -> None:
-    """Registers the panels, in a Blender that has the one around the first."""
+    """Registers the panels, if Blender has the parent panel."""
     if hasattr(bpy.types, _PARENT):
         for panel in _PANELS:
             bpy.utils.register_class(panel)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Which images of a scene have PAM levels in the texture cache, for panels: no file is opened."""
+"""The states of a scene's images in the texture cache, for panels; opens no files."""
 
 import time
 from collections import Counter
@@ -10,7 +10,7 @@ import bpy
 
 from ..bridge import images, rendered
 from ..bridge.files import tx
-from ..core.remembered import Remembered
+from ..core.scene_cache import SceneCache
 from ..core.translations import marked, tr
 
 WORDS = {
@@ -20,22 +20,22 @@ WORDS = {
     "packed": marked("packed"),
     "unfit": marked("without a file"),
 }
-"""What is said of an image in each state."""
+"""The name of each state."""
 
-_SECONDS = 1.0  # How long what the file system says is believed.
+_SECONDS = 1.0  # How long states of files are cached.
 
 
 @dataclass(frozen=True)
 class ImageState:
-    """An image and a key of `WORDS`."""
+    """The name of an image, and its state, a key of `WORDS`."""
 
     name: str
     state: str
 
 
 @dataclass
-class _Known:
-    """The images of a scene with their files, or the state of those that have none."""
+class _SceneImages:
+    """The images of a scene with their source files, or with a state if they have none."""
 
     files: list[tuple[str, list[tx.Source] | str]]
     states: list[ImageState]
@@ -44,31 +44,31 @@ class _Known:
 
 def states(context: bpy.types.Context) -> list[ImageState]:
     """Returns the states of the images that meshes show in renders of the scene."""
-    known = _images.get(context)
-    if known is None:
+    images = _images.get(context)
+    if images is None:
         return []
     now = time.monotonic()
-    if now > known.time + _SECONDS or not known.states:
-        known.states = [ImageState(name, _state(files)) for name, files in known.files]
-        known.time = now
-    return known.states
+    if now > images.time + _SECONDS or not images.states:
+        images.states = [ImageState(name, _state(files)) for name, files in images.files]
+        images.time = now
+    return images.states
 
 
-def states_now(context: bpy.types.Context) -> list[ImageState]:
-    """Returns what `states` does, of what is there at this moment."""
-    files = _look(context.scene, context.evaluated_depsgraph_get()).files
-    return [ImageState(name, _state(found)) for name, found in files]
+def current_states(context: bpy.types.Context) -> list[ImageState]:
+    """Returns the same as `states`, without the cache."""
+    images = _find_images(context.scene, context.evaluated_depsgraph_get())
+    return [ImageState(name, _state(files)) for name, files in images.files]
 
 
-def summary(found: list[ImageState]) -> str:
-    """Returns how many images are in which state, such as "2 baked, 1 stale"."""
-    counts = Counter(one.state for one in found)
+def summary(images: list[ImageState]) -> str:
+    """Returns the number of images in each state, such as "2 baked, 1 stale"."""
+    counts = Counter(image.state for image in images)
     return ", ".join(f"{counts[key]} {tr(word)}" for key, word in WORDS.items() if counts[key])
 
 
-def look_again() -> None:
-    """Has the file system asked again, after a bake."""
-    _images.forget()
+def refresh() -> None:
+    """Clears the cache, as after a bake."""
+    _images.clear()
 
 
 def _state(files: list[tx.Source] | str) -> str:
@@ -78,21 +78,21 @@ def _state(files: list[tx.Source] | str) -> str:
     return next(state for state in ("missing", "stale", "baked") if state in found)
 
 
-def _look(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> _Known:
+def _find_images(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> _SceneImages:
     files: list[tuple[str, list[tx.Source] | str]] = []
-    for image, seen in rendered.viewers(scene, depsgraph).items():
-        if seen.others or not seen.objects:
+    for image, viewers in rendered.viewers(scene, depsgraph).items():
+        if viewers.others or not viewers.objects:
             continue
-        found: list[tx.Source] | str
+        sources: list[tx.Source] | str
         if image.packed_files and images.kind_that_is_no_still(image) is None:
-            found = "packed"
+            sources = "packed"
         else:
             try:
-                found = list(tx.sources(image).values())
+                sources = list(tx.sources(image).values())
             except ValueError:
-                found = "unfit"
-        files.append((image.name, found))
-    return _Known(files, [])
+                sources = "unfit"
+        files.append((image.name, sources))
+    return _SceneImages(files, [])
 
 
-_images = Remembered(_look)
+_images = SceneCache(_find_images)

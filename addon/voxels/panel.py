@@ -23,7 +23,7 @@ class _RemeshPanel:
 
 
 class _SidebarPanel(SidebarPanel):
-    wanted = "a mesh, a curve, a text or a metaball"
+    required_object = "a mesh, a curve, a text or a metaball"
 
     @staticmethod
     def fits(obj: bpy.types.Object) -> bool:
@@ -130,7 +130,7 @@ class PREFILTER_PT_voxel_result(Tab, bpy.types.Panel):
             place.operator("prefilter.switch_source", text="", icon=icon)
         if result != context.active_object:
             note(self.layout, context, f"'{result.name}'", "OBJECT_DATA")
-        result.prefilter_voxels.draw_closed(self.layout)
+        result.prefilter_voxels.draw_collapsed(self.layout)
 
 
 def _draw_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:

@@ -17,9 +17,9 @@ from bpy.props import (
 )
 
 from ..core import preset_menu, presets
-from ..core.properties import properties, shared, values
+from ..core.properties import properties, shared_properties, values
 from ..core.registration import classes, registration, state
-from ..core.sidebar import PartedSettings, note, subpanel
+from ..core.sidebar import GroupedSettings, note, subpanel
 from ..core.translations import tr
 from .choices import BooleanSettings, VoxelizeSettings, VoxelSettings
 
@@ -29,10 +29,10 @@ VOXELIZE = presets.Kind("voxelize", "prefilter_voxelize", [(VoxelizeSettings, _O
 BOOLEAN = presets.Kind("voxelize", "prefilter_boolean", [(BooleanSettings, _OF_SCENES)])
 
 
-class VoxelProperties(PartedSettings):
+class VoxelProperties(GroupedSettings):
     """How the settings are drawn that both have in common; a mixin for their properties."""
 
-    def draw_usual(self, layout: bpy.types.UILayout) -> None:
+    def draw_basic(self, layout: bpy.types.UILayout) -> None:
         """Draws the usual settings."""
         self._draw_first(layout)
         layout.prop(self, "resolution")
@@ -49,7 +49,7 @@ class VoxelProperties(PartedSettings):
         if self._makes_mesh():
             self._draw_originals(layout)
 
-    def draw_parts(self, layout: bpy.types.UILayout) -> None:
+    def draw_groups(self, layout: bpy.types.UILayout) -> None:
         """Draws the parts."""
         name = type(self).__name__.rpartition("_")[2]
         _, body = subpanel(layout, f"{name}_repair", "Thin Parts and Holes")
@@ -155,7 +155,7 @@ class PREFILTER_PG_voxelize(VoxelizeProperties, bpy.types.PropertyGroup):
 class PREFILTER_PG_boolean(BooleanProperties, bpy.types.PropertyGroup):
     """The settings that the panel shows; what voxelizing has too is that of its settings."""
 
-    __annotations__ = shared(VoxelSettings, VOXELIZE.group)
+    __annotations__ = shared_properties(VoxelSettings, VOXELIZE.group)
 
     def _draw_keeping(self, layout: bpy.types.UILayout) -> None:
         layout.prop(self, "use_keep_resolution")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a user may set of the welcome, and which demonstrations there are."""
+"""Options of the welcome, and the demonstrations."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -19,16 +19,16 @@ DEMONSTRATIONS = {
 }
 
 HOME = "prefilter_demonstration"
-"""The property of a demonstration's scene that names the one it was begun in."""
+"""The custom property of a demonstration's scene with the name of the user's scene."""
 
 
 def is_demonstration(scene: Any) -> bool:
-    """Tells whether a scene is one of a demonstration."""
+    """Returns whether a scene belongs to a demonstration."""
     return scene is not None and HOME in scene
 
 
 @dataclass(frozen=True)
 class Preferences:
-    """What holds until a user sets it."""
+    """Its part of the preferences."""
 
     show_welcome: bool = switch(True, "Welcome", "Show the welcome in the tab of the 3D view")

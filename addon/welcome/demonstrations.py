@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Scenes of the demonstrations: made beside those of the user, removed with all that is in them."""
+"""The demonstrations' scenes: added to the user's file, and removed with everything in them."""
 
 import time
 from collections.abc import Callable, Sequence
@@ -13,7 +13,7 @@ from ..bridge import kept_sources, level_images
 from ..bridge.layers import COLOR, NewLayer
 from ..bridge.new_points import Cloud, new_points
 from ..core.translations import tr
-from . import models, place
+from . import models, viewport
 from .choices import HOME, is_demonstration
 
 _LEVEL = 4
@@ -23,7 +23,7 @@ _WIDTHS = {"mipmaps": 8.0, "solid": 6.4, "surface": 5.8}
 
 
 def begin(context: bpy.types.Context, kind: str) -> None:
-    """Makes the scene of a demonstration, and shows it.
+    """Creates and shows the scene of a demonstration.
 
     Args:
         context: The context.
@@ -36,16 +36,16 @@ def begin(context: bpy.types.Context, kind: str) -> None:
     scene[HOME] = home.name
     context.window.scene = scene
     _BUILDERS[kind](context, scene)
-    place.frame(context, scene, _WIDTHS[kind], textured=kind == "mipmaps")
+    viewport.frame(context, scene, _WIDTHS[kind], textured=kind == "mipmaps")
 
 
 def end(context: bpy.types.Context) -> None:
-    """Removes the scene of a demonstration with what is in it alone, and shows the one before."""
+    """Removes the scene of a demonstration with its own data, and shows the user's scene."""
     scene = context.scene
     home = bpy.data.scenes.get(scene[HOME])
     if home is None:
         home = next(other for other in bpy.data.scenes if other != scene)
-    place.restore(context, scene)
+    viewport.restore(context, scene)
     objects = [obj for obj in scene.collection.all_objects if set(obj.users_scene) == {scene}]
     objects += [obj for obj in kept_sources.copies_of(objects) if obj not in objects]
     context.window.scene = home
@@ -61,13 +61,13 @@ def end(context: bpy.types.Context) -> None:
     images |= {level for image in images for level in level_images.levels_of(image)}
     bpy.data.scenes.remove(scene)
     bpy.data.batch_remove(used[: len(objects)])
-    for ids in (used[len(objects) :], materials):
-        bpy.data.batch_remove([one for one in ids if one.users == 0])
-    bpy.data.batch_remove([one for one in images if one.users - one.use_fake_user == 0])
+    for blocks in (used[len(objects) :], materials):
+        bpy.data.batch_remove([block for block in blocks if block.users == 0])
+    bpy.data.batch_remove([image for image in images if image.users - image.use_fake_user == 0])
 
 
 def _mipmaps(context: bpy.types.Context, scene: bpy.types.Scene) -> None:
-    """Shows a stone with its texture, and with a level of it by two filters."""
+    """Shows a stone with its texture, and with a level of the texture by two filters."""
     model, pixels = models.stone(), models.paint()
     named = (
         ("Stone", tr("Full texture"), ""),
@@ -86,7 +86,7 @@ def _mipmaps(context: bpy.types.Context, scene: bpy.types.Scene) -> None:
             baked[image.name] = kind
     _select(context, [obj])
     for name, kind in baked.items():
-        # One waits for the other.
+        # The second bake waits in the queue.
         bpy.ops.prefilter.bake_mipmaps(
             "INVOKE_DEFAULT", image=name, filter=kind, result="images", objects="all"
         )
@@ -96,15 +96,15 @@ def _mipmaps(context: bpy.types.Context, scene: bpy.types.Scene) -> None:
 
 
 def _show_levels(scene_name: str, names: list[str], end: float) -> float | None:
-    """Shows a level of images once they are baked, instead of the images.
+    """Replaces images by one of their levels once they are baked.
 
     Args:
         scene_name: The scene of the demonstration.
         names: The images.
-        end: When to give up.
+        end: The time at which to give up.
 
     Returns:
-        In how many seconds to look again; None for never.
+        Seconds until the next check; None to stop.
     """
     scene = bpy.data.scenes.get(scene_name)
     images = [bpy.data.images.get(name) for name in names]
@@ -113,7 +113,7 @@ def _show_levels(scene_name: str, names: list[str], end: float) -> float | None:
     levels = [level_images.levels_of(image) for image in images]
     if not all(levels):
         return _SECONDS_BETWEEN_LOOKS
-    shown = {image: found[_LEVEL - 1] for image, found in zip(images, levels, strict=True)}
+    shown = {image: own[_LEVEL - 1] for image, own in zip(images, levels, strict=True)}
     for obj in scene.objects:
         for slot in obj.material_slots:
             for node in slot.material.node_tree.nodes if slot.material else ():
@@ -125,7 +125,7 @@ def _show_levels(scene_name: str, names: list[str], end: float) -> float | None:
 
 
 def _solid(context: bpy.types.Context, scene: bpy.types.Scene) -> None:
-    """Makes one of two broken meshes solid."""
+    """Shows a broken mesh, and a solid made of it."""
     mesh = _mesh("Broken", models.broken_stone())
     for name, text, x in (("Broken", tr("Broken"), -1.6), ("Solid", tr("Solid"), 1.6)):
         obj = _add(scene, mesh if x < 0.0 else mesh.copy(), x)
@@ -136,7 +136,7 @@ def _solid(context: bpy.types.Context, scene: bpy.types.Scene) -> None:
 
 
 def _surface(context: bpy.types.Context, scene: bpy.types.Scene) -> None:
-    """Makes a surface of one of two scans."""
+    """Shows a scan, and a surface made of it."""
     positions, normals, colors = models.knot()
     rgba = np.c_[colors, np.ones(len(colors))].astype(np.float32)
     layers = [NewLayer(COLOR, "Color", "BYTE_COLOR", "POINT", rgba)]
@@ -173,7 +173,7 @@ def _add(scene: bpy.types.Scene, mesh: bpy.types.Mesh, x: float) -> bpy.types.Ob
 
 
 def _label(scene: bpy.types.Scene, text: str, below: bpy.types.Object) -> None:
-    """Writes a line below an object."""
+    """Adds a line of text below an object."""
     curve = bpy.data.curves.new(text, "FONT")
     curve.body, curve.align_x, curve.size = text, "CENTER", 0.3
     obj = bpy.data.objects.new(f"{text} (label)", curve)

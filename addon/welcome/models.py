@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Models of the demonstrations: a stone in six charts, a broken one, and a knot of points."""
+"""The demonstrations' models: a stone with six charts, a broken stone, and a knot of points."""
 
 from dataclasses import dataclass
 
@@ -13,8 +13,8 @@ _CHARTS = (
     *((0.02, 0.02, 0.46), (0.52, 0.02, 0.22), (0.78, 0.02, 0.20)),
     *((0.02, 0.52, 0.30), (0.36, 0.52, 0.14), (0.54, 0.36, 0.42)),
 )
-"""The left, the bottom and the side of each chart: densities differ by a factor of three."""
-_MARGIN = 2  # Of paint around a chart, in texels.
+"""The left, the bottom and the side of each chart; texel densities differ by a factor of three."""
+_MARGIN = 2  # Width of the paint around a chart, in texels.
 _INK, _CREAM, _RUST, _TEAL = (
     *((0.06, 0.07, 0.10), (0.94, 0.89, 0.76), (0.78, 0.25, 0.14)),
     (0.08, 0.42, 0.45),
@@ -27,7 +27,7 @@ class Model:
 
     Attributes:
         points: (n, 3).
-        quads: (m, 4) indices, counterclockwise as seen from outside.
+        quads: (m, 4) indices, counterclockwise from outside.
         uvs: (m, 4, 2); None for none.
     """
 
@@ -40,23 +40,23 @@ def stone(cells: int = 24) -> Model:
     """Returns a closed mesh of six charts.
 
     Args:
-        cells: How many quads a chart has along each side.
+        cells: The number of quads along each side of a chart.
     """
     steps = np.linspace(0.0, 1.0, cells + 1)
-    s, t = (one.ravel() for one in np.meshgrid(steps, steps))
+    s, t = (grid.ravel() for grid in np.meshgrid(steps, steps))
     row = np.arange(cells * (cells + 1)).reshape(cells, cells + 1)[:, :-1].ravel()
     quads = row[:, None] + np.array([0, 1, cells + 2, cells + 1])
     points = np.concatenate([_on_stone(side, s, t) for side in range(6)])
     corners = np.concatenate([quads + side * len(s) for side in range(6)])
-    places = np.stack([s, t], axis=-1)[quads]
-    uvs = [np.array([left, low]) + size * places for left, low, size in _CHARTS]
-    # The sides of the charts are one line each on the stone.
+    chart_uvs = np.stack([s, t], axis=-1)[quads]
+    uvs = [np.array([left, low]) + size * chart_uvs for left, low, size in _CHARTS]
+    # Adjacent charts share their boundary vertices on the stone.
     _, first, same = np.unique(points.round(6), axis=0, return_index=True, return_inverse=True)
     return Model(points[first], same.reshape(-1)[corners], np.concatenate(uvs))
 
 
 def paint(size: int = 512) -> NDArray[np.float32]:
-    """Returns (size, size, 4): a pattern that runs on from chart to chart, on black."""
+    """Returns (size, size, 4): a pattern that continues across charts, on black."""
     pixels = np.zeros((size, size, 4), np.float32)
     pixels[..., 3] = 1.0
     centers = (np.arange(size) + 0.5) / size
@@ -73,10 +73,10 @@ def paint(size: int = 512) -> NDArray[np.float32]:
 
 
 def broken_stone(seed: int = 1) -> Model:
-    """Returns a stone with holes, and a ring through it that is inside out and open."""
+    """Returns a stone with holes, and an open, inside-out ring through it."""
     whole = stone()
     rng = np.random.default_rng(seed)
-    kept = whole.quads[rng.random(len(whole.quads)) > 0.06]
+    stone_quads = whole.quads[rng.random(len(whole.quads)) > 0.06]
     around, across = np.meshgrid(np.arange(64), np.arange(24), indexing="ij")
     angle, turn = 2 * np.pi * around.ravel() / 64, 2 * np.pi * across.ravel() / 24
     radius = 0.95 + 0.24 * np.cos(turn)
@@ -85,20 +85,20 @@ def broken_stone(seed: int = 1) -> Model:
     middle = np.array([0.3, 0.0, 0.0])
     steps = ((0, 0), (1, 0), (1, 1), (0, 1))
     corners = [(around + i) % 64 * 24 + (across + j) % 24 for i, j in steps]
-    quads = np.stack([one.ravel() for one in corners], axis=-1)
+    quads = np.stack([corner.ravel() for corner in corners], axis=-1)
     quads = quads[rng.random(len(quads)) > 0.04]
     return Model(
         np.concatenate([whole.points, ring]) - middle,
-        np.concatenate([kept, quads + len(whole.points)]),
+        np.concatenate([stone_quads, quads + len(whole.points)]),
     )
 
 
 def knot(count: int = 20_000, seed: int = 1) -> tuple[Array, Array, Array]:
-    """Returns points on the tube around a trefoil knot, with noise, as a scanner sees them.
+    """Returns noisy points on a tube around a trefoil knot, like those of a scanner.
 
     Args:
-        count: How many.
-        seed: Of the random numbers.
+        count: The number of points.
+        seed: The seed of the random numbers.
 
     Returns:
         Positions, normals and colors, (count, 3) each.
@@ -117,32 +117,32 @@ def knot(count: int = 20_000, seed: int = 1) -> tuple[Array, Array, Array]:
     up = np.cross(side, along)
     normals = np.cos(turn)[:, None] * side + np.sin(turn)[:, None] * up
     points = 0.36 * center + 0.24 * normals + rng.normal(scale=0.006, size=(count, 3))
-    # Upright, as seen from the front.
-    turned = [0, 2, 1]
+    # Rotates the knot upright, facing the front view.
+    axes = [0, 2, 1]
     signs = np.array([1.0, -1.0, 1.0])
-    return points[:, turned] * signs, normals[:, turned] * signs, _pattern(0.5 * points)
+    return points[:, axes] * signs, normals[:, axes] * signs, _pattern(0.5 * points)
 
 
 def _directions(side: int, s: Array, t: Array) -> Array:
-    """Returns unit vectors to places on a side of a cube, each from 0 to 1."""
-    # Angles of equal size have quads of about equal size.
-    a, b = (np.tan(np.pi / 4 * (2.0 * one - 1.0)) for one in (s, t))
+    """Returns unit vectors for coordinates in [0, 1] on a side of a cube."""
+    # Equal angles give quads of about equal size.
+    a, b = (np.tan(np.pi / 4 * (2.0 * coordinate - 1.0)) for coordinate in (s, t))
     axis, is_low = divmod(side, 2)
     sign = -1.0 if is_low else 1.0
-    found = np.empty((len(a), 3))
-    found[:, axis], found[:, (axis + 1) % 3], found[:, (axis + 2) % 3] = sign, sign * a, b
-    return np.asarray(found / np.linalg.norm(found, axis=-1, keepdims=True))
+    vectors = np.empty((len(a), 3))
+    vectors[:, axis], vectors[:, (axis + 1) % 3], vectors[:, (axis + 2) % 3] = sign, sign * a, b
+    return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))
 
 
 def _on_stone(side: int, s: Array, t: Array) -> Array:
-    found = _directions(side, s, t)
-    x, y, z = found.T
+    directions = _directions(side, s, t)
+    x, y, z = directions.T
     height = 1.0 + 0.10 * np.sin(3.0 * x + 1.0) * np.cos(2.5 * z) + 0.07 * np.sin(4.0 * y)
-    return found * height[:, None]
+    return directions * height[:, None]
 
 
 def _pattern(points: Array) -> Array:
-    """Returns the colors of places, sRGB: stripes, spots and lines around these."""
+    """Returns sRGB colors at points: stripes and spots with outlines."""
     x, y, z = points.T
     stripes = np.sin(11.0 * z + 2.5 * np.sin(3.0 * x) + 2.0 * np.cos(4.0 * y))
     spots = np.sin(9.0 * x) * np.sin(9.0 * y + 1.0) * np.sin(9.0 * z + 2.0)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`prefilter.demonstrate`, what ends it, and `prefilter.dismiss_welcome`."""
+"""`prefilter.demonstrate`, `prefilter.end_demonstration` and `prefilter.dismiss_welcome`."""
 
 from typing import Any
 
@@ -14,7 +14,7 @@ from .choices import DEMONSTRATIONS, is_demonstration
 
 
 class PREFILTER_OT_demonstrate(bpy.types.Operator):
-    """Shows what the add-on does, in a scene of its own."""
+    """Starts a demonstration in a separate scene."""
 
     bl_idname = "prefilter.demonstrate"
     bl_label = "Demonstrate"
@@ -37,7 +37,7 @@ class PREFILTER_OT_demonstrate(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether another scene can be shown."""
+        """Returns whether the window can show another scene."""
         if context.mode != "OBJECT":
             cls.poll_message_set(tr("Switch to Object Mode first"))
             return False
@@ -47,7 +47,7 @@ class PREFILTER_OT_demonstrate(bpy.types.Operator):
         return True
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Makes the scene."""
+        """Starts the demonstration."""
         from . import demonstrations
 
         try:
@@ -67,7 +67,7 @@ class PREFILTER_OT_end_demonstration(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether a demonstration is shown."""
+        """Returns whether a demonstration is shown."""
         if context.window is None or not is_demonstration(context.scene):
             cls.poll_message_set(tr("This is no scene of a demonstration"))
             return False
@@ -85,7 +85,7 @@ class PREFILTER_OT_end_demonstration(bpy.types.Operator):
 
 
 class PREFILTER_OT_dismiss_welcome(bpy.types.Operator):
-    """Takes the welcome away, and has the preferences remember that."""
+    """Hides the welcome, and sets this in the preferences."""
 
     bl_idname = "prefilter.dismiss_welcome"
     bl_label = "Dismiss"
@@ -94,11 +94,11 @@ class PREFILTER_OT_dismiss_welcome(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Sets the preference."""
-        found = context.preferences.addons.get(PACKAGE)
-        if found is None:
+        addon = context.preferences.addons.get(PACKAGE)
+        if addon is None:
             return {"CANCELLED"}
-        found.preferences.show_welcome = False
-        # Blender then saves them when it ends, if it saves any.
+        addon.preferences.show_welcome = False
+        # Makes Blender save the preferences when it quits, if auto-save is on.
         context.preferences.is_dirty = True
         return {"FINISHED"}
 

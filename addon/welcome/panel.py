@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The welcome, on top of the 3D view's tab until it is dismissed."""
+"""The welcome panel, at the top of the 3D view's tab until it is dismissed."""
 
 import bpy
 
@@ -23,17 +23,17 @@ _ICONS = {"mipmaps": "TEXTURE", "solid": "MOD_REMESH", "surface": "POINTCLOUD_DA
 
 
 class PREFILTER_PT_welcome(Tab, bpy.types.Panel):
-    """Three lines, and three buttons that show something."""
+    """Three lines of help, and the buttons of the demonstrations."""
 
     bl_label = "Welcome to Prefilter"
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether it is dismissed; in a demonstration there has to be a way back."""
+        """Returns whether it is not dismissed; a demonstration always needs the button back."""
         return preference("show_welcome", default=True) or _is_demonstration(context)
 
     def draw_header_preset(self, context: bpy.types.Context) -> None:
-        """Draws the button that dismisses it."""
+        """Draws the Dismiss button."""
         del context
         name = PREFILTER_OT_dismiss_welcome.bl_idname
         self.layout.operator(name, text="", icon="X", emboss=False)
@@ -45,8 +45,8 @@ class PREFILTER_PT_welcome(Tab, bpy.types.Panel):
             column.label(text=line)
         column = self.layout.column(align=True)
         name = PREFILTER_OT_demonstrate.bl_idname
-        for key, one in DEMONSTRATIONS.items():
-            column.operator(name, text=one.label, icon=_ICONS[key]).kind = key
+        for key, choice in DEMONSTRATIONS.items():
+            column.operator(name, text=choice.label, icon=_ICONS[key]).kind = key
         if _is_demonstration(context):
             self.layout.operator(PREFILTER_OT_end_demonstration.bl_idname, icon="LOOP_BACK")
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Small solids made in code, and what there is to measure on meshes."""
+"""Small solids made in code, and measurements of meshes."""
 
 from collections.abc import Sequence
 

@@ -54,8 +54,8 @@ def scan(
     Args:
         positions: (n, 3).
         normals: (n, 3).
-        name: What it is called.
-        attributes: By name: the type, and the values.
+        name: The name of the object.
+        attributes: Pairs of type and values, by name.
         placed: Properties such as `location`.
     """
     mesh = bpy.data.meshes.new(name)

@@ -31,9 +31,9 @@ LOGGERS = ("glTFImporter", "glTFImporter_errors")
 
 
 def run(*arguments: object, cwd: Path | None = None) -> Result:
-    """Runs `prefilter ARGUMENTS` in this Blender, from the startup file as a new one would.
+    """Runs `prefilter ARGUMENTS` in this Blender, from the startup file like a new process.
 
-    Blender then has open what the command has.
+    Afterward the file of the command is open.
     """
     addon = importlib.import_module("bl_ext.user_default.prefilter")
     words = [str(argument) for argument in arguments]

@@ -101,11 +101,11 @@ def bake(addon: Callable[[str], ModuleType]) -> Callable[..., Any]:
 
     def run(image, objects=(), *, all_faces=False, progress=lambda _: True, **settings):
         chosen = addon("mipmaps.choices").Settings(**settings)
-        reading = addon("mipmaps.reading")
-        request = reading.Request(
+        bake_inputs = addon("mipmaps.bake_inputs")
+        request = bake_inputs.Request(
             image, list(objects), chosen, scenes.depsgraph(), all_faces=all_faces
         )
-        job = reading.read(request)
+        job = bake_inputs.read(request)
         job.compute(progress)
         return job.write()
 
@@ -200,7 +200,7 @@ def found(
     in_window: Callable[[Path, Path], None],
     tmp_path_factory: pytest.TempPathFactory,
 ) -> Any:
-    """Runs the session of a module of tests, its `SESSION`, once, and returns what it found."""
+    """Runs the session of a test module, its `SESSION`, once, and returns the results."""
     result = tmp_path_factory.mktemp("session") / "result.json"
     in_window(request.module.SESSION, result)
     return json.loads(result.read_text())

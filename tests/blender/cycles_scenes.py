@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Scenes for Cycles, the files of its texture cache, and what it must render of them."""
+"""Scenes for Cycles, the files of its texture cache, and the expected renders."""
 
 from pathlib import Path
 
@@ -156,7 +156,7 @@ def smooth(height: int, width: int, channels: int, *, seed: int = 3) -> Array:
 
 
 def udim(tmp_path: Path, *, missing: bool = False) -> bpy.types.Image:
-    """Returns a UDIM image of two tiles, magenta but for the lower and the upper half."""
+    """Returns a UDIM image of two tiles, magenta except the lower and the upper half."""
     for number, rows, color in ((1001, slice(0, 32), GREEN), (1002, slice(32, 64), BLUE)):
         pixels = np.zeros((64, 64, 3), np.float32)
         pixels[:] = MAGENTA

@@ -62,7 +62,7 @@ class Recorder:
         self.name, self.calls, self.menus = name, [], set()
 
     def operator(self, name: str, **_: Any) -> Any:
-        """Records an operator; returns what the menu sets its properties on."""
+        """Records an operator; returns the object on which the menu sets its properties."""
         self.calls.append(Call(self.name, name))
         return _Properties(self.calls[-1].properties)
 
@@ -95,7 +95,7 @@ class Shown:
         self._owner, self.layout = owner, Recorder(owner.__name__)
 
     def __getattr__(self, name: str) -> Any:
-        """Returns what the class has."""
+        """Returns an attribute of the class."""
         value = getattr(self._owner, name)
         return value.__get__(self) if hasattr(value, "__get__") else value
 
@@ -114,9 +114,9 @@ def subclasses(kind: type) -> Iterator[type]:
 
 
 def appended() -> list[tuple[str, Callable[[Any, Any], None]]]:
-    """Returns what the add-on draws in menus, headers and panels of others, and in its own menus.
+    """Returns the add-on's entries in Blender's menus, headers and panels, and in its own menus.
 
-    Each with the name of the class that it is drawn in.
+    Each comes with the name of the class in which it is drawn.
     """
     found = []
     for kind in (bpy.types.Menu, bpy.types.Header, bpy.types.Panel):
@@ -393,7 +393,7 @@ CASES = {
     "assign_shortcut": Case(empty, key="K"),
     "remove_shortcut": Case(empty),
 }
-"""By the operator."""
+"""The menu entries, by operator."""
 
 PANEL_SCENES = (
     *(empty, textured, cached, previewed, outlined, drawn, voxelized, sculpted, scanned),
@@ -403,7 +403,7 @@ PANEL_SCENES = (
 
 
 def case_of(call: Call) -> Case:
-    """Returns the case of what a menu offers."""
+    """Returns the case of a menu entry."""
     found = CASES[call.operator.removeprefix("prefilter.")]
     if call.properties.get("source") == "uv":
         return Case(textured)

@@ -50,7 +50,7 @@ def multiplied(tree: bpy.types.NodeTree, color: bpy.types.NodeSocket) -> bpy.typ
 
 
 def noisy(tree: bpy.types.NodeTree, color: bpy.types.NodeSocket) -> bpy.types.NodeSocket:
-    """Mixes with what is no function of the texel."""
+    """Mixes with a value that is no function of the texel."""
     node = tree.nodes.new("ShaderNodeMix")
     node.data_type, node.name = "RGBA", "Dirt"
     inputs = {one.identifier: one for one in node.inputs}

@@ -43,7 +43,7 @@ def check_wheel() -> None:
 
 
 def load_own_modules() -> None:
-    """Lets tests and Cycles import what the add-on finds where Blender has it, since 4.4.
+    """Lets tests and Cycles import modules that Blender bundles in other places since 4.4.
 
     Raises:
         AssertionError: There is no OpenImageIO of Blender's own.
@@ -61,7 +61,7 @@ def load_own_modules() -> None:
 
 
 def main() -> int:
-    """Does what the command line says; returns the exit status."""
+    """Runs the command line; returns the exit status."""
     install(Path(sys.argv[1]).resolve())
     check_wheel()
     load_own_modules()

@@ -214,7 +214,7 @@ def image_editor(image: bpy.types.Image) -> Iterator[bpy.types.SpaceImageEditor]
 
 
 def screen(path: str) -> NDArray[np.uint8]:
-    """Returns what an X screen shows, (height, width, 3), row 0 at the bottom.
+    """Returns the pixels of an X screen, (height, width, 3), row 0 at the bottom.
 
     Args:
         path: The server's framebuffer, in X's window dump format (XWDFile.h).

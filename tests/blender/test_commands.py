@@ -25,7 +25,7 @@ def test_a_blender_of_its_own_does_what_this_one_does(tmp_path):
     )
     np.testing.assert_array_equal(here, there)
     assert [result.returncode for result in results] == [0, 0]
-    # Blender 5.2 also prints what it reads.
+    # Blender 5.2 also prints the names of files that it reads.
     told = results[0].stdout.splitlines()[-1]
     assert told.replace("here.tif", "there.tif") in results[1].stdout.splitlines()
     ours = [

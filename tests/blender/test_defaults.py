@@ -7,7 +7,7 @@ import inspect
 import prefilter
 import pytest
 
-# What a setting has that stands for what the package leaves out.
+# Values of settings that correspond to omitted arguments of the package.
 ABSENT = {
     "levels": (0, None),
     "roughness": ("", None),
@@ -49,8 +49,8 @@ def test_defaults_agree(addon, settings, function, least):
     declared = getattr(addon(module), name)()
     compared = 0
     for parameter, default in defaults(function).items():
-        # Blender knows more of these: what the material says, what the image holds, and that
-        # people look at the triangles.
+        # Blender knows more about these: the material, the content of the image, and that people
+        # look at the triangles.
         if parameter in {"wrap", "bounds", "adaptivity"}:
             continue
         # Automatic, the resolution has no depth.

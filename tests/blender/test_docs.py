@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The tables of options in docs/ say what is declared."""
+"""The tables of options in docs/ agree with the declarations."""
 
 import sys
 from pathlib import Path

@@ -10,19 +10,19 @@ import sys
 import bpy
 from conftest import PACKAGE
 
-# Of the add-on: what registers classes, and what these need to say what there is to set.
+# Modules of the add-on that register classes, or that declare their settings.
 AT_ENABLING = re.compile(
     r"""
     | core(\..*)? | commands | preferences
     | bridge(\.(files|editors|previews|views|wipe|image_operator))?
-    | \w+ (\.(choices|properties|menus|(\w+_)?panels?|operators?|remembered)(\..*)?)?
+    | \w+ (\.(choices|properties|menus|(\w+_)?panels?|operators?|scene_cache)(\..*)?)?
     | \w+ (\.(importance|view|model)(\..*)?)?
     | mipmaps\.gltf(\.(choices|properties|panel|hooks))?
     """,
     re.VERBOSE,
 )
 WORK = re.compile(r"\w+\.(view\.(errors|figure|canvas)|model\.\w+)")
-# Of the package: what options take their limits and choices from.
+# Modules of the package from which options take their limits and choices.
 OF_PACKAGE = re.compile(
     r"prefilter(\.(_native|files(\..*)?|_border(\..*)?|options(\.(?!flags).*)?|workflows(\.\w+)?"
     r"|images(\.(filters|color))?|meshes(\.surface)?"

@@ -53,7 +53,7 @@ def test_labels_beside_values_fit(options):
     assert not {label for label in beside if width(label) > LABEL_ROOM}
 
 
-def test_what_menus_show_fits(options):
+def test_menu_entries_fit(options):
     labels = {
         label
         for _, _, one in options

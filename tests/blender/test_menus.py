@@ -10,7 +10,7 @@ import pytest
 
 
 class Layout:
-    """Takes what a menu draws."""
+    """Records the entries of a menu."""
 
     def __init__(self):
         self.operators = []
@@ -30,9 +30,9 @@ class Layout:
 
 
 def drawn(menu, seen=()):
-    """Returns what the add-on draws in a menu of Blender's, and in its own in there.
+    """Returns the add-on's entries in a menu of Blender, and in its own menus within.
 
-    Menus in `seen`, a list that gets those that are drawn, are left out, as a search does.
+    Skips menus in `seen`, as a search does, and appends those that are drawn.
     """
     layout = Layout()
     shown = getattr(bpy.types, menu).draw

@@ -28,7 +28,7 @@ def contents(folder):
     return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
 
 
-def test_what_is_unclear_is_refused(model, tmp_path):
+def test_ambiguous_output_is_refused(model, tmp_path):
     (tmp_path / "kept.exr").write_bytes(b"kept")
     os.link(tmp_path / "wood.png", tmp_path / "hard.exr")
     before = contents(tmp_path)

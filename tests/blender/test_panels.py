@@ -63,7 +63,7 @@ def test_the_first_thing_is_the_button(name):
     rows = drawn.drawn([name])[0]["rows"]
     first = next(row for row in rows if row[0] == "button")
     assert first[2] == SUBJECTS[name]
-    # Above the first closed part there is nothing to set, only buttons and what they come to.
+    # Above the first closed subpanel are only buttons and summaries, no settings.
     above = rows[: next(i for i, row in enumerate(rows) if row[0] == "panel")]
     assert not [row for row in above if row[0] == "setting"]
     assert all(row[2] == "closed" for row in rows if row[0] == "panel")

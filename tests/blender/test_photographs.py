@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Photographs of panels in docs/ show what the panels draw today."""
+"""The photographs of panels in docs/ agree with the present panels."""
 
 import os
 import sys

@@ -32,7 +32,7 @@ def paint() -> bpy.types.Image:
 
 @pytest.fixture(autouse=True)
 def _all_is_saved() -> Iterator[None]:
-    """Asserts that what the operator made is still there when the file is saved and opened."""
+    """Asserts that the operator's results survive saving and opening the file."""
     yield
     kinds = (
         *(bpy.data.images, bpy.data.objects, bpy.data.meshes, bpy.data.texts, bpy.data.volumes),
@@ -383,12 +383,12 @@ def test_import_preset(panel, tmp_path):
 
 
 def test_clear_queue():
-    """Of jobs that have ended, which are in windows only."""
+    """Needs ended jobs, which exist in windows only."""
     assert not bpy.ops.prefilter.clear_queue.poll()
 
 
 def test_confirm_cancel():
-    """Of an operator at work, which is in windows only."""
+    """Needs a running operator, which exists in windows only."""
     assert bpy.ops.prefilter.confirm_cancel(key="") == {"CANCELLED"}
 
 

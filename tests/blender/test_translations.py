@@ -4,6 +4,7 @@
 
 import functools
 import importlib
+import json
 import re
 import string
 import sys
@@ -31,7 +32,7 @@ shown = functools.cache(messages.shown)
 
 
 @for_languages
-def test_tables_hold_what_is_shown(language):
+def test_tables_have_every_shown_text(language):
     # scripts/messages.py adds and removes entries; a translation is then to be written.
     table = translations.table(language)
     assert len(shown()) > 700
@@ -42,12 +43,23 @@ def test_tables_hold_what_is_shown(language):
 
 
 @for_languages
+def test_the_header_says_that_no_native_speaker_has_reviewed_the_table(language):
+    header, _ = next(iter(json.loads(path_of(language).read_text(encoding="utf-8")).items()))
+    assert header == translations.HEADER
+    assert translations.HEADER not in translations.table(language)
+
+
+def path_of(language):
+    return translations.FOLDER / f"{language}.json"
+
+
+@for_languages
 def test_tables_are_sorted(language):
     assert list(translations.table(language)) == sorted(translations.table(language))
 
 
 @for_languages
-def test_what_is_filled_in_is_the_same(language):
+def test_placeholders_are_the_same(language):
     wrong = {}
     for text, translated in translations.table(language).items():
         try:
@@ -60,7 +72,7 @@ def test_what_is_filled_in_is_the_same(language):
 
 
 def filled_in(text):
-    """Returns what of some values a text shows, in any order."""
+    """Returns the values that a text contains, in any order."""
     names = [name for _, name, _, _ in string.Formatter().parse(text) if name is not None]
     values = [f"<{i}>" for i in range(len(names))]
     named = {name: f"<{name}>" for name in names if name and not name.isdigit()}
@@ -127,7 +139,7 @@ def test_texts_are_english_once_the_add_on_is_disabled(addon, german):
         said.register()
 
 
-def test_results_are_told_in_the_language_of_the_user(german, capfd):
+def test_results_are_reported_in_the_language_of_the_user(german, capfd):
     bpy.ops.mesh.primitive_cube_add()
     bpy.context.active_object.name = "Scene"
     bpy.ops.prefilter.voxelize(depth=4)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What the sessions share that run in a Blender with a window."""
+"""Helpers of the sessions that run in a Blender with a window."""
 
 import ctypes
 import importlib
@@ -123,7 +123,7 @@ def cancelled(window: bpy.types.Window, area: bpy.types.Area) -> Iterator[None]:
 
 
 def pixels(area: bpy.types.Area, kind: str = "WINDOW") -> NDArray[np.uint8]:
-    """Returns what the X server shows of a region, (height, width, 3), row 0 at the bottom.
+    """Returns the pixels of a region on the X server, (height, width, 3), row 0 at the bottom.
 
     That may be older than what Blender has drawn; see `picture`.
     """
@@ -229,7 +229,7 @@ def place_of(
     Args:
         window: The window.
         area: The editor.
-        command: What the button's call in Python begins with, such as "prefilter.voxelize(".
+        command: The beginning of the button's call in Python, such as "prefilter.voxelize(".
         kind: The region.
     """
     within = region(area, kind)
@@ -323,7 +323,7 @@ def begun(kind: str = "", *, opened: str = "") -> Stage:
     """
     assert addon_utils.enable(PACKAGE, default_set=True) is not None
     importlib.import_module(f"{PACKAGE}.core.redo").QUICK_SECONDS = NEVER_TOO_LONG
-    importlib.import_module(f"{PACKAGE}.core.running").ASKING_SECONDS = NEVER_TOO_LONG
+    importlib.import_module(f"{PACKAGE}.core.runs").ASKING_SECONDS = NEVER_TOO_LONG
     panel = getattr(bpy.types, opened, None)
     if panel is not None and "DEFAULT_CLOSED" in getattr(panel, "bl_options", ()):
         bpy.utils.unregister_class(panel)

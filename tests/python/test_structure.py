@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The house's walls: which modules of the add-on and of the package import which."""
+"""The allowed imports between the modules of the add-on and of the package."""
 
 import ast
 from collections.abc import Collection, Iterator
@@ -12,13 +12,13 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 ADDON = ROOT / "addon"
 PACKAGE = ROOT / "native" / "python" / "prefilter"
-FLOORS = ("core", "bridge")
+LAYERS = ("core", "bridge")
 SVG = PACKAGE / "shapes" / "_svg"
 SVG_FLOORS = ("model", "read", "text", "paint", "filters", "draw")
 
 
 def modules(folder: Path) -> dict[str, Path]:
-    """Returns the files of a package by the names of their modules."""
+    """Returns the files of a package by module name."""
     found = {}
     for path in (*folder.rglob("*.py"), *folder.rglob("*.pyi")):
         names = path.relative_to(folder.parent).with_suffix("").parts
@@ -27,7 +27,7 @@ def modules(folder: Path) -> dict[str, Path]:
 
 
 def imports(folder: Path) -> dict[str, set[str]]:
-    """Returns which modules of a package each of them imports, for type checkers only or not."""
+    """Returns the modules of a package that each module imports, including for type checkers."""
     known = modules(folder)
     return {name: set(imported(path, folder, known.keys())) for name, path in known.items()}
 
@@ -41,7 +41,7 @@ def imported(path: Path, folder: Path, known: Collection[str]) -> Iterator[str]:
             above = package[: len(package) - node.level + 1] if node.level else ()
             base = ".".join((*above, *([node.module] if node.module else ())))
             for alias in node.names:
-                # What is no module comes from the package itself.
+                # Other names come from the package itself.
                 name = f"{base}.{alias.name}"
                 module = name if name in known else base
                 if module in known:
@@ -49,7 +49,7 @@ def imported(path: Path, folder: Path, known: Collection[str]) -> Iterator[str]:
 
 
 def cycle(graph: dict[str, set[str]]) -> list[str]:
-    """Returns modules of which each imports one beside it, the first and the last too; or none."""
+    """Returns a cycle of modules, each of which imports a neighbor; empty if there is none."""
     try:
         TopologicalSorter(graph).prepare()
     except CycleError as error:
@@ -57,21 +57,21 @@ def cycle(graph: dict[str, set[str]]) -> list[str]:
     return []
 
 
-def room(name: str) -> str:
-    """Returns the folder of the add-on that a module is in; empty for those beside the folders."""
+def folder_of(name: str) -> str:
+    """Returns the folder of the add-on that contains a module; empty for top-level modules."""
     parts = name.split(".")
     return parts[1] if len(parts) > 1 and (ADDON / parts[1]).is_dir() else ""
 
 
 def wrong_imports(graph: dict[str, set[str]]) -> list[str]:
-    """Returns the imports that a room must not have: upward, or sideways into another subject."""
+    """Returns forbidden imports: into a higher layer, or into another subject."""
     wrong = []
     for name, others in graph.items():
         for other in others:
-            here, there = room(name), room(other)
+            here, there = folder_of(name), folder_of(other)
             if not here or there == here:
                 continue
-            allowed = {"core": set(), "bridge": {"core"}}.get(here, set(FLOORS))
+            allowed = {"core": set(), "bridge": {"core"}}.get(here, set(LAYERS))
             if there not in allowed:
                 wrong.append(f"{name} imports {other}")
     return sorted(wrong)
@@ -92,6 +92,21 @@ def upward_imports(graph: dict[str, set[str]], package: str, floors: tuple[str, 
     )
 
 
+def private_imports(source: str) -> list[str]:
+    """Returns the private modules and names of the package that a source file imports."""
+    names = []
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            names += [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and not node.level:
+            names += [f"{node.module}.{alias.name}" for alias in node.names]
+    return [
+        name
+        for name in names
+        if name.startswith("prefilter.") and any(part[0] == "_" for part in name.split("."))
+    ]
+
+
 def write(folder: Path, files: dict[str, str]) -> Path:
     for name, text in files.items():
         path = folder / name
@@ -101,15 +116,15 @@ def write(folder: Path, files: dict[str, str]) -> Path:
 
 
 @pytest.mark.parametrize("folder", [ADDON, PACKAGE], ids=lambda folder: folder.name)
-def test_no_module_imports_itself_by_way_of_others(folder):
+def test_no_import_cycles(folder):
     graph = imports(folder)
     assert sum(map(len, graph.values())) > len(graph)
     assert not cycle(graph)
 
 
-def test_rooms_import_what_is_below_them_only():
+def test_folders_import_lower_layers_only():
     graph = imports(ADDON)
-    assert {room(name) for name in graph} > {"", *FLOORS}
+    assert {folder_of(name) for name in graph} > {"", *LAYERS}
     assert not wrong_imports(graph)
 
 
@@ -119,19 +134,40 @@ def test_folders_of_svg_import_lower_ones_only():
     assert not upward_imports(imports(PACKAGE), "prefilter.shapes._svg", SVG_FLOORS)
 
 
-def test_every_subject_is_registered_and_has_nothing_beside_its_folder():
+def test_the_addon_imports_public_names_of_the_package():
+    sources = [path.read_text(encoding="utf-8") for path in ADDON.rglob("*.py")]
+    assert any("prefilter.workflows" in source for source in sources)
+    assert not [name for source in sources for name in private_imports(source)]
+
+
+@pytest.mark.parametrize(
+    ("line", "is_private"),
+    [
+        ("from prefilter._native import Octree", True),
+        ("from prefilter.files import _staging", True),
+        ("def late():\n    import prefilter.files._staging", True),
+        ("from prefilter.files import staging", False),
+        ("from ._own import name", False),
+        ("from _cycles import with_osl", False),
+    ],
+)
+def test_a_private_import_is_found(line, is_private):
+    assert bool(private_imports(line)) == is_private
+
+
+def test_every_subject_is_registered_and_has_only_its_folder():
     (line,) = (
         node
         for node in ast.parse((ADDON / "__init__.py").read_text()).body
         if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "SUBJECTS"
     )
     subjects = ast.literal_eval(line.value)
-    assert set(subjects) == {path.parent.name for path in ADDON.glob("*/__init__.py")} - {*FLOORS}
+    assert set(subjects) == {path.parent.name for path in ADDON.glob("*/__init__.py")} - {*LAYERS}
     found = {path.name for path in ADDON.glob("*.py")}
     assert found == {"__init__.py", "commands.py", "manual.py", "preferences.py"}
 
 
-def test_pages_that_subjects_name_are_in_docs():
+def test_manual_pages_of_subjects_exist():
     named = {
         page
         for path in ADDON.glob("*/__init__.py")

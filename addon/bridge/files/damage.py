@@ -8,8 +8,7 @@ Blender ends as a whole where some of its importers find a file cut off.
 import os
 from pathlib import Path
 
-from prefilter import _native
-from prefilter.workflows.damage import damaged
+from prefilter.workflows.damage import check_ply, damaged
 from prefilter.workflows.up_to_date import referred_files
 
 _MOST_HEADER = 1 << 16
@@ -24,7 +23,7 @@ def check(path: str) -> None:
         raise OSError(f"FILE: cannot load '{path}': {damaged(path, 'its contents are too short')}")
     if ending == ".ply":
         try:
-            _native.read_ply_mesh(os.fsencode(path), None)
+            check_ply(path)
         except ValueError as error:
             raise OSError(f"FILE: {error}") from error
 

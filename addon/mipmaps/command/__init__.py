@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The commands."""
+"""The commands `bake` and `plot`."""
 
 from typing import Any
 

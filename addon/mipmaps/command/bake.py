@@ -21,7 +21,7 @@ from ...core import command, presets
 from ...core.flags import add_flags, given, tables
 from ...core.outcome import FAILURES, reason
 from ...core.wording import listed
-from .. import file_names, reading, udim, unnamed
+from .. import bake_inputs, default_images, file_names, udim
 from ..choices import ModelSettings, Settings
 from ..gltf.choices import GltfSettings
 from ..properties import BAKE, MODEL
@@ -116,7 +116,7 @@ def _bake(options: argparse.Namespace) -> None:
 
 
 def _outputs(settings: Settings) -> list[tuple[str, str]]:
-    """Returns the flags of the files to write, and what they say."""
+    """Returns the flags of the files to write, with their values."""
     return [("--output", settings.filepath), ("--roughness-output", settings.roughness_filepath)]
 
 
@@ -135,7 +135,7 @@ def _bake_some(options: argparse.Namespace, settings: Settings) -> None:
         outputs.checked_path(options, argument, path) for argument, path in _outputs(settings)
     ]
     settings = replace(settings, filepath=filled[0], roughness_filepath=filled[1])
-    settings = source.fitted(options, settings, paths)
+    settings = source.fit_to_files(options, settings, paths)
     if settings.texture_format != "auto" and not any(map(target_files.has_formats, paths)):
         options.usage_error(
             f"--texture-format: found '{settings.texture_format}', which is for .dds and .ktx2 "
@@ -162,7 +162,7 @@ def _bake_some(options: argparse.Namespace, settings: Settings) -> None:
         raise ValueError(
             f"--roughness: give --image too; without it, {len(chosen)} images are baked"
         )
-    targets = unnamed.output_paths(settings.filepath, chosen)
+    targets = default_images.output_paths(settings.filepath, chosen)
     for image, target in zip(chosen, targets, strict=True):
         for file in udim.paths(target, images.tile_numbers(image)):
             target_files.check_target(file)
@@ -173,7 +173,7 @@ def _bake_some(options: argparse.Namespace, settings: Settings) -> None:
         users_of_it, warnings = source.users_of(image, objects, options.object)
         command.warn(warnings)
         try:
-            request = reading.Request(
+            request = bake_inputs.Request(
                 image,
                 users_of_it,
                 replace(settings, filepath=target),
@@ -181,7 +181,7 @@ def _bake_some(options: argparse.Namespace, settings: Settings) -> None:
                 all_faces=is_picture,
                 may_skip=options.skip_up_to_date,
             )
-            work = reading.read(request)
+            work = bake_inputs.read(request)
             command.run_and_report(work)
         except FAILURES as error:
             if len(chosen) == 1:
@@ -195,7 +195,7 @@ def _bake_some(options: argparse.Namespace, settings: Settings) -> None:
 
 
 def _check_sources(options: argparse.Namespace, paths: Iterable[str]) -> None:
-    """Ends the program where a file that is read would be replaced."""
+    """Ends the program if a file to read would be overwritten."""
     written = [file for path in paths if path for file in target_files.files_of(Path(path))]
     outputs.check_not_replaced(options, written, [options.file, *file_names.source_files()])
 
@@ -208,10 +208,10 @@ def _check_skipping(options: argparse.Namespace, paths: Iterable[str]) -> None:
 
 
 def _frames(text: str) -> tuple[int, int, int]:
-    found = re.fullmatch(r"(-?\d+):(-?\d+)(?::(\d+))?", text)
-    if found is None:
+    match = re.fullmatch(r"(-?\d+):(-?\d+)(?::(\d+))?", text)
+    if match is None:
         raise argparse.ArgumentTypeError(f"found '{text}'; START:END or START:END:STEP is needed")
-    return int(found[1]), int(found[2]), int(found[3] or 1)
+    return int(match[1]), int(match[2]), int(match[3] or 1)
 
 
 def _settings(options: argparse.Namespace) -> Settings:
@@ -224,7 +224,7 @@ def _settings(options: argparse.Namespace) -> Settings:
 
 
 def _roughness_name(name: str) -> str:
-    """Returns the name of the image; a picture file is loaded as data."""
+    """Returns the name of the roughness image; loads a picture file as data."""
     if not name or name in bpy.data.images or not os.path.isfile(name):
         return name
     return images.load("--roughness", name, is_data=True).name

@@ -29,33 +29,35 @@ from .source import WANTED
 
 
 def bake_all(options: argparse.Namespace, settings: Settings) -> None:
-    """Bakes all images, or says what that would do."""
+    """Bakes all images, or lists them."""
     chosen = presets.settings_given(options, MODEL, ModelSettings)
     pattern = _pattern(options, chosen)
-    settings = source.fitted(options, settings, [pattern.text])
+    settings = source.fit_to_files(options, settings, [pattern.text])
     _check(options, settings, pattern)
     path = os.path.abspath(options.file)
     (objects,) = scenes.load([options.file], meshes.may_show_image, WANTED)
     if options.save:
         staging.check_writable(Path(path))
-    named = scenes.chosen(objects, options.object, WANTED) if options.object else None
+    chosen_objects = scenes.chosen(objects, options.object, WANTED) if options.object else None
     view_layer, depsgraph = bpy.context.view_layer, bpy.context.evaluated_depsgraph_get()
     is_for_files = bool(pattern.text) and not options.save
-    planned = plan(view_layer, depsgraph, named, material=chosen.material, by_role=is_for_files)
+    planned = plan(
+        view_layer, depsgraph, chosen_objects, material=chosen.material, by_role=is_for_files
+    )
     images = [image_of(item.key) for item in planned.items]
     parts = [item.part for item in planned.items]
     paths = file_names.paths(pattern, images, [Path(path)], parts)
     files = {item.key: file for item, file in zip(planned.items, paths, strict=True)}
     settings = replace(settings, use_images=options.save, filepath="")
     if options.list:
-        listing.say(options, planned, settings, files)
+        listing.print_listing(options, planned, settings, files)
         return
     jobs = _jobs(options, planned)
     if not jobs and options.task is not None:
         return
     target = manifest.check_target(options.manifest) if options.manifest else None
     if _is_part(options):
-        planned = replace(planned, left_out=[])  # That is for the whole to say.
+        planned = replace(planned, left_out=[])  # Only the whole bake reports them.
     skips = options.skip_up_to_date
     model = ModelBake(planned, settings, files, jobs=jobs, manifest=target, may_skip=skips)
     _finish(options, model, path)
@@ -66,25 +68,25 @@ def _is_part(options: argparse.Namespace) -> bool:
 
 
 def _jobs(options: argparse.Namespace, planned: Plan) -> list[Job]:
-    """Returns what is done here: all, a part, or what bakes one image."""
+    """Returns the jobs to do: all, those of a task, or that of one image."""
     jobs = planned.jobs()
     if options.image is not None:
         jobs = [job for job in jobs if options.image in job.images]
         if not jobs:
-            known = listed(item.image for item in planned.items)
+            names = listed(item.image for item in planned.items)
             raise ValueError(
-                f"--image: found no image '{options.image}' to bake; there are {known}"
+                f"--image: found no image '{options.image}' to bake; there are {names}"
             )
     return tasks.select(options, jobs)
 
 
 def _finish(options: argparse.Namespace, model: ModelBake, path: str) -> None:
-    """Bakes, and tells what has become of the images."""
+    """Bakes, and reports the results."""
     try:
         _bake(model)
     finally:
         model.discard()
-    for line in model.results.lines_of_left_out():
+    for line in model.results.left_out_lines():
         command.print_line(line)
     if _is_part(options) and not (model.results.failed or model.results.outcomes):
         return
@@ -97,7 +99,7 @@ def _finish(options: argparse.Namespace, model: ModelBake, path: str) -> None:
 
 
 def _pattern(options: argparse.Namespace, chosen: ModelSettings) -> file_names.Pattern:
-    """Returns where files go; without --output, what the names of files would be."""
+    """Returns the pattern of the files; for --list without --output, in the current folder."""
     output = given(options, Settings).get("filepath", "")
     if "file_format" in given(options, ModelSettings) and file_names.is_texture(output):
         options.usage_error(f"--format: not allowed with the extension of --output, '{output}'")
@@ -142,7 +144,7 @@ def _check(options: argparse.Namespace, settings: Settings, pattern: file_names.
 
 
 def _bake(model: ModelBake) -> None:
-    """Bakes image after image, writes them together, and tells of each what was done."""
+    """Bakes one image after another, writes all of them together, and reports each."""
     with command.progress_line() as progress:
         while model.next_name:
             read(model)(progress)

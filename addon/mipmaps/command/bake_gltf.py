@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The command `bake --all` with a glTF file as its output: the model with fitted textures."""
+"""The command `bake --all` with a glTF file as output: the model with fitted textures."""
 
 import argparse
 import os
@@ -20,20 +20,20 @@ from ..gltf.choices import TEXTURE_FORMATS, GltfSettings
 from ..gltf.export import Export
 from .source import WANTED
 
-_ENDINGS = (".glb", ".gltf")
-_USED = {
+_EXTENSIONS = (".glb", ".gltf")
+_SUPPORTED = {
     *("filepath", "filter", "lookups", "bounds", "seam_budget", "threads"),
     *("texture_format", "effort", "supercompression", "quality"),
 }
 
 
 def is_gltf(path: str) -> bool:
-    """Tells whether a path is that of a glTF file."""
-    return path.lower().endswith(_ENDINGS)
+    """Returns whether a path has the extension of a glTF file."""
+    return path.lower().endswith(_EXTENSIONS)
 
 
 def bake_gltf(options: argparse.Namespace, settings: Settings) -> None:
-    """Exports the model, as Blender's exporter does with Prefilter Mipmaps."""
+    """Exports the model by Blender's exporter with Prefilter Mipmaps."""
     _check(options)
     target = scenes.check_target(outputs.checked_path(options, "--output", settings.filepath))
     (objects,) = scenes.load([options.file], meshes.may_show_image, WANTED)
@@ -55,16 +55,16 @@ def bake_gltf(options: argparse.Namespace, settings: Settings) -> None:
 
 
 def _check(options: argparse.Namespace) -> None:
-    """Refuses what a glTF file says itself."""
-    found = {*given(options, Settings), *given(options, ModelSettings)} - _USED
-    found |= {
+    """Refuses flags that do not apply to glTF files."""
+    unsupported = {*given(options, Settings), *given(options, ModelSettings)} - _SUPPORTED
+    unsupported |= {
         name
         for name in ("image", "frames", "save", "list", "manifest", "task", "skip_up_to_date")
         if getattr(options, name, None)
     }
     flags = [
         f"--{name.removeprefix('use_').removeprefix('file_').replace('_', '-')}"
-        for name in sorted(found)
+        for name in sorted(unsupported)
     ]
     if flags:
         options.usage_error(f"{flags[0]}: not allowed with a .glb or .gltf file as --output")
@@ -77,7 +77,7 @@ def _check(options: argparse.Namespace) -> None:
 
 
 def _check_sources(options: argparse.Namespace, target: Path) -> None:
-    """Raises ValueError where the export would write what the model is read from."""
+    """Raises ValueError if the export could overwrite files of the model."""
     sources = [Path(os.path.realpath(path)) for path in (options.file, *file_names.source_files())]
     folders = {source.parent for source in sources} if target.suffix.lower() == ".gltf" else set()
     if target in sources or target.parent in folders:

@@ -14,14 +14,14 @@ from ...bridge.files import scenes, staging
 from ...core import command
 from ...core.flags import add_flags, given, settings_given, tables
 from ...core.wording import listed
-from .. import file_names, reading
+from .. import bake_inputs, file_names
 from ..bake import Bake
 from ..choices import PlotSettings, Settings
 from ..view import errors, figure
 from . import source
 
 _PLOTTED = ("wrap", "wrap_v", "bounds", "reader")
-"""The settings of a bake that matter to a plot."""
+"""The settings of a bake that affect a plot."""
 _HELP = "plot the error of filters over the mip value, on the meshes that use an image"
 _NOTES = """\
 The figure is that of the dissertation (7.7): solid lines are the root mean square errors over the
@@ -56,16 +56,16 @@ def _plot(options: argparse.Namespace) -> None:
             path = outputs.checked_path(options, f"--{name}", getattr(options, name))
             setattr(options, name, path)
     targets = [
-        staging.check_plain_target(path, ending)
-        for path, ending in ((options.output, ".png"), (options.table, ".csv"))
+        staging.check_plain_target(path, extension)
+        for path, extension in ((options.output, ".png"), (options.table, ".csv"))
         if path
     ]
     objects = source.objects_of(options)
     chosen, is_picture = source.images_of(options.image, objects, "auto")
     outputs.check_not_replaced(options, targets, [options.file, *file_names.source_files()])
     if len(chosen) > 1:
-        found = listed(image.name for image in chosen)
-        raise ValueError(f"--image: choose one; the meshes use {found}")
+        names = listed(image.name for image in chosen)
+        raise ValueError(f"--image: choose one; the meshes use {names}")
     image = chosen[0]
     images.check_untiled(image)
     depsgraph = bpy.context.evaluated_depsgraph_get()
@@ -73,8 +73,8 @@ def _plot(options: argparse.Namespace) -> None:
     command.warn(warnings)
     settings = settings_given(options, Settings)
     filters = given(options, PlotSettings).get("filters", errors.default_filters(settings.reader))
-    work = reading.read(
-        reading.Request(
+    work = bake_inputs.read(
+        bake_inputs.Request(
             image, objects, settings, depsgraph, all_faces=is_picture, needs_surface=True
         )
     )

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What `bake` and `plot` read: a file with objects, and images that these use."""
+"""The inputs of `bake` and `plot`: a file with objects, and images that they use."""
 
 import argparse
 import os
@@ -15,14 +15,14 @@ from ...bridge.files import scenes
 from ...core import command
 from ...core.flags import given
 from ...core.wording import either
-from .. import unnamed, users
+from .. import default_images, users
 from ..choices import Settings
 
 WANTED = "mesh object"
 
 
 def add_arguments(parser: argparse.ArgumentParser, more: str = "") -> None:
-    """Adds the arguments; `more` goes on with the help of --image."""
+    """Adds the arguments; `more` is appended to the help of --image."""
     parser.add_argument("file", metavar="FILE", help=f"a file: {either(scenes.SOURCES)}")
     parser.add_argument(
         "--object",
@@ -49,9 +49,10 @@ def users_of(
     objects: list[bpy.types.Object],
     names: Sequence[str],
 ) -> tuple[list[bpy.types.Object], list[str]]:
-    """Returns those that use the image of objects that nobody has named, and warnings.
+    """Returns the objects that use the image, or all if the user named them or none uses it.
 
-    Where none does, all are returned.
+    Returns:
+        The objects, and warnings.
     """
     if names:
         return objects, []
@@ -59,17 +60,17 @@ def users_of(
     return [obj for obj in objects if obj in shown] or objects, warnings
 
 
-def fitted(options: argparse.Namespace, settings: Settings, paths: Iterable[str]) -> Settings:
-    """Returns settings without what a preset says of files of another kind than those of `paths`.
+def fit_to_files(options: argparse.Namespace, settings: Settings, paths: Iterable[str]) -> Settings:
+    """Resets settings from a preset that do not apply to the formats of `paths`.
 
-    What a user has given stays, and is to be refused.
+    Settings given by flags stay, so that they can be refused.
     """
-    found = given(options, Settings)
-    if "texture_format" not in found and not any(map(target_files.has_formats, paths)):
+    flags = given(options, Settings)
+    if "texture_format" not in flags and not any(map(target_files.has_formats, paths)):
         settings = replace(settings, texture_format="auto")
-    if "effort" not in found and not any(map(target_files.has_formats, paths)):
+    if "effort" not in flags and not any(map(target_files.has_formats, paths)):
         settings = replace(settings, effort="normal")
-    if "supercompression" not in found and not any(map(target_files.has_supercompression, paths)):
+    if "supercompression" not in flags and not any(map(target_files.has_supercompression, paths)):
         settings = replace(settings, supercompression="none")
     return settings
 
@@ -77,9 +78,9 @@ def fitted(options: argparse.Namespace, settings: Settings, paths: Iterable[str]
 def images_of(
     name: str | None, objects: Sequence[bpy.types.Object], content: str
 ) -> tuple[list[bpy.types.Image], bool]:
-    """Returns the images to bake, and whether it is a picture file from the command line."""
+    """Returns the images to bake, and whether --image is a picture file."""
     if name is None:
-        chosen, line = unnamed.images_to_bake(objects)
+        chosen, line = default_images.images_to_bake(objects)
         if line:
             command.print_line(line)
         return chosen, False

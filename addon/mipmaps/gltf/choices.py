@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a user may set for the textures of a glTF export, and of an import."""
+"""Options for the textures of glTF exports and imports."""
 
 from dataclasses import dataclass
 
@@ -26,7 +26,7 @@ TEXTURE_FORMATS = {
 
 @dataclass(frozen=True)
 class GltfSettings:
-    """How the textures of a glTF export are written."""
+    """Options for the textures of a glTF export."""
 
     use_mipmaps: bool = switch(
         False,
@@ -76,7 +76,7 @@ class GltfSettings:
 
 @dataclass(frozen=True)
 class GltfImportSettings:
-    """What a glTF import makes of KTX 2 files."""
+    """Options for the KTX 2 files of a glTF import."""
 
     keep_levels: bool = switch(
         False,

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The textures of a glTF export: read as the file has them, fitted, and put into their places."""
+"""The textures of a glTF export: read as the exporter has them, fitted, and replaced."""
 
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
@@ -35,22 +35,22 @@ _WEBP = "EXT_texture_webp"
 _MIME_TYPE = "image/ktx2"
 _FILE = "texture.ktx2"
 _WRAPS: dict[Any, str] = {33071: "clamp", 33648: "clamp"}
-"""Of samplers; a mirrored image goes on with its edge, as far as a lookup can see."""
+"""Wrap modes of samplers. Close to its edge, a mirrored image looks like a clamped one."""
 
 
 @dataclass
 class _Picture:
-    """An image of the file in one role: all textures with the same bytes that are filtered alike.
+    """An image of the file in one role: all textures with the same bytes and the same filtering.
 
     Attributes:
-        image: The exporter's.
-        data: Its file.
+        image: The exporter's image.
+        data: The contents of its file.
         role: "color", "normal" or "data".
-        threshold: Of the alpha test; None for none.
-        wraps: Of both axes.
-        suffix: What tells it from the same image in other roles.
-        textures: The exporter's; by what they were copied from, or by themselves.
-        shown: What shows it, and how.
+        threshold: The threshold of the alpha test; None for none.
+        wraps: The wrap modes of both axes.
+        suffix: A suffix that distinguishes it from the same image in other roles.
+        textures: The exporter's textures, by the ids of their originals and their own.
+        shown: Its uses, with the triangles that show it.
     """
 
     image: Any
@@ -64,11 +64,11 @@ class _Picture:
 
     @property
     def name(self) -> str:
-        """What it is called in messages, and in the file."""
+        """Its name in messages and in the file."""
         return f"{self.image.name or 'Image'}{self.suffix}"
 
     def add(self, use: Use, part: Part, taken: dict[int, Any]) -> None:
-        """Takes a use, which gets a texture of its own where another role has taken its one."""
+        """Adds a use; copies its texture if another role uses that already."""
         texture = use.texture
         if id(texture) not in self.textures:
             own = copy(texture) if id(texture) in taken else texture
@@ -81,14 +81,14 @@ class Export:
     """The textures of one export.
 
     Attributes:
-        baked: The names of the images that got levels.
-        failed: Those of the others.
-        warnings: What a user should know about them.
-        notes: More that is good to know.
+        baked: The names of images with new levels.
+        failed: The names of the other images.
+        warnings: Warnings about images.
+        notes: Remarks about images.
     """
 
     def __init__(self, settings: Settings, options: GltfSettings) -> None:
-        """Takes how levels are made, of which what a file says itself is left out, and options."""
+        """Stores the options, and the settings that the file does not determine itself."""
         self.baked: list[str] = []
         self.failed: list[str] = []
         self.warnings: list[str] = []
@@ -114,7 +114,7 @@ class Export:
 
     @classmethod
     def of(cls, scene: bpy.types.Scene) -> "Export":
-        """Returns the export that the settings of a scene ask for."""
+        """Returns an export with the settings of a scene."""
         bake, gltf = scene.prefilter_bake, scene.prefilter_gltf
         settings = Settings(
             filter=bake.filter,
@@ -131,7 +131,7 @@ class Export:
         self._parts += geometry.parts(scene)
 
     def apply_nodes(self, image: Any, sockets: Any, export_settings: dict[str, Any]) -> None:
-        """Puts into a picture what nodes make of it on its way to a shader."""
+        """Applies the shader nodes after an image to its picture."""
         data = image.buffer_view or image.uri
         if not hasattr(data, "data"):
             return
@@ -142,32 +142,32 @@ class Export:
                 path.write_bytes(data.data)
                 with _opened(path, is_data=True) as opened:
                     texels = images.read(opened).stored
-            made, warnings = shader_nodes.changed_texels(texels, sockets, self._color_of)
+            changed, warnings = shader_nodes.changed_texels(texels, sockets, self._color_of)
         except FAILURES as error:
-            made, warnings = None, [f"nodes are ignored: {reason(error)}"]
+            changed, warnings = None, [f"nodes are ignored: {reason(error)}"]
         for text in warnings:
             self.warnings.append(f"texture '{name}': {text}")
             log.warning(f"Prefilter: {self.warnings[-1]}", popup=True)
-        if made is not None:
-            picture = png.encoded((made * 255 + 0.5).astype(np.uint8))
+        if changed is not None:
+            picture = png.encoded((changed * 255 + 0.5).astype(np.uint8))
             _replace_data(image, picture, "image/png", export_settings)
 
     def _color_of(self, image: bpy.types.Image) -> NDArray[np.float32]:
-        """Returns an image as shaders get it; several inputs ask for the same one."""
+        """Returns an image as shaders read it, cached because several inputs may use it."""
         if image.name_full not in self._colors:
             self._colors[image.name_full] = scene_linear(images.read(image))
         return self._colors[image.name_full]
 
     def replace_textures(self, export_settings: dict[str, Any]) -> None:
-        """Fits all images; one that cannot be fitted stays a picture, and the user is told."""
+        """Fits all images; leaves a picture as it is, with a warning, if it cannot be fitted."""
         log, manager = export_settings["log"], bpy.context.window_manager
-        found = self._pictures()
-        manager.progress_begin(0, len(found))
+        pictures = self._pictures()
+        manager.progress_begin(0, len(pictures))
         try:
-            for number, picture in enumerate(found):
+            for number, picture in enumerate(pictures):
                 manager.progress_update(number)
                 try:
-                    made, bake = self._fitted(picture)
+                    ktx2, bake = self._fit(picture)
                 except FAILURES as error:
                     text = f"texture '{picture.name}' stays as it is: {reason(error)}"
                     log.warning(f"Prefilter: {text}", popup=True)
@@ -181,12 +181,12 @@ class Export:
                 self.baked.append(picture.name)
                 self.warnings += bake.warnings
                 self.notes += bake.notes
-                self._replace(picture, made, export_settings)
+                self._replace(picture, ktx2, export_settings)
         finally:
             manager.progress_end()
 
     def _pictures(self) -> list[_Picture]:
-        found: dict[Any, _Picture] = {}
+        pictures: dict[Any, _Picture] = {}
         taken: dict[int, Any] = {}
         for part in self._parts:
             for use in uses.uses(part.primitive):
@@ -196,12 +196,12 @@ class Export:
                     continue
                 wraps = _wraps(use.texture.sampler)
                 key = (data.data, use.role, use.covers, use.threshold, wraps)
-                about = (image, data.data, use.role, use.threshold, wraps)
-                found.setdefault(key, _Picture(*about)).add(use, part, taken)
-        _name_by_role(found.values())
-        return list(found.values())
+                picture = _Picture(image, data.data, use.role, use.threshold, wraps)
+                pictures.setdefault(key, picture).add(use, part, taken)
+        _name_by_role(pictures.values())
+        return list(pictures.values())
 
-    def _fitted(self, picture: _Picture) -> tuple[bytes, Bake]:
+    def _fit(self, picture: _Picture) -> tuple[bytes, Bake]:
         """Returns a KTX 2 file, and the bake that made it."""
         content = picture.role
         with temporary_folder() as folder:
@@ -225,7 +225,7 @@ class Export:
             return target.read_bytes(), bake
 
     def _settings_of(self, picture: _Picture, content: str) -> Settings:
-        # Normals are no colors: what codebooks lose of them is seen as dents.
+        # Codebooks of colors lose details of normals, which would be visible as dents.
         is_coarse = prefilter.TEXEL_FORMATS[self._settings.texture_format].is_coarse
         return replace(
             self._settings,
@@ -238,22 +238,22 @@ class Export:
             wrap_v=picture.wraps[1],
         )
 
-    def _replace(self, picture: _Picture, made: bytes, export_settings: dict[str, Any]) -> None:
+    def _replace(self, picture: _Picture, ktx2: bytes, export_settings: dict[str, Any]) -> None:
         from io_scene_gltf2.io.com.gltf2_io_extensions import Extension
 
         is_required = self._options.fallback == "none"
-        image = _ktx2_image(picture, made, export_settings)
-        for texture in {id(one): one for one in picture.textures.values()}.values():
-            others = dict(texture.extensions or {})
-            others.pop(_WEBP, None)
+        image = _ktx2_image(picture, ktx2, export_settings)
+        for texture in {id(texture): texture for texture in picture.textures.values()}.values():
+            extensions = dict(texture.extensions or {})
+            extensions.pop(_WEBP, None)
             extension = Extension(_EXTENSION, {"source": image}, is_required)
-            texture.extensions = {**others, _EXTENSION: extension}
+            texture.extensions = {**extensions, _EXTENSION: extension}
             if is_required:
                 texture.source = None
 
 
 def _name_by_role(pictures: Iterable[_Picture]) -> None:
-    """Tells pictures of one image apart by their roles, or by numbers where these are the same."""
+    """Sets the suffixes of pictures of one image: their roles, with numbers for equal roles."""
     by_data: dict[bytes, list[_Picture]] = {}
     for picture in pictures:
         by_data.setdefault(picture.data, []).append(picture)
@@ -273,7 +273,7 @@ def _image(texture: Any) -> Any:
 
 @contextmanager
 def _opened(path: Path, *, is_data: bool) -> Iterator[bpy.types.Image]:
-    """Loads an image for as long as the context lasts; its colors are straight."""
+    """Loads an image with straight alpha, and removes it at the end of the context."""
     try:
         image = bpy.data.images.load(str(path))
     except RuntimeError as error:
@@ -298,40 +298,40 @@ def _read(picture: _Picture, folder: Path, *, is_data: bool) -> images.Picture:
 
 
 def _surfaces(picture: _Picture) -> meshes.ImageSurfaces:
-    """Returns what shows an image; what does so in several roles counts once."""
-    found = meshes.ImageSurfaces()
-    known: set[Any] = set()
+    """Returns the surfaces that show an image, each once even if it shows it in several roles."""
+    surfaces = meshes.ImageSurfaces()
+    seen: set[Any] = set()
     for use, part in picture.shown:
         key = (id(part), use.tex_coord, use.transform)
-        if key in known:
+        if key in seen:
             continue
-        known.add(key)
+        seen.add(key)
         surface: prefilter.Surface | None = part.surface(use.tex_coord, use.transform)
         if surface is not None:
-            found.surfaces.append(surface)
-            found.objects.append(part.name)
-    return found
+            surfaces.surfaces.append(surface)
+            surfaces.objects.append(part.name)
+    return surfaces
 
 
 def _wraps(sampler: Any) -> tuple[str, str]:
-    """Returns how a texture goes on beyond its edges, along both axes."""
+    """Returns the wrap modes of a sampler along both axes."""
     s, t = (_WRAPS.get(getattr(sampler, name, 0), "repeat") for name in ("wrap_s", "wrap_t"))
     return s, t
 
 
-def _ktx2_image(picture: _Picture, made: bytes, export_settings: dict[str, Any]) -> Any:
-    """Returns the exporter's image of a KTX 2 file: in the buffer, or a file by itself."""
+def _ktx2_image(picture: _Picture, ktx2: bytes, export_settings: dict[str, Any]) -> Any:
+    """Returns an exporter's image for a KTX 2 file, in the buffer or in a separate file."""
     image = copy(picture.image)
     image.extensions = image.extras = None
     image.name = picture.name
-    _replace_data(image, made, _MIME_TYPE, export_settings, picture.suffix)
+    _replace_data(image, ktx2, _MIME_TYPE, export_settings, picture.suffix)
     return image
 
 
 def _replace_data(
     image: Any, data: bytes, mime_type: str, export_settings: dict[str, Any], suffix: str = ""
 ) -> None:
-    """Gives the exporter's image another file: in the buffer, or by itself."""
+    """Replaces the data of an exporter's image, in the buffer or in a separate file."""
     image.mime_type = mime_type
     if image.buffer_view is not None:
         image.buffer_view = type(image.buffer_view)(data)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The triangles that a glTF file shows, as the exporter holds them."""
+"""The triangles of a glTF file, from the exporter's data structures."""
 
 import math
 from collections.abc import Iterator
@@ -17,19 +17,19 @@ _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}
 _TRIANGLES = (None, 4)
 
 Transform = tuple[tuple[float, float], float, tuple[float, float]]
-"""Of texture coordinates: offset, rotation and scale, as KHR_texture_transform has them."""
+"""A transform of texture coordinates: offset, rotation, scale, as in KHR_texture_transform."""
 
 
 @dataclass(frozen=True)
 class Part:
-    """The triangles of a primitive of a node.
+    """The triangles of a node's primitive.
 
     Attributes:
-        name: That of the node.
-        primitive: The exporter's.
+        name: The name of the node.
+        primitive: The exporter's primitive.
         positions: (vertices, 3) in world space.
         triangles: (triangles, 3) indices.
-        uvs: (vertices, 2) of each set, v down.
+        uvs: (vertices, 2) by number of the set, with v downwards.
     """
 
     name: str
@@ -39,7 +39,8 @@ class Part:
     uvs: dict[int, NDArray[np.float64]]
 
     def surface(self, tex_coord: int, transform: Transform) -> prefilter.Surface | None:
-        """Returns the part under an image; None where it has no such texture coordinates."""
+        """Returns the part as a surface under an image; None if it lacks the texture
+        coordinates."""
         uvs = self.uvs.get(tex_coord)
         if uvs is None or not len(self.triangles):
             return None
@@ -51,18 +52,18 @@ class Part:
 
 
 def parts(scene: Any) -> Iterator[Part]:
-    """Yields what a scene shows."""
+    """Yields the triangles of a scene."""
     for node in scene.nodes:
-        yield from _below(node, Matrix.Identity(4))
+        yield from _subtree(node, Matrix.Identity(4))
 
 
-def _below(node: Any, parent: Matrix) -> Iterator[Part]:
+def _subtree(node: Any, parent: Matrix) -> Iterator[Part]:
     matrix = parent @ _matrix(node)
     for primitive in node.mesh.primitives if node.mesh is not None else ():
         if primitive.mode in _TRIANGLES and "POSITION" in primitive.attributes:
             yield _part(node.name, primitive, np.array(matrix))
     for child in node.children or ():
-        yield from _below(child, matrix)
+        yield from _subtree(child, matrix)
 
 
 def _part(name: str, primitive: Any, matrix: NDArray[np.float64]) -> Part:
@@ -80,11 +81,11 @@ def _part(name: str, primitive: Any, matrix: NDArray[np.float64]) -> Part:
 
 
 def values(accessor: Any) -> NDArray[Any]:
-    """Returns the values of an accessor, a row each."""
+    """Returns the values of an accessor, one element per row."""
     width = _WIDTHS[accessor.type]
-    kind = _TYPES[int(accessor.component_type)]
-    found = np.frombuffer(accessor.buffer_view.data, kind, count=accessor.count * width)
-    return found.reshape(-1, width)
+    dtype = _TYPES[int(accessor.component_type)]
+    flat = np.frombuffer(accessor.buffer_view.data, dtype, count=accessor.count * width)
+    return flat.reshape(-1, width)
 
 
 def _matrix(node: Any) -> Matrix:

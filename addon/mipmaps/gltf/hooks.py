@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What Blender's glTF exporter and importer call while they work."""
+"""The hooks that Blender's glTF exporter and importer call."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -15,20 +15,20 @@ if TYPE_CHECKING:
     from .export import Export
 
 _KEY = "prefilter"
-_given: "list[Export]" = []
+_overrides: "list[Export]" = []
 
 
 @contextmanager
 def exporting(export: "Export") -> Iterator[None]:
-    """Has exports use this one, whatever the scene says, for as long as the context lasts."""
-    _given.append(export)
+    """Makes the exporter use `export` within the context, instead of the settings of the scene."""
+    _overrides.append(export)
     try:
         yield
     finally:
-        _given.pop()
+        _overrides.pop()
 
 
-def _of_scene(scene: bpy.types.Scene) -> "Export | None":
+def _export_of_scene(scene: bpy.types.Scene) -> "Export | None":
     settings = getattr(scene, GROUP, None)
     if settings is None or not settings.use_mipmaps:
         return None
@@ -38,10 +38,10 @@ def _of_scene(scene: bpy.types.Scene) -> "Export | None":
 
 
 def glTF2_pre_export_callback(export_settings: dict[str, Any]) -> None:  # noqa: N802
-    """Begins an export if the scene wants mipmaps; pictures are then to come without loss."""
+    """Starts an export if the scene has Prefilter Mipmaps on, with lossless pictures."""
     if export_settings["gltf_image_format"] == "NONE":
         return
-    export = _given[-1] if _given else _of_scene(bpy.context.scene)
+    export = _overrides[-1] if _overrides else _export_of_scene(bpy.context.scene)
     if export is None:
         return
     export_settings[_KEY] = export
@@ -55,24 +55,24 @@ class glTF2ExportUserExtension:
     """Hooks of an export; the exporter finds the class by its name."""
 
     def gather_image_hook(self, image: Any, *others: Any) -> None:
-        """Applies what nodes do between an image and the shader.
+        """Applies the nodes between an image and the shader.
 
-        The last two arguments are the shader's inputs and the settings; since Blender 5.2 there is
-        one before these.
+        The last two arguments are the shader's inputs and the settings; Blender 5.2 added another
+        argument before them.
         """
         sockets, export_settings = others[-2:]
         if _KEY in export_settings:
             export_settings[_KEY].apply_nodes(image, sockets, export_settings)
 
     def gather_scene_hook(self, scene: Any, _: bpy.types.Scene, export_settings: Any) -> None:
-        """Copies what the file shows of a scene, before the exporter compresses it."""
+        """Copies the triangles of a scene before the exporter compresses them."""
         if _KEY in export_settings:
             export_settings[_KEY].add_scene(scene)
 
     def gather_gltf_hook(
         self, _active: int, _scenes: Any, _animations: Any, export_settings: Any
     ) -> None:
-        """Puts KTX 2 files in the place of pictures."""
+        """Replaces pictures by KTX 2 files."""
         if _KEY in export_settings:
             export_settings[_KEY].replace_textures(export_settings)
 
@@ -81,12 +81,13 @@ class glTF2ImportUserExtension:
     """Hooks of an import; the importer finds the class by its name."""
 
     def __init__(self) -> None:
-        """Tells the importer, which refuses files that require what it does not know."""
+        """Announces KHR_texture_basisu, without which the importer refuses files that require
+        it."""
         self.extensions = [SimpleNamespace(name="KHR_texture_basisu", required=True)]
         self._import: Any = None
 
     def gather_import_gltf_before_hook(self, gltf: Any) -> None:
-        """Begins an import."""
+        """Starts an import."""
         from .imports import Import, show_ktx2
 
         settings = getattr(bpy.context.scene, IMPORT_GROUP, None)
@@ -94,13 +95,13 @@ class glTF2ImportUserExtension:
         show_ktx2(gltf)
 
     def gather_import_image_before_hook(self, image: Any, gltf: Any) -> None:
-        """Puts a PNG file in the place of a KTX 2 file."""
+        """Replaces a KTX 2 file by a PNG file."""
         self._import.replace_image(image, gltf)
 
-    def gather_import_image_after_hook(self, image: Any, made: Any, _gltf: Any) -> None:
-        """Takes the image that was made."""
-        self._import.add_image(image, made)
+    def gather_import_image_after_hook(self, image: Any, blender_image: Any, _gltf: Any) -> None:
+        """Stores the imported image."""
+        self._import.add_image(image, blender_image)
 
     def gather_import_scene_after_animation_hook(self, _gltf_scene: Any, _: Any, gltf: Any) -> None:
-        """Keeps levels, when materials have said what their images hold."""
+        """Makes level images, after the materials have set the color spaces of images."""
         self._import.keep_levels(gltf)

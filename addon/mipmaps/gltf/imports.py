@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The textures of a glTF import that are KTX 2 files, as pictures that Blender reads."""
+"""Converts the KTX 2 textures of a glTF import to pictures that Blender can read."""
 
 import base64
 import io
@@ -22,13 +22,13 @@ class Import:
     """The textures of one import."""
 
     def __init__(self, *, keep_levels: bool) -> None:
-        """Takes whether the levels below level 0 are to become images too."""
+        """Stores whether to import levels 1, 2, ... as images too."""
         self._keep_levels = keep_levels
         self._levels: dict[int, list[NDArray[np.uint8]]] = {}
-        self._kept: list[tuple[bpy.types.Image, list[NDArray[np.uint8]]]] = []
+        self._imported: list[tuple[bpy.types.Image, list[NDArray[np.uint8]]]] = []
 
     def replace_image(self, image: Any, gltf: Any) -> None:
-        """Puts a PNG file in the place of a KTX 2 file, before Blender reads it."""
+        """Replaces a KTX 2 file by a PNG file, before Blender reads it."""
         data = _data(image, gltf)
         if not data.startswith(_IDENTIFIER):
             return
@@ -47,15 +47,15 @@ class Import:
         if self._keep_levels:
             self._levels[id(image)] = levels[1:]
 
-    def add_image(self, image: Any, made: bpy.types.Image | None) -> None:
-        """Takes what Blender has made of an image; what it holds is known at the end."""
+    def add_image(self, image: Any, blender_image: bpy.types.Image | None) -> None:
+        """Stores Blender's image with its levels, until its color space is known."""
         levels = self._levels.pop(id(image), None)
-        if made is not None and levels:
-            self._kept.append((made, levels))
+        if blender_image is not None and levels:
+            self._imported.append((blender_image, levels))
 
     def keep_levels(self, gltf: Any) -> None:
-        """Makes images of the levels, as a bake does."""
-        for image, levels in self._kept:
+        """Makes level images, as a bake does."""
+        for image, levels in self._imported:
             try:
                 picture = images.read(image)
                 floats = [level.astype(np.float32) / np.float32(255) for level in levels]
@@ -64,11 +64,11 @@ class Import:
                 gltf.log.error(
                     f"Prefilter: the levels of '{image.name}' are not kept: {reason(error)}"
                 )
-        self._kept.clear()
+        self._imported.clear()
 
 
 def show_ktx2(gltf: Any) -> None:
-    """Makes textures that have no other picture show that of KHR_texture_basisu."""
+    """Sets the source of textures without a fallback picture to that of KHR_texture_basisu."""
     for texture in gltf.data.textures or ():
         extension = (texture.extensions or {}).get("KHR_texture_basisu")
         if texture.source is None and isinstance(extension, dict):
@@ -76,17 +76,16 @@ def show_ktx2(gltf: Any) -> None:
 
 
 def _data(image: Any, gltf: Any) -> bytes:
-    """Returns the file that an image is, or its beginning where that is no KTX 2 file."""
+    """Returns the file of an image; empty if it is not a KTX 2 file."""
     from io_scene_gltf2.io.imp.gltf2_io_binary import BinaryData
 
     is_elsewhere = image.uri is not None and not image.uri.startswith("data:")
     if is_elsewhere and not image.uri.lower().endswith(".ktx2"):
         return b""
-    found = BinaryData.get_image_data(gltf, gltf.data.images.index(image))
-    if found is None:
+    data = BinaryData.get_image_data(gltf, gltf.data.images.index(image))
+    if data is None or bytes(data[: len(_IDENTIFIER)]) != _IDENTIFIER:
         return b""
-    size = len(found) if bytes(found[: len(_IDENTIFIER)]) == _IDENTIFIER else 0
-    return bytes(found[:size])
+    return bytes(data)
 
 
 def _name(uri: str | None) -> str | None:
@@ -96,7 +95,7 @@ def _name(uri: str | None) -> str | None:
 
 
 def _with_colors(level: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """Returns a level with red, green and blue; of two channels the third is 0, one is gray."""
+    """Returns a level with three channels: one channel becomes gray, two get a blue of 0."""
     height, width, channels = level.shape
     if channels >= 3:
         return level

@@ -2,8 +2,8 @@
 
 """The panels in the dialogs of Blender's glTF exporter and importer.
 
-Until Blender 5.1 both ask the add-on for `draw_export` and `draw_import` when a dialog opens. Later
-ones draw what add-ons have put into dictionaries of theirs.
+Until Blender 5.1 both look up `draw_export` and `draw_import` in the add-on when a dialog opens.
+Later versions have dictionaries in which add-ons register draw functions.
 """
 
 import sys
@@ -12,13 +12,15 @@ from contextlib import suppress
 import bpy
 
 from ...core.preferences import PACKAGE
+from ...core.sidebar import subpanel
 from .properties import GROUP, IMPORT_GROUP
 
 _MODULE = "io_scene_gltf2"
 
 
 def draw_export(context: bpy.types.Context, layout: bpy.types.UILayout) -> None:
-    """Draws the panel; the exporter goes on to ask for it after the add-on was disabled."""
+    """Draws the panel; nothing after the add-on was disabled, when the exporter still calls
+    this."""
     settings = getattr(context.scene, GROUP, None)
     if settings is None:
         return
@@ -27,7 +29,6 @@ def draw_export(context: bpy.types.Context, layout: bpy.types.UILayout) -> None:
     header.prop(settings, "use_mipmaps")
     if body:
         body.active = settings.use_mipmaps
-        body.prop(context.scene.prefilter_bake, "filter")
         body.prop(context.scene.prefilter_bake, "lookups")
         body.prop(settings, "texture_format")
         body.prop(settings, "effort")
@@ -35,10 +36,14 @@ def draw_export(context: bpy.types.Context, layout: bpy.types.UILayout) -> None:
             body.prop(settings, "quality")
         body.prop(settings, "supercompression")
         body.prop(settings, "fallback")
+        _, advanced = subpanel(body, "gltf_advanced", "Advanced")
+        if advanced:
+            advanced.prop(context.scene.prefilter_bake, "filter")
 
 
 def draw_import(context: bpy.types.Context, layout: bpy.types.UILayout) -> None:
-    """Draws the panel; the importer goes on to ask for it after the add-on was disabled."""
+    """Draws the panel; nothing after the add-on was disabled, when the importer still calls
+    this."""
     settings = getattr(context.scene, IMPORT_GROUP, None)
     if settings is None:
         return
@@ -52,11 +57,11 @@ _PANELS = {
     "exporter_extension_layout_draw": draw_export,
     "importer_extension_layout_draw": draw_import,
 }
-"""By the dictionaries that have them, under the name that the exporter would use itself."""
+"""The draw functions, by the names of the exporter's and importer's dictionaries."""
 
 
 def offer_panels() -> None:
-    """Puts the panels into the exporter's and importer's dictionaries, where these are loaded."""
+    """Adds the panels to the dictionaries of the exporter and importer, if these are loaded."""
     module = sys.modules.get(_MODULE)
     for name, draw in _PANELS.items():
         if hasattr(module, name):
@@ -75,16 +80,16 @@ def _offer_after_load(_file: str) -> None:
 
 
 def register() -> None:
-    """Has the dialogs show the panels."""
+    """Adds the panels to the dialogs."""
     offer_panels()
-    # At startup the exporter may come after this add-on.
+    # At startup the exporter may be loaded after this add-on.
     bpy.app.timers.register(offer_panels, persistent=True)
     bpy.app.handlers.load_post.append(_offer_after_load)
 
 
 def unregister() -> None:
-    """Takes the panels back."""
+    """Removes the panels from the dialogs."""
     bpy.app.handlers.load_post.remove(_offer_after_load)
-    with suppress(ValueError):  # It has run.
+    with suppress(ValueError):  # The timer has run already.
         bpy.app.timers.unregister(offer_panels)
     _withdraw_panels()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The settings of a glTF export and of an import as properties of the scene."""
+"""The settings of glTF exports and imports as properties of the scene."""
 
 import bpy
 
@@ -13,13 +13,13 @@ IMPORT_GROUP = "prefilter_gltf_import"
 
 
 class PREFILTER_PG_gltf(bpy.types.PropertyGroup):
-    """The settings that the panel shows; they stay with the scene."""
+    """The settings of exports, stored in the scene."""
 
     __annotations__ = properties(GltfSettings)
 
 
 class PREFILTER_PG_gltf_import(bpy.types.PropertyGroup):
-    """The same of an import."""
+    """The settings of imports, stored in the scene."""
 
     __annotations__ = properties(GltfImportSettings)
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What nodes make of an image that the glTF exporter writes as it is."""
+"""Applies shader nodes to images, which the glTF exporter writes without them."""
 
 import re
 from collections.abc import Callable, Iterable, Sequence
@@ -19,31 +19,30 @@ Floats = NDArray[np.float32]
 ColorOf = Callable[[bpy.types.Image], Floats]
 
 _CHANNELS = {"Roughness": 1, "Metallic": 2}
-"""Inputs of one number, by the channel of the picture that has it."""
+"""The channel of the picture for each scalar input."""
 _ALPHA = "Alpha"
 _INLINED = re.compile(r"^\d+_")
-"""What the exporter of Blender 5 puts before names, in trees that it makes without groups."""
+"""The prefix of node names in trees in which the exporter of Blender 5 has inlined groups."""
 
 
 def changed_texels(
     texels: Floats, sockets: Sequence[Any], color_of: ColorOf
 ) -> tuple[Floats | None, list[str]]:
-    """Applies what nodes do to an image on its way to the shader.
+    """Applies the nodes between an image and the shader.
 
     Args:
-        texels: (height, width, 3 or 4) of the picture that the exporter made.
-        sockets: The exporter's; the inputs that the picture is for.
-        color_of: Returns the values of an image as shaders get them.
+        texels: (height, width, 3 or 4), the picture made by the exporter.
+        sockets: The shader inputs of the picture, as the exporter's objects.
+        color_of: Returns the values of an image as shaders read them.
 
     Returns:
-        The texels with the changes, None where there are none; and warnings of nodes that are
-        ignored.
+        The changed texels, or None without changes; and warnings about ignored nodes.
     """
-    made: Floats | None = None
+    changed: Floats | None = None
     warnings: list[str] = []
-    for one in sockets:
-        socket = one.socket
-        groups = tuple(node for node in one.group_path if getattr(node, "type", "") == "GROUP")
+    for entry in sockets:
+        socket = entry.socket
+        groups = tuple(node for node in entry.group_path if getattr(node, "type", "") == "GROUP")
         if socket.name == _ALPHA:
             continue
         partial = partial_factor(socket, groups)
@@ -64,14 +63,14 @@ def changed_texels(
         if values.shape[:2] not in (texels.shape[:2], (1, 1)):
             warnings.append(_ignored(socket, function.changing, "meets images of several sizes"))
             continue
-        made = texels.copy() if made is None else made
-        made[..., channels] = values if values.ndim == 3 else values[..., None]
-    return made, warnings
+        changed = texels.copy() if changed is None else changed
+        changed[..., channels] = values if values.ndim == 3 else values[..., None]
+    return changed, warnings
 
 
-def _ignored(socket: bpy.types.NodeSocket, found: Iterable[bpy.types.Node], why: str) -> str:
+def _ignored(socket: bpy.types.NodeSocket, nodes: Iterable[bpy.types.Node], why: str) -> str:
     is_inlined = bpy.app.version >= (5, 0, 0)
-    names = [_INLINED.sub("", node.name) if is_inlined else node.name for node in found]
+    names = [_INLINED.sub("", node.name) if is_inlined else node.name for node in nodes]
     return f"node {listed(names)} before '{socket.name}' is not applied as it is: it {why}"
 
 
@@ -83,7 +82,7 @@ def _channels_of(socket: bpy.types.NodeSocket) -> slice | None:
 
 
 def _stored(function: TexelFunction, socket: bpy.types.NodeSocket, groups: Groups) -> Floats:
-    """Returns what an input gets, as pictures store it."""
+    """Returns the values of an input, as pictures store them."""
     values = function.values(socket, groups)
     if socket.type != "RGBA" or _is_normal(socket):
         return np.clip(values, 0, 1)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What the materials of a glTF file take of its textures."""
+"""The uses of textures in the materials of a glTF file."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -21,16 +21,16 @@ _CUTOFF = 0.5
 
 @dataclass(frozen=True)
 class Use:
-    """A texture of a material.
+    """The use of a texture in a material.
 
     Attributes:
-        info: The exporter's reference to it, in the material.
+        info: The exporter's reference to the texture, in the material.
         role: "color", "normal" or "data".
-        name: What the material calls it, in lower case without "_".
+        name: The property of the material, in lower case without "_".
         tex_coord: The set of texture coordinates.
-        transform: Of these.
-        covers: Whether its alpha says how much of a texel is covered.
-        threshold: Of the alpha test; None for none.
+        transform: The transform of the texture coordinates.
+        covers: Whether alpha is coverage.
+        threshold: The threshold of the alpha test; None for none.
     """
 
     info: Any
@@ -48,7 +48,7 @@ class Use:
 
 
 def uses(primitive: Any) -> Iterator[Use]:
-    """Yields the textures of the materials of a primitive, those of variants included."""
+    """Yields the textures of a primitive's materials, including those of variants."""
     for material in _materials(primitive):
         for name, info in _infos("", material):
             yield _use(material, name, info)
@@ -74,11 +74,11 @@ def _use(material: Any, name: str, info: Any) -> Use:
 
 
 def _transform(info: Any) -> Transform:
-    found = (info.extensions or {}).get(_TRANSFORM, {})
-    found = getattr(found, "extension", found)
-    left, top = found.get("offset", (0.0, 0.0))
-    wide, high = found.get("scale", (1.0, 1.0))
-    return (left, top), found.get("rotation", 0.0), (wide, high)
+    transform = (info.extensions or {}).get(_TRANSFORM, {})
+    transform = getattr(transform, "extension", transform)
+    left, top = transform.get("offset", (0.0, 0.0))
+    wide, high = transform.get("scale", (1.0, 1.0))
+    return (left, top), transform.get("rotation", 0.0), (wide, high)
 
 
 def _materials(primitive: Any) -> Iterator[Any]:
@@ -91,7 +91,7 @@ def _materials(primitive: Any) -> Iterator[Any]:
 
 
 def _infos(name: str, node: Any) -> Iterator[tuple[str, Any]]:
-    """Yields what refers to a texture in a material, and its name there."""
+    """Yields the references to textures in a material, with their property names."""
     if hasattr(node, "tex_coord"):
         yield name.replace("_", "").lower(), node
     elif isinstance(node, dict):

@@ -1,3 +1,3 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Every image of a model at once: what there is to bake, how, into which files, and the bake."""
+"""The bake of all images of a model: plan, decisions per image, files, and the bake itself."""

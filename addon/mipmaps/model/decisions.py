@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What pixels add to what nodes say of an image: its content, and the format of its file."""
+"""Decisions based on nodes and pixels: the content of an image, and the format of its file."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,27 +14,27 @@ from ..choices import TEXTURE_FORMATS
 from .plan import Item
 
 BY_CONTENT = ("auto", "blocks")
-"""The texel formats that are chosen for each image."""
+"""The settings that choose a texel format for each image by its content."""
 _HEIGHTS = ("Bump", "Displacement", "Vector Displacement")
-_OF_FILES = {".exr": "Half Float", ".png": "16-Bit"}
-"""What float images get where there is no choice of formats; the others keep 32 bits."""
+_FLOAT_LABELS = {".exr": "Half Float", ".png": "16-Bit"}
+"""Precision of float images in files without a choice of formats; other files keep 32 bits."""
 
 
 @dataclass(frozen=True)
 class Decision:
-    """How an image is baked.
+    """The content as which an image is baked.
 
     Attributes:
-        content: A key of `choices.CONTENTS`, and not "auto".
-        note: Why it is another content than the nodes say; empty if it is not.
+        content: A key of `choices.CONTENTS` except "auto".
+        note: Why it differs from the content that the nodes suggest; empty if it does not.
     """
 
     content: str
     note: str = ""
 
 
-def decided(item: Item, picture: Picture) -> Decision:
-    """Returns the content of an image whose pixels are known."""
+def decide_content(item: Item, picture: Picture) -> Decision:
+    """Returns the content of an image, from its nodes and pixels."""
     if item.content != "cutout":
         return Decision(item.content)
     plain = "data" if picture.is_data else "color"
@@ -49,16 +49,16 @@ def decided(item: Item, picture: Picture) -> Decision:
 
 
 def texture_format(item: Item, picture: Picture, content: str, target: Path | None) -> str:
-    """Returns the key of the texel format that suits what an image holds.
+    """Returns the texel format that suits the content of an image.
 
     Args:
-        item: What shaders take of it.
+        item: The uses of the image in shaders.
         picture: Its pixels.
         content: A key of `choices.CONTENTS`.
         target: The file; None for none.
 
     Returns:
-        A key of `choices.TEXTURE_FORMATS`; "auto" for a file that has no choice of formats.
+        A key of `choices.TEXTURE_FORMATS`; "auto" for a file without a choice of formats.
     """
     if target is None or not target_files.has_formats(target.name):
         return "auto"
@@ -72,7 +72,7 @@ def texture_format(item: Item, picture: Picture, content: str, target: Path | No
 
 
 def shown_format(picture: Picture, target: Path | None, chosen: str) -> str:
-    """Returns how to call what a file holds."""
+    """Returns the label of a file's texel format."""
     if target is None:
         return ""
     extension = target.suffix.lower()
@@ -82,4 +82,4 @@ def shown_format(picture: Picture, target: Path | None, chosen: str) -> str:
         return TEXTURE_FORMATS[chosen].label
     if extension != ".exr" and not picture.is_float:
         return "8-Bit"
-    return _OF_FILES.get(extension, "Float")
+    return _FLOAT_LABELS.get(extension, "Float")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""A JSON file that says of each image of a model which files have its levels, and how."""
+"""The manifest: a JSON file that lists the images of a model with their files and formats."""
 
 import json
 import os
@@ -19,7 +19,7 @@ from .table import Row
 
 
 def check_target(path: str) -> Path:
-    """Returns the absolute path of a manifest, whose folder need not be there yet.
+    """Returns the absolute path of a manifest, whose folder may be missing.
 
     Raises:
         ValueError: It does not end in .json.
@@ -32,14 +32,14 @@ def check_target(path: str) -> Path:
 
 
 class Manifest:
-    """A manifest that is written together with the files of the images, like a bake."""
+    """A manifest, written together with the files of the images; it has the interface of a bake."""
 
     def __init__(self, target: Path, rows: Sequence[Row], written: Iterable[Path]) -> None:
         """Stages the file.
 
         Args:
             target: The file, from `check_target`.
-            rows: What is done with each image.
+            rows: A description of each image's bake.
             written: The files of all images.
 
         Raises:
@@ -51,15 +51,15 @@ class Manifest:
         self.staged_files: Sequence[StagedFile] = [staging.stage_data(target, text.encode())]
 
     def stage_images(self) -> None:
-        """Makes none."""
+        """Does nothing: a manifest has no level images."""
 
     def finish(self) -> Outcome:
-        """Says what was written."""
+        """Returns the outcome."""
         listed = counted(self._images, "image")
         return Outcome(Sentence("Listed {} in '{}'", listed, self._target))
 
     def discard(self) -> None:
-        """Removes what was staged, if it was not put into place."""
+        """Deletes the staged file if it was not put into place."""
         for file in self.staged_files:
             file.discard()
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Pictures for files as shaders get them: with what nodes make of their texels."""
+"""Applies shader nodes to the texels of pictures that are written to files."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -20,101 +20,102 @@ _CHANNELS = {"all": slice(0, 3), "red": slice(0, 1), "green": slice(1, 2), "blue
 Floats = NDArray[np.float32]
 
 
-def with_nodes(item: Item, image: bpy.types.Image, picture: Picture) -> tuple[Picture, list[str]]:
-    """Returns the picture with what nodes make of it, and what is to be known of that.
+def apply_nodes(item: Item, image: bpy.types.Image, picture: Picture) -> tuple[Picture, list[str]]:
+    """Returns the picture after the nodes before its inputs, and notes for the user.
 
-    Nodes count that are functions of the texel, and if all inputs that read the same channels get
-    the same. The alpha channel, and what is tested, stay as they are.
+    A node is applied if it is a function of the texel, and if all inputs that read the same
+    channels get the same values. The alpha channel and channels of alpha tests are unchanged.
     """
-    inputs, told = _known(item, image)
-    if not any(one.names for one in inputs):
-        return picture, told
+    inputs, notes = _analyze_inputs(item, image)
+    if not any(entry.names for entry in inputs):
+        return picture, notes
     linear = scene_linear(picture)
-    made = linear.copy()
+    changed = linear.copy()
     by_channel: dict[str, list[_Input]] = {}
-    for one in inputs:
-        by_channel.setdefault(one.channel, []).append(one)
+    for entry in inputs:
+        by_channel.setdefault(entry.channel, []).append(entry)
     is_mixed = "all" in by_channel and len(by_channel) > 1
-    for channel, found in by_channel.items():
-        names = dict.fromkeys(name for one in found for name in one.names)
+    for channel, entries in by_channel.items():
+        names = dict.fromkeys(name for entry in entries for name in entry.names)
         if not names:
             continue
-        first, *others = [TexelFunction(lambda _: linear).values(*one.place) for one in found]
+        values = [TexelFunction(lambda _: linear).values(*entry.socket) for entry in entries]
+        first, *others = values
         if is_mixed or any(not np.array_equal(first, other) for other in others):
-            labels = dict.fromkeys(one.label for one in inputs)
-            told.append(
+            labels = dict.fromkeys(entry.label for entry in inputs)
+            notes.append(
                 f"is baked without what nodes do ({listed(names)}): inputs get different values "
                 f"of it, {listed(labels)}"
             )
             continue
-        made[..., _CHANNELS[channel]] = first if first.ndim == 3 else first[..., None]
-        told.append(f"is baked with what nodes do: {listed(names)}")
-    return _stored(picture, made), told
+        changed[..., _CHANNELS[channel]] = first if first.ndim == 3 else first[..., None]
+        notes.append(f"is baked with what nodes do: {listed(names)}")
+    return _with_values(picture, changed), notes
 
 
-def told_of_tiles(item: Item, image: bpy.types.Image) -> list[str]:
-    """Returns what is to be known of an image with tiles, to which nodes are not applied."""
-    inputs, told = _known(item, image)
-    names = dict.fromkeys(name for one in inputs for name in one.names)
+def tile_notes(item: Item, image: bpy.types.Image) -> list[str]:
+    """Returns notes for an image with tiles, to which nodes are not applied."""
+    inputs, notes = _analyze_inputs(item, image)
+    names = dict.fromkeys(name for entry in inputs for name in entry.names)
     if names:
-        told.append(f"is baked without what nodes do ({listed(names)}), as it has tiles")
-    return told
+        notes.append(f"is baked without what nodes do ({listed(names)}), as it has tiles")
+    return notes
 
 
 @dataclass(frozen=True)
 class _Input:
-    """An input that gets a function of an image.
+    """A shader input whose value is a function of an image.
 
     Attributes:
-        label: What it is called.
-        channel: What it takes of the image.
-        place: The input, and the groups around it.
-        names: Those of the nodes that change values on the way.
+        label: Its label.
+        channel: The channel of the image that it reads.
+        socket: The input, and the node groups around it.
+        names: The names of the nodes that change values on the way.
     """
 
     label: str
     channel: str
-    place: tuple[bpy.types.NodeSocket, Groups]
+    socket: tuple[bpy.types.NodeSocket, Groups]
     names: list[str]
 
 
-def _known(item: Item, image: bpy.types.Image) -> tuple[list[_Input], list[str]]:
-    """Returns the inputs that get a function of an image, and what is said of others."""
+def _analyze_inputs(item: Item, image: bpy.types.Image) -> tuple[list[_Input], list[str]]:
+    """Returns the inputs that are functions of an image, and notes about the others."""
     texel = np.zeros((1, 1, 4), np.float32)
     inputs: list[_Input] = []
-    told: list[str] = []
+    notes: list[str] = []
     for label, channel, socket, groups in _inputs(item, image):
-        function, place = TexelFunction(lambda _: texel), before_factor(socket, groups)
+        function, source = TexelFunction(lambda _: texel), before_factor(socket, groups)
         try:
-            function.values(*place)
+            function.values(*source)
         except OtherNodeError as error:
-            told.append(f"is baked without node '{error.node.name}' before {label}")
+            notes.append(f"is baked without node '{error.node.name}' before {label}")
             continue
         names = [node.name for node in function.changing] if function.image == image else []
-        inputs.append(_Input(label, channel, place, names))
-    return inputs, list(dict.fromkeys(told))
+        inputs.append(_Input(label, channel, source, names))
+    return inputs, list(dict.fromkeys(notes))
 
 
 def _inputs(
     item: Item, image: bpy.types.Image
 ) -> Iterator[tuple[str, str, bpy.types.NodeSocket, Groups]]:
-    """Yields the inputs that an item is for: the label, the channel, and the input itself.
+    """Yields the label, the channel and the socket of each input that the item is used for.
 
-    An input of a color has all channels, and so has one of a number that several are read for.
+    The channel is "all" for a color, and for a value that is read from several channels.
     """
     channels: dict[tuple[str, bpy.types.NodeSocket, Groups], set[str]] = {}
     for name in sorted(item.materials):
         for role, socket, groups in image_roles.inputs_of(bpy.data.materials[name], image):
-            is_wanted = any(use.startswith(role.label) for use in item.uses)
-            if is_wanted and role.use != "coverage" and role.channel in _CHANNELS:
+            is_used = any(use.startswith(role.label) for use in item.uses)
+            if is_used and role.use != "coverage" and role.channel in _CHANNELS:
                 channels.setdefault((role.label, socket, groups), set()).add(role.channel)
-    for (label, socket, groups), known in channels.items():
-        is_one = socket.type == "VALUE" and len(known) == 1
-        yield label, known.pop() if is_one else "all", socket, groups
+    for (label, socket, groups), names in channels.items():
+        is_single = socket.type == "VALUE" and len(names) == 1
+        yield label, names.pop() if is_single else "all", socket, groups
 
 
-def _stored(picture: Picture, linear: Floats) -> Picture:
-    """Returns the picture with other values, in the way that it has them."""
+def _with_values(picture: Picture, linear: Floats) -> Picture:
+    """Returns the picture with new values, encoded and stored like the old ones."""
     values = encoded(picture, linear)
     if picture.texels.dtype != np.uint8:
         return replace(picture, texels=values)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Which images a model has, and what its nodes say about each: no pixel is read for it."""
+"""The images of a model, and their uses in shader nodes; reads no pixels."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -12,34 +12,34 @@ from ...bridge.image_roles import Role
 from ...core.wording import listed
 
 Shown = Mapping[bpy.types.Object, Sequence[bpy.types.Material]]
-"""Objects with the materials that they show."""
+"""The materials of each object."""
 
 _PART = "\0"
-"""What is between the full name of an image and the part of it; no name has it."""
+"""Separates the full name of an image from its part; names cannot contain it."""
 _CHANNEL = {"red": " (red)", "green": " (green)", "blue": " (blue)", "alpha": " (alpha)"}
 
 
 @dataclass(frozen=True)
 class Item:
-    """An image, and how it is to be baked. Datablocks are named, as an undo would end them.
+    """An image, and how to bake it. Data-blocks are stored by name, because an undo frees them.
 
     Attributes:
         image: Its name.
         full_name: The name, and the file that it is linked from.
-        objects: The names of the objects whose surfaces count.
-        uses: What the shaders take of it, such as "Base Color" and "Roughness (green)".
-        content: A key of `choices.CONTENTS`; "cutout" if its pixels agree.
-        threshold: Of the alpha test of a cut-out.
-        tests_alpha: Whether that is a test of the alpha channel instead of the color.
+        objects: The names of the objects whose surfaces are used.
+        uses: The shader inputs that read it, such as "Base Color" and "Roughness (green)".
+        content: A key of `choices.CONTENTS`; "cutout" is subject to a check of the pixels.
+        threshold: The threshold of a cut-out's alpha test.
+        tests_alpha: Whether that test reads the alpha channel instead of the color.
         channels: The channels that shaders read: "all", "red", "green", "blue", "alpha".
-        normal_map: The key of the normal map that it is the roughness of; empty for none.
-        roughness_channel: Where the roughness is, a key of `contents.CHANNELS`.
-        is_alone: Whether its surfaces are not all of those that show the normal map, so that both
-            cannot be baked at once.
-        notes: What a user should know.
-        materials: The names of the materials that show it.
-        part: Which of its roles this is, where others have an item of their own: "normal", or empty
-            for all others.
+        normal_map: The key of the normal map that belongs to this roughness; empty for none.
+        roughness_channel: The channel of the roughness, a key of `contents.CHANNELS`.
+        is_alone: Whether it cannot be baked together with its normal map, because not all surfaces
+            that show the normal map show it.
+        notes: Remarks for the user.
+        materials: The names of the materials that use it.
+        part: "normal" if the item is only the image's role as a normal map, and another item has
+            its other roles; otherwise empty.
     """
 
     image: str
@@ -59,18 +59,18 @@ class Item:
 
     @property
     def key(self) -> str:
-        """What tells it from all other items."""
+        """A key that is unique among all items."""
         return f"{self.full_name}{_PART}{self.part}" if self.part else self.full_name
 
 
 @dataclass(frozen=True)
 class Job:
-    """What is baked at once.
+    """The images of one bake.
 
     Attributes:
         item: The image.
-        roughness: The roughness image that is baked with this normal map; None for none.
-        normal_map: The key of the normal map that is read for this roughness image; empty for none.
+        roughness: The roughness that is baked together with this normal map; None for none.
+        normal_map: The key of the normal map to read for this roughness; empty for none.
     """
 
     item: Item
@@ -79,8 +79,8 @@ class Job:
 
     @property
     def images(self) -> list[str]:
-        """The names of the images that it bakes."""
-        return [one.image for one in (self.item, self.roughness) if one is not None]
+        """The names of the images to bake."""
+        return [item.image for item in (self.item, self.roughness) if item is not None]
 
 
 @dataclass(frozen=True)
@@ -96,15 +96,15 @@ class Plan:
     """The images of a model.
 
     Attributes:
-        items: Those to bake, in the order in which objects show them.
-        left_out: The others.
+        items: The images to bake, in the order of the objects that show them.
+        left_out: The other images.
     """
 
     items: list[Item]
     left_out: list[LeftOut]
 
     def jobs(self) -> list[Job]:
-        """Returns what to do, each image once: a normal map brings its roughness along."""
+        """Returns the bakes, one per image, or per normal map with its roughness."""
         partners: dict[str, Item] = {}
         for item in self.items:
             if item.normal_map and not item.is_alone:
@@ -121,13 +121,13 @@ class Plan:
 
 
 @dataclass
-class _Found:
-    """What is known of an image."""
+class _ImageUses:
+    """The uses of an image in the scene."""
 
     objects: dict[str, None] = field(default_factory=dict)
     shown_by: dict[bpy.types.Material, None] = field(default_factory=dict)
     roles: dict[Role, None] = field(default_factory=dict)
-    places: dict[bpy.types.Material, frozenset[materials.ImageUse]] = field(default_factory=dict)
+    uses: dict[bpy.types.Material, frozenset[materials.ImageUse]] = field(default_factory=dict)
     problems: dict[str, None] = field(default_factory=dict)
     hidden: dict[str, None] = field(default_factory=dict)
 
@@ -140,15 +140,15 @@ def plan(
     material: str = "",
     by_role: bool = False,
 ) -> Plan:
-    """Returns what there is to bake.
+    """Returns the images to bake.
 
     Args:
-        view_layer: The objects that may be shown.
-        depsgraph: Its dependency graph, evaluated before.
-        chosen: Whose images, and whose surfaces count; None for all visible objects. What an image
-            is, all visible objects say.
+        view_layer: The view layer.
+        depsgraph: Its evaluated dependency graph.
+        chosen: The objects whose images are baked and whose surfaces are used; None for all visible
+            objects. The content of an image depends on all visible objects.
         material: The name of the material whose images are baked; empty for all.
-        by_role: Whether an image that is a normal map and something else gets an item for each.
+        by_role: Whether an image that is a normal map and has other roles gets two items.
 
     Raises:
         ValueError: There is no such material.
@@ -156,52 +156,52 @@ def plan(
     if material and material not in bpy.data.materials:
         raise ValueError(f"Material: there is no '{material}' in this file")
     shown = users.shown_materials(depsgraph)
-    wanted = dict.fromkeys(shown if chosen is None else chosen)
-    for obj in wanted:
+    objects = dict.fromkeys(shown if chosen is None else chosen)
+    for obj in objects:
         shown.setdefault(obj, meshes.materials_of_objects([obj]))
-    found = _look(shown, wanted)
+    found = _collect_uses(shown, objects)
     for obj in view_layer.objects:
         if obj not in shown and not obj.visible_get(view_layer=view_layer):
             for image in meshes.images_of_objects([obj]):
-                found.setdefault(image, _Found()).hidden[obj.name] = None
+                found.setdefault(image, _ImageUses()).hidden[obj.name] = None
     partners = _partners(found)
     items: list[Item] = []
     left_out: list[LeftOut] = []
-    for image, known in found.items():
-        if not known.objects or not _is_of(known, material):
+    for image, uses in found.items():
+        if not uses.objects or not _has_material(uses, material):
             continue
-        reason = _why_left_out(image, known)
+        reason = _why_left_out(image, uses)
         if reason:
             left_out.append(LeftOut(image.name, reason))
         else:
-            items += _items(image, known, by_role=by_role)
+            items += _items(image, uses, by_role=by_role)
     for rough, partner in partners.items():
         _pair(items, rough, partner, found)
     for image in bpy.data.images:
-        known = found.get(image, _Found())
-        if material or known.objects or _is_internal(image):
+        uses = found.get(image, _ImageUses())
+        if material or uses.objects or _is_internal(image):
             continue
         reason = "as no mesh shows it" if chosen is None else "as none of these objects shows it"
-        if known.hidden:
-            reason = f"as only hidden objects show it, {listed(known.hidden)}"
+        if uses.hidden:
+            reason = f"as only hidden objects show it, {listed(uses.hidden)}"
         left_out.append(LeftOut(image.name, reason))
     return Plan(items, left_out)
 
 
-def said_of(image: bpy.types.Image, shown_by: Iterable[bpy.types.Material]) -> Item:
-    """Returns what materials say of an image, of whatever objects."""
-    known = _Found()
+def describe_image(image: bpy.types.Image, shown_by: Iterable[bpy.types.Material]) -> Item:
+    """Returns an image's item, based on some materials and no objects."""
+    uses = _ImageUses()
     for material in shown_by:
-        known.shown_by[material] = None
-        known.roles.update(_roles(image, material))
-    return _item(image, known)
+        uses.shown_by[material] = None
+        uses.roles.update(_roles(image, material))
+    return _item(image, uses)
 
 
 def image_of(key: str) -> bpy.types.Image:
-    """Returns the image of a full name, or of the key of an item.
+    """Returns the image with a full name, or of an item's key.
 
     Raises:
-        ValueError: It is gone.
+        ValueError: It was deleted.
     """
     full_name = key.partition(_PART)[0]
     for image in bpy.data.images:
@@ -210,59 +210,61 @@ def image_of(key: str) -> bpy.types.Image:
     raise ValueError(f"image '{full_name}': is no longer there")
 
 
-def _look(shown: Shown, wanted: Mapping[bpy.types.Object, None]) -> dict[bpy.types.Image, _Found]:
-    """Returns what all materials say about images, and which of the wanted objects show them."""
-    found: dict[bpy.types.Image, _Found] = {}
-    known: dict[bpy.types.Material, list[bpy.types.Image]] = {}
-    for obj, worn in shown.items():
-        for material in worn:
-            if material not in known:
-                known[material] = materials.images_of(material)
-                for image in known[material]:
-                    _add(found.setdefault(image, _Found()), image, material)
-            if obj in wanted:
-                for image in known[material]:
+def _collect_uses(
+    shown: Shown, objects: Mapping[bpy.types.Object, None]
+) -> dict[bpy.types.Image, _ImageUses]:
+    """Returns the uses of images in all materials, with those of the objects that show them."""
+    found: dict[bpy.types.Image, _ImageUses] = {}
+    images_of: dict[bpy.types.Material, list[bpy.types.Image]] = {}
+    for obj, own_materials in shown.items():
+        for material in own_materials:
+            if material not in images_of:
+                images_of[material] = materials.images_of(material)
+                for image in images_of[material]:
+                    _add(found.setdefault(image, _ImageUses()), image, material)
+            if obj in objects:
+                for image in images_of[material]:
                     found[image].objects[obj.name] = None
     return found
 
 
-def _add(known: _Found, image: bpy.types.Image, material: bpy.types.Material) -> None:
-    uses, problems = materials.image_uses(material, image)
-    known.shown_by[material] = None
-    known.places[material] = frozenset(uses)
-    known.problems.update(dict.fromkeys(problems))
-    known.roles.update(_roles(image, material))
+def _add(uses: _ImageUses, image: bpy.types.Image, material: bpy.types.Material) -> None:
+    image_uses, problems = materials.image_uses(material, image)
+    uses.shown_by[material] = None
+    uses.uses[material] = frozenset(image_uses)
+    uses.problems.update(dict.fromkeys(problems))
+    uses.roles.update(_roles(image, material))
 
 
 def _roles(image: bpy.types.Image, material: bpy.types.Material) -> dict[Role, None]:
     return {role: None for role in image_roles.roles(material) if role.image == image}
 
 
-def _is_data(image: bpy.types.Image, known: _Found) -> bool:
-    """Tells whether an image is no color: one that is a color and data at once is both."""
+def _is_data(image: bpy.types.Image, uses: _ImageUses) -> bool:
+    """Returns whether an image is only data; one that is also shown as a color is a color."""
     if not image.colorspace_settings.is_data:
         return False
-    is_read_as_data = any(role.use == "data" and not role.is_factor for role in known.roles)
+    is_read_as_data = any(role.use == "data" and not role.is_factor for role in uses.roles)
     return not is_read_as_data or not any(
-        image_roles.shows_as_color(material, image) for material in known.shown_by
+        image_roles.shows_as_color(material, image) for material in uses.shown_by
     )
 
 
-def _why_left_out(image: bpy.types.Image, known: _Found) -> str:
+def _why_left_out(image: bpy.types.Image, uses: _ImageUses) -> str:
     kind = images.kind_that_is_not_read(image)
     if kind is not None:
         return f"as it is {kind}; a still image is needed"
-    if not any(known.places.values()):
-        return f"as it has no UVs: {'; '.join(known.problems)}"
+    if not any(uses.uses.values()):
+        return f"as it has no UVs: {'; '.join(uses.problems)}"
     return ""
 
 
-def _is_of(known: _Found, material: str) -> bool:
-    return not material or any(one.name == material for one in known.shown_by)
+def _has_material(uses: _ImageUses, material: str) -> bool:
+    return not material or any(user.name == material for user in uses.shown_by)
 
 
 def _is_internal(image: bpy.types.Image) -> bool:
-    """Tells whether an image is one that Blender or the add-on has made of something else."""
+    """Returns whether an image was made by Blender or the add-on, such as a render result."""
     return (
         images.kind_that_is_not_read(image) in {"a render result", "a viewer image"}
         or level_images.is_level(image)
@@ -270,29 +272,29 @@ def _is_internal(image: bpy.types.Image) -> bool:
     )
 
 
-def _items(image: bpy.types.Image, known: _Found, *, by_role: bool) -> list[Item]:
-    normal = {role: None for role in known.roles if role.use == "normal"}
-    others = {role: None for role in known.roles if role.use != "normal"}
+def _items(image: bpy.types.Image, uses: _ImageUses, *, by_role: bool) -> list[Item]:
+    normal = {role: None for role in uses.roles if role.use == "normal"}
+    others = {role: None for role in uses.roles if role.use != "normal"}
     if not (by_role and normal and others):
-        return [_item(image, known)]
-    first = _item(image, replace(known, roles=others))
-    return [first, replace(_item(image, replace(known, roles=normal)), part="normal")]
+        return [_item(image, uses)]
+    first = _item(image, replace(uses, roles=others))
+    return [first, replace(_item(image, replace(uses, roles=normal)), part="normal")]
 
 
-def _item(image: bpy.types.Image, known: _Found) -> Item:
-    roles = [role for role in known.roles if not role.is_factor]
-    masks = [role for role in known.roles if role.is_factor]
-    uses = [f"{role.label}{_CHANNEL.get(role.channel, '')}" for role in roles]
-    uses += [f"mask of {role.label}{_CHANNEL.get(role.channel, '')}" for role in masks]
+def _item(image: bpy.types.Image, uses: _ImageUses) -> Item:
+    roles = [role for role in uses.roles if not role.is_factor]
+    masks = [role for role in uses.roles if role.is_factor]
+    labels = [f"{role.label}{_CHANNEL.get(role.channel, '')}" for role in roles]
+    labels += [f"mask of {role.label}{_CHANNEL.get(role.channel, '')}" for role in masks]
     notes: list[str] = []
     item = Item(
         image.name,
         image.name_full,
-        tuple(known.objects),
-        tuple(dict.fromkeys(uses)),
-        "data" if _is_data(image, known) else "color",
-        channels=frozenset(role.channel for role in known.roles),
-        materials=frozenset(material.name for material in known.shown_by),
+        tuple(uses.objects),
+        tuple(dict.fromkeys(labels)),
+        "data" if _is_data(image, uses) else "color",
+        channels=frozenset(role.channel for role in uses.roles),
+        materials=frozenset(material.name for material in uses.shown_by),
     )
     tests = {
         round(role.threshold, 6): role.channel == "alpha"
@@ -309,7 +311,7 @@ def _item(image: bpy.types.Image, known: _Found) -> Item:
         item = replace(item, content="cutout", threshold=threshold, tests_alpha=tests_alpha)
         if len(tests) > 1:
             notes.append(
-                f"is tested at {' and '.join(f'{one:g}' for one in sorted(tests))}; its cut-out "
+                f"is tested at {' and '.join(f'{test:g}' for test in sorted(tests))}; its cut-out "
                 f"keeps the coverage at {threshold:g}"
             )
     if item.content == "color" and roles and not any(_may_be_color(role) for role in roles):
@@ -318,12 +320,12 @@ def _item(image: bpy.types.Image, known: _Found) -> Item:
             f"read it as a color: {', '.join(item.uses)}; if its values are data, set "
             "Non-Color"
         )
-    maps = {use.uv_map for places in known.places.values() for use in places}
+    maps = {use.uv_map for image_uses in uses.uses.values() for use in image_uses}
     if len(maps) > 1:
         names = listed(name or "the active one" for name in sorted(maps))
         notes.append(f"is shown by several UV maps, which all count: {names}")
-    if known.hidden:
-        notes.append(f"is shown by hidden objects too, which do not count: {listed(known.hidden)}")
+    if uses.hidden:
+        notes.append(f"is shown by hidden objects too, which do not count: {listed(uses.hidden)}")
     return replace(item, notes=tuple(notes))
 
 
@@ -333,47 +335,47 @@ def _may_be_color(role: Role) -> bool:
 
 @dataclass(frozen=True)
 class _Partner:
-    """The normal map that a roughness image goes with, or why there is none."""
+    """The normal map that belongs to a roughness, or the reason why there is none."""
 
     normal_map: bpy.types.Image | None
     channel: str = "all"
     problem: str = ""
 
 
-def _partners(found: Mapping[bpy.types.Image, _Found]) -> dict[bpy.types.Image, _Partner]:
-    """Returns what goes with each image that shaders take roughness from."""
+def _partners(found: Mapping[bpy.types.Image, _ImageUses]) -> dict[bpy.types.Image, _Partner]:
+    """Returns the partner of each image from which shaders read roughness."""
     shaders: dict[bpy.types.Image, list[image_roles.Roughness]] = {}
-    for material in dict.fromkeys(m for known in found.values() for m in known.shown_by):
-        for one in image_roles.roughness(material):
-            shaders.setdefault(one.image, []).append(one)
-    return {rough: _partner(rough, known, found) for rough, known in shaders.items()}
+    for material in dict.fromkeys(m for uses in found.values() for m in uses.shown_by):
+        for roughness in image_roles.roughness(material):
+            shaders.setdefault(roughness.image, []).append(roughness)
+    return {rough: _partner(rough, users, found) for rough, users in shaders.items()}
 
 
 def _partner(
     rough: bpy.types.Image,
     shaders: Sequence[image_roles.Roughness],
-    found: Mapping[bpy.types.Image, _Found],
+    found: Mapping[bpy.types.Image, _ImageUses],
 ) -> _Partner:
-    normal_maps = {one.normal_maps for one in shaders}
+    normal_maps = {shader.normal_maps for shader in shaders}
     if normal_maps == {()}:
         return _Partner(None)
-    who = "does not compensate for detail lost in normal map levels"
+    problem = "does not compensate for detail lost in normal map levels"
     if len(normal_maps) > 1 or len(next(iter(normal_maps))) > 1:
-        names = listed(sorted({one.name for maps in normal_maps for one in maps}))
+        names = listed(sorted({image.name for maps in normal_maps for image in maps}))
         none = ", or with none" if () in normal_maps else ""
-        return _Partner(None, problem=f"{who}: shaders combine it with {names}{none}")
+        return _Partner(None, problem=f"{problem}: shaders combine it with {names}{none}")
     ((normal_map,),) = normal_maps
-    channels = {one.channel for one in shaders}
+    channels = {shader.channel for shader in shaders}
     if len(channels) > 1 or "alpha" in channels:
-        several = ", ".join(sorted(channels))
-        return _Partner(None, problem=f"{who}: shaders take roughness from its channels {several}")
+        channel_names = ", ".join(sorted(channels))
+        problem = f"{problem}: shaders take roughness from its channels {channel_names}"
+        return _Partner(None, problem=problem)
     if normal_map == rough:
-        return _Partner(None, problem=f"{who}: it is the normal map itself")
+        return _Partner(None, problem=f"{problem}: it is the normal map itself")
     if any(
-        places != found[normal_map].places.get(material)
-        for material, places in found[rough].places.items()
+        uses != found[normal_map].uses.get(material) for material, uses in found[rough].uses.items()
     ):
-        problem = f"{who}: '{normal_map.name}' has other UVs, or is not in all materials"
+        problem = f"{problem}: '{normal_map.name}' has other UVs, or is not in all materials"
         return _Partner(None, problem=problem)
     return _Partner(normal_map, channels.pop())
 
@@ -382,9 +384,9 @@ def _pair(
     items: list[Item],
     rough: bpy.types.Image,
     partner: _Partner,
-    found: Mapping[bpy.types.Image, _Found],
+    found: Mapping[bpy.types.Image, _ImageUses],
 ) -> None:
-    """Notes in the items of a roughness image and its normal map that they belong together."""
+    """Links the item of a roughness to that of its normal map."""
     index = _index(items, rough, is_normal=False)
     if index is None:
         return
@@ -407,7 +409,7 @@ def _pair(
 
 
 def _index(items: Sequence[Item], image: bpy.types.Image, *, is_normal: bool) -> int | None:
-    """Returns which item an image has as a normal map, or as something else; its only one if so."""
-    known = [i for i, item in enumerate(items) if item.full_name == image.name_full]
-    fitting = [i for i in known if (items[i].content == "normal") == is_normal]
-    return next(iter(fitting or known), None)
+    """Returns the index of an image's item that is a normal map, or is not; else its first item."""
+    own = [i for i, item in enumerate(items) if item.full_name == image.name_full]
+    matching = [i for i in own if (items[i].content == "normal") == is_normal]
+    return next(iter(matching or own), None)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a bake of a model does, as a table of text."""
+"""A text table of a model's bake."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,20 +16,20 @@ _MOST_OBJECTS = 3
 
 @dataclass(frozen=True)
 class Row:
-    """What is done with an image.
+    """A description of an image's bake.
 
     Attributes:
         image: Its name.
-        size: Such as "2048 x 2048".
-        objects: The names of the objects whose surfaces count.
-        content: What it is taken for, a key of `choices.CONTENTS`.
-        uses: What shaders take of it, which says why.
+        size: Its size, such as "2048 x 2048".
+        objects: The names of the objects whose surfaces are used.
+        content: Its content, a key of `choices.CONTENTS`.
+        uses: The shader inputs that read it, from which the content follows.
         filter: The label of the filter.
-        format: What the file holds.
+        format: The label of the file's texel format.
         file: The path of the file, or of all levels; empty for none.
         sides: The width and height of level 0 in the file.
-        tiles: The numbers of its tiles; none for an image without.
-        remarks: More about what is done.
+        tiles: The numbers of its tiles; empty for an image without tiles.
+        remarks: Further remarks.
     """
 
     image: str
@@ -46,15 +46,15 @@ class Row:
 
 
 def lines(rows: Sequence[Row]) -> list[str]:
-    """Returns the lines of a table: a row an image, below it why, where there is more to say."""
+    """Returns the lines of a table: a row per image, with its uses and remarks below."""
     cells = [_HEAD, *(_cells(row) for row in rows)]
     widths = [max(len(line[column]) for line in cells) for column in range(len(_HEAD))]
     rule = tuple("-" * width for width in widths)
-    found = [_line(_HEAD, widths), _line(rule, widths)]
+    text_lines = [_line(_HEAD, widths), _line(rule, widths)]
     for row, line in zip(rows, cells[1:], strict=True):
-        found.append(_line(line, widths))
-        found += [f"    {text}" for text in _reasons(row)]
-    return found
+        text_lines.append(_line(line, widths))
+        text_lines += [f"    {text}" for text in _reasons(row)]
+    return text_lines
 
 
 def _cells(row: Row) -> tuple[str, ...]:
@@ -76,5 +76,5 @@ def _reasons(row: Row) -> list[str]:
 
 
 def _shown_file(path: str) -> str:
-    """Returns how to call a file of a row."""
+    """Returns a file's path as the table shows it."""
     return textures.display_name(Path(path)).strip("'") if path else ""

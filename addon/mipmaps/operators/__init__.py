@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The operators on images, one a file."""
+"""The operators on mipmaps."""
 
 import bpy
 

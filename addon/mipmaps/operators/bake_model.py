@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`prefilter.bake_model`: the levels of every image of a model, each in a file of its own."""
+"""`prefilter.bake_model`: the levels of all images of a model, each in its own file."""
 
 from collections.abc import Callable, Generator
 from dataclasses import replace
@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import bpy
 
-from ...core.doing import LONG_WORK, Compute, read_at_once
 from ...core.operator import BackgroundOperator
+from ...core.operator_hooks import LONG_WORK, Compute, run_steps
 from ...core.presets import PresetsOperator
 from ...core.translations import tr
 from ...core.wording import Sentence
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 class PREFILTER_OT_bake_model(
     ModelProperties, PresetsOperator, BackgroundOperator, bpy.types.Operator
 ):
-    """Bakes image after image: one is read when that before it is computed."""
+    """Bakes all images of a model, one after another."""
 
     bl_idname = "prefilter.bake_model"
     bl_label = "Bake All Images"
@@ -32,24 +32,26 @@ class PREFILTER_OT_bake_model(
         "holds: color, normals, roughness and other data, cut-outs"
     )
     bl_options = {"REGISTER", "UNDO"}
-    doing = "Baking all images"
-    line = LONG_WORK
+    activity = "Baking all images"
+    queue_name = LONG_WORK
     presets = MODEL
 
     _model: Any = None
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether an object shows an image."""
-        from ..model import known
+        """Returns whether an object shows an image."""
+        from ..model import candidates
 
         if cls.may_be_redone(context):
             return True
         reason = "" if bpy.data.images else tr("There is no image in this file")
-        # Scripts may have changed the scene just now, which panels hear of later.
+        # Only for panels: their cache may be out of date while a script changes the scene.
         if context.area is not None:
             settings = context.scene.prefilter_model
-            reason = reason or known.why_none(context, settings.objects, settings.material)
+            reason = reason or candidates.missing_reason(
+                context, settings.objects, settings.material
+            )
         if reason:
             cls.poll_message_set(reason)
         return not reason
@@ -60,51 +62,51 @@ class PREFILTER_OT_bake_model(
         self.draw_in(layout)
 
     def read(self, context: bpy.types.Context) -> Compute:
-        """Looks what there is, and copies the first image and its surfaces."""
-        return read_at_once(self.reading(context))
+        """Plans the bake, and copies the first image and its surfaces."""
+        return run_steps(self.read_steps(context))
 
-    def reading(self, context: bpy.types.Context) -> Generator[float, None, Compute]:
-        """Does what `read` does, frame after frame."""
-        self._model = self._planned(context)
+    def read_steps(self, context: bpy.types.Context) -> Generator[float, None, Compute]:
+        """Does the same as `read`, one frame per step."""
+        self._model = self._plan(context)
         yield 0.0
-        following = self.following(context)
-        assert following is not None
-        return (yield from following)
+        steps = self.read_next_part(context)
+        assert steps is not None
+        return (yield from steps)
 
-    def following(self, context: bpy.types.Context) -> Generator[float, None, Compute] | None:
-        """Returns what copies the next image and its surfaces."""
+    def read_next_part(self, context: bpy.types.Context) -> Generator[float, None, Compute] | None:
+        """Returns a generator that copies the next image and its surfaces."""
         assert self._model is not None
         if not self._model.next_name:
             return None
-        self.doing = tr("Baking {}").format(self._model.next_name)
-        return self._model.reading(context.evaluated_depsgraph_get())
+        self.activity = tr("Baking {}").format(self._model.next_name)
+        return self._model.read_steps(context.evaluated_depsgraph_get())
 
-    def making(self) -> Generator[None, None, None]:
-        """Makes the level images, those of an image at a time."""
+    def build_steps(self) -> Generator[None, None, None]:
+        """Makes the level images, one image per step."""
         assert self._model is not None
-        return self._model.staging_images()
+        return self._model.stage_images_in_steps()
 
     def finish(self, context: bpy.types.Context, result: None) -> str:
-        """Writes what was baked."""
+        """Writes the results."""
         del context, result
         assert self._model is not None
         self._model.write()
-        return self.tell(self._model.results.outcome())
+        return self.report_outcome(self._model.results.outcome())
 
     def discard(self) -> None:
-        """Removes what was staged."""
-        self.releaser()()
+        """Deletes staged files and images."""
+        self.discarder()()
 
-    def releaser(self) -> Callable[[], None]:
-        """Returns what removes what was staged."""
-        return self._model.discard if self._model is not None else super().releaser()
+    def discarder(self) -> Callable[[], None]:
+        """Returns a function that deletes staged files and images."""
+        return self._model.discard if self._model is not None else super().discarder()
 
-    def _planned(self, context: bpy.types.Context) -> "ModelBake":
+    def _plan(self, context: bpy.types.Context) -> "ModelBake":
         from prefilter.workflows.files import target_files
 
         from .. import file_names
         from ..model.bake import ModelBake
-        from ..model.known import chosen_objects
+        from ..model.candidates import chosen_objects
         from ..model.plan import image_of, plan
         from ..model.results import Results
 
@@ -126,7 +128,7 @@ class PREFILTER_OT_bake_model(
             by_role=bool(folder),
         )
         if not planned.items:
-            raise ValueError("\n".join(Results(planned.left_out).nothing()))
+            raise ValueError("\n".join(Results(planned.left_out).failure_lines()))
         images = [image_of(item.key) for item in planned.items]
         pattern = file_names.Pattern.in_folder(folder, f".{own.file_format}")
         if not target_files.has_formats(pattern.text):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`prefilter.export_mipmaps`, `prefilter.export_model`: levels to files that a user names."""
+"""`prefilter.export_mipmaps` and `prefilter.export_model`: levels to files, in File > Export."""
 
 import os
 from typing import TYPE_CHECKING, Any
@@ -16,12 +16,12 @@ from .bake_mipmaps import PREFILTER_OT_bake_mipmaps
 from .bake_model import PREFILTER_OT_bake_model
 from .source import image_to_read, shown_image
 
-_GLOB = ";".join(f"*.{ending}" for ending in (*FILE_FORMATS, "tiff"))
+_GLOB = ";".join(f"*.{extension}" for extension in (*FILE_FORMATS, "tiff"))
 _HIDDEN = {"HIDDEN", "SKIP_SAVE"}
 
 
 class _Export:
-    """A mixin: opens the file browser, and then bakes with the settings of a panel."""
+    """A mixin: opens the file browser, then bakes with the settings of a panel."""
 
     bl_options = frozenset({"REGISTER"})
     _is_browsing = False
@@ -37,20 +37,20 @@ class _Export:
         return {"RUNNING_MODAL"}
 
     def bake(self, operator: type[bpy.types.Operator], settings: dict[str, Any]) -> set[str]:
-        """Bakes; in the background after the file browser, which cannot wait."""
+        """Bakes; after the file browser, which must not block, in the background."""
         start = getattr(bpy.ops.prefilter, operator.bl_idname.partition(".")[2])
         mode = "INVOKE_DEFAULT" if self._is_browsing else "EXEC_DEFAULT"
         self._is_browsing = False
         try:
-            done = start(mode, **settings)
+            status = start(mode, **settings)
         except RuntimeError as error:
             self.report({"ERROR"}, reported(error))
             return {"CANCELLED"}
-        return {"FINISHED"} if done & {"FINISHED", "RUNNING_MODAL"} else {"CANCELLED"}
+        return {"FINISHED"} if status & {"FINISHED", "RUNNING_MODAL"} else {"CANCELLED"}
 
 
 class PREFILTER_OT_export_mipmaps(_Export, bpy.types.Operator):
-    """Lets a user name the file of an image."""
+    """Asks for the file of an image's levels, and bakes them."""
 
     bl_idname = "prefilter.export_mipmaps"
     bl_label = "Export Mipmaps"
@@ -69,11 +69,11 @@ class PREFILTER_OT_export_mipmaps(_Export, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether there is an image."""
+        """Returns whether there is an image."""
         return PREFILTER_OT_bake_mipmaps.poll(context)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Suggests the image that is shown, and a name for its file."""
+        """Suggests the shown image, and a name for its file."""
         from .. import file_names
 
         del event
@@ -83,13 +83,13 @@ class PREFILTER_OT_export_mipmaps(_Export, bpy.types.Operator):
             image = next(iter(bpy.data.images))
         self.image = image.name
         if not self.filepath:
-            ending = context.scene.prefilter_bake.file_format
-            name = f"{file_names.name_of(image)}.{ending}"
+            extension = context.scene.prefilter_bake.file_format
+            name = f"{file_names.name_of(image)}.{extension}"
             self.filepath = os.path.join(os.path.dirname(bpy.data.filepath), name)
         return self.browse(context)
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draws what the file browser asks beside the name."""
+        """Draws the settings beside the file browser."""
         del context
         layout = self.layout
         layout.use_property_split = True
@@ -110,7 +110,7 @@ class _ModelChoices:
 
 
 class PREFILTER_OT_export_model(_ModelChoices, _Export, bpy.types.Operator):
-    """Lets a user choose the folder for the files of all images."""
+    """Asks for the folder of all images' levels, and bakes them."""
 
     bl_idname = "prefilter.export_model"
     bl_label = "Export All Mipmaps"
@@ -124,18 +124,18 @@ class PREFILTER_OT_export_model(_ModelChoices, _Export, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether an object shows an image."""
+        """Returns whether an object shows an image."""
         return PREFILTER_OT_bake_model.poll(context)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Suggests what the panel has."""
+        """Suggests the settings of the panel."""
         del event
         settings = context.scene.prefilter_model
         self.objects, self.file_format = settings.objects, settings.file_format
         return self.browse(context)
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draws what the file browser asks beside the folder."""
+        """Draws the settings beside the file browser."""
         del context
         layout = self.layout
         layout.use_property_split = True
@@ -151,10 +151,10 @@ class PREFILTER_OT_export_model(_ModelChoices, _Export, bpy.types.Operator):
 
 
 def _shown_name(context: bpy.types.Context) -> str:
-    """Returns the name of the image that an Image editor of the window shows; empty for none."""
+    """Returns the name of an image that the window shows; empty for none."""
     if context.area is not None and context.area.type == "IMAGE_EDITOR":
         image = shown_image(context)
         return image.name if image is not None else ""
     areas = context.screen.areas if context.screen is not None else []
-    shown = (one.spaces.active.image for one in areas if one.type == "IMAGE_EDITOR")
+    shown = (area.spaces.active.image for area in areas if area.type == "IMAGE_EDITOR")
     return next((image.name for image in shown if image is not None), "")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`prefilter.fill_unused`: a copy of an image without background."""
+"""`prefilter.fill_unused`: a copy of an image with filled unused texels."""
 
 from functools import partial
 from typing import TYPE_CHECKING, Any, cast
@@ -11,8 +11,8 @@ import prefilter
 from bpy.props import BoolProperty
 
 from ...bridge import editors
-from ...core.doing import Compute
 from ...core.jobs import Progress
+from ...core.operator_hooks import Compute
 from ...core.translations import CONTEXT
 from ...core.wording import Sentence
 from .source import SurfaceOperator, read_source
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class PREFILTER_OT_fill_unused(SurfaceOperator, bpy.types.Operator):
-    """Makes a copy of an image whose unused texels are filled."""
+    """Makes a copy of an image with its unused texels filled."""
 
     bl_idname = "prefilter.fill_unused"
     bl_label = "Fill Unused Texels"
@@ -32,7 +32,7 @@ class PREFILTER_OT_fill_unused(SurfaceOperator, bpy.types.Operator):
         "around them, so that no filter or compressor sees the background"
     )
     bl_options = {"REGISTER", "UNDO"}
-    doing = "Filling texels"
+    activity = "Filling texels"
 
     use_in_place: BoolProperty(
         name="Use Copy Everywhere",
@@ -61,7 +61,7 @@ class PREFILTER_OT_fill_unused(SurfaceOperator, bpy.types.Operator):
 
 
 def _fill(source: "Source", progress: Progress) -> "FloatArray":
-    """Returns stored values; those of texels that are used are the image's own, bit for bit."""
+    """Returns the filled image as stored values; used texels keep their values bit for bit."""
     from ...bridge import images
 
     linear = source.linear(progress)
@@ -74,5 +74,5 @@ def _fill(source: "Source", progress: Progress) -> "FloatArray":
             threads=source.threads,
         )
     stored = images.encoded(source.picture, filled)
-    kept = np.all((filled == linear) | (np.isnan(filled) & np.isnan(linear)), axis=2)
-    return np.where(kept[..., None], source.picture.stored, stored)
+    is_same = np.all((filled == linear) | (np.isnan(filled) & np.isnan(linear)), axis=2)
+    return np.where(is_same[..., None], source.picture.stored, stored)

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`prefilter.plot_error`: the errors of filters over the mip value, as a figure and a table."""
+"""`prefilter.plot_error`: the errors of filters by mip value, as a figure and a table."""
 
 from typing import TYPE_CHECKING
 
 import bpy
 
 from ...bridge import editors
-from ...core.doing import Compute
+from ...core.operator_hooks import Compute
 from ...core.properties import single_property
 from ...core.wording import Sentence
 from .. import choices
@@ -28,7 +28,7 @@ class PREFILTER_OT_plot_error(SurfaceOperator, bpy.types.Operator):
         "values"
     )
     bl_options = {"REGISTER", "UNDO"}
-    doing = "Measuring errors"
+    activity = "Measuring errors"
 
     filters: single_property(choices.PlotSettings, "filters")
 

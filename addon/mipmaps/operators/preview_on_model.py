@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`prefilter.preview_on_model` and its end: levels over the objects that show their image."""
+"""`prefilter.preview_on_model` and `prefilter.end_model_preview`: levels drawn on objects."""
 
 import bpy
 
@@ -11,7 +11,7 @@ from .preview_levels import PreviewOperator
 
 
 class PREFILTER_OT_preview_on_model(PreviewOperator, bpy.types.Operator):
-    """Computes the levels of an image for the 3D views to draw."""
+    """Computes the levels of an image, and shows them in the 3D views."""
 
     bl_idname = "prefilter.preview_on_model"
     bl_label = "Preview on Model"
@@ -23,17 +23,17 @@ class PREFILTER_OT_preview_on_model(PreviewOperator, bpy.types.Operator):
     bl_options = {"REGISTER"}
 
     def finish(self, context: bpy.types.Context, result: None) -> str:
-        """Has the 3D views draw the levels."""
-        said = super().finish(context, result)
+        """Shows the levels in the 3D views."""
+        summary = super().finish(context, result)
         assert self.work is not None
         on_model.begin(bpy.data.images[self.work.image_name])
         context.window_manager.prefilter_view.use_model = True
         editors.redraw()
-        return said
+        return summary
 
 
 class PREFILTER_OT_end_model_preview(bpy.types.Operator):
-    """Forgets the levels that the 3D views draw."""
+    """Deletes the preview in the 3D views."""
 
     bl_idname = "prefilter.end_model_preview"
     bl_label = "End Preview on Model"
@@ -42,7 +42,7 @@ class PREFILTER_OT_end_model_preview(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether levels are drawn."""
+        """Returns whether the 3D views show levels."""
         del context
         if on_model.current() is None:
             cls.poll_message_set(tr("The 3D views draw no levels"))
@@ -50,7 +50,7 @@ class PREFILTER_OT_end_model_preview(bpy.types.Operator):
         return True
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Forgets them."""
+        """Deletes it."""
         from ..view import preview
 
         del context

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`prefilter.remove_levels`: what bakes have made of an image goes again."""
+"""`prefilter.remove_levels`: removes the levels of an image."""
 
 import bpy
 
@@ -13,7 +13,7 @@ from .source import PictureOperator
 
 
 class PREFILTER_OT_remove_levels(PictureOperator, bpy.types.Operator):
-    """Removes the levels of an image, or of all."""
+    """Removes the levels of one or all images."""
 
     bl_idname = "prefilter.remove_levels"
     bl_label = "Remove Levels"
@@ -46,7 +46,7 @@ class PREFILTER_OT_remove_levels(PictureOperator, bpy.types.Operator):
             else:
                 image = self.chosen_image(context)
                 chosen = [level_images.source_of_level(image) or image]
-                # Its levels go, and with them perhaps what the editor shows.
+                # The editor may show one of the levels that are removed.
                 self.image = chosen[0].name
                 editors.show(context, chosen[0])
             outcome = removal.remove(chosen, self.kinds)

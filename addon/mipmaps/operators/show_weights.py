@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`prefilter.show_weights` and `prefilter.show_source`: where a surface spends its area."""
+"""`prefilter.show_weights` and `prefilter.show_source`: the surface area in each texel."""
 
 from functools import partial
 from typing import TYPE_CHECKING, Any, cast
@@ -9,8 +9,8 @@ import bpy
 import prefilter
 
 from ...bridge import editors
-from ...core.doing import Compute
 from ...core.jobs import Progress
+from ...core.operator_hooks import Compute
 from ...core.translations import tr
 from ...core.wording import Sentence
 from .source import SurfaceOperator, read_source
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class PREFILTER_OT_show_weights(SurfaceOperator, bpy.types.Operator):
-    """Makes a picture of the weights of texels."""
+    """Makes a picture of texel weights."""
 
     bl_idname = "prefilter.show_weights"
     bl_label = "Show Texel Weights"
@@ -29,7 +29,7 @@ class PREFILTER_OT_show_weights(SurfaceOperator, bpy.types.Operator):
         "Make a picture of how much of the meshes' surface lies in each texel of the image"
     )
     bl_options = {"REGISTER", "UNDO"}
-    doing = "Weighing texels"
+    activity = "Weighing texels"
 
     def read(self, context: bpy.types.Context) -> Compute:
         """Copies the surfaces."""
@@ -41,14 +41,14 @@ class PREFILTER_OT_show_weights(SurfaceOperator, bpy.types.Operator):
         """Writes the picture."""
         from ...bridge import derived
 
-        made = derived.write_picture(self._source.picture, "weights", result.picture)
-        editors.show(context, made)
+        image = derived.write_picture(self._source.picture, "weights", result.picture)
+        editors.show(context, image)
         share = f"{result.used_share:.1%}"
-        return Sentence("{} of the texels hold some of the surface; see '{}'", share, made.name)
+        return Sentence("{} of the texels hold some of the surface; see '{}'", share, image.name)
 
 
 class PREFILTER_OT_show_source(bpy.types.Operator):
-    """Goes back from a picture to the image that it is made of."""
+    """Shows the image from which a picture was made."""
 
     bl_idname = "prefilter.show_source"
     bl_label = "Back to Image"
@@ -57,7 +57,7 @@ class PREFILTER_OT_show_source(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether the editor shows such a picture."""
+        """Returns whether the editor shows a picture made from an image."""
         from ...bridge import derived
 
         if derived.source_of(getattr(context.space_data, "image", None)) is None:
@@ -78,7 +78,7 @@ def _weigh(source: "Source", progress: Progress) -> "weights.Weights":
 
     height, width = source.picture.shape[:2]
     with source.naming_objects():
-        found = prefilter.texel_weights(
+        texel_weights = prefilter.texel_weights(
             source.surfaces,
             width,
             height,
@@ -86,4 +86,5 @@ def _weigh(source: "Source", progress: Progress) -> "weights.Weights":
             progress=progress,
             threads=source.threads,
         )
-    return weights.Weights(weights.picture(found), float((found > 0).mean()))
+    used_share = float((texel_weights > 0).mean())
+    return weights.Weights(weights.picture(texel_weights), used_share)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What the operators share that read an image and its surfaces."""
+"""Mixins and functions of operators that read an image and its surfaces."""
 
 from collections.abc import Generator
 from dataclasses import replace
@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...bridge.image_operator import ImageOperator
-from ...core.doing import read_at_once
 from ...core.operator import BackgroundOperator
+from ...core.operator_hooks import run_steps
 from ...core.wording import Sentence
 from ..choices import Settings
 
@@ -19,30 +19,30 @@ if TYPE_CHECKING:
 
 
 class PictureOperator(ImageOperator):
-    """A mixin: works on an image, also where the editor shows a picture about it."""
+    """A mixin for operators on an image, even if the editor shows a picture made from it."""
 
     @classmethod
     def shown_image(cls, context: bpy.types.Context) -> bpy.types.Image | None:
-        """Returns the image that the editor is about."""
+        """Returns the image of the editor, see `shown_image`."""
         return shown_image(context)
 
     def chosen_image(self, context: bpy.types.Context) -> bpy.types.Image:
-        """Returns the image that `image_to_read` says."""
+        """Returns the image to work on, see `image_to_read`."""
         return image_to_read(context, self.image)
 
 
 class SurfaceOperator(PictureOperator, BackgroundOperator):
-    """A mixin: works on an image and its surfaces."""
+    """A mixin for operators on an image and its surfaces."""
 
     @classmethod
     def reads_surface(cls, context: bpy.types.Context) -> bool:
-        """Tells whether a surface is needed, with the settings of the panels."""
+        """Returns whether a surface is needed, with the settings of the panels."""
         del context
         return True
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether there is an image, and what the editor shows has a surface."""
+        """Returns whether there is an image, with a surface if one is needed."""
         from .. import users
 
         if cls.may_be_redone(context):
@@ -52,7 +52,7 @@ class SurfaceOperator(PictureOperator, BackgroundOperator):
         is_editor = context.area is not None and context.area.type == "IMAGE_EDITOR"
         if is_editor and cls.reads_surface(context):
             image = cls.shown_image(context)
-            reason = users.why_none(context, image, context.scene.prefilter_bake.objects)
+            reason = users.missing_reason(context, image, context.scene.prefilter_bake.objects)
             if reason:
                 cls.poll_message_set(reason)
                 return False
@@ -60,7 +60,7 @@ class SurfaceOperator(PictureOperator, BackgroundOperator):
 
 
 def shown_image(context: bpy.types.Context) -> bpy.types.Image | None:
-    """Returns the image of the editor, or that which it shows a picture about, as an error plot."""
+    """Returns the image of the editor; for a picture such as an error plot, its source image."""
     from ...bridge import derived
 
     shown = getattr(context.space_data, "image", None)
@@ -68,7 +68,7 @@ def shown_image(context: bpy.types.Context) -> bpy.types.Image | None:
 
 
 def image_to_read(context: bpy.types.Context, name: str) -> bpy.types.Image:
-    """Returns the image of a name; if that is empty, of the editor or of the active object.
+    """Returns the image with a name; for an empty name, that of the editor or the active object.
 
     Raises:
         ValueError: There is no such image.
@@ -89,21 +89,20 @@ def image_to_read(context: bpy.types.Context, name: str) -> bpy.types.Image:
 
 
 def read_source(context: bpy.types.Context, name: str, settings: Settings) -> "Source":
-    """Does all of `reading_source` at once."""
-    return read_at_once(reading_source(context, name, settings))
+    """Runs `read_source_steps` to its end."""
+    return run_steps(read_source_steps(context, name, settings))
 
 
-def reading_source(
+def read_source_steps(
     context: bpy.types.Context, name: str, settings: Settings, *, needs_surface: bool = True
 ) -> "Generator[float, None, Source]":
-    """Reads an image and the objects that use it, in steps of a frame.
+    """Reads an image and the objects that use it, one frame per step.
 
     Args:
         context: The context.
-        name: The image's name; empty for that of the editor. Where the editor shows a picture about
-            an image, such as its error plot, that image is meant.
-        settings: How the image wraps, and more.
-        needs_surface: Whether a surface is needed whatever the filter.
+        name: The image's name; empty for the default of `image_to_read`.
+        settings: The settings of the bake.
+        needs_surface: Whether a surface is required even if the filter needs none.
 
     Yields:
         The fraction done.
@@ -114,9 +113,9 @@ def reading_source(
     from prefilter.workflows.mipmaps import lookups
 
     from ...bridge import images
-    from .. import reading, users
+    from .. import bake_inputs, users
     from ..bake import Bake
-    from ..reading import Request
+    from ..bake_inputs import Request
 
     image = image_to_read(context, name)
     images.check_untiled(image)
@@ -135,7 +134,7 @@ def reading_source(
         context.evaluated_depsgraph_get(),
         needs_surface=needs_surface,
     )
-    bake = yield from reading.reading(request)
+    bake = yield from bake_inputs.read_steps(request)
     assert isinstance(bake, Bake)
     bake.warnings.extend(warnings)
     return bake.source
@@ -148,6 +147,6 @@ def _image_of(obj: bpy.types.Object | None) -> bpy.types.Image | None:
     material = obj.active_material if obj is not None else None
     if material is None:
         return None
-    found = materials.images_of(material)
-    colors = [image for image in found if image_roles.has_base_color_of(material, image)]
-    return next(iter(colors or found)) if len(colors or found) == 1 else None
+    images = materials.images_of(material)
+    colors = [image for image in images if image_roles.has_base_color_of(material, image)]
+    return next(iter(colors or images)) if len(colors or images) == 1 else None

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Where a user finds mipmaps: the Image and UV editors, the 3D view."""
+"""The panels on mipmaps, in the Image and UV editors and the 3D view."""
 
 from ...core.registration import registration
-from . import image_editor, model, on_model, seeing
+from . import image_editor, inspection, model, on_model
 
-register, unregister = registration(image_editor, model, on_model, seeing)
+register, unregister = registration(image_editor, model, on_model, inspection)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The Prefilter tab in the sidebar of the Image and UV editors."""
+"""The panel of the bake, in the sidebar of the Image and UV editors."""
 
 from typing import Any
 
@@ -17,7 +17,7 @@ from ..properties import BAKE
 
 
 class PREFILTER_PT_bake(ImagePanel, PresetsPanel, bpy.types.Panel):
-    """Button and settings of the bake."""
+    """The button and the settings of the bake."""
 
     bl_label = "Mipmaps"
     presets = BAKE
@@ -31,15 +31,15 @@ class PREFILTER_PT_bake(ImagePanel, PresetsPanel, bpy.types.Panel):
         BAKE_BUTTON.draw_main(layout, context, "Make Mipmaps")
         image = shown_image(context)
         if image is not None:
-            text = users.what_is_read(context, image, settings.objects, [settings.filter])
-            note(layout, context, f"{text}, {_where(settings)}", "INFO")
-        settings.draw_closed(layout)
+            text = users.describe_inputs(context, image, settings.objects, [settings.filter])
+            note(layout, context, f"{text}, {_destination(settings)}", "INFO")
+        settings.draw_collapsed(layout)
         if removal.has_levels(level_images.source_of_level(image) or image):
             layout.operator(PREFILTER_OT_remove_levels.bl_idname, icon="TRASH")
 
 
-def _where(settings: Any) -> str:
-    """Returns where the levels go."""
+def _destination(settings: Any) -> str:
+    """Returns the destination of the levels as text."""
     if settings.result != "file":
         return tr("as images") if settings.result == "images" else tr("as a preview")
     return tr("to {}").format(settings.filepath or FILE_FORMATS[settings.file_format].label)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The bake of all images, in the Prefilter tab of the 3D view's sidebar."""
+"""The panel of the bake of all images, in the sidebar of the 3D view."""
 
 from typing import Any
 
@@ -24,51 +24,51 @@ _MOST_IMAGES = 12
 
 
 class PREFILTER_PT_model(SidebarPanel, PresetsPanel, bpy.types.Panel):
-    """The button, the settings, and what there is to bake."""
+    """The button, the settings, and the images to bake."""
 
     bl_label = "Mipmaps"
-    wanted = "a mesh"
+    required_object = "a mesh"
     presets = MODEL
 
     @staticmethod
     def fits(obj: bpy.types.Object) -> bool:
-        """Tells whether the panel is for an object."""
+        """Returns whether an object may show an image."""
         from ...bridge.meshes import may_show_image
 
         return may_show_image(obj)
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        from ..model import known
+        from ..model import candidates
 
         layout, settings = self.layout, context.scene.prefilter_model
         MODEL_BUTTON.draw_main(layout, context, "Make Mipmaps")
-        found = known.images(context, settings.objects, settings.material) or []
-        reason = known.why_none(context, settings.objects, settings.material)
-        note(layout, context, reason or _what_is_made(context, settings, len(found)), "INFO")
+        images = candidates.candidates(context, settings.objects, settings.material) or []
+        reason = candidates.missing_reason(context, settings.objects, settings.material)
+        note(layout, context, reason or _summary(context, settings, len(images)), "INFO")
         is_beside = settings.result == "file" and settings.folder.startswith("//")
-        if found and is_beside and not bpy.data.is_saved:
+        if images and is_beside and not bpy.data.is_saved:
             note(layout, context, "Save the .blend file first", "ERROR")
-        settings.draw_closed(layout)
+        settings.draw_collapsed(layout)
         header, body = subpanel(layout, "model_images", "Images")
-        header.label(text=str(len(found)))
+        header.label(text=str(len(images)))
         if not body:
             return
         column = body.column(align=True)
-        for one in found[:_MOST_IMAGES]:
+        for image in images[:_MOST_IMAGES]:
             row = column.row()
-            row.label(text=one.image, icon=_ICONS[one.content], translate=False)
-            label = marked("Roughness") if one.partner else CONTENTS[one.content].label
+            row.label(text=image.image, icon=_ICONS[image.content], translate=False)
+            label = marked("Roughness") if image.partner else CONTENTS[image.content].label
             row.label(text=label, text_ctxt=CONTEXT)
-        if len(found) > _MOST_IMAGES:
-            column.label(text=tr("and {} more").format(len(found) - _MOST_IMAGES), icon="BLANK1")
+        if len(images) > _MOST_IMAGES:
+            column.label(text=tr("and {} more").format(len(images) - _MOST_IMAGES), icon="BLANK1")
 
 
-def _what_is_made(context: bpy.types.Context, settings: Any, count: int) -> str:
-    """Returns whose images are baked, and where their levels go."""
-    from ..model import known
+def _summary(context: bpy.types.Context, settings: Any, count: int) -> str:
+    """Returns the number of images, the objects, and the destination as text."""
+    from ..model import candidates
 
-    is_all = known.chosen_objects(context, settings.objects) is None
+    is_all = candidates.chosen_objects(context, settings.objects) is None
     whose = tr("the scene") if is_all else tr("the selection")
     if settings.material:
         whose = tr("'{material}' in {whose}").format(material=settings.material, whose=whose)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Levels on the model, in the Prefilter tab of the 3D view."""
+"""The panel of previews on models, in the sidebar of the 3D view."""
 
 import bpy
 
@@ -14,7 +14,7 @@ from ..view import on_model, preview
 
 
 class PREFILTER_PT_on_model(Tab, bpy.types.Panel):
-    """The button, and which levels are drawn."""
+    """The button, and the choice of levels to draw."""
 
     bl_label = "Levels on Model"
     bl_parent_id = "PREFILTER_PT_model"
@@ -23,7 +23,7 @@ class PREFILTER_PT_on_model(Tab, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether the active object may show an image."""
+        """Returns whether the active object may show an image."""
         from ...bridge.meshes import may_show_image
 
         return context.active_object is not None and may_show_image(context.active_object)

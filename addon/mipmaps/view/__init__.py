@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Seeing mipmaps: levels drawn in the editor, their errors as a figure, the weights of texels."""
+"""Display of mipmaps: levels drawn in editors, their errors as a figure, texel weights."""
 
 from ...core.registration import registration
 from . import on_model, overlay, preview, state, wipe

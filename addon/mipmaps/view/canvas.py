@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""A sheet for figures: lines, rectangles and letters, drawn by `prefilter.rasterize`.
+"""A canvas for figures: lines, rectangles and letters, drawn by `prefilter.rasterize`.
 
-Positions are in pixels, with y upwards and row 0 at the bottom, as images have it. Colors are sRGB
-values, and are blended in linear light.
+Positions are in pixels, with y upwards and row 0 at the bottom, as in Blender's images. Colors are
+sRGB values, blended in linear light.
 """
 
 from collections.abc import Iterable, Sequence
@@ -20,10 +20,10 @@ Color = tuple[float, float, float]
 
 
 class Canvas:
-    """An opaque picture; what is drawn later covers what is there."""
+    """An opaque picture; later shapes cover earlier ones."""
 
     def __init__(self, width: int, height: int, paper: Color) -> None:
-        """Starts with an empty sheet."""
+        """Creates an empty canvas with a background color."""
         self._size = (width, height)
         self._paper = _light(paper)
         self._shapes: list[prefilter.Shape] = []
@@ -57,7 +57,7 @@ class Canvas:
             points: (n, 2) positions.
             color: Its color.
             width: Its width.
-            dashes: The length of dashes and of the gaps between them; None draws through.
+            dashes: The length of dashes and of the gaps between them; None for a solid line.
         """
         shape = self._shape(color)
         (first, *others) = np.asarray(points, np.float64).tolist()
@@ -77,8 +77,8 @@ class Canvas:
         """Fills letters.
 
         Args:
-            letters: Those of a `bridge.lettering.Lettering`.
-            matrix: (2, 3), from their space to the sheet.
+            letters: The letters of a `bridge.lettering.Lettering`.
+            matrix: (2, 3), from their space to the canvas.
             color: Their color.
         """
         placed = np.vstack([matrix, [0.0, 0.0, 1.0]]).T

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The errors of mipmaps over the range of mip values (figure 7.7)."""
+"""The errors of mipmaps by mip value (figure 7.7)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from ..choices import FILTERS, PlotSettings
 from ..source import Source
 
 STEPS_PER_LEVEL = 8  # Even, for Simpson's rule.
-_FILTERING = 0.7  # The share of the time that is spent on filtering, roughly.
+_FILTERING = 0.7  # Approximate share of the time spent on filtering.
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class ErrorCurves:
 
     @property
     def overall(self) -> NDArray[np.float64]:
-        """The root mean square over all mip values, a number for each filter.
+        """The root mean square over all mip values, for each filter.
 
         Between two levels the squared error is a quadratic polynomial of the mip value, for which
         Simpson's rule is exact.
@@ -64,12 +64,12 @@ class ErrorCurves:
             Sentence("{} {}", Sentence(FILTERS[name].label), f"{error:.4g}")
             for name, error in zip(self.filters, self.overall, strict=True)
         ]
-        told = joined(", ", errors)
-        return Sentence("Error of '{}' over all mip values: {}", self.image, told)
+        text = "Error of '{}' over all mip values: {}"
+        return Sentence(text, self.image, joined(", ", errors))
 
 
 def default_filters(reader: str) -> tuple[str, ...]:
-    """Returns the filters to compare for a key of `choices.READERS`."""
+    """Returns the default filters to compare, for a key of `choices.READERS`."""
     return tuple(
         name for name in PlotSettings.filters if reader == "linear" or name != "pam-trilinear"
     )
@@ -78,10 +78,10 @@ def default_filters(reader: str) -> tuple[str, ...]:
 def measure(source: Source, filters: Sequence[str], progress: Progress) -> ErrorCurves:
     """Filters an image with each filter, and measures the levels.
 
-    Errors are those that supersampled readers see, whatever the lookups of the settings.
+    The errors are those of supersampled readers, whatever the lookups of the settings.
 
     Args:
-        source: What was read from Blender; it needs a surface.
+        source: The image and its surfaces, of which it needs at least one.
         filters: Keys of `choices.FILTERS`.
         progress: Called with the fraction done.
 

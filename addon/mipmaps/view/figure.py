@@ -21,14 +21,14 @@ PAPER: Color = (1.0, 1.0, 1.0)
 _INK: Color = (0.13, 0.13, 0.15)
 _GRID: Color = (0.88, 0.88, 0.9)
 _LEFT, _RIGHT, _BOTTOM, _TOP = 130, 40, 100, 90  # Margins.
-_TEXT, _TITLE = 26.0, 32.0  # Sizes of letters.
-_CAP_HEIGHT = 0.68  # Of a letter of size 1.
+_TEXT, _TITLE = 26.0, 32.0  # Font sizes.
+_CAP_HEIGHT = 0.68  # Height of capitals relative to the font size.
 _LINE, _DASHED_LINE, _DASH = 3.5, 1.5, 9.0
 _TICK, _GAP = 8.0, 12.0
-_ROW, _SAMPLE = 38.0, 52.0  # A row of the legend, and its piece of line.
-_INTERVALS = 5  # About as many along the axis of errors.
+_ROW, _SAMPLE = 38.0, 52.0  # Height of a row of the legend, and length of its line sample.
+_INTERVALS = 5  # Approximate number of intervals on the axis of errors.
 
-# Colors that stay apart for the color-blind (Okabe and Ito), the first ones as in figure 7.7.
+# Colors that color-blind people can distinguish (Okabe and Ito), the first ones as in figure 7.7.
 COLORS: dict[str, Color] = {
     "box": (0.0, 0.447, 0.698),
     "pam-box": (0.835, 0.369, 0.0),
@@ -44,12 +44,12 @@ COLORS: dict[str, Color] = {
 
 @dataclass(frozen=True)
 class Axes:
-    """Where values are in the picture."""
+    """The mapping of values to positions in the picture."""
 
     last_level: float
     top_error: float
 
-    def place(self, mip_values: ArrayLike, errors: ArrayLike) -> NDArray[np.float64]:
+    def position(self, mip_values: ArrayLike, errors: ArrayLike) -> NDArray[np.float64]:
         """Returns (..., 2) positions in pixels, from the lower left corner."""
         x = _LEFT + (WIDTH - _LEFT - _RIGHT) * np.asarray(mip_values) / self.last_level
         y = _BOTTOM + (HEIGHT - _BOTTOM - _TOP) * np.asarray(errors) / self.top_error
@@ -57,7 +57,7 @@ class Axes:
 
 
 def axes_of(curves: ErrorCurves) -> Axes:
-    """Returns axes that the curves fit in."""
+    """Returns axes that contain the curves."""
     last = float(curves.mip_values[-1]) or 1.0
     step = _round_step(float(curves.errors.max()))
     return Axes(last, step * max(1, math.ceil(float(curves.errors.max()) / step - 1e-9)))
@@ -73,9 +73,9 @@ def draw(curves: ErrorCurves) -> FloatArray:
     _draw_axes(canvas, axes, float(curves.errors.max()))
     for name, overall, errors in zip(curves.filters, curves.overall, curves.errors, strict=True):
         color = _color(name)
-        ends = axes.place([0.0, axes.last_level], [overall, overall])
+        ends = axes.position([0.0, axes.last_level], [overall, overall])
         canvas.line(ends, color, width=_DASHED_LINE, dashes=_DASH)
-        canvas.line(axes.place(curves.mip_values, errors), color, width=_LINE)
+        canvas.line(axes.position(curves.mip_values, errors), color, width=_LINE)
     _draw_legend(canvas, curves)
     middle = (_LEFT + WIDTH - _RIGHT) / 2
     title = f"Error of the mipmaps of '{curves.image}' over the surface"
@@ -88,7 +88,7 @@ def draw(curves: ErrorCurves) -> FloatArray:
 
 
 def _color(name: str) -> Color:
-    """Returns the color of a filter; one that is not in `COLORS` has a hue by its name."""
+    """Returns the color of a filter; without an entry in `COLORS`, its name determines the hue."""
     hue = zlib.crc32(name.encode()) / 2**32
     return COLORS.get(name) or colorsys.hls_to_rgb(hue, 0.4, 0.6)
 
@@ -98,12 +98,12 @@ def _draw_axes(canvas: Canvas, axes: Axes, top: float) -> None:
     stride = max(1, math.ceil(axes.last_level / 16))
     digits = max(0, -math.floor(math.log10(step)))
     for level in range(0, round(axes.last_level) + 1, stride):
-        x, y = axes.place(level, 0.0)
+        x, y = axes.position(level, 0.0)
         canvas.line([(x, y), (x, HEIGHT - _TOP)], _GRID, width=1.0)
         canvas.line([(x, y - _TICK), (x, y)], _INK, width=1.5)
         _write(canvas, str(level), x, y - _TICK - _GAP - _CAP_HEIGHT * _TEXT, anchor=0.5)
     for index in range(round(axes.top_error / step) + 1):
-        x, y = axes.place(0.0, index * step)
+        x, y = axes.position(0.0, index * step)
         canvas.line([(x, y), (WIDTH - _RIGHT, y)], _GRID, width=1.0)
         canvas.line([(x - _TICK, y), (x, y)], _INK, width=1.5)
         label = f"{index * step:.{digits}f}"
@@ -113,7 +113,7 @@ def _draw_axes(canvas: Canvas, axes: Axes, top: float) -> None:
 
 
 def _draw_legend(canvas: Canvas, curves: ErrorCurves) -> None:
-    """Draws it at the lower right: errors grow, which leaves room below those of coarse levels."""
+    """Draws the legend at the lower right, where the curves, which rise, leave space below."""
     rows = [
         (FILTERS[name].label, _color(name), overall)
         for name, overall in zip(curves.filters, curves.overall, strict=True)
@@ -140,7 +140,18 @@ def _write(
     upwards: bool = False,
     fit: float = math.inf,
 ) -> None:
-    """Writes a line of text with the anchor, a share of its width, at (x, y) on its baseline."""
+    """Draws a line of text at a baseline point (x, y).
+
+    Args:
+        canvas: The canvas.
+        text: The text.
+        x: The horizontal position of the anchor.
+        y: The vertical position of the baseline.
+        size: The font size.
+        anchor: The position of the anchor, as a share of the text's width.
+        upwards: Whether the text runs upwards.
+        fit: The largest width; the font is reduced to fit.
+    """
     line = lettering.outlines(text)
     extent = line.high - line.low
     size = min(size, fit / max(extent, 1e-6))
@@ -151,7 +162,7 @@ def _write(
 
 
 def _round_step(top: float) -> float:
-    """Returns 1, 2 or 5 times a power of ten that divides [0, top] into about `_INTERVALS`."""
+    """Returns 1, 2 or 5 times a power of ten, for about `_INTERVALS` intervals in [0, top]."""
     if top <= 0.0:
         return 1.0
     rough = top / _INTERVALS

@@ -2,9 +2,9 @@
 
 """Draws levels over the objects that show their image, in the 3D views.
 
-Nothing of the scene changes: what is drawn lies over the objects, without lighting. A texel is
-looked up as `overlay` does; a level of its own is chosen for each pixel where that is as a GPU
-does, by how many texels a pixel covers.
+The scene does not change: the levels are drawn over the objects, without lighting. Lookups are as
+in `overlay`. The level of each pixel may be chosen as on a GPU, by the number of texels in the
+pixel.
 """
 
 from typing import TYPE_CHECKING
@@ -28,7 +28,7 @@ void main()
 {
   uv = texture_place;
   vec4 place = matrix * vec4(position, 1.0);
-  // In front of the surface itself.
+  // In front of the object's own surface.
   place.z -= NEARER * place.w;
   gl_Position = place;
   across = place.xw;
@@ -81,14 +81,14 @@ void main()
 """
 _NEARER = "1e-6"
 _WITHOUT_DEPTH = frozenset({"MATERIAL", "RENDERED"})
-"""In which shading a view without overlays does not know how far away things are."""
+"""The shading modes in which a view without overlays has no depth buffer."""
 
 _handles: list[object] = []
 _shader: gpu.types.GPUShader | None = None
 
 
-class _Shown:
-    """What is drawn: the preview of an image, and what the graphics card has of it."""
+class _ModelPreview:
+    """The preview of an image, with its batches and textures on the GPU."""
 
     def __init__(self, image: bpy.types.Image, shown: "Preview") -> None:
         self.image_uid = image.session_uid
@@ -97,26 +97,26 @@ class _Shown:
         self.textures: dict[str, gpu.types.GPUTexture] = {}
 
     def image(self) -> bpy.types.Image | None:
-        """Returns the image, if it is still there."""
-        found = (one for one in bpy.data.images if one.session_uid == self.image_uid)
-        return next(found, None)
+        """Returns the image; None if it was deleted."""
+        images = (image for image in bpy.data.images if image.session_uid == self.image_uid)
+        return next(images, None)
 
     def batch(
         self, obj: bpy.types.Object, image: bpy.types.Image, depsgraph: bpy.types.Depsgraph
     ) -> gpu.types.GPUBatch | None:
-        """Returns the triangles of an object."""
+        """Returns the triangles of an object that show the image."""
         from ...bridge.drawn_meshes import triangles_with
 
         if obj.name not in self.batches:
-            found = triangles_with(obj, image, depsgraph)
+            triangles = triangles_with(obj, image, depsgraph)
             self.batches[obj.name] = None
-            if found is not None:
-                values = {"position": found.positions, "texture_place": found.uvs}
+            if triangles is not None:
+                values = {"position": triangles.positions, "texture_place": triangles.uvs}
                 self.batches[obj.name] = batch_for_shader(_compiled(), "TRIS", values)
         return self.batches[obj.name]
 
     def texture(self, name: str) -> gpu.types.GPUTexture:
-        """Returns all levels of a filter but the first, below each other; "" for the first."""
+        """Returns levels 1, 2, ... of a filter, stacked in one texture; level 0 for ""."""
         from ...bridge.drawing import uploaded
 
         if name not in self.textures:
@@ -125,50 +125,50 @@ class _Shown:
         return self.textures[name]
 
     def boxes(self) -> gpu.types.GPUTexture:
-        """Returns where each level is: x, y, width and height."""
+        """Returns a texture with x, y, width and height of each level in its texture."""
         if "boxes" not in self.textures:
-            found, y = [], 0
+            boxes, y = [], 0
             for index, level in enumerate(next(iter(self.preview.levels.values()))):
                 height, width = level.shape[:2]
-                found.append((0, y if index else 0, width, height))
+                boxes.append((0, y if index else 0, width, height))
                 y += height if index else 0
-            values = np.array(found, np.float32)
+            values = np.array(boxes, np.float32)
             data = gpu.types.Buffer("FLOAT", values.size, values.ravel())
             self.textures["boxes"] = gpu.types.GPUTexture(
-                (len(found), 1), format="RGBA32F", data=data
+                (len(boxes), 1), format="RGBA32F", data=data
             )
         return self.textures["boxes"]
 
 
-_shown: _Shown | None = None
+_shown: _ModelPreview | None = None
 
 
 def begin(image: bpy.types.Image) -> None:
-    """Has 3D views draw the levels that are kept of an image."""
+    """Starts drawing the preview of an image in the 3D views."""
     global _shown
-    found = preview.find(image)
-    _shown = _Shown(image, found) if found is not None else None
+    levels = preview.find(image)
+    _shown = _ModelPreview(image, levels) if levels is not None else None
 
 
 def end() -> None:
-    """Has 3D views draw objects as they are."""
+    """Stops drawing levels in the 3D views."""
     global _shown
     _shown = None
 
 
 def shown_image() -> bpy.types.Image | None:
-    """Returns the image whose levels 3D views draw."""
+    """Returns the image whose levels the 3D views draw; None for none."""
     image = _shown.image() if _shown is not None else None
     return image if preview.find(image) is not None else None
 
 
 def current() -> "Preview | None":
-    """Returns what 3D views draw."""
+    """Returns the preview that the 3D views draw; None for none."""
     return preview.find(shown_image())
 
 
 def _stacked(levels: "list[FloatArray]") -> "FloatArray":
-    """Returns levels below each other, the first with row 0."""
+    """Returns levels stacked vertically, the first one at row 0."""
     width = max(level.shape[1] for level in levels)
     rows = [np.pad(level, ((0, 0), (0, width - level.shape[1]), (0, 0))) for level in levels]
     return np.concatenate(rows)
@@ -189,18 +189,18 @@ def _compiled() -> gpu.types.GPUShader:
             ("BOOL", "byDistance"),
             ("BOOL", "blends"),
             ("BOOL", "decodesAfter"),
-            # Blender sets it: whether the framebuffer encodes what is written to it.
+            # Set by Blender: whether the framebuffer encodes written values as sRGB.
             ("BOOL", "srgbTarget"),
         ):
             info.push_constant(kind, name)
         for slot, name in enumerate(("level_0", "left", "right", "boxes")):
             info.sampler(slot, "FLOAT_2D", name)
-        passed = gpu.types.GPUStageInterfaceInfo("prefilter_on_model")
-        passed.smooth("VEC2", "uv")
-        passed.smooth("VEC2", "across")
+        interface = gpu.types.GPUStageInterfaceInfo("prefilter_on_model")
+        interface.smooth("VEC2", "uv")
+        interface.smooth("VEC2", "across")
         info.vertex_in(0, "VEC3", "position")
         info.vertex_in(1, "VEC2", "texture_place")
-        info.vertex_out(passed)
+        info.vertex_out(interface)
         info.fragment_out(0, "VEC4", "color")
         info.define("NEARER", _NEARER)
         info.vertex_source(_VERTEX)
@@ -209,11 +209,11 @@ def _compiled() -> gpu.types.GPUShader:
     return _shader
 
 
-def _filters(found: "Preview") -> tuple[str, str, float]:
-    """Returns the filters to both sides of the wipe, and where that is."""
+def _filters(levels: "Preview") -> tuple[str, str, float]:
+    """Returns the filters left and right of the wipe, and the position of the wipe."""
     settings = bpy.context.window_manager.prefilter_view
-    main, other = next(iter(found.levels)), settings.compare
-    wipes = settings.use_wipe and other in found.levels
+    main, other = next(iter(levels.levels)), settings.compare
+    wipes = settings.use_wipe and other in levels.levels
     return (other if wipes else main), main, (settings.wipe if wipes else 0.0)
 
 
@@ -276,22 +276,22 @@ def _draw_labels() -> None:
         return
     left, right, wipe = _filters(found)
     if settings.choice == "distance" and settings.distance == 1.0:
-        said = tr("{filter}, as seen from here").format(filter=tr(FILTERS[right].label))
+        text = tr("{filter}, as seen from here").format(filter=tr(FILTERS[right].label))
     elif settings.choice == "distance":
-        said = tr("{filter}, {factor} times as far").format(
+        text = tr("{filter}, {factor} times as far").format(
             filter=tr(FILTERS[right].label), factor=f"{settings.distance:g}"
         )
     else:
         value = f"{min(settings.mip_value, found.last_level):g}"
-        said = tr("{filter}, mip value {value}").format(
+        text = tr("{filter}, mip value {value}").format(
             filter=tr(FILTERS[right].label), value=value
         )
-    draw_wipe(wipe, tr(FILTERS[left].label) if left != right else "", said)
+    draw_wipe(wipe, tr(FILTERS[left].label) if left != right else "", text)
 
 
 @persistent
-def _follow(_: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    """Forgets the triangles of what has changed."""
+def _drop_changed_batches(_: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    """Deletes the batches of objects that have changed."""
     if _shown is None:
         return
     for update in depsgraph.updates:
@@ -303,16 +303,20 @@ def _follow(_: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
 
 
 @persistent
-def _forget(*_: object) -> None:
+def _drop_all_batches(*_: object) -> None:
     if _shown is not None:
         _shown.batches.clear()
 
 
-_HANDLERS = (("depsgraph_update_post", _follow), ("undo_post", _forget), ("redo_post", _forget))
+_HANDLERS = (
+    ("depsgraph_update_post", _drop_changed_batches),
+    ("undo_post", _drop_all_batches),
+    ("redo_post", _drop_all_batches),
+)
 
 
 def register() -> None:
-    """Adds the drawing to the 3D views."""
+    """Adds the draw handlers."""
     for draw, when in ((_draw_view, "POST_VIEW"), (_draw_labels, "POST_PIXEL")):
         _handles.append(bpy.types.SpaceView3D.draw_handler_add(draw, (), "WINDOW", when))
     for name, handler in _HANDLERS:
@@ -320,7 +324,7 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Takes the drawing out of the 3D views."""
+    """Removes the draw handlers."""
     global _shader
     for name, handler in _HANDLERS:
         getattr(bpy.app.handlers, name).remove(handler)

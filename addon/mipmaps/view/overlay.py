@@ -2,10 +2,10 @@
 
 """Draws levels over their image in the Image and UV editors.
 
-A texel is looked up as a renderer does, in single precision: bilinear within a level, linear
-between two levels, in scene-linear light; for readers that decode after the lookup, bilinear among
-encoded texels. The shader encodes the result for an sRGB display, which
-is how the editor shows an image unless its View as Render is on.
+Lookups are those of a renderer, in single precision: bilinear within a level, linear between two
+levels, in scene-linear light; for readers that decode after the lookup, bilinear among encoded
+texels. The shader encodes the result for an sRGB display, as the editor shows an image without View
+as Render.
 """
 
 import math
@@ -20,10 +20,10 @@ from ..choices import FILTERS
 from . import preview
 from .preview import Preview
 
-# Between the image, which the editor draws behind, and the UVs, which it draws in front.
+# Between the editor's image, behind, and its UVs, in front.
 _DEPTH = 0.5
 _CHANNELS = {"COLOR_ALPHA": 0, "COLOR": 1, "ALPHA": 2, "RED": 3, "GREEN": 4, "BLUE": 5}
-# Whether the editor multiplies light by alpha: 5.2 does, 4.3 does not.
+# Whether the editor multiplies linear light by alpha: Blender 5.2 does, 4.3 does not.
 _MULTIPLIES_LIGHT = bpy.app.version >= (5, 0, 0)
 
 _VERTEX = """
@@ -41,7 +41,8 @@ int wrapped(int index, int size, int mode)
                    : clamp(index, 0, size - 1);
 }
 """
-"""GLSL: the index of a texel after the wrap mode; 2 is that of what has no texels outside."""
+"""GLSL: the index of a texel after wrapping; modes: 0 clamp, 1 repeat, 2 border (texels outside are
+0)."""
 _FRAGMENT = """
 vec4 texel(sampler2D level, ivec2 index)
 {
@@ -78,7 +79,7 @@ void main()
   float alpha = clamp(light.a, 0.0, 1.0);
   vec3 shown = clamp(blends && alpha > 0.0 ? light.rgb / alpha : light.rgb, 0.0, 1.0);
   if (blends) {
-    // As the editor does, which used to multiply color as it is displayed.
+    // As the editor does; before Blender 5 it multiplied display values.
     shown = MULTIPLIES_LIGHT ? shown * alpha : decoded(encoded(shown) * alpha);
   }
   if (channels == 0 && blends) {
@@ -113,18 +114,18 @@ def draw_levels(
     """Draws the unit square of UV space with levels on it, into the active framebuffer.
 
     Args:
-        shown: Where the levels come from.
-        view: The matrix from UV space to clip space; it scales and moves.
-        filters: Those left and right of the wipe.
-        mip_value: 0 is the image.
-        wipe: Where the wipe is, as a share of the framebuffer's width; 0 shows the right one.
-        channels: As `SpaceImageEditor.display_channels` names them.
+        shown: The levels.
+        view: The matrix from UV space to clip space; it scales and translates.
+        filters: The filters left and right of the wipe.
+        mip_value: The level to draw; 0 is the image.
+        wipe: The position of the wipe, as a share of the framebuffer's width; 0 shows the right
+            filter only.
+        channels: A value of `SpaceImageEditor.display_channels`.
     """
     mip_value = min(max(mip_value, 0.0), float(shown.last_level))
     fine = min(math.floor(mip_value), max(shown.last_level - 1, 0))
     coarse = min(fine + 1, shown.last_level)
-    wanted = [(name, level) for name in filters for level in (fine, coarse)]
-    textures = _textures(shown, wanted)
+    textures = _textures(shown, [(name, level) for name in filters for level in (fine, coarse)])
     shader = _compiled()
     batch = batch_for_shader(shader, "TRI_FAN", {"position": [(0, 0), (1, 0), (1, 1), (0, 1)]})
     shader.bind()
@@ -163,17 +164,17 @@ def _compiled() -> gpu.types.GPUShader:
             ("INT", "channels"),
             ("BOOL", "blends"),
             ("BOOL", "decodesAfter"),
-            # Blender sets it: whether the framebuffer encodes what is written to it.
+            # Set by Blender: whether the framebuffer encodes written values as sRGB.
             ("BOOL", "srgbTarget"),
         ):
             info.push_constant(kind, name)
         for slot, name in enumerate(_SAMPLERS):
             info.sampler(slot, "FLOAT_2D", name)
-        passed = gpu.types.GPUStageInterfaceInfo("prefilter_level")
-        passed.smooth("VEC2", "uv")
-        passed.smooth("FLOAT", "across")
+        interface = gpu.types.GPUStageInterfaceInfo("prefilter_level")
+        interface.smooth("VEC2", "uv")
+        interface.smooth("FLOAT", "across")
         info.vertex_in(0, "VEC2", "position")
-        info.vertex_out(passed)
+        info.vertex_out(interface)
         info.fragment_out(0, "VEC4", "color")
         info.vertex_source(_VERTEX)
         info.define("MULTIPLIES_LIGHT", str(_MULTIPLIES_LIGHT).lower())
@@ -182,21 +183,21 @@ def _compiled() -> gpu.types.GPUShader:
     return _shader
 
 
-def _textures(shown: Preview, wanted: list[tuple[str, int]]) -> list[gpu.types.GPUTexture]:
-    """Returns textures of levels; those that no drawing wants any longer are freed."""
+def _textures(shown: Preview, levels: list[tuple[str, int]]) -> list[gpu.types.GPUTexture]:
+    """Returns the textures of levels, given by filter and number, and frees all other textures."""
     from ...bridge.drawing import uploaded
 
-    keys = [("", 0) if level == 0 else (name, level) for name, level in wanted]
-    kept = {key: shown.textures[key] for key in keys if key in shown.textures}
-    for key, (name, level) in zip(keys, wanted, strict=True):
-        if key not in kept:
-            kept[key] = uploaded(shown.levels[name][level])
-    shown.textures = kept
-    return [kept[key] for key in keys]
+    keys = [("", 0) if level == 0 else (name, level) for name, level in levels]
+    textures = {key: shown.textures[key] for key in keys if key in shown.textures}
+    for key, (name, level) in zip(keys, levels, strict=True):
+        if key not in textures:
+            textures[key] = uploaded(shown.levels[name][level])
+    shown.textures = textures
+    return [textures[key] for key in keys]
 
 
-def _shown_here() -> tuple[Preview, tuple[str, str], float] | None:
-    """Returns what the editor draws: the preview, the filters, and where the wipe is."""
+def _editor_preview() -> tuple[Preview, tuple[str, str], float] | None:
+    """Returns the preview of the editor, its filters, and the position of the wipe."""
     settings = bpy.context.window_manager.prefilter_view
     shown = preview.find(bpy.context.space_data.image)
     if shown is None or not settings.use_preview:
@@ -208,10 +209,10 @@ def _shown_here() -> tuple[Preview, tuple[str, str], float] | None:
 
 
 def _draw_view() -> None:
-    found = _shown_here()
-    if found is None:
+    editor_preview = _editor_preview()
+    if editor_preview is None:
         return
-    shown, filters, wipe = found
+    shown, filters, wipe = editor_preview
     gpu.state.blend_set("NONE")
     gpu.state.depth_test_set("LESS_EQUAL")
     draw_levels(
@@ -228,10 +229,10 @@ def _draw_view() -> None:
 def _draw_labels() -> None:
     from ...bridge.drawing import draw_wipe
 
-    found = _shown_here()
-    if found is None:
+    editor_preview = _editor_preview()
+    if editor_preview is None:
         return
-    shown, (left, right), wipe = found
+    shown, (left, right), wipe = editor_preview
     mip_value = min(bpy.context.window_manager.prefilter_view.mip_value, shown.last_level)
     left_label = tr(FILTERS[left].label) if left != right else ""
     text = tr("{filter}, mip value {value}")
@@ -241,14 +242,14 @@ def _draw_labels() -> None:
 
 
 def register() -> None:
-    """Adds the drawing to the editors."""
+    """Adds the draw handlers."""
     for draw, when in ((_draw_view, "POST_VIEW"), (_draw_labels, "POST_PIXEL")):
         handle = bpy.types.SpaceImageEditor.draw_handler_add(draw, (), "WINDOW", when)
         _handles.append(handle)
 
 
 def unregister() -> None:
-    """Takes the drawing out of the editors."""
+    """Removes the draw handlers."""
     global _shader
     while _handles:
         bpy.types.SpaceImageEditor.draw_handler_remove(_handles.pop(), "WINDOW")

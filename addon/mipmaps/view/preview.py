@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The levels that editors draw in the place of an image: computed, and kept."""
+"""Previews: the levels that editors draw in place of an image."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
@@ -23,17 +23,17 @@ _WRAPS = ("clamp", "repeat", "border")
 
 @dataclass
 class Preview:
-    """The levels of one image, with some filters.
+    """The levels of one image, by one or several filters.
 
     Attributes:
         image_uid: The image's session_uid.
-        settings: What the levels were computed with.
-        levels: By filter, level 0 first: (height, width, 3 or 4) scene-linear values, with colors
-            multiplied by alpha where that is coverage.
-        wrap: What lookups read outside of the image along u and v.
+        settings: The settings of the bake.
+        levels: The levels by filter, level 0 first: (height, width, 3 or 4) scene-linear values,
+            with colors multiplied by alpha if alpha is coverage.
+        wrap: The wrap modes along u and v.
         blends: Whether alpha is coverage.
         decodes_after: Whether lookups interpolate encoded texels, and decode afterward.
-        objects: The names of the objects that wear the image.
+        objects: The names of the objects that use the image.
         is_stale: Whether the image or an object has changed since.
     """
 
@@ -48,7 +48,7 @@ class Preview:
     textures: dict[tuple[str, int], object] = field(default_factory=dict)
 
     def depends_on(self, name: str) -> bool:
-        """Tells whether an object wears the image."""
+        """Returns whether an object uses the image."""
         return name in self.objects
 
     @property
@@ -58,7 +58,7 @@ class Preview:
 
     @property
     def wrap_numbers(self) -> tuple[int, int]:
-        """The wrap modes as the shader counts them."""
+        """The wrap modes as numbers for the shader."""
         return _WRAPS.index(self.wrap[0]), _WRAPS.index(self.wrap[1])
 
 
@@ -69,10 +69,10 @@ VIEW = View(_previews, "prefilter_view", "use_preview")
 
 
 class PreviewWork:
-    """The levels of an image with some filters, as work."""
+    """The computation of a preview, as a `Work`."""
 
     def __init__(self, source: "Source", image_uid: int, filters: Iterable[str]) -> None:
-        """Takes what `compute` does."""
+        """Stores the arguments of `compute`."""
         self._source = source
         self._image_uid = image_uid
         self._filters = list(filters)
@@ -84,11 +84,11 @@ class PreviewWork:
         return self._source.image_name
 
     def compute(self, progress: Progress) -> None:
-        """Computes the levels; may run in another thread."""
+        """Computes the levels, on any thread."""
         self._preview = compute(self._source, self._image_uid, self._filters, progress)
 
     def write(self) -> Outcome:
-        """Keeps the levels for the editors to draw."""
+        """Stores the preview for the editors."""
         assert self._preview is not None
         keep(self._preview)
         return Outcome(
@@ -97,11 +97,11 @@ class PreviewWork:
         )
 
     def discard(self) -> None:
-        """Does nothing: there are no files."""
+        """Does nothing: no files are staged."""
 
 
 def settings_for_preview(settings: Settings) -> Settings:
-    """Returns settings without what does not change a level."""
+    """Returns the settings with fields that do not affect levels set to fixed values."""
     from prefilter.workflows.mipmaps import lookups
 
     return replace(lookups.resolved(settings), levels=0, use_images=True, filepath="")
@@ -110,12 +110,12 @@ def settings_for_preview(settings: Settings) -> Settings:
 def compute(
     source: "Source", image_uid: int, filters: Iterable[str], progress: Progress
 ) -> Preview:
-    """Computes the levels with each filter; raises what `Source.filtered` does.
+    """Computes the levels with each filter; raises the same exceptions as `Source.filtered`.
 
     Args:
-        source: What was read from Blender.
-        image_uid: The session_uid of its image.
-        filters: Keys of `choices.FILTERS`, that of the settings first.
+        source: The image and its surfaces.
+        image_uid: The session_uid of the image.
+        filters: Keys of `choices.FILTERS`, beginning with the filter of the settings.
         progress: Called with the fraction done.
     """
     linear = source.linear(progress)
@@ -125,11 +125,11 @@ def compute(
         levels[name] = source.filtered(linear, name, part)
     picture = source.picture
     if picture.alpha_is_straight:
-        levels = {name: [associated(level) for level in made] for name, made in levels.items()}
+        levels = {name: [associated(level) for level in own] for name, own in levels.items()}
     # Level 0 is the image, whatever the filter.
     first = levels[names[0]][0]
-    for made in levels.values():
-        made[0] = first
+    for own in levels.values():
+        own[0] = first
     return Preview(
         image_uid=image_uid,
         settings=settings_for_preview(source.settings),

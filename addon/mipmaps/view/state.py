@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What the editors show, in all windows: no part of the scene, so no undo changes it."""
+"""The settings of previews, in the window manager, so that undo does not change them."""
 
 import bpy
 from bpy.props import BoolProperty, FloatProperty

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The weights of texels as colors."""
+"""Pictures of texel weights."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from ...bridge.images import FloatArray
 
 OCTAVES = 4
-"""Colors span weights from 2^-OCTAVES to 2^OCTAVES; what is beyond has the color of the end."""
+"""Colors span weights from 2^-OCTAVES to 2^OCTAVES; weights beyond are clamped."""
 
 _STRIPE = 1 / 64  # The period of the hatching, as a share of the longer side.
 _STRIPES = ((0.32, 0.32, 0.32), (0.22, 0.22, 0.22))
@@ -41,19 +41,19 @@ _LMS_TO_RGB = np.array(
 
 @dataclass(frozen=True)
 class Weights:
-    """A picture of weights, and the share of texels that have any."""
+    """A picture of weights, and the share of texels with a weight above 0."""
 
     picture: "FloatArray"
     used_share: float
 
 
 def colors(weights: ArrayLike) -> NDArray[np.float32]:
-    """Returns (..., 3) sRGB colors of weights above 0, by their logarithm."""
+    """Returns (..., 3) sRGB colors for weights above 0, by their logarithm."""
     octave = np.log2(np.maximum(np.asarray(weights, float), 2.0 ** -(OCTAVES + 1)))
-    place = np.clip(octave / (2 * OCTAVES) + 0.5, 0.0, 1.0)
-    lightness = _LIGHTNESS[0] + place * (_LIGHTNESS[1] - _LIGHTNESS[0])
-    hue = np.radians(_HUE[0] + place * (_HUE[1] - _HUE[0]))
-    chroma = _CHROMA * np.ones_like(place)
+    position = np.clip(octave / (2 * OCTAVES) + 0.5, 0.0, 1.0)
+    lightness = _LIGHTNESS[0] + position * (_LIGHTNESS[1] - _LIGHTNESS[0])
+    hue = np.radians(_HUE[0] + position * (_HUE[1] - _HUE[0]))
+    chroma = _CHROMA * np.ones_like(position)
     lab = np.stack([lightness, chroma * np.cos(hue), chroma * np.sin(hue)], axis=-1)
     light = ((lab @ _LAB_TO_LMS.T) ** 3) @ _LMS_TO_RGB.T
     flat = np.clip(light, 0.0, 1.0).astype(np.float32).reshape(-1, 1, 3)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The line between the levels of two filters, dragged in the Image editor and the 3D view."""
+"""Gizmos that drag the wipe between two filters, in the Image editor and the 3D view."""
 
 import bpy
 
@@ -9,14 +9,14 @@ from . import on_model, preview
 
 
 class PREFILTER_GT_level_wipe(WipeGizmo, bpy.types.Gizmo):
-    """The line."""
+    """The line in the Image editor."""
 
     bl_idname = "PREFILTER_GT_level_wipe"
     view = preview.VIEW
 
 
 class PREFILTER_GGT_level_wipe(WipeGroup, bpy.types.GizmoGroup):
-    """Shows it where two filters are compared."""
+    """Shows the line when two filters are compared."""
 
     bl_idname = "PREFILTER_GGT_level_wipe"
     gizmo = PREFILTER_GT_level_wipe
@@ -24,7 +24,7 @@ class PREFILTER_GGT_level_wipe(WipeGroup, bpy.types.GizmoGroup):
 
     @classmethod
     def is_there(cls, context: bpy.types.Context) -> bool:
-        """Tells whether the editor draws the line."""
+        """Returns whether the editor draws the line."""
         state, shown = cls.view.state(context), cls.view.here(context)
         if shown is None or not super().is_there(context):
             return False
@@ -40,7 +40,7 @@ class PREFILTER_GT_model_wipe(WipeGizmo, bpy.types.Gizmo):
 
 
 class PREFILTER_GGT_model_wipe(WipeGroup, bpy.types.GizmoGroup):
-    """Shows it where two filters are compared on the model."""
+    """Shows the line when two filters are compared on the model."""
 
     bl_idname = "PREFILTER_GGT_model_wipe"
     bl_space_type = "VIEW_3D"
@@ -49,7 +49,7 @@ class PREFILTER_GGT_model_wipe(WipeGroup, bpy.types.GizmoGroup):
 
     @classmethod
     def is_there(cls, context: bpy.types.Context) -> bool:
-        """Tells whether the view draws the line."""
+        """Returns whether the view draws the line."""
         state, shown = cls.view.state(context), on_model.current()
         if shown is None or not (state.use_model and state.use_wipe):
             return False

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The commands."""
+"""The commands `resize`, `resample` and `sampling-table`."""
 
 from dataclasses import replace
 from typing import Any
@@ -29,9 +29,9 @@ def add(commands: Any) -> None:
 def _read(
     argument: str, path: str, *, is_data: bool, colorspace: str = AUTO, **more: Any
 ) -> Picture:
-    """Reads a picture as Blender does, or as the package does what Blender takes for another."""
-    seen = picture_files.probe(argument, path, is_data=is_data)
-    if colorspace != AUTO or (seen is not None and not seen.is_plain):
+    """Reads a picture by Blender, or by the package if Blender would misinterpret it."""
+    info = picture_files.probe(argument, path, is_data=is_data)
+    if colorspace != AUTO or (info is not None and not info.is_plain):
         return picture_files.read(argument, path, is_data=is_data, colorspace=colorspace, **more)
     picture = read(images.load(argument, path, is_data=is_data))
-    return replace(picture, is_gray=seen is not None and seen.is_gray)
+    return replace(picture, is_gray=info is not None and info.is_gray)

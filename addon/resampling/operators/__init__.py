@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The operators, one a file."""
+"""The operators on resizing, resampling and tables."""
 
 import bpy
 

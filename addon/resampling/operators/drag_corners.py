@@ -37,17 +37,17 @@ class PREFILTER_OT_drag_corners(bpy.types.Operator):
         "keeps the corners, Esc takes them back"
     )
 
-    # Not REGISTER: Adjust Last Operation stays with what came before.
+    # Not REGISTER, so that Adjust Last Operation still shows the operator before.
     bl_options: set[str] = set()
 
     _before: dict[str, Any]
-    # Blender evaluates annotations: no name is known here that is only imported for type checkers.
+    # Any, because Blender evaluates annotations, and `Drag` is not imported at run time.
     _drag: Any = None
     _start: tuple[float, ...] = ()
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether an Image editor shows an image."""
+        """Returns whether an Image editor shows an image."""
         if context.area is None or context.area.type != "IMAGE_EDITOR":
             cls.poll_message_set(tr("Call it in an Image editor"))
             return False
@@ -58,16 +58,16 @@ class PREFILTER_OT_drag_corners(bpy.types.Operator):
         return True
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Says that a mouse is needed."""
+        """Reports that a window is needed."""
         del context
         text = report("Drag Corners needs a window; set the corners as numbers instead")
         self.report({"ERROR"}, text)
         return {"CANCELLED"}
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Begins, or ends what has begun."""
+        """Starts dragging; ends it if it is running."""
         del event
-        from ..pins import begun
+        from ..pins import initial_changes
 
         if bpy.app.background:
             return self.execute(context)
@@ -79,7 +79,7 @@ class PREFILTER_OT_drag_corners(bpy.types.Operator):
         image = group.source_of(context.space_data.image)
         context.space_data.image = image
         drawn.begin(image)
-        changed = begun(group.to_settings())
+        changed = initial_changes(group.to_settings())
         if changed:
             _set(context, changed, marked("Begin to Drag Corners"))
         context.workspace.status_text_set(tr(_KEYS))
@@ -88,7 +88,7 @@ class PREFILTER_OT_drag_corners(bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Follows the mouse and the keys over the image, and leaves the rest to Blender."""
+        """Handles the mouse and keys over the image, and passes other events to Blender."""
         if self._is_over(context):
             return self._end(context)
         if event.type.startswith("TIMER"):
@@ -103,11 +103,11 @@ class PREFILTER_OT_drag_corners(bpy.types.Operator):
         if event.type in {"RET", "NUMPAD_ENTER"}:
             return self._end(context)
         if event.type in {"ESC", "RIGHTMOUSE"}:
-            return self._take_back(context)
+            return self._revert(context)
         if event.type == "LEFTMOUSE":
             self._grab(context, event)
         elif event.type == "TAB":
-            self._go_on(context, -1 if event.shift else 1)
+            self._select_next(context, -1 if event.shift else 1)
         elif event.type in _ARROWS:
             self._nudge(context, event)
         else:
@@ -115,7 +115,7 @@ class PREFILTER_OT_drag_corners(bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Ends it when Blender does, such as for another file."""
+        """Stops when Blender ends the operator, as when it loads another file."""
         self._end(context)
 
     def _is_over(self, context: bpy.types.Context) -> bool:
@@ -135,7 +135,7 @@ class PREFILTER_OT_drag_corners(bpy.types.Operator):
         _redraw()
         return {"FINISHED"}
 
-    def _take_back(self, context: bpy.types.Context) -> set[str]:
+    def _revert(self, context: bpy.types.Context) -> set[str]:
         group = context.scene.prefilter_resample
         if any(_value(group, name) != value for name, value in self._before.items()):
             _set(context, self._before, marked("Take Corners Back"))
@@ -146,26 +146,26 @@ class PREFILTER_OT_drag_corners(bpy.types.Operator):
         from ..pins import REACH, Drag, nearest
 
         assert drawn.session is not None
-        canvas, places, _ = _seen(context)
+        canvas, points, _ = _corners_in_editor(context)
         mouse = _mouse(context, event)
-        index = nearest(places, canvas, mouse, REACH * context.preferences.system.ui_scale)
+        index = nearest(points, canvas, mouse, REACH * context.preferences.system.ui_scale)
         if index is None:
             return
         drawn.session.active = index
-        self._drag = Drag(places[index], mouse)
+        self._drag = Drag(points[index], mouse)
         self._start = _value(context.scene.prefilter_resample, CORNERS[index])
         context.area.tag_redraw()
 
     def _follow(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
-        """Moves the corner that is held, lets go of it, or takes it back."""
+        """Moves the dragged corner, releases it, or reverts it."""
         assert drawn.session is not None
         assert self._drag is not None
         name = CORNERS[drawn.session.active]
         group = context.scene.prefilter_resample
         if event.type == "MOUSEMOVE":
-            canvas, _, edges = _seen(context)
+            canvas, _, edges = _corners_in_editor(context)
             mouse, slow, snaps = _mouse(context, event), event.shift, event.ctrl
-            self._put(context, self._drag.to(mouse, canvas, edges, is_slow=slow, snaps=snaps))
+            self._move(context, self._drag.to(mouse, canvas, edges, is_slow=slow, snaps=snaps))
         elif event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
             setattr(group, name, self._start)
             self._drag = None
@@ -175,31 +175,31 @@ class PREFILTER_OT_drag_corners(bpy.types.Operator):
                 bpy.ops.ed.undo_push(message="Drag Corner")
         _redraw()
 
-    def _go_on(self, context: bpy.types.Context, step: int) -> None:
+    def _select_next(self, context: bpy.types.Context, step: int) -> None:
         assert drawn.session is not None
         drawn.session.active = (drawn.session.active + step) % len(CORNERS)
         context.area.tag_redraw()
 
     def _nudge(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
         assert drawn.session is not None
-        _, places, _ = _seen(context)
-        far = _NEAR if event.shift else _FAR if event.ctrl else 1.0
-        step = tuple(far * one for one in _ARROWS[event.type])
-        self._put(context, places[drawn.session.active] + step)
+        _, points, _ = _corners_in_editor(context)
+        distance = _NEAR if event.shift else _FAR if event.ctrl else 1.0
+        step = tuple(distance * x for x in _ARROWS[event.type])
+        self._move(context, points[drawn.session.active] + step)
         bpy.ops.ed.undo_push(message="Nudge Corner")
 
-    def _put(self, context: bpy.types.Context, place: Any) -> None:
+    def _move(self, context: bpy.types.Context, point: Any) -> None:
         from ..pins import shares
 
         assert drawn.session is not None
         group = context.scene.prefilter_resample
         size = tuple(context.space_data.image.size)
-        setattr(group, CORNERS[drawn.session.active], shares(place, group.to_settings(), size))
+        setattr(group, CORNERS[drawn.session.active], shares(point, group.to_settings(), size))
         _redraw()
 
 
-def _seen(context: bpy.types.Context) -> tuple["Canvas", Any, tuple[int, int]]:
-    """Returns where the image is, where its corners are, and the size of what they are in."""
+def _corners_in_editor(context: bpy.types.Context) -> tuple["Canvas", Any, tuple[int, int]]:
+    """Returns the position of the image, the corners, and the size of the frame around them."""
     from prefilter.workflows.resampling.placement import corners, frame
 
     settings = context.scene.prefilter_resample.to_settings()
@@ -213,13 +213,13 @@ def _canvas_region(context: bpy.types.Context) -> bpy.types.Region:
 
 
 def _mouse(context: bpy.types.Context, event: bpy.types.Event) -> tuple[int, int]:
-    """Returns where the mouse is in the image's region, whichever the operator was called from."""
+    """Returns the mouse position in the region of the image."""
     region = _canvas_region(context)
     return event.mouse_x - region.x, event.mouse_y - region.y
 
 
 def _is_over_canvas(context: bpy.types.Context, event: bpy.types.Event) -> bool:
-    """Tells whether the mouse is over the image's region, and over none that lies on it."""
+    """Returns whether the mouse is over the image's region, and not over an overlapping one."""
 
     def holds(region: bpy.types.Region) -> bool:
         x, y = event.mouse_x - region.x, event.mouse_y - region.y
@@ -237,7 +237,7 @@ def _value(group: Any, name: str) -> Any:
 
 
 def _set(context: bpy.types.Context, values: dict[str, Any], message: str) -> None:
-    """Sets some settings, as a step to undo."""
+    """Changes settings, as one undo step."""
     for name, value in values.items():
         setattr(context.scene.prefilter_resample, name, value)
     bpy.ops.ed.undo_push(message=message)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What the operators share that make an image of another size, or in another place."""
+"""A mixin of the operators that resize or resample an image."""
 
 from typing import TYPE_CHECKING
 
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
 
 class NewImageOperator(ImageOperator, MakesImage):
-    """A mixin: a new image, beside the old one or in its place.
+    """A mixin for operators that make a new image from one, beside it or in its place.
 
-    A subclass has `doing` and `work_on`.
+    A subclass has `activity` and `work_on`.
     """
 
     use_in_place: BoolProperty(
@@ -33,7 +33,7 @@ class NewImageOperator(ImageOperator, MakesImage):
         work: NewPicture | None
 
     def work_on(self, picture: "Picture") -> "NewPicture":
-        """Returns what is to do to an image."""
+        """Returns the work on an image."""
         raise NotImplementedError
 
     def keep(self, work: "NewPicture", stored: "FloatArray") -> "Outcome":
@@ -48,7 +48,7 @@ class NewImageOperator(ImageOperator, MakesImage):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether there is an image."""
+        """Returns whether there is an image."""
         return cls.may_be_redone(context) or super().poll(context)
 
     def read_work(self, context: bpy.types.Context) -> "NewPicture":
@@ -56,7 +56,7 @@ class NewImageOperator(ImageOperator, MakesImage):
         from ..new_picture import read
 
         image = self.chosen_image(context)
-        # The editor will show the copy, and nothing once that is undone to be done again.
+        # For a redo: the editor will show the copy, which the redo's undo removes.
         self.image = image.name
         return self.work_on(read(image))
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`prefilter.resample_image`: an image scaled, rotated, in perspective, or out of it."""
+"""`prefilter.resample_image`: scales and rotates an image, or warps it by its corners."""
 
 from typing import TYPE_CHECKING
 
@@ -29,21 +29,21 @@ class PREFILTER_OT_resample_image(
     )
     bl_options = {"REGISTER", "UNDO"}
     presets = RESAMPLE
-    doing = "Resampling"
+    activity = "Resampling"
 
     def chosen_image(self, context: bpy.types.Context) -> bpy.types.Image:
-        """Returns the image that is named; else the source of the one that is shown."""
+        """Returns the named image, or the source of the shown one."""
         image = super().chosen_image(context)
         return image if self.image else self.source_of(image)
 
     def work_on(self, picture: "Picture") -> "Resampling":
-        """Returns what is to do to an image."""
+        """Returns the work on an image."""
         from prefilter.workflows.resampling.resampling import Resampling
 
         return Resampling(picture, self.to_settings(), keep=self.keep)
 
     def duration(self, load: tuple[int, int]) -> float:
-        """Returns about how long it takes."""
+        """Estimates the duration."""
         from prefilter.workflows.resampling.resampling import effort
 
         return effort(self.to_settings(), *load)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`prefilter.resize_image`: an image of another size, beside the old one or in its place."""
+"""`prefilter.resize_image`: resizes an image, beside the old one or in its place."""
 
 from typing import TYPE_CHECKING
 
@@ -29,16 +29,16 @@ class PREFILTER_OT_resize_image(
     )
     bl_options = {"REGISTER", "UNDO"}
     presets = RESIZE
-    doing = "Resizing"
+    activity = "Resizing"
 
     def work_on(self, picture: "Picture") -> "Resizing":
-        """Returns what is to do to an image."""
+        """Returns the work on an image."""
         from prefilter.workflows.resampling.resizing import Resizing
 
         return Resizing(picture, self.to_settings(), keep=self.keep)
 
     def duration(self, load: tuple[int, int]) -> float:
-        """Returns about how many pixels are read and written, times the filter's cost."""
+        """Estimates the duration: pixels read and written, times the cost of the filter."""
         width, height = self.to_settings().new_size(*load)
-        slow = {"least-squares": 8.0, "radial2": 6.0, "radial3": 12.0}
-        return (load[0] * load[1] + 2.0 * width * height) * slow.get(self.filter, 1.0)
+        costs = {"least-squares": 8.0, "radial2": 6.0, "radial3": 12.0}
+        return (load[0] * load[1] + 2.0 * width * height) * costs.get(self.filter, 1.0)

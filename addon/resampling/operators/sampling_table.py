@@ -23,13 +23,13 @@ class PREFILTER_OT_sampling_table(TableProperties, WorkOperator, bpy.types.Opera
         "scale, and write them as shader code, or as a file to use later"
     )
     bl_options = {"REGISTER", "UNDO"}
-    doing = "Making a sampling table"
+    activity = "Making a sampling table"
 
     if TYPE_CHECKING:
         work: TableMaking | None
 
     def read_work(self, context: bpy.types.Context) -> "TableMaking":
-        """Looks at the file to write."""
+        """Checks the file to write."""
         from ...bridge.files import staging
         from ..sampling_tables import TableMaking
 
@@ -42,16 +42,16 @@ class PREFILTER_OT_sampling_table(TableProperties, WorkOperator, bpy.types.Opera
         )
 
     def finish(self, context: bpy.types.Context, result: None) -> str:
-        """Writes the table, and shows the text in the editor that the operator was called from."""
-        said = super().finish(context, result)
+        """Writes the table, and shows the text in the Text editor that called the operator."""
+        summary = super().finish(context, result)
         assert self.work is not None
         text, area = self.work.text, context.area
         if text is not None and area is not None and area.type == "TEXT_EDITOR":
             context.space_data.text = text
-        return said
+        return summary
 
     def duration(self, load: None) -> float:
-        """Returns about how long it takes."""
+        """Estimates the duration."""
         from ..sampling_tables import effort
 
         del load

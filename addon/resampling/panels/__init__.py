@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Where a user finds the operators: sidebars, and Image > Prefilter."""
+"""Panels in sidebars, and entries in Image > Prefilter."""
 
 from ...core.registration import registration
 from . import plane, resample, resize, sampling_table

@@ -8,11 +8,11 @@ from ...core.menus import PREFILTER_MT_image
 from ...core.registration import classes, entry, registration
 from ...core.sidebar import ImagePanel, button
 from ..operators.preview_plane import PREFILTER_OT_end_plane, PREFILTER_OT_preview_plane
-from ..view import kept
+from ..view import plane
 
 
 class PREFILTER_PT_plane(ImagePanel, bpy.types.Panel):
-    """The buttons, and how the plane is drawn."""
+    """The buttons, and the settings of the plane."""
 
     bl_label = "Preview Plane"
     bl_parent_id = "PREFILTER_PT_resample"
@@ -20,7 +20,7 @@ class PREFILTER_PT_plane(ImagePanel, bpy.types.Panel):
 
     def draw_header(self, context: bpy.types.Context) -> None:
         """Draws the switch."""
-        kept.VIEW.draw_switch(self.layout, context)
+        plane.VIEW.draw_switch(self.layout, context)
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
@@ -28,7 +28,7 @@ class PREFILTER_PT_plane(ImagePanel, bpy.types.Panel):
         layout.use_property_split = True
         layout.use_property_decorate = False
         settings = context.window_manager.prefilter_plane
-        shown = kept.find(context.space_data.image)
+        shown = plane.find(context.space_data.image)
         place = button(layout, context, PREFILTER_OT_preview_plane)
         if place:
             row = place.row(align=True)

@@ -21,7 +21,7 @@ _BUTTON = Button(PREFILTER_OT_resample_image, "MOD_LATTICE", RESAMPLE.group, {Re
 
 
 class PREFILTER_PT_resample(ImagePanel, SettingsPanel, bpy.types.Panel):
-    """Button and settings."""
+    """The button and the settings."""
 
     bl_label = "Resample"
     presets = RESAMPLE
@@ -29,7 +29,7 @@ class PREFILTER_PT_resample(ImagePanel, SettingsPanel, bpy.types.Panel):
     makes = "Make Image"
 
     def draw_notes(self, context: bpy.types.Context) -> None:
-        """Draws the size of the result, and what drags the corners."""
+        """Draws the size of the result, and Drag Corners."""
         settings = context.scene.prefilter_resample
         image = context.space_data.image
         if image is not None and all(image.size):
@@ -38,7 +38,7 @@ class PREFILTER_PT_resample(ImagePanel, SettingsPanel, bpy.types.Panel):
                 text = tr("Made anew from '{}'").format(source.name)
                 note(self.layout, context, text, "FILE_REFRESH")
             image = source
-            for text, icon in _what_comes_out(settings.to_settings(), *image.size):
+            for text, icon in _result_notes(settings.to_settings(), *image.size):
                 note(self.layout, context, text, icon)
         self.layout.operator(
             PREFILTER_OT_drag_corners.bl_idname, icon="HANDLE_VECTOR", depress=pins.is_on(image)
@@ -51,10 +51,8 @@ def _draw_image_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     menu.layout.operator(PREFILTER_OT_drag_corners.bl_idname, icon="HANDLE_VECTOR")
 
 
-def _what_comes_out(
-    settings: ResampleSettings, width: int, height: int
-) -> Iterator[tuple[str, str]]:
-    """Yields the size of the result, or what is wrong, each with an icon."""
+def _result_notes(settings: ResampleSettings, width: int, height: int) -> Iterator[tuple[str, str]]:
+    """Yields the size of the result, warnings and errors, each with an icon."""
     from prefilter.workflows.resampling.placement import knows_proportions, placement
 
     try:

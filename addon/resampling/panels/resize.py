@@ -17,7 +17,7 @@ _BUTTON = Button(PREFILTER_OT_resize_image, "FULLSCREEN_ENTER", RESIZE.group, {R
 
 
 class PREFILTER_PT_resize(ImagePanel, SettingsPanel, bpy.types.Panel):
-    """Button and settings."""
+    """The button and the settings."""
 
     bl_label = "Resize"
     presets = RESIZE

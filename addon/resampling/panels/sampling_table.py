@@ -16,7 +16,7 @@ _BUTTON = Button(
 
 
 class PREFILTER_PT_sampling_table(bpy.types.Panel):
-    """Button and settings."""
+    """The button and the settings."""
 
     bl_label = "Sampling Table"
     bl_space_type = "TEXT_EDITOR"
@@ -26,7 +26,7 @@ class PREFILTER_PT_sampling_table(bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
         _BUTTON.draw_main(self.layout, context, "Make Table")
-        context.scene.prefilter_sampling_table.draw_closed(self.layout)
+        context.scene.prefilter_sampling_table.draw_collapsed(self.layout)
 
 
 def _draw_image_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The levels of an image side by side in one texture, as Blender cannot upload levels.
+"""The levels of an image side by side in one texture, because Blender cannot upload mipmaps.
 
 Level 0 is at (0, 0). The others follow along its longer side of s texels, level k from
 s - (s >> (k - 1)) + k - 1 on: each has half the texels of the one before, rounded up.
@@ -42,10 +42,10 @@ def packed(levels: "Sequence[FloatArray]") -> "FloatArray":
         levels: (height, width, channels), each with half the sides of the one before, rounded up.
     """
     height, width, channels = levels[0].shape
-    rest = levels[1].shape[:2] if len(levels) > 1 else (0, 0)
+    level_1 = levels[1].shape[:2] if len(levels) > 1 else (0, 0)
     is_wide = width >= height
     longer = max(width, height) + len(levels)
-    size = (height + rest[0], longer) if is_wide else (longer, width + rest[1])
+    size = (height + level_1[0], longer) if is_wide else (longer, width + level_1[1])
     atlas = np.zeros((*size, channels), np.float32)
     atlas[:height, :width] = levels[0]
     side = max(width, height)

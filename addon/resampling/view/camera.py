@@ -10,7 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     from prefilter.workflows.resampling.placement import Matrix
 
-_FOCAL_LENGTH = 1.0  # In heights of the picture.
+_FOCAL_LENGTH = 1.0  # In picture heights.
 
 
 def uv_of_picture(
@@ -18,18 +18,19 @@ def uv_of_picture(
 ) -> "Matrix":
     """Returns the transform from a picture, [0, 1]^2 from its lower left corner, to UVs.
 
-    The factor of (u, v, 1) is above 0 below the horizon.
+    The homogeneous coordinate w is positive below the horizon.
 
     Args:
-        tilt: Between the plane's normal and the line of sight, in radians, below pi / 2.
-        rotation: Of the image about the middle of the picture, in radians, counterclockwise.
-        tiles: How many tiles high the middle of the picture would be without a tilt.
-        picture_aspect: Its width by its height.
-        image_aspect: That of the image.
+        tilt: The angle between the plane's normal and the line of sight, in radians, below pi / 2.
+        rotation: The rotation of the image about the middle of the picture, in radians,
+            counterclockwise.
+        tiles: The number of tiles over the picture's height without a tilt.
+        picture_aspect: The width of the picture divided by its height.
+        image_aspect: The width of the image divided by its height.
     """
     to_rays = np.array([[picture_aspect, 0.0, -picture_aspect / 2], [0.0, 1.0, -0.5], [0, 0, 1]])
     cosine, sine = math.cos(tilt), math.sin(tilt)
-    # Of the rays (x, y, -focal length) with the plane through (0, 0, -tiles focal length).
+    # Intersects rays (x, y, -focal length) with the plane through (0, 0, -tiles * focal length).
     to_plane = np.array(
         [
             [tiles * _FOCAL_LENGTH * cosine, 0.0, 0.0],
@@ -37,11 +38,11 @@ def uv_of_picture(
             [0.0, -sine, _FOCAL_LENGTH * cosine],
         ]
     )
-    turned_x, turned_y = math.cos(rotation), math.sin(rotation)
+    cos_rotation, sin_rotation = math.cos(rotation), math.sin(rotation)
     to_uv = np.array(
         [
-            [turned_x / image_aspect, turned_y / image_aspect, 0.5],
-            [-turned_y, turned_x, 0.5],
+            [cos_rotation / image_aspect, sin_rotation / image_aspect, 0.5],
+            [-sin_rotation, cos_rotation, 0.5],
             [0.0, 0.0, 1.0],
         ]
     )

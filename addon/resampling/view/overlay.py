@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Draws a plane with an image on it in the Image editors: trilinear left, by a table right."""
+"""Draws an image on a plane in the Image editors: trilinear left, by a sampling table right."""
 
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, cast
@@ -12,10 +12,10 @@ from gpu_extras.batch import batch_for_shader
 
 from ...core.translations import tr
 from ..choices import METHODS, TABLE_FILTERS
-from . import kept
+from . import plane
 from .atlas import READ_TEXELS
 from .camera import uv_of_picture
-from .kept import Plane
+from .plane import Plane
 
 if TYPE_CHECKING:
     from prefilter.workflows.resampling.placement import Matrix
@@ -82,33 +82,34 @@ void main()
   }
 }
 """
-_BACKDROP = (0.03, 0.03, 0.03, 1.0)  # Behind transparent pixels, and above the horizon; light.
+_BACKDROP = (0.03, 0.03, 0.03, 1.0)  # Linear color behind transparent pixels and the horizon.
 
 _handles: list[object] = []
 
 
 def draw_plane(
     shown: Plane,
-    uv_of_place: "Matrix",
+    uv_of_viewport: "Matrix",
     size: tuple[int, int],
     *,
     texels: int,
     wipe: float,
 ) -> None:
-    """Draws the plane over all of the active framebuffer's viewport.
+    """Draws the plane over the whole viewport of the active framebuffer.
 
     Args:
-        shown: Where the levels come from.
-        uv_of_place: From the viewport, [0, 1]^2, to UVs; see `camera.uv_of_picture`.
+        shown: The levels.
+        uv_of_viewport: The transform from the viewport, [0, 1]^2, to UVs; see
+            `camera.uv_of_picture`.
         size: The width and height of the viewport in pixels.
-        texels: How many texels the table reads: 4, 6 or 8.
-        wipe: Where the part by the table begins, as a share of the width.
+        texels: The number of texels that the table reads: 4, 6 or 8.
+        wipe: The position of the wipe, right of which the table is used, as a share of the width.
     """
     shader = _compiled(shown.filter, texels)
     batch = batch_for_shader(shader, "TRI_FAN", {"position": [(0, 0), (1, 0), (1, 1), (0, 1)]})
     shader.bind()
     shader.uniform_sampler("atlas", shown.texture())
-    for name, row in zip(("plane_u", "plane_v", "plane_w"), uv_of_place, strict=True):
+    for name, row in zip(("plane_u", "plane_v", "plane_w"), uv_of_viewport, strict=True):
         shader.uniform_float(name, (*row, 0.0))
     shader.uniform_float("backdrop", _BACKDROP)
     shader.uniform_float("pixel", (1.0 / size[0], 1.0 / size[1]))
@@ -135,15 +136,15 @@ def _compiled(filter: str, texels: int) -> gpu.types.GPUShader:
         ("INT", "level_count"),
         ("FLOAT", "wipe"),
         ("BOOL", "is_data"),
-        # Blender sets it: whether the framebuffer encodes what is written to it.
+        # Set by Blender: whether the framebuffer encodes written values as sRGB.
         ("BOOL", "srgbTarget"),
     ):
         info.push_constant(kind, name)
     info.sampler(0, "FLOAT_2D", "atlas")
-    passed = gpu.types.GPUStageInterfaceInfo("prefilter_plane")
-    passed.smooth("VEC2", "place")
+    interface = gpu.types.GPUStageInterfaceInfo("prefilter_plane")
+    interface.smooth("VEC2", "place")
     info.vertex_in(0, "VEC2", "position")
-    info.vertex_out(passed)
+    info.vertex_out(interface)
     info.fragment_out(0, "VEC4", "color")
     info.vertex_source(_VERTEX)
     info.fragment_source(
@@ -156,7 +157,7 @@ def _draw() -> None:
     from ...bridge.drawing import draw_wipe
 
     settings = bpy.context.window_manager.prefilter_plane
-    shown = kept.find(bpy.context.space_data.image)
+    shown = plane.find(bpy.context.space_data.image)
     if shown is None or not settings.use_plane:
         return
     region = bpy.context.region
@@ -179,13 +180,13 @@ def _draw() -> None:
 
 
 def register() -> None:
-    """Adds the drawing to the editors."""
+    """Adds the draw handler."""
     draw = bpy.types.SpaceImageEditor.draw_handler_add(_draw, (), "WINDOW", "POST_PIXEL")
     _handles.append(draw)
 
 
 def unregister() -> None:
-    """Takes the drawing out of the editors."""
+    """Removes the draw handler."""
     while _handles:
         bpy.types.SpaceImageEditor.draw_handler_remove(_handles.pop(), "WINDOW")
     _compiled.cache_clear()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""How editors draw a plane, in all windows: no part of the scene, so no undo changes it."""
+"""The settings of preview planes, in the window manager, so that undo does not change them."""
 
 import math
 

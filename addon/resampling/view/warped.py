@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""An image in perspective, drawn in a box of the region."""
+"""Draws an image in perspective in a box of the region."""
 
 from functools import lru_cache
 from typing import TYPE_CHECKING
@@ -38,7 +38,7 @@ void main()
   }
 }
 """
-_BACKDROP = (0.03, 0.03, 0.03, 1.0)  # Where nothing is shown, and behind transparent pixels; light.
+_BACKDROP = (0.03, 0.03, 0.03, 1.0)  # Linear color outside the image and behind transparent pixels.
 
 
 def draw(
@@ -51,8 +51,8 @@ def draw(
 
     Args:
         image: The image.
-        uv_of_box: From the box, [0, 1]^2, to UVs; the factor of (u, v, 1) is above 0 where the
-            image is.
+        uv_of_box: The transform from the box, [0, 1]^2, to UVs; the homogeneous coordinate w is
+            positive on the image.
         low: The lower left corner of the box, in pixels of the region.
         extent: Its width and height.
     """
@@ -84,21 +84,21 @@ def _compiled() -> gpu.types.GPUShader:
         ("VEC2", "low"),
         ("VEC2", "extent"),
         ("BOOL", "is_data"),
-        # Blender sets it: whether the framebuffer encodes what is written to it.
+        # Set by Blender: whether the framebuffer encodes written values as sRGB.
         ("BOOL", "srgbTarget"),
     ):
         info.push_constant(kind, name)
     info.sampler(0, "FLOAT_2D", "image")
-    passed = gpu.types.GPUStageInterfaceInfo("prefilter_warped")
-    passed.smooth("VEC2", "place")
+    interface = gpu.types.GPUStageInterfaceInfo("prefilter_warped")
+    interface.smooth("VEC2", "place")
     info.vertex_in(0, "VEC2", "position")
-    info.vertex_out(passed)
+    info.vertex_out(interface)
     info.fragment_out(0, "VEC4", "color")
     info.vertex_source(_VERTEX)
     info.fragment_source(COLOR_FUNCTIONS + _FRAGMENT)
     return gpu.shader.create_from_info(info)
 
 
-def forget() -> None:
-    """Lets go of the shader."""
+def free_shader() -> None:
+    """Frees the shader."""
     _compiled.cache_clear()

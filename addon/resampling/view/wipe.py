@@ -1,26 +1,26 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The line between the two halves of a preview plane, dragged in the Image editor."""
+"""A gizmo that drags the line between the halves of a preview plane, in the Image editor."""
 
 import bpy
 
 from ...bridge.wipe import WipeGizmo, WipeGroup
-from . import kept
+from . import plane
 
 
 class PREFILTER_GT_plane_wipe(WipeGizmo, bpy.types.Gizmo):
     """The line."""
 
     bl_idname = "PREFILTER_GT_plane_wipe"
-    view = kept.VIEW
+    view = plane.VIEW
 
 
 class PREFILTER_GGT_plane_wipe(WipeGroup, bpy.types.GizmoGroup):
-    """Shows it where a plane is drawn."""
+    """Shows the line when a plane is drawn."""
 
     bl_idname = "PREFILTER_GGT_plane_wipe"
     gizmo = PREFILTER_GT_plane_wipe
-    view = kept.VIEW
+    view = plane.VIEW
 
 
 register, unregister = bpy.utils.register_classes_factory(

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ...core.doing import LONG_WORK
 from ...core.operator import WorkOperator
+from ...core.operator_hooks import LONG_WORK
 from ...core.translations import tr
 from ..properties import AlignProperties
 from .selected import SelectedScans, selected_scans
@@ -26,8 +26,8 @@ class PREFILTER_OT_align_scans(AlignProperties, SelectedScans, WorkOperator, bpy
         "overlap. The active scan stays. They have to be nearly in place"
     )
     bl_options = {"REGISTER", "UNDO"}
-    doing = "Aligning"
-    line = LONG_WORK
+    activity = "Aligning"
+    queue_name = LONG_WORK
 
     if TYPE_CHECKING:
         work: Alignment | None

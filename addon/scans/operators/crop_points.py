@@ -25,7 +25,7 @@ class PREFILTER_OT_crop_points(CropProperties, SelectedScans, WorkOperator, bpy.
         "cube that is placed and turned around them"
     )
     bl_options = {"REGISTER", "UNDO"}
-    doing = "Cropping"
+    activity = "Cropping"
 
     if TYPE_CHECKING:
         work: Cleaning | None

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import bpy
 from bpy.props import StringProperty
 
-from ...core.browsing import BrowsingOperator
+from ...core.file_browser import FileBrowserOperator
 from ...core.operator import WorkOperator
 from ...core.translations import tr
 from ..choices import EXTENSIONS
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class PREFILTER_OT_import_points(
-    ImportProperties, BrowsingOperator, WorkOperator, bpy.types.Operator
+    ImportProperties, FileBrowserOperator, WorkOperator, bpy.types.Operator
 ):
     """Lets a user choose files of points, and makes an object of each."""
 
@@ -29,8 +29,8 @@ class PREFILTER_OT_import_points(
         "object. From LAS, LAZ, E57, PCD, PLY, and text such as XYZ and PTS"
     )
     bl_options = {"REGISTER", "UNDO"}
-    doing = "Importing"
-    line = "files"
+    activity = "Importing"
+    queue_name = "files"
 
     filter_glob: StringProperty(
         default=";".join(f"*{ending}" for ending in EXTENSIONS), options={"HIDDEN"}
@@ -47,7 +47,7 @@ class PREFILTER_OT_import_points(
             return False
         return True
 
-    def is_named(self) -> bool:
+    def has_file(self) -> bool:
         """Tells whether files are named."""
         return bool(self.paths())
 
@@ -73,6 +73,6 @@ class PREFILTER_OT_import_points(
             bpy.ops.prefilter.reconstruct("INVOKE_DEFAULT", **RECONSTRUCT.of_scene(context))
         return found
 
-    def handed_on(self) -> dict[str, Any]:
+    def restart_settings(self) -> dict[str, Any]:
         """Returns the settings, and which files there are."""
-        return super().handed_on() | self.named_files()
+        return super().restart_settings() | self.named_files()

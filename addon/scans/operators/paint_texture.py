@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ...core.doing import LONG_WORK
 from ...core.operator import WorkOperator
+from ...core.operator_hooks import LONG_WORK
 from ...core.translations import tr
 from ..properties import PaintProperties
 from .selected import SelectedScans, selected_scans
@@ -26,8 +26,8 @@ class PREFILTER_OT_paint_texture(PaintProperties, SelectedScans, WorkOperator, b
         "that it was reconstructed from. A mesh without a UV map is unwrapped"
     )
     bl_options = {"REGISTER", "UNDO"}
-    doing = "Painting"
-    line = LONG_WORK
+    activity = "Painting"
+    queue_name = LONG_WORK
 
     if TYPE_CHECKING:
         work: Painting | None

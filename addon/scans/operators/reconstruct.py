@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ...core.doing import LONG_WORK
 from ...core.operator import WorkOperator
+from ...core.operator_hooks import LONG_WORK
 from ...core.presets import PresetsOperator
 from ...core.translations import report
 from ..properties import RECONSTRUCT, ScanProperties
@@ -30,8 +30,8 @@ class PREFILTER_OT_reconstruct(
         "'normal'"
     )
     bl_options = {"REGISTER", "UNDO"}
-    doing = "Reconstructing"
-    line = LONG_WORK
+    activity = "Reconstructing"
+    queue_name = LONG_WORK
     presets = RECONSTRUCT
 
     if TYPE_CHECKING:

@@ -26,7 +26,7 @@ class PREFILTER_OT_remove_outliers(
         "them. Scans count as one cloud"
     )
     bl_options = {"REGISTER", "UNDO"}
-    doing = "Removing outliers"
+    activity = "Removing outliers"
 
     if TYPE_CHECKING:
         work: Cleaning | None

@@ -4,11 +4,11 @@
 
 import bpy
 
-from ...core.doing import Doing
+from ...core.operator_hooks import OperatorHooks
 from ...core.translations import tr
 
 
-class SelectedScans(Doing):
+class SelectedScans(OperatorHooks):
     """A mixin: works on the selected objects that have points."""
 
     @classmethod

@@ -25,7 +25,7 @@ class PREFILTER_OT_subsample_points(
         "Keep fewer points of the selected scans, spread evenly. Scans count as one cloud"
     )
     bl_options = {"REGISTER", "UNDO"}
-    doing = "Subsampling"
+    activity = "Subsampling"
 
     if TYPE_CHECKING:
         work: Cleaning | None

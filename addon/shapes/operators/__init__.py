@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The operators on shapes, one a file."""
+"""The operators on shapes."""
 
 from ...core.registration import classes, registration
 from .rasterize import PREFILTER_OT_rasterize

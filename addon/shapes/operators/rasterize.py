@@ -32,31 +32,31 @@ class PREFILTER_OT_rasterize(RasterizesOperator, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether there is something to rasterize."""
+        """Returns whether curves, texts or a UV map can be rasterized."""
         if cls.may_be_redone(context):
             return True
-        if not found_source(context, "auto"):
+        if not available_source(context, "auto"):
             cls.poll_message_set(tr(_NEEDED["auto"]))
             return False
         return True
 
     def targets(self, context: bpy.types.Context) -> list[bpy.types.Object]:
         """Returns the curves, or the mesh with the UV map."""
-        source = "" if self.source == "svg" else found_source(context, self.source)
+        source = "" if self.source == "svg" else available_source(context, self.source)
         if not source:
             return []
         return [context.active_object] if source == "uv" else chosen_curves(context)
 
     def read_work(self, context: bpy.types.Context) -> "Rasterization":
         """Copies the selected curves, or the UV map."""
-        from ..memory import Request
+        from ..provenance import Request
         from ..rasterization import Rasterization
 
         settings = self.to_settings()
         if settings.source == "svg":
             request = Request("svg", filepath=settings.filepath)
         else:
-            source = found_source(context, settings.source)
+            source = available_source(context, settings.source)
             if not source:
                 raise ValueError(tr(_NEEDED[settings.source]))
             objects = [context.active_object] if source == "uv" else chosen_curves(context)
@@ -65,8 +65,8 @@ class PREFILTER_OT_rasterize(RasterizesOperator, bpy.types.Operator):
         return Rasterization.read(request, settings, context)
 
 
-def found_source(context: bpy.types.Context, source: str) -> str:
-    """Returns what "auto" means at present, or a source itself if it is there; else nothing."""
+def available_source(context: bpy.types.Context, source: str) -> str:
+    """Returns "curves" or "uv" if it matches `source` and can be rasterized; otherwise empty."""
     from ...bridge.uv_layouts import has_uv_map
 
     if source != "uv" and chosen_curves(context):

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 import bpy
 from bpy.props import StringProperty
 
-from ...core.browsing import BrowsingOperator
+from ...core.file_browser import FileBrowserOperator
 from .shape_operator import RasterizesOperator
 
 if TYPE_CHECKING:
     from ..rasterization import Rasterization
 
 
-class PREFILTER_OT_rasterize_svg(BrowsingOperator, RasterizesOperator, bpy.types.Operator):
-    """Lets a user choose an SVG file, and rasterizes it."""
+class PREFILTER_OT_rasterize_svg(FileBrowserOperator, RasterizesOperator, bpy.types.Operator):
+    """Asks for an SVG file, and rasterizes it."""
 
     bl_idname = "prefilter.rasterize_svg"
     bl_label = "Rasterize SVG"
@@ -25,13 +25,13 @@ class PREFILTER_OT_rasterize_svg(BrowsingOperator, RasterizesOperator, bpy.types
 
     filter_glob: StringProperty(default="*.svg;*.svgz", options={"HIDDEN"})
 
-    def is_named(self) -> bool:
-        """Tells whether a file is named."""
+    def has_file(self) -> bool:
+        """Returns whether a file is given."""
         return bool(self.filepath)
 
     def read_work(self, context: bpy.types.Context) -> "Rasterization":
-        """Looks for the file."""
-        from ..memory import Request
+        """Checks the file."""
+        from ..provenance import Request
         from ..rasterization import Rasterization
 
         settings = self.to_settings()
@@ -39,7 +39,7 @@ class PREFILTER_OT_rasterize_svg(BrowsingOperator, RasterizesOperator, bpy.types
 
 
 class PREFILTER_FH_svg(bpy.types.FileHandler):
-    """SVG files that are dropped onto the Image editor."""
+    """Handles SVG files dropped onto the Image editor."""
 
     bl_idname = "PREFILTER_FH_svg"
     bl_label = "SVG as Image"
@@ -48,5 +48,5 @@ class PREFILTER_FH_svg(bpy.types.FileHandler):
 
     @classmethod
     def poll_drop(cls, context: bpy.types.Context) -> bool:
-        """Tells whether files are dropped where the image is then shown."""
+        """Returns whether the files are dropped onto an Image editor, which shows the image."""
         return context.area is not None and context.area.type == "IMAGE_EDITOR"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What the operators share that make images of shapes."""
+"""Mixins of operators that make images of shapes."""
 
 from typing import TYPE_CHECKING
 
@@ -15,22 +15,22 @@ if TYPE_CHECKING:
 
 
 class ShapeOperator(MakesImage):
-    """A mixin: an image of shapes."""
+    """A mixin for operators that make an image of shapes."""
 
-    doing = "Rasterizing"
+    activity = "Rasterizing"
     if TYPE_CHECKING:
         work: Rasterization | None
     source_drawn = "curves"
     """The source whose settings the redo panel shows."""
 
     def load(self) -> "Load":
-        """Returns how much there was to do."""
+        """Returns the size of the finished work."""
         assert self.work is not None
         assert self.work.load is not None
         return self.work.load
 
     def duration(self, load: "Load") -> float:
-        """Returns about how many seconds the image takes with the present settings."""
+        """Estimates the seconds with the present settings."""
         return load.seconds(self.to_settings())
 
     def draw_settings(self, context: bpy.types.Context, layout: bpy.types.UILayout) -> None:
@@ -40,13 +40,13 @@ class ShapeOperator(MakesImage):
 
 
 class RasterizesOperator(RasterizeProperties, PresetsOperator, ShapeOperator):
-    """A mixin: a new image of shapes, with settings and presets."""
+    """A mixin for operators that make a new image of shapes, with settings and presets."""
 
     presets = RASTERIZE
 
     def complete_settings(self) -> None:
-        """Sets what the caller has left; who names a width means it."""
-        named = self.properties.is_property_set
-        if not named("resolution") and (named("width") or named("height")):
+        """Sets Resolution to Size if the caller gives a width or a height."""
+        is_set = self.properties.is_property_set
+        if not is_set("resolution") and (is_set("width") or is_set("height")):
             self.resolution = "size"
         super().complete_settings()

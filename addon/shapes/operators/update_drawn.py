@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`prefilter.update_drawn`: an image of shapes made again in place."""
+"""`prefilter.update_drawn`: updates an image of shapes in place."""
 
 from typing import TYPE_CHECKING
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class PREFILTER_OT_update_drawn(ImageOperator, ShapeOperator, bpy.types.Operator):
-    """Makes an image again, of what its objects or its file are now."""
+    """Rasterizes the present state of an image's objects or file again."""
 
     bl_idname = "prefilter.update_drawn"
     bl_label = "Update Rasterized Image"
@@ -28,8 +28,8 @@ class PREFILTER_OT_update_drawn(ImageOperator, ShapeOperator, bpy.types.Operator
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether there is an image that remembers how it was made."""
-        from ..memory import is_drawn
+        """Returns whether there is an image made by Rasterize."""
+        from ..provenance import is_drawn
 
         if context.area is not None and context.area.type == "IMAGE_EDITOR":
             if not is_drawn(cls.shown_image(context)):
@@ -41,15 +41,15 @@ class PREFILTER_OT_update_drawn(ImageOperator, ShapeOperator, bpy.types.Operator
         return True
 
     def duration(self, load: "Load") -> float:
-        """Returns how long it takes: as long as before."""
+        """Returns the same duration as before."""
         del load
         return 1.0
 
     def draw_settings(self, context: bpy.types.Context, layout: bpy.types.UILayout) -> None:
-        """Draws nothing: the image has the settings."""
+        """Draws nothing: the settings are those of the image."""
 
     def chosen_image(self, context: bpy.types.Context) -> bpy.types.Image:
-        """Returns the image that is named or shown, or the only one that remembers."""
+        """Returns the image that is named or shown, or the only one made by Rasterize."""
         from ...bridge import images
 
         if self.image:
@@ -57,8 +57,8 @@ class PREFILTER_OT_update_drawn(ImageOperator, ShapeOperator, bpy.types.Operator
         return self.shown_image(context) or _only_drawn()
 
     def read_work(self, context: bpy.types.Context) -> "Rasterization":
-        """Copies what the image shows."""
-        from ..memory import is_drawn, recall
+        """Copies the shapes of the image."""
+        from ..provenance import is_drawn, load_request
         from ..rasterization import Rasterization
 
         image = self.chosen_image(context)
@@ -68,13 +68,13 @@ class PREFILTER_OT_update_drawn(ImageOperator, ShapeOperator, bpy.types.Operator
             raise ValueError(
                 Sentence("image '{}' is linked; update it in its own file", image.name)
             )
-        request, settings, warnings = recall(image)
+        request, settings, warnings = load_request(image)
         self.warn(warnings)
         return Rasterization.read(request, settings, context, image=image)
 
 
 def _only_drawn() -> bpy.types.Image:
-    from ..memory import is_drawn
+    from ..provenance import is_drawn
 
     drawn = [image for image in bpy.data.images if is_drawn(image)]
     if len(drawn) != 1:

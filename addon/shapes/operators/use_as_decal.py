@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`prefilter.use_as_decal`: an image of shapes on a plane in their place, or on a material."""
+"""`prefilter.use_as_decal`: an image of shapes on a plane in their place, or in a material."""
 
 import bpy
 
@@ -13,7 +13,7 @@ from ..choices import DecalSettings
 
 
 class PREFILTER_OT_use_as_decal(ImageOperator, bpy.types.Operator):
-    """Puts an image that Rasterize has made onto a plane, or into a material."""
+    """Puts a rasterized image on a plane, or into a material."""
 
     bl_idname = "prefilter.use_as_decal"
     bl_label = "Use as Decal"
@@ -26,8 +26,8 @@ class PREFILTER_OT_use_as_decal(ImageOperator, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether there is an image that was made by Rasterize."""
-        if _found(context) is None:
+        """Returns whether there is an image made by Rasterize."""
+        if _default_image(context) is None:
             if context.area is not None and context.area.type == "IMAGE_EDITOR":
                 cls.poll_message_set(tr("The image of this editor was not made by Rasterize"))
             else:
@@ -39,14 +39,14 @@ class PREFILTER_OT_use_as_decal(ImageOperator, bpy.types.Operator):
         return True
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Puts it there."""
+        """Puts the image there."""
         from ...bridge import images
         from ...bridge.color_materials import show_in_views
         from ..decal import use_as_decal
-        from ..memory import is_drawn
+        from ..provenance import is_drawn
 
         try:
-            image = images.find(self.image) if self.image else _found(context)
+            image = images.find(self.image) if self.image else _default_image(context)
             if image is None or not is_drawn(image):
                 raise ValueError(Sentence("image '{}' was not made by Rasterize", self.image))
             self.image = image.name
@@ -72,12 +72,12 @@ class PREFILTER_OT_use_as_decal(ImageOperator, bpy.types.Operator):
             layout.prop(self, "offset")
 
 
-def _found(context: bpy.types.Context) -> bpy.types.Image | None:
-    """Returns the image of the editor; elsewhere that of the active object, or the last one."""
-    from ..memory import is_drawn, made_last, made_of
+def _default_image(context: bpy.types.Context) -> bpy.types.Image | None:
+    """Returns the image of an Image editor; elsewhere that of the active object, or the newest."""
+    from ..provenance import is_drawn, latest_image, latest_image_of
 
     if context.area is not None and context.area.type == "IMAGE_EDITOR":
         image = getattr(context.space_data, "image", None)
         return image if is_drawn(image) else None
     active = context.active_object
-    return (made_of(active) if active is not None else None) or made_last()
+    return (latest_image_of(active) if active is not None else None) or latest_image()

@@ -25,7 +25,7 @@ class PREFILTER_OT_boolean(BooleanProperties, VoxelOperator, bpy.types.Operator)
         "are applied"
     )
     bl_options = {"REGISTER", "UNDO"}
-    doing = "Combining"
+    activity = "Combining"
     presets = BOOLEAN
     _is_resolution_said = False
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ...core.doing import LONG_WORK, Compute
 from ...core.operator import WorkOperator
+from ...core.operator_hooks import LONG_WORK, Compute
 from ...core.translations import tr
 from ...core.wording import Sentence
 
@@ -28,8 +28,8 @@ class PREFILTER_OT_update_voxels(WorkOperator, bpy.types.Operator):
         "the settings of the object"
     )
     bl_options = {"REGISTER", "UNDO"}
-    doing = "Updating"
-    line = LONG_WORK
+    activity = "Updating"
+    queue_name = LONG_WORK
 
     if TYPE_CHECKING:
         work: Voxelization | Boolean | None
@@ -75,7 +75,7 @@ class PREFILTER_OT_update_voxels(WorkOperator, bpy.types.Operator):
         self.warn(warnings)
         return work
 
-    def following(self, context: bpy.types.Context) -> Generator[float, None, Compute] | None:
+    def read_next_part(self, context: bpy.types.Context) -> Generator[float, None, Compute] | None:
         """Returns what reads the next that was made of the one before."""
         assert self._update is not None
         return None if self._update.is_last else self._read_next(context)
@@ -100,8 +100,8 @@ class PREFILTER_OT_update_voxels(WorkOperator, bpy.types.Operator):
         self._update.commit()
         return said
 
-    def releaser(self) -> Callable[[], None]:
+    def discarder(self) -> Callable[[], None]:
         """Removes what stands in for results, and returns what removes the rest."""
         if self._update is not None:
             self._update.discard()
-        return super().releaser()
+        return super().discarder()

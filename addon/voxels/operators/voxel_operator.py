@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ...core.doing import LONG_WORK
 from ...core.operator import WorkOperator
+from ...core.operator_hooks import LONG_WORK
 from ...core.presets import PresetsOperator
 from ...core.translations import tr
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 class VoxelOperator(PresetsOperator, WorkOperator):
     """A mixin: voxels from the selected objects."""
 
-    line = LONG_WORK
+    queue_name = LONG_WORK
     modes = frozenset({"OBJECT"})
     """Those in which it runs."""
 

@@ -27,7 +27,7 @@ class PREFILTER_OT_voxelize(VoxelizeProperties, VoxelOperator, bpy.types.Operato
         "are applied"
     )
     bl_options = {"REGISTER", "UNDO"}
-    doing = "Voxelizing"
+    activity = "Voxelizing"
     presets = VOXELIZE
     modes = frozenset({"OBJECT", "SCULPT"})
 
@@ -60,7 +60,7 @@ class PREFILTER_OT_voxelize(VoxelizeProperties, VoxelOperator, bpy.types.Operato
         """Returns the selected objects; in Sculpt Mode the one that is sculpted."""
         return [context.active_object] if context.mode == "SCULPT" else chosen_solids(context)
 
-    def aim(self, targets: Sequence[bpy.types.ID]) -> None:
+    def retarget(self, targets: Sequence[bpy.types.ID]) -> None:
         """Takes what was selected, or sculpted, when the button was pressed."""
         self._chosen = list(targets)
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`prefilter.switch_source`: what an object was made of is shown in its place, and kept."""
+"""`prefilter.switch_source`: the source of an object is shown in its place, and preserved."""
 
 import bodies
 import bpy
@@ -50,7 +50,7 @@ def test_there_and_back():
     assert not result.modifiers
 
 
-def test_what_was_moved_stays_moved():
+def test_moved_objects_stay_moved():
     result = voxelized()
     result.location.x = 5
     source = switch()
@@ -116,7 +116,7 @@ def test_a_mesh_that_others_use_stays():
 
 
 def test_twice():
-    """What is shown is what the object was before the last run."""
+    """The source shown is the object before the last run."""
     result = voxelized()
     count = len(result.data.vertices)
     assert bpy.ops.prefilter.voxelize(depth=5) == {"FINISHED"}

@@ -124,7 +124,7 @@ def changed(stage: Stage) -> Iterator[None]:
     found["changed"] = keys("rasterize")
     with bpy.context.temp_override(**stage.override):
         _, item = own_module("keys").find(bpy.context, "prefilter.rasterize")
-        found["rivals"] = own_module("keys").rivals(bpy.context, item)
+        found["rivals"] = own_module("keys").conflicting_operators(bpy.context, item)
     yield from right_clicked(stage, x, y)
     yield from chosen(stage, "END")
     found["taken"] = keys("rasterize")

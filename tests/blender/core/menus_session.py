@@ -100,7 +100,7 @@ class Reports:
 
 
 def called(stage: Stage, reports: Reports, call: Call) -> Iterator[None]:
-    """Runs what a menu offers in the scene that it needs, and notes how it ends."""
+    """Runs the operators of a menu, each in the scene that it needs, and records the results."""
     case = entries.case_of(call)
     entries.clear()
     yield
@@ -270,7 +270,7 @@ def properties(stage: Stage) -> Iterator[None]:
 
 
 def unfold(drawn: set[str]) -> None:
-    """Opens all panels and what is closed within them, and has them note that they were drawn."""
+    """Opens all panels and their subpanels, and records which of them are drawn."""
     own = entries.panels()
     around = {one for panel in own for one in entries.ancestors(panel)} - set(own)
     both = sorted(around, key=entries.depth_of) + own

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Runs in a Blender with a window: fills the queue, pauses and cancels what is in it by mouse.
+"""Runs in a Blender with a window: fills the queue, pauses and cancels its jobs by mouse.
 
 Usage: blender --factory-startup --enable-event-simulate --python queue_session.py -- RESULT.json
 """
@@ -110,7 +110,7 @@ def by_mouse(stage: Stage) -> Iterator[None]:
 
 
 def mouse_over_progress(stage: Stage) -> Iterator[None]:
-    """Has the mouse where it has pressed until the work is over, and looks at what is drawn."""
+    """Leaves the mouse where it pressed until the work is over, and checks the drawing."""
     yield from sidebar(stage, "Button")
     with working_on("voxels.voxelization", "Voxelization", until_cancelled=False):
         chosen("Ball")
@@ -129,7 +129,7 @@ def mouse_over_progress(stage: Stage) -> Iterator[None]:
 
 
 def blue(stage: Stage) -> Generator[None, None, int]:
-    """Returns how many pixels of the sidebar are as blue as what is selected, or progress."""
+    """Returns the number of pixels of the sidebar that are as blue as a selection or progress."""
     there = (yield from picture(stage.area, "UI")).astype(int)
     return int(((there[..., 2] > 140) & (there[..., 0] < 100)).sum())
 
@@ -324,7 +324,7 @@ def switches() -> bpy.types.PropertyGroup:
 
 
 def listed() -> list[list[str]]:
-    """Returns what the panel lists."""
+    """Returns the jobs that the panel lists."""
     return [[job.title, job.state.name] for job in queue.listed()]
 
 

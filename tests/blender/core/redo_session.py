@@ -127,17 +127,18 @@ def voxelize(window: bpy.types.Window, area: bpy.types.Area) -> Iterator[None]:
 
 
 def bake(window: bpy.types.Window, area: bpy.types.Area) -> Iterator[None]:
-    """Changes the filter; frames are read in steps, after Blender has brought back its own."""
+    """Changes the content; frames are read in steps, after Blender has restored its own data."""
     yield from cleared()
     image = scenes.image("Paint", scenes.noise(64, 64))
     scenes.textured_quad(image)
     area.spaces.active.image = image
     yield
-    yield from started(window, area, "bake_mipmaps", levels=4, use_frames=True, frame_end=3)
+    settings = {"levels": 4, "use_frames": True, "frame_end": 3, "content": "color"}
+    yield from started(window, area, "bake_mipmaps", **settings)
     told = {"before": level()}
     panel = RedoPanel(window, area)
-    yield from panel.step("filter", up=False)
-    told["filter"] = panel.operator.properties.filter
+    yield from panel.step("content", up=False)
+    told["content"] = panel.operator.properties.content
     told["waits"] = level()
     yield from panel.apply()
     yield from until(lambda: not running(window))
@@ -172,7 +173,7 @@ def click_after_esc(window: bpy.types.Window, area: bpy.types.Area) -> Iterator[
 
 def esc_asks(window: bpy.types.Window, area: bpy.types.Area) -> Iterator[None]:
     """Presses Esc amid work that counts as long: twice, which takes the question back; then yes."""
-    core = importlib.import_module(f"{PACKAGE}.core.running")
+    core = importlib.import_module(f"{PACKAGE}.core.runs")
     seconds, core.ASKING_SECONDS = core.ASKING_SECONDS, 0.0
     told = found["asks"] = []
     with working_on("mipmaps.bake", "Bake"):

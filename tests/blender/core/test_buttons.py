@@ -8,7 +8,7 @@ import bpy
 
 
 class Layout:
-    """Takes what a button draws."""
+    """Records the operator that a button draws."""
 
     def operator(self, name, **more):
         self.name, self.more = name, more
@@ -25,15 +25,15 @@ def test_a_button_has_the_settings_of_the_scene(addon):
     assert layout.more == {"text": "Again", "icon": "X"}
 
 
-def test_a_button_leaves_them_to_operators_that_look_them_up(addon):
+def test_a_button_passes_no_settings_to_operators_that_read_the_scene(addon):
     """So that Blender finds the key of the operator."""
     assert not vars(addon("voxels.panel")._VOXELIZE.draw(Layout(), bpy.context))
     table = addon("resampling.panels.sampling_table")._BUTTON.draw(Layout(), bpy.context)
     assert table.filter == bpy.context.scene.prefilter_sampling_table.filter
 
 
-def test_of_two_settings_with_one_name_the_button_has_the_one_that_counts(addon):
-    """A bake of a model chooses objects in its own way, and leaves out what it finds by itself."""
+def test_a_button_passes_the_right_setting_of_two_with_one_name(addon):
+    """A model bake has its own choice of objects, and no settings that it determines itself."""
     bpy.context.scene.prefilter_model.objects = "selected"
     made = addon("mipmaps.menus").MODEL_BUTTON.draw(Layout(), bpy.context, is_changed=True)
     assert made.objects == "selected"

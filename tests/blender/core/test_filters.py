@@ -29,7 +29,7 @@ def test_levels_have_the_same_labels(addon):
             assert choices[f"{one.name}-covered"].label == f"{one.label}, Covered"
 
 
-def test_a_filter_without_a_description_is_there_all_the_same(addon):
+def test_a_filter_without_a_description_is_listed(addon):
     found = addon("core.filters").filters_for("resize", {"tent": "Soft"})
     assert found.keys() == set(prefilter.RESIZE_FILTERS)
     assert next(iter(found)) == "tent"

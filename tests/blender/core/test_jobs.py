@@ -63,7 +63,7 @@ def test_a_pause_holds_the_work_until_it_ends(addon):
     job.pause(is_paused=False)
     job.result()
     assert told == [True]
-    # What a redo is expected to take is what the work has taken, without the pause.
+    # The expected duration of a redo is that of the work, without the pause.
     assert job.seconds <= time.monotonic() - began - held
 
 

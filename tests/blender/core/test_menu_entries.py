@@ -30,7 +30,7 @@ def test_menu_entries_work_in_a_window(found):
 def ended_well(call):
     if call["operator"] in NEEDS_CACHE:
         return not call["polls"]
-    # A key ends what is dragged, without a report where nothing was.
+    # A key ends a drag operation; without one, nothing is reported.
     key = entries.CASES[call["operator"].removeprefix("prefilter.")].key
     is_done = "FINISHED" in call.get("begun", ()) or call.get("done") or key
     return call["polls"] and is_done and not call["browses"]

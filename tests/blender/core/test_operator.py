@@ -17,7 +17,7 @@ STEPS = ("read", "compute", "finish")
 
 @pytest.fixture
 def context():
-    """Returns a context as Blender has it when it quits, which counts what is taken back."""
+    """Returns a context like Blender's at quit time, which counts removals."""
     calls = []
     manager = SimpleNamespace(
         progress_begin=lambda low, high: None,
@@ -42,7 +42,7 @@ def probe(addon, monkeypatch):
 
     class Probe(module.BackgroundOperator):
         bl_idname = "prefilter.probe"
-        doing = "Probing"
+        activity = "Probing"
         options = SimpleNamespace(is_repeat=False, is_repeat_last=False)
         fails_in = ""
         error = ValueError("no good")
@@ -74,11 +74,11 @@ def probe(addon, monkeypatch):
                 raise self.error
 
     yield Probe
-    assert addon("core.running").find("prefilter.probe") is None
+    assert addon("core.runs").find("prefilter.probe") is None
 
 
 class Drawing:
-    """Stands for a layout of Blender's, and keeps what it is to show."""
+    """A stand-in for Blender's layout that records its calls."""
 
     def __init__(self):
         self.shown = []
@@ -96,7 +96,7 @@ class Drawing:
 
 
 def played(operator, context):
-    """Has an operator run to its end, and returns what it ends with."""
+    """Runs an operator to its end, and returns its last status."""
     status = operator.invoke(context, None)
     while status <= {"RUNNING_MODAL", "PASS_THROUGH"}:
         time.sleep(0.001)
@@ -113,7 +113,7 @@ def test_runs_to_its_end(probe, context):
 
 @pytest.mark.parametrize("in_background", [False, True])
 @pytest.mark.parametrize("step", STEPS)
-def test_lets_go_whatever_fails(probe, context, step, in_background):
+def test_releases_after_any_failure(probe, context, step, in_background):
     operator = probe()
     operator.fails_in = step
     ended = played(operator, context) if in_background else operator.execute(context)
@@ -124,7 +124,7 @@ def test_lets_go_whatever_fails(probe, context, step, in_background):
 
 
 @pytest.mark.parametrize("step", STEPS)
-def test_lets_go_where_a_bug_shows(probe, context, step):
+def test_releases_after_a_bug(probe, context, step):
     operator = probe()
     operator.fails_in, operator.error = step, KeyError("a bug")
     with pytest.raises(KeyError, match="a bug"):
@@ -144,7 +144,7 @@ def test_quitting_leaves_nothing(probe, context):
                 closed.append(True)
 
         if is_reading:
-            operator.reading = reading
+            operator.read_steps = reading
         operator.invoke(context, None)
         context.workspace = None
         operator.cancel(context)
@@ -158,7 +158,7 @@ def test_thread_that_does_not_start_leaves_nothing(addon, probe, context, monkey
     def no_job(work):
         raise RuntimeError("no thread")
 
-    monkeypatch.setattr(addon("core.parts"), "Job", no_job)
+    monkeypatch.setattr(addon("core.staged_work"), "Job", no_job)
     operator = probe()
     with pytest.raises(RuntimeError, match="no thread"):
         operator.invoke(context, None)
@@ -175,7 +175,7 @@ def test_second_run_waits_for_the_first(probe, context):
     first.cancel(context)
 
 
-def test_esc_ends_the_work_at_its_next_report(addon, probe, context):
+def test_esc_ends_the_work_at_its_next_progress_call(addon, probe, context):
     operator, reports_after_esc, is_pressed = probe(), [], threading.Event()
 
     def compute(progress):
@@ -193,7 +193,7 @@ def test_esc_ends_the_work_at_its_next_report(addon, probe, context):
         time.sleep(0.001)
     # One report may have been under way.
     assert len(reports_after_esc) <= 1
-    assert addon("core.running").TICK_SECONDS <= 0.05
+    assert addon("core.runs").TICK_SECONDS <= 0.05
     assert operator.reports == ["Probing canceled"]
     assert operator.discarded == 1
 
@@ -208,14 +208,14 @@ def test_the_button_cancels_as_esc_does(addon, probe, context):
 
     operator.compute = compute
     operator.invoke(context, None)
-    while operator._parts.job.progress < 0.25:
+    while operator._staged_work.job.progress < 0.25:
         time.sleep(0.001)
     assert operator.modal(context, TIMER) == {"PASS_THROUGH"}
     drawn = Drawing()
-    running = addon("core.running")
-    assert running.draw(drawn, context, probe.bl_idname)
+    runs = addon("core.runs")
+    assert runs.draw(drawn, context, probe.bl_idname)
     assert drawn.shown == [("25 %", 0.25), "use_cancel"]
-    assert not running.draw(drawn, context, "prefilter.other")
+    assert not runs.draw(drawn, context, "prefilter.other")
     context.window_manager.prefilter_switches.use_cancel[0] = True
     while operator.modal(context, TIMER) != {"CANCELLED"}:
         time.sleep(0.001)
@@ -225,7 +225,7 @@ def test_the_button_cancels_as_esc_does(addon, probe, context):
     assert played(probe(), context) == {"FINISHED"}
 
 
-def test_the_button_cancels_what_is_read(probe, context):
+def test_the_button_cancels_reading(probe, context):
     operator, closed = probe(), []
 
     def reading(_):
@@ -235,7 +235,7 @@ def test_the_button_cancels_what_is_read(probe, context):
         finally:
             closed.append(True)
 
-    operator.reading = reading
+    operator.read_steps = reading
     operator.invoke(context, None)
     assert operator.modal(context, TIMER) == {"RUNNING_MODAL"}
     context.window_manager.prefilter_switches.use_cancel[0] = True
@@ -243,13 +243,13 @@ def test_the_button_cancels_what_is_read(probe, context):
     assert (closed, operator.discarded) == ([True], 1)
 
 
-def test_while_it_reads_only_the_button_takes_clicks(addon, probe, context, monkeypatch):
+def test_only_the_button_takes_clicks_during_reading(addon, probe, context, monkeypatch):
     operator = probe()
-    operator.reading = lambda _: iter(lambda: 0.5, None)
-    operator._let_go = lambda: None
+    operator.read_steps = lambda _: iter(lambda: 0.5, None)
+    operator._release = lambda: None
     operator.invoke(context, None)
     for is_over, status in ((False, {"RUNNING_MODAL"}), (True, {"PASS_THROUGH"})):
-        monkeypatch.setattr(addon("core.running"), "is_over_button", lambda *_, x=is_over: x)
+        monkeypatch.setattr(addon("core.runs"), "is_over_button", lambda *_, x=is_over: x)
         assert operator.modal(context, CLICK) == status
     assert operator.modal(context, ESC) == {"CANCELLED"}
 
@@ -257,9 +257,9 @@ def test_while_it_reads_only_the_button_takes_clicks(addon, probe, context, monk
 def test_esc_does_not_wait_for_a_step_that_cannot_stop(probe, context):
     operator, may_end, released = probe(), threading.Event(), threading.Event()
     operator.compute = lambda progress: may_end.wait()
-    operator.releaser = lambda: released.set
+    operator.discarder = lambda: released.set
     operator.invoke(context, None)
-    job = operator._parts.job
+    job = operator._staged_work.job
     operator.modal(context, ESC)
     while operator.modal(context, TIMER) != {"CANCELLED"}:
         time.sleep(0.05)
@@ -303,7 +303,7 @@ def test_redo_that_turns_out_slow_is_cut_short_and_waits(addon, probe, context, 
 
 @pytest.fixture
 def in_parts(probe):
-    """Returns a class of operators that work in parts, and note what they do."""
+    """Returns a class of operators that work in parts, and record their calls."""
 
     class InParts(probe):
         parts = 3
@@ -317,7 +317,7 @@ def in_parts(probe):
         def read(self, context):
             return self._part()
 
-        def following(self, context):
+        def read_next_part(self, context):
             if len(self.done) == 2 * self.parts:
                 return None
             return self._steps_of_a_part()
@@ -341,7 +341,7 @@ def in_parts(probe):
 
 
 @pytest.mark.parametrize("in_background", [False, True])
-def test_a_part_is_read_once_that_before_it_is_computed(in_parts, context, in_background):
+def test_a_part_is_read_after_the_one_before_is_computed(in_parts, context, in_background):
     operator = in_parts()
     ended = played(operator, context) if in_background else operator.execute(context)
     assert ended == {"FINISHED"}
@@ -357,7 +357,7 @@ def test_esc_between_parts(in_parts, context, is_waiting):
     operator.invoke(context, None)
     if not is_waiting:
         operator.gate.set()
-        while not operator._parts.job.is_done:
+        while not operator._staged_work.job.is_done:
             time.sleep(0.001)
     operator.modal(context, ESC)
     operator.gate.set()
@@ -373,8 +373,8 @@ def test_esc_between_parts(in_parts, context, is_waiting):
 
 @pytest.mark.parametrize("is_cancelled", [False, True])
 def test_results_are_made_in_steps(addon, probe, context, monkeypatch, is_cancelled):
-    """Nothing but the button and Esc counts in between, and what is made goes with Esc."""
-    monkeypatch.setattr(addon("core.running"), "is_over_button", lambda *_: False)
+    """Between steps only the button and Esc are handled, and Esc discards the results."""
+    monkeypatch.setattr(addon("core.runs"), "is_over_button", lambda *_: False)
     operator, made = probe(), []
 
     def making():
@@ -383,7 +383,7 @@ def test_results_are_made_in_steps(addon, probe, context, monkeypatch, is_cancel
             made.append(number)
             yield
 
-    operator.making = making
+    operator.build_steps = making
     operator.invoke(context, None)
     while not made:
         assert operator.modal(context, TIMER) <= {"PASS_THROUGH", "RUNNING_MODAL"}

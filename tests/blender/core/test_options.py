@@ -54,7 +54,7 @@ def read(addon, settings):
     return run
 
 
-def test_what_is_not_given_is_as_declared(read, settings):
+def test_omitted_settings_have_their_defaults(read, settings):
     assert read() == settings()
 
 

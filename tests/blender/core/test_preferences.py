@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What the preferences of the add-on say holds until a user says otherwise."""
+"""The preferences are the defaults until a user sets an option."""
 
 from dataclasses import asdict
 from pathlib import Path
@@ -98,7 +98,7 @@ def test_commands_follow(preferences, told, tmp_path):
     assert [call["memory_limit"] for call in calls] == [1024, None]
 
 
-def test_panels_show_what_holds(preferences):
+def test_panels_show_the_effective_values(preferences):
     """Until a user sets it; then it stays, whatever the preferences say."""
     shown = bpy.context.scene.prefilter_model
     for choice in ("dds", "exr"):
@@ -135,7 +135,7 @@ def test_commands_have_the_default_format(preferences, tmp_path):
     assert {file.name for file in folder.iterdir()} == {"Paint.dds", "Paint.tif"}
 
 
-def test_what_needs_more_memory_is_refused(preferences):
+def test_work_beyond_the_memory_limit_is_refused(preferences):
     box = bodies.cube()
     preferences.memory_limit = 64
     with pytest.raises(RuntimeError, match=r"GB of memory.*the preferences allow 64 MiB"):
@@ -159,7 +159,7 @@ def test_without_a_manual(addon, monkeypatch, tmp_path):
 
 
 def test_context_menus_open_the_page():
-    """Of every operator and every setting of a panel, as of Blender's own."""
+    """Every operator and every setting of a panel has a page, like Blender's own."""
     find = bpy.types.WM_OT_doc_view_manual._lookup_rna_url
     for name in dir(bpy.ops.prefilter):
         assert local_file(find(f"bpy.ops.prefilter.{name}", verbose=False)).exists(), name

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Presets: those that come with the add-on set what there is, and do what their names say."""
+"""Presets: the built-in ones set existing settings, and do what their names promise."""
 
 import struct
 from pathlib import Path
@@ -31,6 +31,7 @@ ZSTANDARD, UASTC = (
     166,
 )  # As the specifications of KTX 2 and of Khronos' data formats number them.
 SHIPPED = sorted((path.parent.name, path.stem) for path in FOLDER.glob("*/*.py"))
+SHIPPED += [("model", stem) for name, stem in SHIPPED if name == "bake"]
 
 
 @pytest.fixture
@@ -56,12 +57,15 @@ def size(obj):
     return len(obj.data.polygons)
 
 
-def test_every_kind_has_presets():
+def test_every_kind_has_presets(kind):
     assert {name for name, _ in SHIPPED} == set(KINDS)
+    for name in KINDS:
+        stems = {path.stem for path in kind(name).files().values()}
+        assert stems == {stem for other, stem in SHIPPED if other == name}
 
 
 @pytest.mark.parametrize(("name", "stem"), SHIPPED)
-def test_sets_what_it_says(kind, name, stem, capfd):
+def test_a_preset_sets_the_values_of_its_file(kind, name, stem, capfd):
     """Chosen from the menu, every setting has the value of the file."""
     found = kind(name)
     path = found.files()[stem.replace("_", " ")]
@@ -73,7 +77,7 @@ def test_sets_what_it_says(kind, name, stem, capfd):
 
 
 @pytest.mark.parametrize("name", KINDS)
-def test_users_keep_and_remove_theirs(kind, name):
+def test_users_add_and_remove_presets(kind, name):
     found = kind(name)
     before = set(found.files())
     options = {key: option for key, _, option in found.options()}
@@ -92,14 +96,14 @@ def test_users_keep_and_remove_theirs(kind, name):
     assert set(found.files()) == before
 
 
-def test_those_that_ship_stay(kind):
+def test_built_in_presets_cannot_be_removed(kind):
     found = kind("voxelize")
     before = found.files()
     bpy.ops.prefilter.add_preset(name="Preview", remove_name=True, panel=found.panel)
     assert found.files() == before
 
 
-def test_what_no_preset_sets(kind):
+def test_presets_exclude_files_and_machine_settings(kind):
     """Names, files, frames and memory belong to a scene or a machine."""
     for name in KINDS:
         options = {key for key, _, _ in kind(name).options()}
@@ -108,14 +112,14 @@ def test_what_no_preset_sets(kind):
 
 
 @pytest.mark.parametrize(("name", "stem"), SHIPPED)
-def test_no_preset_drops_what_meshes_have(kind, name, stem):
+def test_no_preset_drops_mesh_data(kind, name, stem):
     carried = {"use_materials", "use_uv_maps", "use_colors", "use_attributes"}
     found = kind(name).values(stem)
     assert all(found[key] for key in carried & set(found))
 
 
 def test_a_preset_is_a_step_to_undo(kind):
-    """What undoes the run after it leaves what it has set."""
+    """Undoing the run after it leaves the settings of the preset."""
     found = kind("voxelize")
     bodies.cube()
     bpy.ops.ed.undo_push(message="before")
@@ -182,7 +186,7 @@ def test_bad_presets(kind, tmp_path, monkeypatch):
 
 
 def test_scripts_name_a_preset():
-    """What the caller says goes first."""
+    """Arguments of the caller take precedence."""
     ball = bodies.sphere()
     ball.data.materials.append(bpy.data.materials.new("Paint"))
     bpy.ops.prefilter.voxelize(preset="print-ready solid", depth=4)
@@ -291,14 +295,14 @@ def test_cycles_cache(model, tmp_path):
         )
 
 
-def test_flags_go_first(model, tmp_path):
+def test_flags_take_precedence(model, tmp_path):
     arguments = ("bake", model, "--all", "--output", tmp_path / "out", "--preset", "Game asset")
     assert run(*arguments, "--format", "ktx2", "--texture-format", "bc3").returncode == 0
     assert read_ktx2(tmp_path / "out/color.ktx2").format == "BC3_SRGB"
 
 
 def test_flags_turn_on_what_a_preset_turns_off(addon):
-    """The preset Preview leaves clean-up out; what is neither named nor set is as declared."""
+    """The preset Preview has no clean-up; other settings have their defaults."""
     presets, voxels = addon("core.presets"), addon("voxels.choices")
     parser = addon("commands").Commands(["voxels"]).parser()
     kind = addon("voxels.properties").VOXELIZE
@@ -310,8 +314,8 @@ def test_flags_turn_on_what_a_preset_turns_off(addon):
         assert (found.use_cleanup, found.use_colors, found.depth) == (expected, True, 6)
 
 
-def test_what_does_not_go_with_the_file_is_left_out(model, tmp_path):
-    """The preset is for DDS; what the user asks for is a TIFF file."""
+def test_settings_of_other_formats_are_ignored(model, tmp_path):
+    """The preset is for DDS, but the user asks for a TIFF file."""
     target = tmp_path / "color.tif"
     more = ("--image", "color.png", "--output", target, "--preset", "Game asset")
     assert run("bake", model, *more).returncode == 0
@@ -323,7 +327,7 @@ def pixels(path):
 
 
 def test_tiled_texture(model, tmp_path):
-    """Edges are filtered with what lies beyond them, and the size is the caller's."""
+    """Edges are filtered with the opposite side, and the size is the caller's."""
     picture = model.parent / "color.png"
     shrink = ["resize", picture, "-o", tmp_path / "a.png"]
     assert_fails(run(*shrink, "--preset", "Tiled texture"), "no size", status=2)

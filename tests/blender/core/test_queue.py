@@ -42,7 +42,7 @@ def test_nothing_stays_drawn_as_progress(found):
 
 
 def test_each_is_a_step_to_undo(found):
-    """What was selected at the press counts, under whichever name; for the redo too."""
+    """The selection at the press counts, even after renaming, and for the redo too."""
     told = found["steps"]
     assert [state for _, state in told["done"]] == ["DONE", "DONE"]
     one, other, too = told["after"]
@@ -54,7 +54,7 @@ def test_each_is_a_step_to_undo(found):
     assert told["undone_twice"] == [162, 162, 162]
 
 
-def test_what_goes_meanwhile_is_named(found):
+def test_deleted_and_hidden_targets_are_named(found):
     told = found["meanwhile"]
     assert told["waits"] == "Waits for Object Mode"
     assert told["listed"] == [
@@ -66,7 +66,7 @@ def test_what_goes_meanwhile_is_named(found):
     assert told["last"] > 162
 
 
-def test_a_pause_leaves_the_processor_alone(found):
+def test_a_pause_uses_little_processor_time(found):
     told = found["rest"]
     assert told["rests"] < 0.1 * told["works"]
     assert told["ball"] == 10242
@@ -106,7 +106,7 @@ def test_paused_work_is_passed_by(queue):
         job.leave(context)
 
 
-def test_there_are_so_many_places(queue):
+def test_the_number_of_jobs_is_limited(queue):
     jobs = [queue.add(bpy.context, "line", "job") for _ in range(32)]
     with pytest.raises(ValueError, match="32 jobs wait already"):
         queue.add(bpy.context, "line", "one more")

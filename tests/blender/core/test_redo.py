@@ -43,7 +43,7 @@ def test_esc_leaves_result_and_settings(found):
 
 def test_bake_waits_for_apply(found):
     told = found["bake"]
-    assert told["filter"] != "pam-bilinear"
+    assert told["content"] == "data"
     assert told["waits"] == told["before"]
     assert told["after"] != pytest.approx(told["before"], rel=0.01)
     assert told["frame"] == 1

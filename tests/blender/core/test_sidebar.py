@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The tab is in the 3D view's sidebar whatever is active, and says what is missing."""
+"""The tab is in the 3D view's sidebar for any active object, and says which one it needs."""
 
 from types import SimpleNamespace
 
@@ -46,12 +46,12 @@ def shown() -> list[str]:
 
 
 def said() -> str:
-    """Returns what the panel says that stands in for the others."""
+    """Returns the texts of the placeholder panel."""
     return " ".join(stand_in().texts)
 
 
 def stand_in() -> _Layout:
-    """Returns what it draws."""
+    """Returns its texts."""
     layout = _Layout()
     panel = bpy.types.PREFILTER_PT_nothing
 
@@ -71,7 +71,7 @@ def activate(obj: bpy.types.Object | None) -> None:
 
 
 @pytest.mark.parametrize("kind", ["none", "EMPTY", "CAMERA", "LIGHT", "ARMATURE"])
-def test_the_tab_is_there_without_a_mesh(kind):
+def test_the_tab_exists_without_a_mesh(kind):
     data = {
         "CAMERA": lambda: bpy.data.cameras.new("a"),
         "LIGHT": lambda: bpy.data.lights.new("a", "POINT"),
@@ -85,7 +85,7 @@ def test_the_tab_is_there_without_a_mesh(kind):
 
 
 @pytest.mark.parametrize("mode", ["EDIT", "VERTEX_PAINT"])
-def test_the_tab_is_there_in_other_modes(mode):
+def test_the_tab_exists_in_other_modes(mode):
     activate(bodies.cube())
     bpy.ops.object.mode_set(mode=mode)
     assert shown() == ["PREFILTER_PT_nothing"]
@@ -94,19 +94,19 @@ def test_the_tab_is_there_in_other_modes(mode):
     assert (name, made.mode) == ("object.mode_set", "OBJECT")
 
 
-def test_what_works_in_sculpt_mode_is_there():
+def test_sculpt_mode_has_its_panels():
     activate(bodies.cube())
     bpy.ops.object.mode_set(mode="SCULPT")
     assert shown() == ["PREFILTER_PT_voxelize_sculpt"]
 
 
-def test_nothing_stands_in_where_a_panel_is():
+def test_no_placeholder_beside_another_panel():
     activate(bodies.cube())
     assert "PREFILTER_PT_voxelize_sidebar" in shown()
     assert "PREFILTER_PT_nothing" not in shown()
 
 
-def test_only_panels_of_the_tab_are_asked(addon):
+def test_only_panels_of_the_tab_are_polled(addon):
     """Each redraw asks, so it is a small part of all panels that there are."""
     sidebar = addon("core.sidebar")
     everywhere = bpy.types.Panel.__subclasses__()
@@ -119,7 +119,7 @@ def test_only_panels_of_the_tab_are_asked(addon):
     assert len(found) == len(expected)
 
 
-def test_panels_count_while_they_are_registered(addon):
+def test_unregistered_panels_are_ignored(addon):
     sidebar = addon("core.sidebar")
 
     class Passing(sidebar.SidebarPanel, bpy.types.Panel):

@@ -5,7 +5,7 @@
 import pytest
 
 
-def test_a_sentence_keeps_what_it_is_made_of(addon):
+def test_a_sentence_stores_its_template_and_values(addon):
     wording = addon("core.wording")
     found = wording.Sentence("{} in {}", wording.counted("ab", "file"), "'here {}'")
     assert found == "2 files in 'here {}'"

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Runs in a Blender with a window: sets what the dialogs of the glTF exporter and importer show.
+"""Runs in a Blender with a window: clicks settings in the dialogs of
+the glTF exporter and importer.
 
 Usage: blender --factory-startup --enable-event-simulate --python gltf_dialog_session.py
     -- RESULT.json

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Bad input gets a report that says what is wrong, and neither images nor files are made.
+"""Bad input is reported with the reason, and neither images nor files are made.
 
-A row is what is wrong with a good scene, and what the message must hold. Other values that are
-refused are in the tests of what refuses them: here is one of a kind, as users get to see it.
+Each row is a change that breaks a good scene, and a text that the message must contain. The tests
+of each function have more invalid values; here is one of each kind, as users see it.
 """
 
 from dataclasses import dataclass, field
@@ -19,7 +19,7 @@ NAN = float("nan")
 
 @dataclass
 class Row:
-    """A change to a good scene, or to the options of a bake; what was wrong is in the message."""
+    """A change to a good scene or to the options of a bake; the message has to name the problem."""
 
     words: list[str]
     options: dict[str, object] = field(default_factory=dict)
@@ -152,13 +152,13 @@ def folder(tmp_path):
 
 
 def state(folder):
-    """Returns what is there: images with hashes of their pixels, texts, and files."""
+    """Returns all images with hashes of their pixels, all texts, and all files."""
     images = {one.name: hash(np.array(one.pixels).tobytes()) for one in bpy.data.images}
     return images, sorted(text.name for text in bpy.data.texts), files(folder)
 
 
 def files(folder):
-    """Returns the contents of what lies in a folder, by name."""
+    """Returns the contents of a folder's files, by name."""
     return {path.name: path.is_file() and path.read_bytes() for path in folder.rglob("*")}
 
 

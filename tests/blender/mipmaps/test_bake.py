@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The bake, by what it must give: color, alpha, wrap, levels, and nothing after a failure."""
+"""Results of the bake: color, alpha, wrap, levels, and nothing after a failure."""
 
 import bpy
 import numpy as np
@@ -294,7 +294,7 @@ def test_texture_space_filters_need_no_mesh(bake):
             bake(image, filter=name)
 
 
-def test_failures_name_what_was_found(bake):
+def test_failures_name_the_found_objects(bake):
     image = scenes.image("Paint", scenes.noise(4, 4))
     lamp = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "SUN"))
     with pytest.raises(ValueError, match=r"'Paint'.*'Lamp' \(light\)"):
@@ -322,7 +322,7 @@ def test_failures_of_the_library_name_the_object(bake):
         bake(image, [bad])
 
 
-def test_names_that_are_taken_are_told(bake):
+def test_taken_names_are_reported(bake):
     image = scenes.image("Paint", scenes.noise(4, 4))
     scenes.image("Paint.mip02", scenes.noise(4, 4))
     outcome = bake(image, filter="box")

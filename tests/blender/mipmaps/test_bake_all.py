@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`bake --all`: every image of a model as what it is, against bakes of single images."""
+"""`bake --all`: every image of a model by its content, compared to bakes of single images."""
 
 import json
 
@@ -80,7 +80,7 @@ def names(folder):
     return sorted(path.name for path in folder.iterdir())
 
 
-def test_a_list_says_what_would_be_done(model, tmp_path):
+def test_the_list_describes_the_bake(model, tmp_path):
     before = names(tmp_path)
     result = run("bake", model, "--all", "--list", "--output", tmp_path / "out")
     assert result.returncode == 0, result.stderr
@@ -120,7 +120,7 @@ def test_a_file_for_each_image(model, tmp_path):
     }
 
 
-def test_no_file_is_there_before_all_are(addon, model, tmp_path, monkeypatch):
+def test_files_appear_only_together(addon, model, tmp_path, monkeypatch):
     """What ends the command, at any point of its work, leaves the files of earlier bakes."""
     out = tmp_path / "out"
     out.mkdir()
@@ -281,7 +281,7 @@ def test_a_source_with_the_name_of_a_file(tmp_path, addon):
         ("out/{name}/mips.DDS", "out/{name}/mips.DDS"),
     ],
 )
-def test_what_output_means(addon, output, expected):
+def test_patterns_of_output(addon, output, expected):
     assert addon("mipmaps.file_names").Pattern.of(output, ".ktx2").text == expected
 
 
@@ -393,7 +393,7 @@ def data(name, pixels):
 
 
 def test_a_normal_map_with_two_roughness_images(tmp_path):
-    """Each gets what the normals lose where it is shown; the normal map has one file."""
+    """Each compensates for normals on its own surfaces; the normal map has one file."""
     shared = data("Bumps", bumps(8))
     roughs = [data(name, scenes.noise(8, 8, seed=i)) for i, name in enumerate(("Left", "Right"))]
     quads = [normal_mapped(rough.name, shared, rough) for rough in roughs]
@@ -426,7 +426,7 @@ def test_a_roughness_image_with_two_normal_maps(tmp_path):
     assert "compensate for detail" not in result.stdout
 
 
-def test_what_is_left_out(tmp_path):
+def test_images_that_are_left_out(tmp_path):
     shown, hidden = (
         scenes.image("Shown", scenes.noise(8, 8)),
         scenes.image("Hidden", scenes.noise(8, 8)),

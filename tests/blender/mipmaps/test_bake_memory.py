@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a bake of a large image takes at most, beside what Blender takes."""
+"""Peak memory of the bake of a large image, in addition to Blender's."""
 
 import re
 from pathlib import Path
@@ -42,7 +42,7 @@ def test_a_file_takes_a_few_times_the_texels(bake, tmp_path):
     assert (status("VmHWM") - before) / SIDE**2 < 50
 
 
-def test_what_was_not_loaded_is_not_kept(bake, tmp_path):
+def test_unloaded_pixels_are_freed(bake, tmp_path):
     image = picture(tmp_path / "picture.png")
     quad = scenes.textured_quad(image)
     assert not image.has_data
@@ -54,7 +54,7 @@ def test_what_was_not_loaded_is_not_kept(bake, tmp_path):
     assert image.has_data
 
 
-def test_what_was_changed_stays(bake, tmp_path):
+def test_changed_pixels_stay(bake, tmp_path):
     image = picture(tmp_path / "picture.png")
     quad = scenes.textured_quad(image)
     image.pixels[0] = 1.0

@@ -30,7 +30,7 @@ def scene(colorspace="Non-Color"):
 
 
 def baked(tmp_path, ending=".png"):
-    """Bakes, and returns what was said, and the files."""
+    """Bakes, and returns the messages and the files."""
     source = tmp_path / "in.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(source))
     result = run("bake", source, "--all", "--output", tmp_path / f"out/{{name}}{ending}")

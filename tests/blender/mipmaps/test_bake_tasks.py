@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`bake --all` in tasks: each makes, byte for byte, what the whole makes."""
+"""`bake --all` in tasks: each makes the same bytes as the whole bake."""
 
 import json
 
@@ -62,7 +62,7 @@ def test_tasks_make_what_the_whole_makes(model, tmp_path, kind):
     assert made == whole
 
 
-def test_one_image_brings_what_it_is_baked_with(model, tmp_path):
+def test_one_image_is_baked_with_its_partner(model, tmp_path):
     whole = bake(model, tmp_path / "whole")
     for name, expected in (("orm.png", PAIR), ("normal.png", PAIR), ("glow.png", ["glow.png"])):
         found = bake(model, tmp_path / name.removesuffix(".png"), "--image", name)
@@ -92,8 +92,8 @@ def test_an_image_that_is_missing_fails_in_its_own_task(model, tmp_path):
     assert left == {name: data for name, data in whole.items() if name != "glow.ktx2"}
 
 
-def test_what_is_up_to_date_is_left_alone(model, tmp_path):
-    """By what is read: pixels, surfaces and settings, and neither names nor times."""
+def test_up_to_date_files_are_left_alone(model, tmp_path):
+    """Depends on pixels, surfaces and settings, but not on names and times."""
     flags = ("--skip-up-to-date",)
 
     def baked(*more):

@@ -117,7 +117,7 @@ def test_how_a_normal_map_node_gets_its_color(addon, way):
     color = texture.outputs["Color"]
 
     def feeds(material, image):
-        return plan.said_of(image, [material]).content == "normal"
+        return plan.describe_image(image, [material]).content == "normal"
 
     if way == "reroute":
         reroute = tree.nodes.new("NodeReroute")
@@ -172,7 +172,7 @@ def test_color_space_of_a_normal_map_is_warned_of(bake):
 
 
 @pytest.mark.parametrize("is_float", [False, True])
-def test_roughness_gets_what_normals_lose(bake, is_float):
+def test_roughness_compensates_for_normals(bake, is_float):
     values, rough = bumps(16, 16), gray(16, 16) * np.float32((0.5, 0.5, 0.5, 1))
     rough = np.round(rough * 255).astype(np.float32) / 255
     image = scenes.image("Bumps", values, colorspace="Non-Color", is_float=is_float)
@@ -308,7 +308,7 @@ def test_progress_rises_to_one(bake, content):
 
 
 @pytest.mark.parametrize("is_float", [False, True])
-def test_cutout_keeps_what_is_shown(bake, is_float):
+def test_cutout_keeps_its_coverage(bake, is_float):
     """Lines that ordinary levels lose; straight alpha in bytes, associated in floats."""
     values = leaves()
     if is_float:
@@ -375,7 +375,7 @@ def shader_of(material):
 
 @pytest.mark.parametrize("way", ["tinted", "alone", "ramp", "over another"])
 def test_color_and_data_at_once_is_color(bake, addon, way):
-    """As glTF files have it, whose importer leaves such an image Non-Color."""
+    """As in glTF files, whose importer leaves such an image Non-Color."""
     values = scenes.noise(8, 8)
     image = scenes.image("Both", values, colorspace="Non-Color")
     quad = scenes.textured_quad(image)
@@ -442,7 +442,7 @@ LEAF = np.float32((40, 110, 20)) / 255
 def gltf_leaf(is_float=False):
     """A Channel Packed image, as Blender's glTF importer makes: a leaf where alpha is, and white.
 
-    White is what no alpha shows. A 16-bit file gives floats that are straight, too.
+    Texels with an alpha of 0 are white. A 16-bit file gives floats that are straight, too.
     """
     values = leaves()
     shown = values[..., 3:] > 0
@@ -535,7 +535,7 @@ def test_alpha_of_an_instanced_collection_is_coverage(bake):
 
 
 def test_bc1_keeps_the_alpha_of_a_cutout(bake, tmp_path):
-    """Punch-through blocks, read by OpenImageIO: what the cut-out shows, and nothing else."""
+    """Punch-through blocks, read by OpenImageIO, are opaque exactly where the cut-out is."""
     path = tmp_path / "leaf.dds"
     image = gltf_leaf()
     quad = scenes.textured_quad(image)
@@ -577,7 +577,7 @@ def test_light_may_pass_one(bake):
         ({"content": "cutout", "threshold": 0.0}, "Threshold: found 0; allowed: above 0, up to 1"),
     ],
 )
-def test_what_does_not_fit_is_refused(bake, settings, message):
+def test_files_that_cannot_store_the_image_are_refused(bake, settings, message):
     image = scenes.image("Paint", scenes.noise(8, 8))
     scenes.image("Rough", gray(8, 8), colorspace="Non-Color")
     scenes.image("Small", gray(4, 4), colorspace="Non-Color")
@@ -598,7 +598,7 @@ def test_roughness_needs_somewhere_to_go(bake, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_roughness_left_out_is_said(bake):
+def test_ignored_roughness_is_reported(bake):
     image = scenes.image("Paint", scenes.noise(8, 8))
     scenes.image("Rough", gray(8, 8), colorspace="Non-Color")
     outcome = bake(image, filter="box", roughness="Rough")

@@ -57,10 +57,10 @@ def test_scene_is_back_at_its_frame(bake, pulse):
     assert pulse[1][1].matrix_world.to_scale().x == pytest.approx(3)
 
 
-def test_closing_the_reading_takes_the_scene_back(addon, pulse):
+def test_closing_the_reading_restores_the_frame(addon, pulse):
     settings = addon("mipmaps.choices").Settings(use_frames=True, frame_start=2, frame_end=9)
-    module = addon("mipmaps.reading")
-    reading = module.reading(module.Request(*pulse, settings, scenes.depsgraph()))
+    module = addon("mipmaps.bake_inputs")
+    reading = module.read_steps(module.Request(*pulse, settings, scenes.depsgraph()))
     # The images come before the frames.
     assert next(share for share in reading if share > 0.0) == pytest.approx(1 / 8)
     assert bpy.context.scene.frame_current == 2
@@ -70,7 +70,7 @@ def test_closing_the_reading_takes_the_scene_back(addon, pulse):
 
 def test_poses_are_joined(addon, pulse):
     settings = addon("mipmaps.choices").Settings(use_frames=True, frame_start=1, frame_end=50)
-    module = addon("mipmaps.reading")
+    module = addon("mipmaps.bake_inputs")
     read = module.read(module.Request(*pulse, settings, scenes.depsgraph()))
     assert [round(s.area, 3) for s in read.source.surfaces] == [50, 1 + 4 + 48 * 9]
 

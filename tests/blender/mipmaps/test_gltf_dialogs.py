@@ -18,8 +18,8 @@ import drawn
 SESSION = Path(__file__).with_name("gltf_dialog_session.py")
 
 
-def test_the_panels_are_seen_and_used(found):
-    """A setting is clicked in each dialog, and what is then done with a file follows it."""
+def test_the_panels_take_clicks(found):
+    """A setting clicked in each dialog takes effect on a file."""
     assert "KHR_texture_basisu" in found["extensions"]
     assert found["images"]
 
@@ -38,7 +38,7 @@ def drawn_rows(draw):
 
 
 def test_the_exporter_and_the_importer_draw_them(exporter):
-    """As they do in their dialogs, in whatever way they ask for panels."""
+    """Draws the panels as the dialogs do, in either way of registering them."""
     assert "use_mipmaps" in drawn_rows(exporter.export_panel_user_extension)
     assert "Prefilter Mipmaps" in drawn_rows(exporter.import_panel_user_extension)
 
@@ -49,7 +49,7 @@ def test_panels_go_with_the_add_on(exporter):
     assert "Prefilter Mipmaps" not in drawn_rows(exporter.import_panel_user_extension)
 
 
-def test_an_exporter_that_is_enabled_later_has_them(exporter, addon):
+def test_an_exporter_enabled_later_has_the_panels(exporter, addon):
     exporter.exporter_extension_layout_draw.clear()
     menus = addon("mipmaps.menus")
     menus._draw_export(type("Menu", (), {"layout": drawn.Layout([])}), bpy.context)

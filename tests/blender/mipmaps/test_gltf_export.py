@@ -184,7 +184,7 @@ def test_the_quality_of_etc1s_is_that_of_the_dialog(tmp_path):
     assert sizes[8] < sizes[64] < sizes[192]
 
 
-def test_the_dialog_has_the_quality_where_it_counts(addon):
+def test_the_dialog_shows_the_quality_for_etc1s_only(addon):
     panel = addon("mipmaps.gltf.panel")
     settings = bpy.context.scene.prefilter_gltf
     settings.use_mipmaps = True
@@ -195,9 +195,9 @@ def test_the_dialog_has_the_quality_where_it_counts(addon):
         panel.draw_export(bpy.context, drawn.Layout(rows))
         shown[texture_format] = [row[2] for row in rows if row[0] == "setting"]
     assert shown["uastc"] == [
-        *("Prefilter Mipmaps", "Filter", "Lookups", "Format", "Effort", "Compression", "Fallback")
+        *("Prefilter Mipmaps", "Lookups", "Format", "Effort", "Compression", "Fallback", "Filter")
     ]
-    assert shown["etc1s"] == [*shown["uastc"][:5], "ETC1S Quality", *shown["uastc"][5:]]
+    assert shown["etc1s"] == [*shown["uastc"][:4], "ETC1S Quality", *shown["uastc"][4:]]
 
 
 def test_files_by_themselves_with_a_fallback(tmp_path):
@@ -383,7 +383,7 @@ def test_the_command_leaves_its_sources(tmp_path):
     assert list(tmp_path.iterdir()) == [source]
 
 
-def test_the_command_tells_of_images_that_stay(tmp_path):
+def test_the_command_reports_images_that_stay(tmp_path):
     painted("Odd", scenes.noise(30, 30))
     source, target = tmp_path / "model.blend", tmp_path / "out.glb"
     bpy.ops.wm.save_as_mainfile(filepath=str(source))
@@ -469,7 +469,7 @@ def test_color_and_occlusion_at_once_are_two_textures(tmp_path):
 
 @pytest.mark.parametrize("ending", [".glb", ".gltf"])
 def test_a_color_that_is_a_normal_map_too_is_two_textures(tmp_path, ending):
-    """Each is what an image of that role alone would be."""
+    """Each equals the result for an image with that role alone."""
     pixels = scenes.noise(32, 32)
     cube = painted("Both", pixels)
     tree = cube.active_material.node_tree

@@ -45,7 +45,7 @@ def rewritten(source, target, change):
 
 
 @pytest.mark.parametrize("kind", ["GLB", "GLTF_SEPARATE"])
-def test_what_was_exported_opens(tmp_path, kind):
+def test_exported_files_can_be_imported(tmp_path, kind):
     model()
     path = tmp_path / ("model.glb" if kind == "GLB" else "model.gltf")
     export(path, export_format=kind)
@@ -97,7 +97,7 @@ def test_levels_are_kept_on_wish(tmp_path):
     assert bpy.data.images["Color.mip02"].colorspace_settings.name == "sRGB"
 
 
-def test_a_texture_that_is_damaged_is_told(tmp_path, caplog):
+def test_a_damaged_texture_is_reported(tmp_path, caplog):
     model()
     export(tmp_path / "model.gltf", export_format="GLTF_SEPARATE")
     file = json.loads((tmp_path / "model.gltf").read_text())

@@ -74,7 +74,7 @@ def test_a_factor_alone_leaves_the_picture(painted):
     assert "baseColorFactor" in material["pbrMetallicRoughness"]
 
 
-def test_a_factor_that_is_mixed_in_partly_is_told(painted):
+def test_a_partial_factor_is_reported(painted):
     """Blender's exporter writes it in full."""
 
     def build(tree, color):

@@ -20,7 +20,7 @@ OPTIONS = {"wrap": "clamp", "levels": 3}
 
 @pytest.fixture
 def paint():
-    """Makes an image of random values on a square, and returns it with what a shader reads."""
+    """Makes an image of random values on a square, and returns it with a shader's lookups."""
     image = scenes.image("Paint", scenes.noise(SIDE, SIDE), colorspace="Non-Color")
     scenes.textured_quad(image)
     return image
@@ -65,13 +65,13 @@ def test_the_file_decides_unless_the_user_does(bake, paint, tmp_path, lookups, n
 
 
 @pytest.mark.parametrize("filter", ["pam-bilinear", "pam-trilinear", "ls-bilinear"])
-def test_fits_heed_it(bake, paint, filter):
+def test_fits_use_the_lookups(bake, paint, filter):
     bake(paint, bpy.context.selected_objects, filter=filter, lookups="one-lookup", wrap="clamp")
     np.testing.assert_allclose(baked(), level(1.0, filter=filter), atol=0.51 / 255)
 
 
 @pytest.mark.parametrize("filter", ["box", "lanczos3-covered", "pam-box"])
-def test_other_filters_do_not(bake, paint, filter):
+def test_other_filters_ignore_the_lookups(bake, paint, filter):
     outcome = bake(
         paint, bpy.context.selected_objects, filter=filter, lookups="one-lookup", wrap="clamp"
     )
@@ -93,7 +93,7 @@ def test_levels_are_fitted_to_views(bake, paint, content):
     assert "fitted to views" in outcome.summary
 
 
-def test_what_cannot_be_looked_at_is_for_one_lookup(bake, paint):
+def test_unsupported_readers_get_one_lookup(bake, paint):
     options = {"lookups": "views", "wrap": "clamp"}
     outcome = bake(paint, filter="ls-bilinear", **options)
     np.testing.assert_allclose(baked(), level(1.0, filter="ls-bilinear"), atol=0.51 / 255)
@@ -121,7 +121,7 @@ def test_readers_of_encoded_texels_are_supersampled(bake, tmp_path, lookups, cou
     assert sum(warning.startswith("Lookups: ") for warning in outcome.warnings) == count
 
 
-def test_normal_maps_heed_it(bake, paint):
+def test_normal_maps_use_the_lookups(bake, paint):
     normals = scenes.noise(SIDE, SIDE)[..., :3]
     for lookups, footprint in (("supersampled", 0.0), ("one-lookup", 1.0)):
         bake(
@@ -135,7 +135,7 @@ def test_normal_maps_heed_it(bake, paint):
         np.testing.assert_allclose(baked(), expected, atol=0.51 / 255)
 
 
-def test_cut_outs_heed_it(bake):
+def test_cut_outs_use_the_lookups(bake):
     image = scenes.image("Paint", scenes.noise(SIDE, SIDE, alpha=True))
     quad = scenes.textured_quad(image)
     found = []

@@ -131,7 +131,7 @@ def test_frames_importance_and_instances(blend, tmp_path):
 
 
 @pytest.mark.parametrize("frames", ["5", "1-5", "1:2:3:4", "a:b", ""])
-def test_frames_that_are_none(blend, tmp_path, frames):
+def test_invalid_frames(blend, tmp_path, frames):
     result = run("bake", blend, "--output", tmp_path / "no.exr", f"--frames={frames}")
     assert_fails(result, "--frames", "START:END", status=2)
 
@@ -295,24 +295,24 @@ def test_a_file_a_base_color(tmp_path):
 
 
 @pytest.fixture
-def unnamed(addon):
-    return addon("mipmaps.unnamed")
+def default_images(addon):
+    return addon("mipmaps.default_images")
 
 
-def test_all_images_where_none_is_a_base_color(unnamed):
+def test_all_images_where_none_is_a_base_color(default_images):
     first, second = (scenes.image(name, scenes.noise(4, 4)) for name in ("One", "Two"))
     quads = [scenes.textured_quad(image, image.name) for image in (first, second)]
-    found, line = unnamed.images_to_bake(quads)
+    found, line = default_images.images_to_bake(quads)
     assert found == [first, second]
     assert line == "Without --image: all images, as none is a base color, 'One', 'Two'"
-    assert unnamed.images_to_bake(quads[:1]) == ([first], "")
+    assert default_images.images_to_bake(quads[:1]) == ([first], "")
 
 
-def test_files_of_several_images(unnamed):
+def test_files_of_several_images(default_images):
     names = ("Wood", "Wood.png", "Wood oak/ö.tga")
     images = [scenes.image(name, scenes.noise(2, 2)) for name in names]
-    assert unnamed.output_paths("a/t.exr", images[:1]) == ["a/t.exr"]
-    assert unnamed.output_paths("", images) == ["", "", ""]
-    assert unnamed.output_paths("a/t.exr", images) == [
+    assert default_images.output_paths("a/t.exr", images[:1]) == ["a/t.exr"]
+    assert default_images.output_paths("", images) == ["", "", ""]
+    assert default_images.output_paths("a/t.exr", images) == [
         *("a/t.Wood.exr", "a/t.Wood_2.exr", "a/t.Wood_oak__.exr")
     ]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The phases of a bake, one by one: what is read, decided, and told."""
+"""The phases of a bake, one by one: reading, decisions, and messages."""
 
 from pathlib import Path
 
@@ -16,7 +16,7 @@ def request_of(addon):
 
     def make(image, *objects, **settings):
         chosen = addon("mipmaps.choices").Settings(**settings)
-        return addon("mipmaps.reading").Request(image, objects, chosen, scenes.depsgraph())
+        return addon("mipmaps.bake_inputs").Request(image, objects, chosen, scenes.depsgraph())
 
     return make
 
@@ -32,41 +32,41 @@ def without_surface(addon):
     return make
 
 
-def test_what_is_read_of_an_image(addon, request_of, tmp_path):
-    reading = addon("mipmaps.reading")
+def test_pixels_and_content_of_an_image(addon, request_of, tmp_path):
+    bake_inputs = addon("mipmaps.bake_inputs")
     image = scenes.image("Paint", scenes.noise(8, 4))
-    found = reading.read_level_0(request_of(image, filepath=str(tmp_path / "paint.exr")))
+    found = bake_inputs.read_level_0(request_of(image, filepath=str(tmp_path / "paint.exr")))
     assert (found.numbers, found.content, found.is_encoded) == ([], "color", True)
     assert found.targets == [tmp_path / "paint.exr"]
     assert [one.shape[:2] for one in found.pictures] == [(8, 4)]
     data = scenes.image("Data", scenes.noise(4, 4), colorspace="Non-Color")
-    found = reading.read_level_0(request_of(data))
+    found = bake_inputs.read_level_0(request_of(data))
     assert (found.targets, found.content, found.is_encoded) == ([], "data", False)
     with pytest.raises(ValueError, match="nothing to write"):
-        reading.read_level_0(request_of(data, use_images=False))
+        bake_inputs.read_level_0(request_of(data, use_images=False))
 
 
 def test_blocks_become_a_format(addon, request_of):
-    reading = addon("mipmaps.reading")
+    bake_inputs = addon("mipmaps.bake_inputs")
     request = request_of(scenes.image("Paint", scenes.noise(4, 4)), texture_format="blocks")
-    made = reading.with_format(request, reading.read_level_0(request))
+    made = bake_inputs.with_format(request, bake_inputs.read_level_0(request))
     assert (made.settings.texture_format, made.may_lose_channels) == ("bc7", True)
     plain = request_of(request.image, texture_format="bc1")
-    assert reading.with_format(plain, reading.read_level_0(plain)) is plain
+    assert bake_inputs.with_format(plain, bake_inputs.read_level_0(plain)) is plain
 
 
 def test_roughness_is_of_normal_maps(addon, request_of):
-    reading = addon("mipmaps.reading")
+    bake_inputs = addon("mipmaps.bake_inputs")
     image = scenes.image("Paint", scenes.noise(4, 4))
     request = request_of(image, roughness="Rough")
-    level_0 = reading.read_level_0(request)
-    rough = reading.read_roughness(request, level_0)
+    level_0 = bake_inputs.read_level_0(request)
+    rough = bake_inputs.read_roughness(request, level_0)
     assert (rough.roughness, rough.target) == (None, None)
-    (told,) = reading.usage_warnings(request, level_0, rough)
+    (told,) = bake_inputs.usage_warnings(request, level_0, rough)
     assert told == "Roughness: 'Rough' is not used, because 'Paint' is not a normal map"
     request = request_of(image, roughness="Rough", content="color")
     with pytest.raises(ValueError, match="the content is 'color'"):
-        reading.read_roughness(request, reading.read_level_0(request))
+        bake_inputs.read_roughness(request, bake_inputs.read_level_0(request))
 
 
 @pytest.mark.parametrize(
@@ -82,7 +82,7 @@ def test_roughness_is_of_normal_maps(addon, request_of):
 )
 def test_the_wrap_mode(addon, settings, extensions, expected, is_told):
     chosen = addon("mipmaps.choices").Settings(**settings)
-    wrap, told = addon("mipmaps.source").chosen_wrap(chosen, extensions)
+    wrap, told = addon("mipmaps.source").resolve_wrap(chosen, extensions)
     assert expected in (None, wrap)
     assert [f"filtered as '{wrap[0]}'" in one for one in told] == [True] * is_told
 
@@ -97,7 +97,7 @@ def test_the_wrap_mode(addon, settings, extensions, expected, is_told):
         (0.0, "pam-bilinear", "color", False),
     ],
 )
-def test_what_heeds_seams(addon, without_surface, budget, filter_name, content, expected):
+def test_filters_that_support_seams(addon, without_surface, budget, filter_name, content, expected):
     image = scenes.image("Paint", scenes.noise(4, 4))
     settings = addon("mipmaps.choices").Settings(seam_budget=budget, filter=filter_name)
     source = addon("mipmaps.source").on_surfaces(
@@ -125,7 +125,7 @@ def test_the_line_that_says_what_was_baked(addon, without_surface):
     assert bake.summary(source, bake.Outputs(None), []).endswith("it has no further level")
 
 
-def test_what_is_told_of_a_model(addon):
+def test_messages_about_a_model(addon):
     results = addon("mipmaps.model.results").Results([])
     left = addon("mipmaps.model.plan").LeftOut
     results.left_out += [left("A", "no pixels"), left("B", "no pixels"), left("C", "a movie")]
@@ -136,7 +136,7 @@ def test_what_is_told_of_a_model(addon):
         "image 'D' is not baked: is broken",
         "image 'E' is not baked: there is not enough memory",
     ]
-    assert results.nothing() == ["no image was baked", *reasons, *lines]
+    assert results.failure_lines() == ["no image was baked", *reasons, *lines]
     with pytest.raises(ValueError, match="no image was baked"):
         results.outcome()
     results.baked.append("F")
@@ -147,27 +147,27 @@ def test_what_is_told_of_a_model(addon):
 
 
 def test_a_normal_map_and_a_roughness_of_another_size_are_parted(addon):
-    plan, preparing = addon("mipmaps.model.plan"), addon("mipmaps.model.preparing")
+    plan, preparation = addon("mipmaps.model.plan"), addon("mipmaps.model.preparation")
     for name, side in (("Bumps", 8), ("Rough", 4)):
         scenes.image(name, scenes.noise(side, side), colorspace="Non-Color")
     bumps = plan.Item("Bumps", "Bumps", (), (), "normal")
     rough = plan.Item("Rough", "Rough", (), (), "data", normal_map="Bumps")
     job = plan.Job(bumps, rough)
-    pair = preparing.pair_of(job)
+    pair = preparation.image_pair(job)
     assert (pair.normal_map.name, pair.rough.name, pair.fits) == ("Bumps", "Rough", False)
-    first, second = preparing.parted(job, pair)
+    first, second = preparation.split_job(job, pair)
     assert (first.item, first.roughness) == (bumps, None)
     assert second.item.image == "Rough"
     assert "whose size is 8 x 8, and its own 4 x 4" in second.item.notes[-1]
     bpy.data.images["Rough"].scale(8, 8)
-    assert preparing.pair_of(job).fits
-    alone = preparing.pair_of(plan.Job(rough, normal_map="Bumps"))
+    assert preparation.image_pair(job).fits
+    alone = preparation.image_pair(plan.Job(rough, normal_map="Bumps"))
     assert (alone.normal_map.name, alone.rough.name) == ("Bumps", "Rough")
-    assert preparing.pair_of(plan.Job(bumps)).rough is None
+    assert preparation.image_pair(plan.Job(bumps)).rough is None
 
 
 def test_a_folder_that_another_bake_removed_is_made_again(addon, tmp_path):
-    """As one that is cancelled does when it stops, which may be after the next one was read."""
+    """Like a canceled bake, which may stop after the next image was read."""
     image = scenes.image("Paint", scenes.noise(8, 8))
     quad = scenes.textured_quad(image, "Paint")
     bpy.context.view_layer.update()
@@ -175,7 +175,7 @@ def test_a_folder_that_another_bake_removed_is_made_again(addon, tmp_path):
     settings = addon("mipmaps.choices").Settings(use_images=False)
     target = tmp_path / "new" / "folders" / "Paint.exr"
     model = addon("mipmaps.model.bake").ModelBake(planned, settings, {image.name_full: str(target)})
-    compute = addon("core.doing").read_at_once(model.reading(scenes.depsgraph()))
+    compute = addon("core.operator_hooks").run_steps(model.read_steps(scenes.depsgraph()))
     target.parent.rmdir()
     compute(lambda fraction: True)
     assert len(model.write()) == 1

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The settings, by what of them is shown."""
+"""The settings that panels show."""
 
 import dataclasses
 from types import SimpleNamespace
@@ -10,7 +10,7 @@ import pytest
 
 
 class Layout(SimpleNamespace):
-    """Stands for a layout of Blender's, with all panels open; keeps names of what it is to show."""
+    """A stand-in for Blender's layout with all panels open; records the names of properties."""
 
     def __init__(self):
         super().__init__(shown=[], panels=[])
@@ -52,7 +52,7 @@ def shown(settings):
         ("file", "ktx2", True, True),
     ],
 )
-def test_what_files_have_shows_where_it_matters(
+def test_the_dialog_shows_settings_of_the_format(
     result, file_format, texture_format, supercompression
 ):
     settings = bpy.context.scene.prefilter_bake
@@ -123,7 +123,7 @@ def test_panels_are_told_apart():
 
 
 def test_the_preview_shows_what_a_bake_of_all_images_makes(addon):
-    """One set of what a level is made of, in both editors; each has its own place for results."""
+    """Both editors share the settings of levels; each has its own destination of results."""
     choices = addon("mipmaps.choices")
     one, all_images = bpy.context.scene.prefilter_bake, bpy.context.scene.prefilter_model
     one.filter, one.wrap, one.importance, one.bounds = "box", "repeat", "Weight", "none"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a bake says of UV seams: the contrast across them, against the library's own."""
+"""The report of a bake on UV seams: the contrast across them, compared to the library's."""
 
 import re
 
@@ -79,7 +79,7 @@ def test_seams_are_compared(bake, addon, paint, filter):
         np.testing.assert_allclose(found, expected, rtol=6e-3, atol=1e-6)
 
 
-def test_nothing_is_said_without_the_setting_or_a_seam(bake, paint):
+def test_no_report_without_the_setting_or_a_seam(bake, paint):
     image, sheet = paint
     assert bake(image, [sheet]).notes == []
     assert bake(image, [sheet], filter="pam-box", seam_budget=1.0).notes == []

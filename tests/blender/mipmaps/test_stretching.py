@@ -57,7 +57,7 @@ def test_multiples_of_4_stay_as_they_are(bake, tmp_path):
 
 
 def test_levels_are_those_of_the_stretched_image(bake, tmp_path):
-    """Light is filtered, with what lies beyond the edges as the levels have it."""
+    """Linear light is filtered, with the wrap mode of the levels."""
     pixels = scenes.noise(6, 9, alpha=True)
     bake(scenes.image("Paint", pixels), "a.dds", texture_format="bc7", wrap="repeat")
     light = pixels.copy()
@@ -74,7 +74,7 @@ def test_levels_are_those_of_the_stretched_image(bake, tmp_path):
     assert (tmp_path / "a.dds").read_bytes() == (tmp_path / "b.dds").read_bytes()
 
 
-def test_what_was_smooth_stays_where_it_was(addon):
+def test_smooth_images_keep_their_positions(addon):
     """A wave over the image is the same wave over the stretched one."""
     images = addon("bridge.images")
 

@@ -46,16 +46,16 @@ def test_all_users_count_whatever_is_selected(pair, capfd):
 
 
 @pytest.mark.parametrize("operator", ["preview_levels", "plot_error", "show_weights"])
-def test_other_operators_heed_the_setting_of_the_panel(pair, addon, monkeypatch, operator):
+def test_other_operators_use_the_setting_of_the_panel(pair, addon, monkeypatch, operator):
     read = []
-    reading = addon("mipmaps.reading")
-    original = reading.reading
+    bake_inputs = addon("mipmaps.bake_inputs")
+    original = bake_inputs.read_steps
 
     def caught(request):
         read.append([obj.name for obj in request.objects])
         return original(request)
 
-    monkeypatch.setattr(reading, "reading", caught)
+    monkeypatch.setattr(bake_inputs, "read_steps", caught)
     for choice in ("all", "selected"):
         bpy.context.scene.prefilter_bake.objects = choice
         assert getattr(bpy.ops.prefilter, operator)(image="Flag") == {"FINISHED"}
@@ -64,7 +64,7 @@ def test_other_operators_heed_the_setting_of_the_panel(pair, addon, monkeypatch,
     assert "Right" not in read[1]
 
 
-def test_hidden_users_are_left_out_and_told(pair, capfd):
+def test_hidden_users_are_excluded_with_a_warning(pair, capfd):
     _, _, right = pair
     right.hide_set(True)
     assert bake() == {"FINISHED"}
@@ -72,7 +72,7 @@ def test_hidden_users_are_left_out_and_told(pair, capfd):
     assert "Warning: image 'Flag': left out, as they are hidden: 'Right'" in capfd.readouterr().out
 
 
-def test_instances_are_of_what_makes_them(pair, addon):
+def test_instances_count_as_their_instancer(pair, addon):
     image, left, right = pair
     scenes.collection_instance(left)
     scenes.scatter(scenes.quads("Ground"), right)
@@ -97,24 +97,24 @@ def test_a_material_of_geometry_nodes_counts(pair, addon):
 
 @pytest.fixture
 def panel(addon):
-    """Returns functions that give what the panel says of an image, and why a button is gray."""
+    """Returns functions that give the panel's summary of an image, and why a button is disabled."""
     users = addon("mipmaps.users")
 
     def text(image, choice="all", filters=("pam-bilinear",)):
         scenes.depsgraph()
-        return users.what_is_read(bpy.context, image, choice, filters)
+        return users.describe_inputs(bpy.context, image, choice, filters)
 
     def reason(image, choice="all"):
         scenes.depsgraph()
-        return users.why_none(bpy.context, image, choice)
+        return users.missing_reason(bpy.context, image, choice)
 
     return text, reason
 
 
-def test_the_panel_says_what_is_read(pair, panel, addon, monkeypatch):
+def test_the_panel_summarizes_the_inputs(pair, panel, addon, monkeypatch):
     image, left, right = pair
     text, reason = panel
-    monkeypatch.setattr(addon("core.remembered"), "SHARE_OF_TIME", 1e9)
+    monkeypatch.setattr(addon("core.scene_cache"), "SHARE_OF_TIME", 1e9)
     assert text(image) == "2 objects, 4 x 4"
     assert text(image, "selected") == "1 object, 4 x 4"
     assert text(image, filters=["box"]) == "4 x 4"
@@ -128,7 +128,7 @@ def test_the_panel_says_what_is_read(pair, panel, addon, monkeypatch):
     assert reason(image) == "No visible object uses 'Flag'"
 
 
-def test_the_panel_looks_again_only_after_a_change(pair, panel, addon, monkeypatch):
+def test_the_panel_updates_only_after_a_change(pair, panel, addon, monkeypatch):
     image, left, _ = pair
     text, _ = panel
     module = addon("mipmaps.users")
@@ -137,7 +137,7 @@ def test_the_panel_looks_again_only_after_a_change(pair, panel, addon, monkeypat
     monkeypatch.setattr(
         module.users, "shown_images", lambda graph: looks.append(graph) or original(graph)
     )
-    monkeypatch.setattr(addon("core.remembered"), "SHARE_OF_TIME", 1e9)
+    monkeypatch.setattr(addon("core.scene_cache"), "SHARE_OF_TIME", 1e9)
     for _ in range(3):
         assert text(image) == "2 objects, 4 x 4"
     assert len(looks) == 1
@@ -145,7 +145,7 @@ def test_the_panel_looks_again_only_after_a_change(pair, panel, addon, monkeypat
     for _ in range(3):
         assert text(image) == "1 object, 4 x 4"
     assert len(looks) == 2
-    monkeypatch.setattr(addon("core.remembered"), "SHARE_OF_TIME", 1e-9)
+    monkeypatch.setattr(addon("core.scene_cache"), "SHARE_OF_TIME", 1e-9)
     left.hide_set(False)
     assert text(image) == "2 objects, 4 x 4"
     left.hide_set(True)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Runs in a Blender with a window: draws the preview plane, and keeps what it shows.
+"""Runs in a Blender with a window: draws the preview plane, and saves the pixels.
 
 Usage: blender --factory-startup --enable-event-simulate --python plane_session.py -- RESULT.npz
 """
@@ -30,9 +30,9 @@ def session() -> Iterator[None]:
     """Yields whenever Blender should draw and handle events before going on."""
     stage = begun("IMAGE_EDITOR", opened="PREFILTER_PT_plane")
     window, area = stage.window, stage.area
-    kept = importlib.import_module(f"{PACKAGE}.resampling.view.kept")
+    planes = importlib.import_module(f"{PACKAGE}.resampling.view.plane")
     image = scenes.image("Wide", scenes.noise(24, 43))
-    # Blender tells of changes to what the scene uses.
+    # Blender reports changes of data that the scene uses.
     scenes.textured_quad(image)
     other = scenes.image("High", scenes.noise(33, 7, alpha=True, seed=2))
     area.spaces.active.image = image
@@ -60,20 +60,20 @@ def session() -> Iterator[None]:
     for name, one in (("wide", image), ("high", other)):
         for index, view in enumerate(VIEWS):
             for texels in (4, 8):
-                yield from offscreen(kept.find(one), view, texels, f"{name} {index} {texels}")
+                yield from offscreen(planes.find(one), view, texels, f"{name} {index} {texels}")
 
-    found["stale before painting"] = kept.find(image).is_stale
+    found["stale before painting"] = planes.find(image).is_stale
     image.pixels.foreach_set(scenes.noise(24, 43, seed=9).ravel())
     image.update()
     image.update_tag()
     yield
-    found["stale after painting"] = kept.find(image).is_stale
+    found["stale after painting"] = planes.find(image).is_stale
     with bpy.context.temp_override(**override):
         bpy.ops.prefilter.end_plane()
-    found["ended"] = kept.find(other) is None
+    found["ended"] = planes.find(other) is None
     bpy.ops.wm.read_homefile(use_empty=True)
     yield
-    found["kept in next file"] = len(kept._planes)
+    found["kept in next file"] = len(planes._planes)
     np.savez(RESULT, **found)
 
 

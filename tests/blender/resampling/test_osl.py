@@ -60,7 +60,7 @@ def add_plane(corners):
 
 
 def script_material(source, settings, *, output="Color", has_scale=True):
-    """Emits what the shader says for the UV map and the attribute "scale"."""
+    """Emits the shader's result for the UV map and the attribute "scale"."""
     text = bpy.data.texts.new("shader.osl")
     text.write(source)
     material = bpy.data.materials.new("Script")

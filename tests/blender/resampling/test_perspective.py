@@ -86,7 +86,7 @@ def test_a_level_camera_leaves_the_lens_open(proportions, pose):
     assert other.aspect == pytest.approx(4 / 3, rel=0.15)
 
 
-def test_what_no_lens_shows_is_a_guess(proportions):
+def test_proportions_without_a_lens_are_a_guess(proportions):
     # Both vanishing points on one side of the image: the sides are nowhere at right angles.
     corners = np.array([(200, 200), (900, 250), (820, 800), (150, 900)])
     found = proportions(corners, WIDTH, HEIGHT)

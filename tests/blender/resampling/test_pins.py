@@ -42,7 +42,7 @@ def test_a_corner_follows_the_mouse(pins, canvas):
     np.testing.assert_allclose(drag.to((147, 70), canvas, SIZE), (11, 4.5))
     np.testing.assert_allclose(drag.to((187, 70), canvas, SIZE, is_slow=True), (12, 4.5))
     np.testing.assert_allclose(drag.to((188, 71), canvas, SIZE, snaps=True), (12, 5))
-    # What was snapped is not lost.
+    # The part removed by snapping is not lost.
     np.testing.assert_allclose(drag.to((188, 71), canvas, SIZE), (12.25, 4.75))
 
 
@@ -60,12 +60,12 @@ def test_snapping(pins, canvas, place, expected):
 
 
 def test_corners_begin_in_sight(pins, settings):
-    changed = pins.begun(settings())
+    changed = pins.initial_changes(settings())
     assert changed["warp"] == "rectify"
     assert changed["lower_left"] == pytest.approx((0.2, 0.2))
     assert changed["upper_left"] == pytest.approx((0.2, 0.8))
-    assert pins.begun(settings(warp="corners")) == {}
-    assert pins.begun(settings(warp="rectify", lower_left=(0.1, 0.0))) == {}
+    assert pins.initial_changes(settings(warp="corners")) == {}
+    assert pins.initial_changes(settings(warp="rectify", lower_left=(0.1, 0.0))) == {}
 
 
 @pytest.mark.parametrize(
@@ -76,7 +76,7 @@ def test_corners_begin_in_sight(pins, settings):
         ({"warp": "corners", "size": "pixels", "width": 200, "height": 100}, (200, 100)),
     ],
 )
-def test_shares_are_what_settings_keep(addon, pins, settings, options, frame):
+def test_settings_store_relative_positions(addon, pins, settings, options, frame):
     shares = pins.shares((15, 10), settings(**options), SIZE)
     assert shares == pytest.approx((15 / frame[0], 10 / frame[1]))
     placed = settings(**options, lower_left=shares)
@@ -100,7 +100,7 @@ def test_the_grid_is_straight(addon, pins):
         pins.grid(PLACES[[0, 2, 1, 3]])
 
 
-def test_a_box_shows_what_it_covers(addon, pins):
+def test_uv_of_box_maps_the_corners(addon, pins):
     placement = placing
     matrix = pins.uv_of_box(placement.moved(5.0, 0.0), (10, 20), (30, 10), SIZE)
     ends = placement.applied(matrix, [(0, 0), (1, 1)])

@@ -38,13 +38,13 @@ def test_keys(found):
     np.testing.assert_allclose(found["nudged"], expected, atol=1e-3)
 
 
-def test_a_drag_is_taken_back(found):
+def test_a_drag_is_reverted(found):
     assert found["while dragging"] != found["drag taken back"]
     assert found["drag taken back"] == pytest.approx([90, 60], abs=1e-3)
     assert found["runs after that"]
 
 
-def test_esc_takes_all_back(found):
+def test_esc_reverts_all_corners(found):
     warp, *corners = found["after Esc"]
     assert warp == "affine"
     np.testing.assert_allclose(corners, [(0, 0), (300, 0), (300, 200), (0, 200)])

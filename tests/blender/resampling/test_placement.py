@@ -88,7 +88,7 @@ def test_nothing_is_moved_by_default(place):
 
 @pytest.mark.parametrize("quarters", [-4, -1, 1, 2, 3])
 def test_quarter_turns_are_exact(place, quarters):
-    # As Blender keeps angles.
+    # Blender stores angles in radians.
     found = place(rotation=float(np.float32(quarters * math.pi / 2)))
     assert (found.width, found.height) == ((60, 40) if quarters % 2 == 0 else (40, 60))
     assert set(np.abs(found.transform[:2, :2]).ravel()) == {0.0, 1.0}
@@ -146,7 +146,7 @@ def test_rectified_places_fill_the_result(place, applied):
         np.testing.assert_allclose(applied(found.transform, ends), places, atol=1e-9)
 
 
-def test_what_is_beyond_the_horizon_has_a_negative_factor(place):
+def test_points_beyond_the_horizon_have_a_negative_w(place):
     """The sides of the image meet at (0.5, 2): rows above that are behind the viewer."""
     found = place(
         warp="corners",

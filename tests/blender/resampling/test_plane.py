@@ -18,7 +18,7 @@ BACKDROP = 0.03
 
 @pytest.fixture(scope="module")
 def found(in_window, tmp_path_factory):
-    """Runs the session once, and returns what it found."""
+    """Runs the session once, and returns its results."""
     result = tmp_path_factory.mktemp("plane") / "result.npz"
     in_window(SESSION, result)
     return dict(np.load(result))
@@ -124,7 +124,7 @@ def test_packed_levels_do_not_overlap(addon):
 def test_works_without_a_window(addon):
     scenes.image("Paint", scenes.noise(8, 4))
     assert bpy.ops.prefilter.preview_plane(image="Paint", filter="box") == {"FINISHED"}
-    plane = addon("resampling.view.kept").find(bpy.data.images["Paint"])
+    plane = addon("resampling.view.plane").find(bpy.data.images["Paint"])
     assert (plane.filter, plane.size, plane.level_count) == ("box", (4, 8), 4)
     light = scenes.to_linear(scenes.pixels("Paint")[..., :3])
     np.testing.assert_allclose(plane.atlas[:8, :4], light, atol=1e-6)
@@ -133,12 +133,12 @@ def test_works_without_a_window(addon):
 
 
 def test_large_images_are_made_smaller(addon, monkeypatch):
-    kept = addon("resampling.view.kept")
-    monkeypatch.setattr(kept, "LONGEST_SIDE", 10)
+    planes = addon("resampling.view.plane")
+    monkeypatch.setattr(planes, "LONGEST_SIDE", 10)
     pixels = np.ones((25, 8, 4), np.float32) * (0.1, 0.2, 0.3, 1)
     scenes.image("Paint", pixels, is_float=True)
     bpy.ops.prefilter.preview_plane(image="Paint", filter="box")
-    plane = kept.find(bpy.data.images["Paint"])
+    plane = planes.find(bpy.data.images["Paint"])
     assert (plane.size, plane.aspect, plane.level_count) == ((3, 10), 8 / 25, 5)
     expected = np.full((10, 3, 3), (0.1, 0.2, 0.3))
     np.testing.assert_allclose(plane.atlas[:10, :3], expected, rtol=1e-5)

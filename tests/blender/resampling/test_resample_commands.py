@@ -129,7 +129,7 @@ def test_own_table(sky, tmp_path):
     np.testing.assert_array_equal(one, other)
 
 
-def test_bytes_get_an_alpha_where_nothing_is(tmp_path):
+def test_uncovered_bytes_get_an_alpha_of_0(tmp_path):
     pixels = np.ones((16, 16, 3), np.float32) * (0.6, 0.4, 0.2)
     write(tmp_path / "card.png", pixels, "uint8")
     run("resample", tmp_path / "card.png", "-o", tmp_path / "turned.png", "--rotate", 45)

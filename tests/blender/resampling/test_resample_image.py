@@ -129,7 +129,7 @@ def test_data_gets_no_alpha(colorspace, alpha_mode):
     assert (made.colorspace_settings.name, made.alpha_mode) == (colorspace, alpha_mode)
 
 
-def test_pinned_and_rectified_is_where_it_was():
+def test_rectifying_undoes_pinning():
     """A smooth picture goes to a quadrilateral and back."""
     v, u = np.mgrid[:64, :64] / 63
     pixels = np.ones((64, 64, 4), np.float32)
@@ -160,7 +160,7 @@ def test_another_press_straightens_the_source_anew():
         resample(warp="rectify", filter="box", **CORNERS)
         assert np.any(scenes.pixels("Facade.rectified") != first)
         assert [image.name for image in bpy.data.images] == ["Facade", "Facade.rectified"]
-        # Another warp goes on from there, and so does what is named.
+        # Another warp starts from the result, and so does a named image.
         resample(warp="affine", rotation=0.5)
         assert editor.image.name == "Facade.rectified.transformed"
         resample(warp="rectify", image="Facade.rectified", **CORNERS)

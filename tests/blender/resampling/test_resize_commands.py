@@ -84,7 +84,7 @@ def test_colors_of_other_spaces(tmp_path):
     result = run("resize", source, "-o", tmp_path / "out.exr", "--percent", 50)
     assert result.returncode == 0, result.stderr
     found, _ = content(tmp_path / "out.exr")
-    # As SMPTE publishes it, from Display P3 to Rec. 709.
+    # The matrix published by SMPTE, from Display P3 to Rec. 709.
     matrix = [[1.22494, -0.22494, 0.0], [-0.04206, 1.04206, 0.0], [-0.01964, -0.07864, 1.09828]]
     expected = np.array(matrix) @ scenes.to_linear(pixels[0, 0] / 255)
     assert np.abs(found[2, 2] - expected).max() < 1 / 1024

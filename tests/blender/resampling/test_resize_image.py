@@ -87,7 +87,7 @@ def test_every_filter_is_that_of_the_package(filter, addon):
     np.testing.assert_array_equal(scenes.pixels("Sky.7x21")[..., :3], expected)
 
 
-def test_least_squares_of_bytes_are_solved_within_what_bytes_hold():
+def test_least_squares_of_bytes_stay_in_range():
     pixels = scenes.noise(32, 32).round()
     scenes.image("Paint", pixels)
     resize(image="Paint", percent=25, filter="least-squares")

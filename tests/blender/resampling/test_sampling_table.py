@@ -19,7 +19,7 @@ def test_standard_tables_as_shader_code(language):
     assert bpy.data.texts[f"tent-6.{language}"].as_string() == getattr(table, language)()
 
 
-def test_texts_are_written_over_but_not_those_of_others():
+def test_own_texts_are_overwritten_and_others_kept():
     bpy.data.texts.new("box-4.glsl").from_string("mine")
     for _ in range(2):
         make(filter="box", texels=4)
@@ -53,7 +53,7 @@ def test_the_table_itself_as_a_text(tmp_path):
     assert found.error_ratio == prefilter.SamplingTable.standard().error_ratio
 
 
-def test_certificates_are_told(addon):
+def test_certificates_are_reported(addon):
     choices = addon("resampling.choices")
     settings = choices.TableSettings(filter="tent", texels=2, grid=2, slices=1, use_certify=True)
     work = addon("resampling.sampling_tables").TableMaking(settings)

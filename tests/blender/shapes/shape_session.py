@@ -109,7 +109,7 @@ def decal(stage: Stage) -> Iterator[None]:
 
 
 def svg(stage: Stage) -> Iterator[None]:
-    """Rasterizes a file in the Image editor, and draws what is there of shapes."""
+    """Rasterizes a file in the Image editor, and draws the panels on shapes."""
     area = stage.area
     path = RESULT.with_name("drawing.svg")
     path.write_text(SVG)

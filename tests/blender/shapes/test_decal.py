@@ -161,7 +161,7 @@ def test_a_mask_is_an_alpha():
     assert not surface(material).inputs["Base Color"].is_linked
 
 
-def test_what_is_opaque_stays_so():
+def test_opaque_images_stay_opaque():
     sign()
     rasterize(background="color")
     assert not surface(decal().data.materials[0]).inputs["Alpha"].is_linked
@@ -239,7 +239,7 @@ def test_refusals(capfd):
     assert obj.visible_get()
 
 
-def test_colors_multiplied_by_alpha_are_told(capfd):
+def test_premultiplied_bytes_get_a_warning(capfd):
     sign()
     rasterize(alpha="premultiplied")
     decal()

@@ -26,7 +26,7 @@ def pixels(image):
 
 
 def refused(capfd, **options):
-    """Returns what the operator says that it cannot do."""
+    """Returns the error message of the operator."""
     with pytest.raises(RuntimeError) as raised:
         bpy.ops.prefilter.rasterize(**{"width": 64, "height": 64, **options})
     assert not bpy.data.images
@@ -305,7 +305,7 @@ def test_uv_mask_of_another_tile_and_of_a_flipped_chart():
     np.testing.assert_array_equal(values, expected)
 
 
-def test_uv_map_of_a_model_is_what_texels_say(addon):
+def test_uv_mask_agrees_with_texel_weights(addon):
     """Charts of a sphere: a texel that holds some of the surface is covered, and no other."""
     import prefilter
 

@@ -149,7 +149,7 @@ def move_hidden():
         (move_second, ("--uv",), False),
     ],
 )
-def test_what_is_up_to_date_is_left_alone(blend, tmp_path, change, flags, decides):
+def test_up_to_date_files_are_left_alone(blend, tmp_path, change, flags, decides):
     target = tmp_path / "out.png"
     uv = ("--uv",) if "--uv" in flags else ()
     words = ("rasterize", blend, "-o", target, "--side", 40, *uv, "--skip-up-to-date")

@@ -123,7 +123,7 @@ def test_uv_mask_again():
     assert scenes.pixels("Quad.uv")[..., 0].sum() == 64
 
 
-def test_poll_and_what_is_refused(circle):
+def test_poll_and_refusals(circle):
     _, image = circle
     assert bpy.ops.prefilter.update_drawn() == {"FINISHED"}
     other = scenes.image("Other", scenes.noise(2, 2))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Baking the texture cache: what stays as it is, and what a user is told of it."""
+"""Bakes of the texture cache: files that are left alone, and the messages about them."""
 
 import os
 import shutil
@@ -74,7 +74,7 @@ def test_no_space_leaves_the_cache(scene, tmp_path, addon, monkeypatch):
 
 @pytest.mark.parametrize(("name", "kind"), [("paint.png", "uint8"), ("paint.exr", "float")])
 @pytest.mark.parametrize("share", [0.0, 0.4, 0.9])
-def test_what_blender_has_not_written_as_a_whole_is_made_again(scene, tmp_path, name, kind, share):
+def test_incomplete_cache_files_are_made_again(scene, tmp_path, name, kind, share):
     cycles.shown_on(cycles.write_picture(tmp_path / name, smooth(256, 256, 3), kind))
     generate()
     assert bake() == {"FINISHED"}
@@ -128,7 +128,7 @@ def test_a_read_only_folder_is_an_error(scene, tmp_path, has_cache):
         locked.chmod(0o755)
 
 
-def test_what_has_no_file_is_passed_over(scene, tmp_path, capfd):
+def test_images_without_a_file_are_skipped(scene, tmp_path, capfd):
     cycles.shown_on(cycles.write_picture(tmp_path / "good.png", smooth(64, 64, 3), "uint8"))
     made = bpy.data.images.new("Generated", 16, 16)
     packed = cycles.write_picture(tmp_path / "packed.png", smooth(64, 64, 3), "uint8")
@@ -181,7 +181,7 @@ def test_packed_images_are_unpacked_and_baked_in_one_step(scene, tmp_path, capfd
     assert "texture cache of 2 images (2 files)" in output
 
 
-def test_a_tile_without_a_file_is_told(scene, tmp_path):
+def test_a_tile_without_a_file_is_reported(scene, tmp_path):
     image = udim(tmp_path, missing=True)
     cycles.shown_on(image)
     with pytest.raises(RuntimeError, match=r"there is no file '.*paint\.1002\.exr'"):
@@ -218,7 +218,7 @@ def of_a_curve(tree, node):
         (of_a_curve, "object 'Rope' (curve) shows it"),
     ],
 )
-def test_levels_of_what_is_seen_otherwise_are_blenders(scene, tmp_path, capfd, spoil, reason):
+def test_images_with_other_users_keep_blenders_levels(scene, tmp_path, capfd, spoil, reason):
     cycles.shown_on(
         cycles.write_picture(tmp_path / "good.png", smooth(64, 64, 3), "uint8"), name="G"
     )
@@ -236,7 +236,7 @@ def test_levels_of_what_is_seen_otherwise_are_blenders(scene, tmp_path, capfd, s
     assert "it keeps Blender's levels" in output
 
 
-def test_what_lies_beyond_the_edges_must_be_of_one_kind(scene, tmp_path):
+def test_nodes_must_agree_on_the_extension(scene, tmp_path):
     image = cycles.write_picture(tmp_path / "paint.png", smooth(64, 64, 3), "uint8")
     wide = ((-0.5, 0), (1.5, 0), (1.5, 1), (-0.5, 1))
     obj = cycles.shown_on(image, wide)
@@ -263,7 +263,7 @@ def test_nothing_to_bake_says_why(scene, tmp_path):
         bake()
 
 
-def test_bad_geometry_is_told(scene, tmp_path):
+def test_bad_geometry_is_reported(scene, tmp_path):
     image = cycles.write_picture(tmp_path / "paint.png", smooth(64, 64, 3), "uint8")
     obj = cycles.shown_on(image)
     obj.data.vertices[0].co.x = float("nan")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What the panel says of the images of a scene and their cache files."""
+"""The panel's summary of a scene's images and their cache files."""
 
 import os
 
@@ -13,10 +13,10 @@ from cycles_scenes import smooth
 
 
 @pytest.mark.usefixtures("scene")
-def test_what_the_panel_says_of_images(tmp_path, addon, monkeypatch):
+def test_the_panel_lists_states_of_images(tmp_path, addon, monkeypatch):
     module = addon("texture_cache.states")
     monkeypatch.setattr(module, "_SECONDS", -1.0)
-    monkeypatch.setattr(addon("core.remembered"), "SHARE_OF_TIME", 1e9)
+    monkeypatch.setattr(addon("core.scene_cache"), "SHARE_OF_TIME", 1e9)
     cycles.shown_on(cycles.write_picture(tmp_path / "a.png", smooth(64, 64, 3), "uint8"), name="A")
     cycles.shown_on(cycles.write_picture(tmp_path / "b.exr", smooth(64, 64, 3), "half"), name="B")
     flat = np.full((64, 64, 3), 0.5, np.float32)

@@ -55,7 +55,7 @@ def test_levels_are_removed_again(scene, tmp_path):
 
 
 @pytest.mark.parametrize("kind", ["uint8", "float"])
-def test_files_do_not_say_when_they_were_made(scene, tmp_path, kind):
+def test_files_contain_no_time(scene, tmp_path, kind):
     name = "paint.exr" if kind == "float" else "paint.png"
     image = cycles.write_picture(tmp_path / name, smooth(256, 256, 3), kind)
     os.utime(tmp_path / name, (1.6e9, 1.6e9))
@@ -67,7 +67,7 @@ def test_files_do_not_say_when_they_were_made(scene, tmp_path, kind):
     assert {found[:10] for found in date.findall(path.read_bytes())} == {b"2020:09:13"}
 
 
-def test_who_renders_with_another_engine_is_told(scene, tmp_path, capfd):
+def test_another_engine_gets_a_warning(scene, tmp_path, capfd):
     cycles.shown_on(cycles.write_picture(tmp_path / "paint.png", smooth(256, 256, 3), "uint8"))
     bake()
     assert "Warning" not in capfd.readouterr().out
@@ -301,7 +301,7 @@ def test_channels_that_are_no_alpha_do_not_mix(scene, tmp_path, mode):
 
 @pytest.mark.parametrize("kind", ["uint8", "float"])
 def test_packed_alpha_that_a_material_shows_by_is_coverage(scene, tmp_path, kind):
-    """As Blender's glTF importer sets images up: what alpha hides is in no level."""
+    """With the setup of Blender's glTF importer: colors hidden by alpha are in no level."""
     pixels = np.ones((64, 64, 4), np.float32)
     pixels[::4, :, :3] = GREEN
     pixels[..., 3] = 0
@@ -402,7 +402,7 @@ def test_color_spaces_of_a_file_have_a_cache_file_each(scene, tmp_path, capfd):
     assert "2 images (2 files), over 2 objects" in capfd.readouterr().out
 
 
-def test_tiles_are_weighed_by_what_lies_in_them(scene, tmp_path):
+def test_tiles_are_weighted_by_their_own_surfaces(scene, tmp_path):
     image = udim(tmp_path)
     squares = [
         ((0, 0), (1, 0), (1, 0.49), (0, 0.49)),
@@ -510,7 +510,7 @@ def test_tasks_make_what_the_whole_makes(scene, tmp_path):
 
 
 @pytest.mark.parametrize(("ending", "kind"), [("png", "uint8"), ("exr", "half")])
-def test_what_is_up_to_date_is_left_alone(scene, tmp_path, ending, kind):
+def test_up_to_date_files_are_left_alone(scene, tmp_path, ending, kind):
     pixels = smooth(64, 64, 3)
     cycles.shown_on(cycles.write_picture(tmp_path / f"paint.{ending}", pixels, kind))
     blend = tmp_path / "scene.blend"

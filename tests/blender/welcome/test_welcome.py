@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The welcome, in a window that nobody sees: what it shows, and that nothing of a user changes."""
+"""The welcome in an invisible window: its contents, and that the user's data do not change."""
 
 from pathlib import Path
 
@@ -17,7 +17,7 @@ def test_mipmaps_of_two_filters(found):
     assert sorted(images) == ["Stone", "Stone Box.mip04", "Stone Prefilter.mip04"]
 
 
-def test_a_solid_beside_what_it_was(found):
+def test_a_solid_beside_its_source(found):
     assert found["solid"]["closed"] == ["Solid"]
 
 
@@ -31,7 +31,7 @@ def test_a_scene_of_its_own(found, kind):
 
 
 def test_undo_and_redo(found):
-    """The last demonstration is two steps: what is there at first, and the surface."""
+    """The last demonstration is two undo steps: the initial scene, and the surface."""
     assert "Solid" in found["undo"]
     assert "Surface.surface" in found["redo"]
 
@@ -43,7 +43,7 @@ def test_nothing_is_left(found):
     assert found["view_after"] == found["view"]
 
 
-def test_it_is_dismissed_for_good(found):
+def test_dismissal_is_permanent(found):
     assert not found["is_shown"]
     assert found["is_remembered"]
 

@@ -55,7 +55,7 @@ def session() -> Iterator[None]:
 
 
 def shown() -> dict[str, object]:
-    """Returns what there is to see."""
+    """Returns the scene, its closed meshes, and the images that its meshes show."""
     scene = bpy.context.window.scene
     meshes = [obj for obj in scene.objects if obj.type == "MESH" and obj.visible_get()]
     return {
@@ -108,7 +108,7 @@ def view(stage: Stage) -> list[object]:
 
 
 def datablocks() -> dict[str, list[str]]:
-    """Returns the names of what is in the file."""
+    """Returns the names of the file's data-blocks."""
     kinds = ("scenes", "objects", "meshes", "materials", "images", "curves", "pointclouds")
     return {kind: sorted(one.name for one in getattr(bpy.data, kind)) for kind in kinds}
 

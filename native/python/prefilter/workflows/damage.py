@@ -65,3 +65,10 @@ def is_own(error: BaseException) -> bool:
         trace = trace.tb_next
     module = trace.tb_frame.f_globals.get("__name__", "") if trace is not None else ""
     return "prefilter" in module.split(".")
+
+
+def check_ply(path: str | os.PathLike[str]) -> None:
+    """Raises ValueError if a PLY file is damaged or has no mesh."""
+    from .. import _native
+
+    _native.read_ply_mesh(os.fsencode(path), None)

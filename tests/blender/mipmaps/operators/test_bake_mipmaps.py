@@ -20,7 +20,7 @@ def test_bakes_by_name():
     assert bpy.data.images["Paint.mip01"].packed_file is not None
 
 
-def test_without_an_editor_the_active_material_says_which():
+def test_the_active_material_chooses_the_image_without_an_editor():
     image = scenes.image("Paint", scenes.noise(8, 8))
     quad = scenes.textured_quad(image)
     assert bake(levels=2) == {"FINISHED"}
@@ -37,7 +37,7 @@ def test_invoke_in_the_background_executes():
     assert "Paint.mip03" in bpy.data.images
 
 
-def test_says_what_it_did(capfd):
+def test_reports_the_result(capfd):
     image = scenes.image("Paint", scenes.noise(8, 8))
     scenes.textured_quad(image)
     bake(image="Paint", levels=3)
@@ -47,7 +47,7 @@ def test_says_what_it_did(capfd):
     )
 
 
-def test_warns_of_what_it_left_out(capfd):
+def test_warns_of_excluded_objects(capfd):
     image = scenes.image("Paint", scenes.noise(8, 8))
     scenes.textured_quad(image)
     bare = scenes.textured_quad(image, "NoMap")
@@ -95,7 +95,7 @@ def test_the_file_of_the_image_itself_is_kept(tmp_path):
     assert (tmp_path / "Paint_2.tif").exists()
 
 
-def test_a_file_is_the_result_where_one_is_named(tmp_path):
+def test_a_given_file_sets_the_result(tmp_path):
     scenes.textured_quad(scenes.image("Paint", scenes.noise(8, 8)))
     assert bake(image="Paint", filepath=str(tmp_path / "out.exr")) == {"FINISHED"}
     assert (tmp_path / "out.exr").exists()
@@ -135,7 +135,7 @@ def test_the_ending_follows_the_format():
     assert settings.to_settings().filepath == "/out/paint.v2.png"
 
 
-def test_importance_is_picked_among_what_meshes_have(addon):
+def test_importance_suggests_groups_and_attributes(addon):
     quad = scenes.textured_quad(scenes.image("Paint", scenes.noise(8, 8)))
     quad.vertex_groups.new(name="Face").add(range(4), 0.5, "REPLACE")
     dirt = quad.data.attributes.new("Dirt", "FLOAT", "POINT")

@@ -43,7 +43,7 @@ def test_the_selection_if_there_is_one(saved):
     assert files(saved) == ["mipmaps/Left.ktx2", "mipmaps/Right.ktx2", "scene.blend"]
 
 
-def test_what_is_selected(saved):
+def test_only_selected_objects(saved):
     assert bake(objects="selected", file_format="dds", texture_format="rgba8") == {"FINISHED"}
     assert files(saved) == ["mipmaps/Left.dds", "scene.blend"]
     assert read_dds(saved / "mipmaps" / "Left.dds").width == 8
@@ -69,7 +69,7 @@ def test_a_material(saved, capfd):
     assert "Baked 1 image into 1 file" in capfd.readouterr().out
 
 
-def test_what_fails_stops_nothing_else(saved, capfd):
+def test_a_failed_image_does_not_stop_the_others(saved, capfd):
     image = bpy.data.images["Left"]
     image.unpack(method="REMOVE")
     image.source, image.filepath = "FILE", "//gone.png"
@@ -107,20 +107,21 @@ def test_reasons_not_to_start(tmp_path):
         bake(folder=str(tmp_path), objects="selected")
 
 
-def test_what_the_panel_lists(addon):
+def test_the_panel_lists_images_to_bake(addon):
     image = scenes.image("Paint", scenes.noise(8, 8))
     scenes.textured_quad(image, "Quad", select=False)
     scenes.depsgraph()
-    known = addon("mipmaps.model.known")
-    found = known.images(bpy.context, "scene")
+    candidates = addon("mipmaps.model.candidates")
+    found = candidates.candidates(bpy.context, "scene")
     assert [(one.image, one.content, one.partner) for one in found] == [("Paint", "color", "")]
-    assert known.why_none(bpy.context, "scene") == ""
+    assert candidates.missing_reason(bpy.context, "scene") == ""
     material = bpy.data.objects["Quad"].active_material.name
-    assert len(known.images(bpy.context, "scene", material)) == 1
-    assert known.images(bpy.context, "scene", "Gone") == []
+    assert len(candidates.candidates(bpy.context, "scene", material)) == 1
+    assert candidates.candidates(bpy.context, "scene", "Gone") == []
     assert (
-        known.why_none(bpy.context, "scene", "Gone") == "No visible mesh shows an image of 'Gone'"
+        candidates.missing_reason(bpy.context, "scene", "Gone")
+        == "No visible mesh shows an image of 'Gone'"
     )
-    assert known.images(bpy.context, "auto") == found
-    assert known.images(bpy.context, "selected") == []
-    assert known.why_none(bpy.context, "selected") == "No selected mesh shows an image"
+    assert candidates.candidates(bpy.context, "auto") == found
+    assert candidates.candidates(bpy.context, "selected") == []
+    assert candidates.missing_reason(bpy.context, "selected") == "No selected mesh shows an image"

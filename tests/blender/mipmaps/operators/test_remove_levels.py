@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Removing levels: what a bake has made of an image goes, and nothing else."""
+"""Removing levels: deletes the results of an image's bakes, and nothing else."""
 
 import bpy
 import pytest
@@ -39,7 +39,7 @@ def test_a_level_stands_for_its_image(baked):
     assert "Paint" in names()
 
 
-def test_some_kinds(addon, baked):
+def test_only_chosen_kinds_are_removed(addon, baked):
     preview = addon("mipmaps.view.preview")
     assert bpy.ops.prefilter.remove_levels(image="Paint", kinds={"preview"}) == {"FINISHED"}
     assert preview.find(baked) is None
@@ -55,7 +55,7 @@ def test_of_all_images(baked):
         bpy.ops.prefilter.remove_levels(use_all=True)
 
 
-def test_what_shows_a_level_then_shows_the_image(baked):
+def test_users_of_a_level_then_use_the_image(baked):
     material = bpy.data.objects["Other"].active_material
     node = scenes.image_node(material.node_tree, bpy.data.images["Paint.mip01"])
     bpy.ops.prefilter.remove_levels(image="Paint")

@@ -19,5 +19,5 @@ def test_modal_bake_of_all_images(found):
 
 
 def test_export(found):
-    """Of all images as KTX 2, and of one, whose ending says DDS, into a folder that is chosen."""
+    """Exports all images as KTX 2 into a chosen folder, and one image as DDS by its extension."""
     assert found["exported"] == [*(f"{name}.ktx2" for name in NAMES), "one.dds"]

@@ -139,7 +139,7 @@ def module(name: str) -> object:
 
 
 def data() -> list[list[str]]:
-    """Returns the names of what the file has."""
+    """Returns the names of the file's data-blocks."""
     kinds = (bpy.data.images, bpy.data.materials, bpy.data.meshes, bpy.data.objects)
     nodes = [node.name for node in bpy.data.materials["Paint material"].node_tree.nodes]
     return [*([one.name for one in kind] for kind in kinds), nodes]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Runs in a Blender with a window: draws levels in an Image editor, and keeps what it shows.
+"""Runs in a Blender with a window: draws levels in an Image editor, and saves the pixels.
 
 Usage: blender --factory-startup --enable-event-simulate --python preview_session.py -- RESULT.npz
 """
@@ -72,7 +72,7 @@ def state() -> bpy.types.PropertyGroup:
 
 
 def shoot(stage: Stage, name: str) -> Iterator[None]:
-    """Keeps what the screen shows, and where in the image that is."""
+    """Saves the pixels of the screen, and their position in the image."""
     found[f"{name}.screen"] = yield from picture(stage.area)
     inside = region(stage.area, "WINDOW")
     low = inside.view2d.region_to_view(0.5, 0.5)

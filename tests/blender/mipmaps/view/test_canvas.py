@@ -42,7 +42,7 @@ def test_line_has_its_width_and_dashes_their_share(canvas):
     assert ink(dashed)[20, 12] > 1 - 1e-5
 
 
-def test_what_is_off_the_sheet_is_left_out(canvas):
+def test_shapes_outside_the_canvas_are_ignored(canvas):
     made = canvas(8, 8)
     made.line([(-50, -50), (-20, -30)], BLACK, width=2.0)
     made.rectangle((20, 20), (30, 30), BLACK)
@@ -58,7 +58,7 @@ def test_blends_in_light(canvas):
     assert made.pixels()[0, 0, 0] == pytest.approx(scenes.to_srgb(np.float32(0.5)), abs=1e-3)
 
 
-def test_what_is_drawn_later_covers(canvas):
+def test_later_shapes_cover_earlier_ones(canvas):
     made = canvas(4, 4)
     made.rectangle((0.5, 0), (4, 4), BLACK)
     made.rectangle((0.5, 0), (4, 4), WHITE)

@@ -66,7 +66,7 @@ def test_table_agrees_with_random_lookups(stretched):
 
 
 def test_error_over_all_mip_values_is_the_integral(stretched):
-    """Simpson's rule on eighths agrees with a fine sum of what the library says in between."""
+    """Simpson's rule on eighths agrees with a fine sum of the library's errors in between."""
     bpy.context.scene.prefilter_bake.wrap = "clamp"
     plot(filters={"box"})
     _, body = rows(bpy.data.texts["Paint.error.csv"])
@@ -86,7 +86,7 @@ def test_error_over_all_mip_values_is_the_integral(stretched):
     assert float(body[-1][1]) == pytest.approx(np.sqrt(np.mean(errors**2)), rel=1e-6)
 
 
-def test_curve_is_where_the_data_say(stretched, addon):
+def test_the_curve_follows_the_data(stretched, addon):
     plot(filters={"box", "pam-bilinear", "lanczos3"})
     figure = addon("mipmaps.view.figure")
     picture = scenes.pixels("Paint.error")
@@ -98,11 +98,11 @@ def test_curve_is_where_the_data_say(stretched, addon):
     assert head[-1] == "lanczos3"
     matches = np.abs(picture[..., :3] - color).max(axis=-1) < 0.02
     for row in values[1:]:
-        x, y = axes.place(row[0], row[-1])
+        x, y = axes.position(row[0], row[-1])
         assert matches[int(y), int(x)], row
         assert not matches[int(y) + 12, int(x) - 2], row
     for left, right in pairwise(values):
-        x, y = (axes.place(left[0], left[-1]) + axes.place(right[0], right[-1])) / 2
+        x, y = (axes.position(left[0], left[-1]) + axes.position(right[0], right[-1])) / 2
         assert matches[int(y), int(x)]
 
 
@@ -119,7 +119,7 @@ def test_dashes_are_at_the_error_over_all(stretched, addon):
     curves = curves_of(addon, head, np.array(body[:-1], float))
     axes = figure.axes_of(curves)
     overall = float(body[-1][1])
-    (left, y), (right, _) = axes.place([0.0, 5.0], [overall, overall])
+    (left, y), (right, _) = axes.position([0.0, 5.0], [overall, overall])
     line = scenes.pixels("Paint.error")[int(y) - 1 : int(y) + 2, int(left) : int(right), :3]
     distance = np.abs(line - np.array(figure.COLORS["box"])).max(axis=-1).min(axis=0)
     drawn = distance < 0.35
@@ -187,9 +187,9 @@ def test_report_has_the_values(stretched, capfd):
 
 def test_canceling_stops(stretched, addon):
     settings = addon("mipmaps.choices").Settings()
-    reading = addon("mipmaps.reading")
-    request = reading.Request(stretched, list(bpy.data.objects), settings, scenes.depsgraph())
-    source = reading.read(request).source
+    bake_inputs = addon("mipmaps.bake_inputs")
+    request = bake_inputs.Request(stretched, list(bpy.data.objects), settings, scenes.depsgraph())
+    source = bake_inputs.read(request).source
     seen = []
 
     def progress(fraction):

@@ -45,7 +45,7 @@ def test_the_model_is_as_it_was(found):
     assert not found["kept"]
 
 
-def test_what_is_hidden_shows_nothing(found):
+def test_hidden_objects_show_no_levels(found):
     assert np.abs(np.array(found["hidden"]) - found["coarsest"]).min() > 20
 
 

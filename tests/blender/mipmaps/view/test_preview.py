@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Levels in the place of their image: what the editors draw, and when it is stale."""
+"""Levels in place of their image: the drawing in editors, and when it is stale."""
 
 from pathlib import Path
 
@@ -11,8 +11,7 @@ import pytest
 import scenes
 
 SESSION = Path(__file__).with_name("preview_session.py")
-# Software rendering rounds in its own way when it writes sRGB values, the more so near black, and
-# where it blends with what it wrote before.
+# Software rendering rounds sRGB values differently, most of all near black and when it blends.
 BYTE, DARK_BYTE = 4.5, 13.0
 BLENDED_BYTE = 10.0
 CHECKER = (0.2, 0.15)  # The theme's colors; squares of 8 pixels.
@@ -38,7 +37,7 @@ def stored():
 
 @pytest.fixture(scope="module")
 def shown(in_window, tmp_path_factory):
-    """Runs the session once, and returns what it found."""
+    """Runs the session once, and returns its results."""
     result = tmp_path_factory.mktemp("session") / "result.npz"
     in_window(SESSION, result)
     return dict(np.load(result))
@@ -67,7 +66,7 @@ def levels(pixels, name, which="pam-bilinear", reader="linear"):
 
 
 def displayed(light, x, y, channels):
-    """Returns what the editor should show of premultiplied light, in bytes."""
+    """Returns the expected pixels of the editor for premultiplied light, as bytes."""
     alpha = np.clip(light[..., 3:], 0, 1)
     straight = light[..., :3] / np.where(alpha > 0, alpha, 1)
     if bpy.app.version < (5, 0, 0):
@@ -101,7 +100,7 @@ def places(shown, name, size):
 
 
 def difference(seen, expected, mask, name):
-    """Asserts that pixels agree, up to what the renderer rounds."""
+    """Asserts that pixels agree, up to the renderer's rounding."""
     error = np.abs(seen.astype(float) - expected)[mask]
     dark = expected[mask] < 60
     assert mask.sum() > 5000, name
@@ -301,7 +300,7 @@ def test_removed_image_and_disabled_addon_leave_nothing(addon):
     addon("mipmaps.view").unregister()
     try:
         assert not module._previews
-        # Those of previews, and of the 3D views that draw them.
+        # The handlers of previews, and of the 3D views that draw them.
         assert len(bpy.app.handlers.depsgraph_update_post) == len(before) - 2
         assert not hasattr(bpy.types.WindowManager, "prefilter_view")
     finally:

@@ -64,13 +64,13 @@ def test_says_how_much_is_used(capfd):
 
 
 def test_legend_has_its_colors(addon):
-    panel = addon("mipmaps.panels.seeing")
+    panel = addon("mipmaps.panels.inspection")
     assert len(panel._swatches) == 6
     for key, _ in panel._swatches:
         assert panel._icons[key].icon_size[:] == (16, 16)
 
 
-def test_filled_copy_keeps_what_is_used():
+def test_filled_copy_keeps_used_texels():
     pixels = scenes.noise(16, 16)
     pixels[:, :10, :3] = np.arange(10)[None, :, None] / 255
     pixels[:, 10:] = (1, 0, 1, 1)
@@ -108,7 +108,7 @@ def test_copy_can_take_the_place_of_the_image():
 
 
 def test_copy_is_baked_like_the_image():
-    """What PAM reads is what is used, so the copy has the same levels."""
+    """PAM reads used texels only, so the copy has the same levels."""
     half_used(scenes.noise(16, 16))
     bpy.ops.prefilter.bake_mipmaps(image="Paint", wrap="clamp")
     bpy.ops.prefilter.fill_unused(image="Paint", use_in_place=True)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The levels that editors draw on a plane: computed, and kept."""
+"""Preview planes: the levels of images that editors draw on a plane."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, cast
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from ...bridge.images import FloatArray, Picture
 
 LONGEST_SIDE = 4096
-"""Of the finest level that is drawn, in texels; larger images are made smaller."""
+"""Longest side of the finest level, in texels; larger images are resized."""
 
-_DECODED, _RESIZED, _FILTERED = 0.1, 0.3, 0.9  # What the progress is once these steps are done.
+_DECODED, _RESIZED, _FILTERED = 0.1, 0.3, 0.9  # The progress after each stage.
 
 
 @dataclass
@@ -29,12 +29,12 @@ class Plane:
 
     Attributes:
         image_uid: The image's session_uid.
-        filter: What the levels were made with.
+        filter: The filter of the levels.
         size: The width and height of the finest level.
-        aspect: The width of the image by its height.
-        level_count: How many there are.
-        atlas: All of them, see `atlas.packed`; empty once they are a texture.
-        is_data: Whether values are shown as they are stored.
+        aspect: The width of the image divided by its height.
+        level_count: The number of levels.
+        atlas: All levels in one array, see `atlas.packed`; None after the upload.
+        is_data: Whether the stored values are shown.
         is_stale: Whether the image has changed since.
     """
 
@@ -49,12 +49,12 @@ class Plane:
     _texture: gpu.types.GPUTexture | None = None
 
     def depends_on(self, name: str) -> bool:
-        """Tells whether it was made of an object of this name; none is."""
+        """Returns whether it depends on an object; always False."""
         del name
         return False
 
     def texture(self) -> gpu.types.GPUTexture:
-        """Returns the levels as a texture; main thread only."""
+        """Returns the levels as a texture, on the main thread only."""
         from ...bridge.drawing import uploaded
 
         if self._texture is None:
@@ -72,14 +72,14 @@ VIEW = View(_planes, "prefilter_plane", "use_plane")
 def compute(
     picture: "Picture", image_uid: int, filter: str, progress: Progress, threads: int = 0
 ) -> Plane:
-    """Computes the levels of an image that tiles the plane.
+    """Computes the levels of an image, wrapped by repetition.
 
     Args:
         picture: The image.
         image_uid: The session_uid of the image.
         filter: A key of `choices.TABLE_FILTERS`.
         progress: Called with the fraction done.
-        threads: How many threads to use; 0 for all.
+        threads: The number of threads; 0 for all.
 
     Raises:
         prefilter.Cancelled: `progress` returned False.
@@ -93,9 +93,9 @@ def compute(
         linear = associated(linear)
     go_on(progress, _DECODED)
     height, width = linear.shape[:2]
-    smaller = min(1.0, LONGEST_SIDE / max(width, height))
-    size = (max(1, round(smaller * width)), max(1, round(smaller * height)))
-    if smaller < 1.0:
+    scale = min(1.0, LONGEST_SIDE / max(width, height))
+    size = (max(1, round(scale * width)), max(1, round(scale * height)))
+    if scale < 1.0:
         linear = prefilter.resize(
             linear,
             *size,

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The images that a command bakes where none is named, and the files that it writes for them."""
+"""The images that a command bakes without --image, and their files."""
 
 import os
 from collections.abc import Sequence
@@ -14,13 +14,10 @@ from . import file_names
 
 
 def images_to_bake(objects: Sequence[bpy.types.Object]) -> tuple[list[bpy.types.Image], str]:
-    """Returns the images that are base colors of materials, or else all that materials show.
-
-    Args:
-        objects: Whose materials.
+    """Returns the base color images of the objects' materials; if there are none, all their images.
 
     Returns:
-        The images, and a line that says which of several they are; empty where there is no choice.
+        The images, and a line that explains the choice; empty for a single image.
 
     Raises:
         ValueError: The materials show no image.
@@ -44,7 +41,7 @@ def images_to_bake(objects: Sequence[bpy.types.Object]) -> tuple[list[bpy.types.
 
 
 def output_paths(path: str, images: Sequence[bpy.types.Image]) -> list[str]:
-    """Returns the file of each image: that of one, or with names of images before the ending."""
+    """Returns the file of each image, with the image names inserted if there are several."""
     if len(images) == 1 or not path:
         return [path] * len(images)
     stem, extension = os.path.splitext(path)

@@ -1,37 +1,39 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The 3D view of a demonstration: what is to be seen fills it, and afterward it is as it was."""
+"""Sets the 3D view for a demonstration, and restores it afterward."""
 
 import math
 
 import bpy
 from mathutils import Euler
 
-_KEPT = "prefilter_view"
+_STORED_VIEW = "prefilter_view"
 _HEIGHT = 3.9
-"""What is to be seen, with some room."""
+"""The height of the objects with a margin, in meters."""
 _SENSOR = 72.0
-"""The larger side of a view is as wide as this, in millimeters, where objects are a lens away."""
+"""The sensor size of a 3D view: the larger side's field of view at the focal length, in
+millimeters.
+"""
 
 
 def frame(
     context: bpy.types.Context, scene: bpy.types.Scene, width: float, *, textured: bool
 ) -> None:
-    """Turns the 3D view so that it shows the demonstration; the scene keeps how it was before.
+    """Frames the demonstration in the 3D view; stores the earlier view in the scene.
 
     Args:
         context: The context.
-        scene: That of the demonstration.
-        width: What is to be seen, in meters.
-        textured: Whether images are to be seen.
+        scene: The scene of the demonstration.
+        width: The width of the objects, in meters.
+        textured: Whether to show textures.
     """
     area = _area(context)
     if area is None:
         return
     space = area.spaces.active
     view, shading = space.region_3d, space.shading
-    if _KEPT not in scene:
-        scene[_KEPT] = {
+    if _STORED_VIEW not in scene:
+        scene[_STORED_VIEW] = {
             "rotation": list(view.view_rotation),
             "location": list(view.view_location),
             "distance": view.view_distance,
@@ -53,33 +55,33 @@ def frame(
 
 
 def restore(context: bpy.types.Context, scene: bpy.types.Scene) -> None:
-    """Turns the 3D view back to how it was before the demonstration."""
+    """Restores the 3D view of the time before the demonstration."""
     area = _area(context)
-    if area is None or _KEPT not in scene:
+    if area is None or _STORED_VIEW not in scene:
         return
-    kept = scene[_KEPT]
+    stored = scene[_STORED_VIEW]
     space = area.spaces.active
     view = space.region_3d
-    view.view_rotation, view.view_location = kept["rotation"], kept["location"]
-    view.view_distance, view.view_perspective = kept["distance"], kept["perspective"]
-    space.shading.type, space.shading.color_type = kept["shading"], kept["color_type"]
+    view.view_rotation, view.view_location = stored["rotation"], stored["location"]
+    view.view_distance, view.view_perspective = stored["distance"], stored["perspective"]
+    space.shading.type, space.shading.color_type = stored["shading"], stored["color_type"]
     area.tag_redraw()
 
 
 def _covered(area: bpy.types.Area) -> tuple[int, int, int]:
-    """Returns how many pixels of a view its toolbar, its sidebar and its headers lie on."""
-    found = {"TOOLS": 0, "UI": 0, "HEADER": 0, "TOOL_HEADER": 0}
+    """Returns the pixels of a view that its toolbar, its sidebar and its headers cover."""
+    covered = {"TOOLS": 0, "UI": 0, "HEADER": 0, "TOOL_HEADER": 0}
     window = next(region for region in area.regions if region.type == "WINDOW")
     for region in area.regions:
-        lies_on = region.x < window.x + window.width and region.y < window.y + window.height
-        if region.type in found and lies_on and min(region.width, region.height) > 1:
+        overlaps = region.x < window.x + window.width and region.y < window.y + window.height
+        if region.type in covered and overlaps and min(region.width, region.height) > 1:
             is_upright = region.type in {"TOOLS", "UI"}
-            found[region.type] = region.width if is_upright else region.height
-    return found["TOOLS"], found["UI"], found["HEADER"] + found["TOOL_HEADER"]
+            covered[region.type] = region.width if is_upright else region.height
+    return covered["TOOLS"], covered["UI"], covered["HEADER"] + covered["TOOL_HEADER"]
 
 
 def _area(context: bpy.types.Context) -> bpy.types.Area | None:
-    """Returns the 3D view that an operator was called from, or the largest one."""
+    """Returns the 3D view from which an operator was called, or the largest one."""
     if context.area is not None and context.area.type == "VIEW_3D":
         return context.area
     areas = [area for area in context.window.screen.areas if area.type == "VIEW_3D"]

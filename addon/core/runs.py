@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Operators at work: how far they are, in panels and in the status bar, with buttons to cancel."""
+"""Running operators: their progress in panels and in the status bar, with buttons to cancel."""
 
 import time
 from collections.abc import Callable
@@ -14,13 +14,13 @@ from .switches import Switches
 from .translations import CONTEXT, tr
 
 TICK_SECONDS = 0.05
-"""How often a running operator looks at its thread."""
+"""How often a running operator checks its thread."""
 ASKING_SECONDS = 10.0
-"""How much work Esc throws away without asking; many an Esc is meant for a menu or a search."""
+"""Esc asks before it discards more work than this: users often mean a menu or a search."""
 _REDRAW_SECONDS = 0.25
-"""How often progress is drawn: drawing the panels takes as long as some of the work."""
+"""How often progress is drawn: drawing the panels takes time from the work."""
 
-# While settings are applied, the view may be turned, but nothing may change.
+# Events that do not change data: while settings are applied, the user may still turn the view.
 _HARMLESS_EVENTS = frozenset(
     {
         *("MOUSEMOVE", "INBETWEEN_MOUSEMOVE", "WINDOW_DEACTIVATE", "TIMER"),
@@ -31,13 +31,14 @@ _HARMLESS_EVENTS = frozenset(
 
 _STATUS_UNITS = 20.0
 _CONFUSES_BUTTONS = bpy.app.version < (5, 0, 0)
-"""Whether Blender may take a button under the mouse for one of another type in a new layout."""
+"""Whether Blender may confuse the button under the mouse with one of another type in a new
+layout."""
 _runs: dict[str, "Run"] = {}
 _ended: set[str] = set()
 
 
 class PREFILTER_OT_confirm_cancel(bpy.types.Operator):
-    """Asks whether long work is to be thrown away."""
+    """Asks whether to discard long work."""
 
     bl_idname = "prefilter.confirm_cancel"
     bl_label = "Cancel"
@@ -47,7 +48,7 @@ class PREFILTER_OT_confirm_cancel(bpy.types.Operator):
     key: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Asks."""
+        """Opens the dialog."""
         run = _runs.get(self.key)
         if run is None:
             return {"CANCELLED"}
@@ -70,37 +71,37 @@ class PREFILTER_OT_confirm_cancel(bpy.types.Operator):
 
 
 class Run:
-    """An operator at work, and what Blender shows of that.
+    """A running operator, and its progress as Blender shows it.
 
     Attributes:
         is_redo: Whether the redo panel shows the progress, too.
-        switches: The buttons.
-        fraction: How much is done, as it is drawn.
-        text: The same in words.
+        switches: The Cancel and Pause buttons.
+        fraction: The fraction done, as drawn.
+        text: The same as text.
     """
 
     def __init__(
         self, context: bpy.types.Context, key: str, *, is_redo: bool, own: Switches | None = None
     ) -> None:
-        """Begins.
+        """Starts the timer and the progress display.
 
         Args:
-            context: Where the operator runs; its timer is for the window.
+            context: The context of the operator; the timer belongs to its window.
             key: The identifier of the operator.
             is_redo: See `is_redo`.
-            own: The buttons of the operator, if it has some already.
+            own: The buttons of the operator, if it was in the queue.
 
         Raises:
-            ValueError: There are too many buttons.
+            ValueError: Too many jobs exist.
         """
         self.is_redo = is_redo
         self.switches = own or Switches(context)
         self.fraction = 0.0
         self.text = _percent(0.0)
-        self._what = ""
+        self._activity = ""
         self._key = key
         self._seconds = 0.0
-        self._looked_at = time.monotonic()
+        self._checked_at = time.monotonic()
         self._drawn_at = 0.0
         self._was_paused = False
         manager = context.window_manager
@@ -111,55 +112,58 @@ class Run:
 
     @property
     def seconds(self) -> float:
-        """How long it has worked."""
+        """Working time, without pauses."""
         return self._seconds
 
     @property
     def status(self) -> str:
-        """What goes on, and how much of it is done."""
-        return f"{self._what}: {self.text}"
+        """The activity and its progress."""
+        return f"{self._activity}: {self.text}"
 
     def is_cancelled(self, context: bpy.types.Context) -> bool:
-        """Tells whether someone has pressed the button."""
+        """Returns whether Cancel was pressed."""
         return self.switches.is_cancelled(context)
 
     def is_paused(self, context: bpy.types.Context) -> bool:
-        """Tells whether the work is to pause; counts the time that it does not."""
+        """Returns whether Pause is pressed; otherwise adds the time since the last call to
+        `seconds`."""
         now = time.monotonic()
         if not self._was_paused:
-            self._seconds += now - self._looked_at
-        self._looked_at = now
+            self._seconds += now - self._checked_at
+        self._checked_at = now
         self._was_paused = self.switches.is_paused(context)
         return self._was_paused
 
     def ask_to_cancel(self) -> bool:
-        """Asks whether to cancel, if much would be thrown away; False if there is no need."""
+        """Asks whether to cancel if much work would be lost; returns whether it asked."""
         if self.seconds < ASKING_SECONDS:
             return False
         bpy.ops.prefilter.confirm_cancel("INVOKE_DEFAULT", key=self._key)
         return True
 
-    def show(self, context: bpy.types.Context, what: str, fraction: float, pause: str = "") -> None:
-        """Shows what goes on, and how much of all is done; a few times a second.
+    def show(
+        self, context: bpy.types.Context, activity: str, fraction: float, pause: str = ""
+    ) -> None:
+        """Updates the progress display, a few times a second.
 
         Args:
             context: The context.
-            what: What goes on.
-            fraction: How much is done.
+            activity: The activity.
+            fraction: The fraction done.
             pause: "Pausing" or "Paused"; empty while it works.
         """
         text = f"{tr(pause)}, {_percent(fraction)}" if pause else _percent(fraction)
         now = time.monotonic()
-        is_same = (what, text) == (self._what, self.text)
+        is_same = (activity, text) == (self._activity, self.text)
         if is_same or now - self._drawn_at < _REDRAW_SECONDS:
             return
-        self._what, self.fraction, self.text, self._drawn_at = what, fraction, text, now
+        self._activity, self.fraction, self.text, self._drawn_at = activity, fraction, text, now
         context.window_manager.progress_update(round(100 * fraction))
         context.workspace.status_text_set(_draw_status)
         redraw_panels(context)
 
     def end(self, context: bpy.types.Context) -> None:
-        """Takes everything back; another call does nothing."""
+        """Removes the timer and the progress display; a second call does nothing."""
         if _runs.get(self._key) is not self:
             return
         del _runs[self._key]
@@ -169,14 +173,14 @@ class Run:
         context.window_manager.progress_end()
         if not _runs:
             _clear_status(context)
-        # Buttons look as poll has last said; they take no click before they are drawn again.
+        # Buttons stay disabled until they are drawn again.
         for window in context.window_manager.windows:
             for area in window.screen.areas:
                 area.tag_redraw()
 
 
 def find(key: str) -> Run | None:
-    """Returns the run of an operator, by its identifier; None if it does not run."""
+    """Returns the run of an operator, by its identifier; None if it is not running."""
     return _runs.get(key)
 
 
@@ -186,13 +190,13 @@ def draw(
     key: str,
     more: Callable[[bpy.types.UILayout], object] | None = None,
 ) -> bool:
-    """Draws how far an operator is, and a button that cancels it; False if it does not run.
+    """Draws the progress of an operator and Cancel; returns False if it is not running.
 
     Args:
-        layout: Where.
+        layout: The layout to draw into.
         context: The context.
         key: The identifier of the operator.
-        more: Draws another button, away from that which cancels.
+        more: Draws another button, at the other end from Cancel.
     """
     run = _runs.get(key)
     if run is None:
@@ -207,9 +211,9 @@ def draw(
 
 
 def draw_successor(layout: bpy.types.UILayout, key: str) -> None:
-    """Draws what nobody sees in the place of progress that was drawn, before anything else.
+    """Draws an invisible progress bar in place of one that is gone.
 
-    A progress bar under the mouse would live on as the first label below, until the mouse moves.
+    Otherwise Blender would draw the first label below as a progress bar until the mouse moves.
     """
     if _CONFUSES_BUTTONS and key in _ended:
         row = layout.row()
@@ -218,7 +222,7 @@ def draw_successor(layout: bpy.types.UILayout, key: str) -> None:
 
 
 def is_over_button(context: bpy.types.Context, event: bpy.types.Event) -> bool:
-    """Tells whether the mouse is over a button that cancels."""
+    """Returns whether the mouse is over a Cancel or Pause button."""
     for area in context.window.screen.areas:
         for region in area.regions:
             x, y = event.mouse_x - region.x, event.mouse_y - region.y
@@ -226,18 +230,18 @@ def is_over_button(context: bpy.types.Context, event: bpy.types.Event) -> bool:
                 continue
             with context.temp_override(area=area, region=region):
                 under = bpy.context.property
-            if under is not None and switches.is_one(under[1]):
+            if under is not None and switches.is_job_button(under[1]):
                 return True
     return False
 
 
-def handed_on(context: bpy.types.Context, event: bpy.types.Event, *, is_free: bool) -> set[str]:
-    """Returns what an event leads to that says nothing to an operator at work.
+def event_result(context: bpy.types.Context, event: bpy.types.Event, *, is_free: bool) -> set[str]:
+    """Returns the result of `modal` for an event that a running operator does not handle.
 
     Args:
         context: The context.
         event: The event.
-        is_free: Whether a user may go on with other things meanwhile.
+        is_free: Whether the user may edit the scene meanwhile.
     """
     if is_free or event.type in _HARMLESS_EVENTS:
         return {"PASS_THROUGH"}
@@ -268,14 +272,14 @@ def _draw_status(header: bpy.types.Header, context: bpy.types.Context) -> None:
 def _clear_status(context: bpy.types.Context) -> None:
     if context.workspace is not None:
         context.workspace.status_text_set(None)
-    # While a file is loaded there is no workspace, but the header stays.
+    # During file loading no workspace exists, but the header does.
     header = getattr(bpy.types, "STATUSBAR_HT_header", None)
     if header is not None and header.draw is _draw_status:
         header.draw = header._draw_orig
 
 
 def redraw_panels(context: bpy.types.Context) -> None:
-    """Has the panels drawn that show how far operators are."""
+    """Redraws the panels that show the progress of operators."""
     for window in context.window_manager.windows:
         for area in window.screen.areas:
             for region in area.regions:

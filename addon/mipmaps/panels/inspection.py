@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The panels that show levels, errors and weights, in the Prefilter tab of the Image editors."""
+"""The panels that show levels, errors and texel weights, in the sidebar of the Image editors."""
 
 from typing import Any
 
@@ -96,7 +96,7 @@ class PREFILTER_PT_error(ImagePanel, bpy.types.Panel):
 
 
 class PREFILTER_PT_texel_use(ImagePanel, bpy.types.Panel):
-    """The weights of texels, and what to do about unused ones."""
+    """Texel weights, and filling of unused texels."""
 
     bl_label = "Texel Use"
     bl_parent_id = "PREFILTER_PT_bake"
@@ -115,7 +115,7 @@ class PREFILTER_PT_texel_use(ImagePanel, bpy.types.Panel):
         _draw_back(layout, context)
         legend = layout.column(align=True)
         for key, text in _swatches:
-            legend.label(text=_said(text), icon_value=_icons[key].icon_id)
+            legend.label(text=_legend_text(text), icon_value=_icons[key].icon_id)
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
@@ -124,7 +124,7 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
 
 
 def register() -> None:
-    """Registers the panels, and makes the colored squares of the legend."""
+    """Registers the panels, and loads the colored squares of the legend."""
     _load_swatches()
     _register_classes()
 
@@ -161,8 +161,8 @@ def _add_swatch(text: str, color: np.ndarray | tuple[float, float, float]) -> No
     _swatches.append((key, text))
 
 
-def _said(swatch: str) -> str:
-    """Returns what the legend says of a swatch."""
+def _legend_text(swatch: str) -> str:
+    """Returns the text of a swatch in the legend."""
     if swatch == _UNUSED:
         return tr("Unused (hatched)")
     if not swatch:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What is done with the images of a job: decided by nodes and pixels, before anything is baked."""
+"""Prepares the images of a job: reads their pixels, and decides how to bake them."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -14,19 +14,19 @@ from ...bridge.images import Picture
 from ...core.wording import counted
 from ..choices import FILTERS, Settings
 from . import decisions, node_texels
-from .plan import Item, Job, image_of, said_of
+from .plan import Item, Job, describe_image, image_of
 from .table import Row
 
 
 @dataclass(frozen=True)
-class Pair:
+class ImagePair:
     """The images of a job.
 
     Attributes:
-        image: The one that its item names.
-        other: What belongs to it: the roughness of a normal map, or the normal map of a roughness;
-            None for most images.
-        is_normal_map: Whether `other` is the roughness.
+        image: The image of its item.
+        other: The roughness of a normal map, or the normal map of a roughness; None for most
+            images.
+        is_normal_map: Whether `image` is the normal map, and `other` its roughness.
     """
 
     image: bpy.types.Image
@@ -35,36 +35,35 @@ class Pair:
 
     @property
     def normal_map(self) -> bpy.types.Image | None:
-        """The normal map, if there is one with a roughness."""
+        """The normal map of a pair."""
         return self.image if self.is_normal_map else self.other
 
     @property
     def rough(self) -> bpy.types.Image | None:
-        """The roughness, if there is a normal map with it."""
+        """The roughness of a pair."""
         return self.other if self.is_normal_map or self.other is None else self.image
 
     @property
     def fits(self) -> bool:
-        """Whether both can be baked together: they have pixels, and equally many."""
+        """Whether both can be baked together: they have pixels, and the same size."""
         if self.other is None:
             return True
         return tuple(self.image.size) == tuple(self.other.size) and bool(self.image.size[0])
 
 
 @dataclass(frozen=True)
-class Prepared:
-    """What is to be done with the images of a job.
+class PreparedJob:
+    """The images of a job, ready to be baked.
 
     Attributes:
         picture: The pixels of the image, or of its first tile.
         file: The file of the image; empty for none.
-        settings: What is to be baked.
-        texture_format: That of the file of the image.
-        roughness_texture_format: That of the file of the roughness; empty for none.
-        rows: What is said of each image that is baked.
-        notes: Names of images with why one is taken for something else than the nodes say, and
-            what these do to it.
-        pictures: What was read of images without tiles, by their full names.
+        settings: The settings of the bake.
+        texture_format: The texel format of the image's file.
+        roughness_texture_format: The texel format of the roughness's file; empty for none.
+        rows: A description of each image's bake.
+        notes: Pairs of an image's name and a remark about its content or its nodes.
+        pictures: The pixels of images without tiles, by their full names.
     """
 
     picture: Picture
@@ -82,15 +81,15 @@ class Prepared:
         return _target(self.file)
 
 
-def pair_of(job: Job) -> Pair:
+def image_pair(job: Job) -> ImagePair:
     """Returns the images of a job."""
     partner = job.roughness.key if job.roughness is not None else job.normal_map
     other = image_of(partner) if partner else None
-    return Pair(image_of(job.item.full_name), other, job.roughness is not None)
+    return ImagePair(image_of(job.item.full_name), other, job.roughness is not None)
 
 
-def parted(job: Job, pair: Pair) -> list[Job]:
-    """Returns the jobs that bake the images of one by themselves."""
+def split_job(job: Job, pair: ImagePair) -> list[Job]:
+    """Returns the jobs that bake the images of a pair separately."""
     rough, normal_map = pair.rough, pair.normal_map
     assert rough is not None
     assert normal_map is not None
@@ -104,20 +103,20 @@ def parted(job: Job, pair: Pair) -> list[Job]:
     return [Job(job.item), alone] if job.roughness is not None else [alone]
 
 
-def prepared(job: Job, pair: Pair, settings: Settings, files: Mapping[str, str]) -> Prepared:
-    """Reads the image, and decides what is done with it.
+def prepare(job: Job, pair: ImagePair, settings: Settings, files: Mapping[str, str]) -> PreparedJob:
+    """Reads the image, and decides how to bake it.
 
     Args:
-        job: What is baked at once.
+        job: The job.
         pair: Its images.
-        settings: What to do with all images of the model.
-        files: The path of each image, by its full name; empty for none.
+        settings: The settings for all images of the model.
+        files: The path of each image by its key; empty for none.
     """
     item, file = job.item, files[job.item.key]
-    read: dict[str, Picture] = {}
-    picture = _first(pair.image, read)
-    picture, told = _with_nodes(item, pair.image, picture, read, settings)
-    decision = decisions.decided(item, picture)
+    pictures: dict[str, Picture] = {}
+    picture = _read_first(pair.image, pictures)
+    picture, node_notes = _apply_nodes(item, pair.image, picture, pictures, settings)
+    decision = decisions.decide_content(item, picture)
     picture = contents.as_content(picture, decision.content)
     chosen = _format(settings, item, picture, decision.content, file)
     own = replace(
@@ -129,34 +128,37 @@ def prepared(job: Job, pair: Pair, settings: Settings, files: Mapping[str, str])
     )
     row = _row(item, pair.image, decision.content, own, picture, file, chosen)
     own = lookups.resolved(own)
-    notes = [(item.image, text) for text in (decision.note, *told) if text]
-    made = Prepared(picture, file, own, chosen, "", [row], notes, read)
-    return made if pair.rough is None else _with_roughness(made, job, pair, settings, files)
+    notes = [(item.image, text) for text in (decision.note, *node_notes) if text]
+    prepared = PreparedJob(picture, file, own, chosen, "", [row], notes, pictures)
+    if pair.rough is None:
+        return prepared
+    return _with_roughness(prepared, job, pair, settings, files)
 
 
 def _with_roughness(
-    made: Prepared, job: Job, pair: Pair, settings: Settings, files: Mapping[str, str]
-) -> Prepared:
-    """Returns what is to be done with a normal map together with its roughness."""
+    prepared: PreparedJob, job: Job, pair: ImagePair, settings: Settings, files: Mapping[str, str]
+) -> PreparedJob:
+    """Adds the other image of a pair to a prepared job."""
     assert pair.rough is not None
     assert pair.normal_map is not None
     item = job.roughness or job.item
     file = files[item.key]
-    picture, notes = made.picture, made.notes
+    picture, notes, pictures = prepared.picture, prepared.notes, prepared.pictures
     if pair.is_normal_map:
-        picture = _first(pair.rough, made.pictures)
-        picture, told = _with_nodes(item, pair.rough, picture, made.pictures, settings)
-        notes = [*notes, *((item.image, text) for text in told)]
+        picture = _read_first(pair.rough, pictures)
+        picture, node_notes = _apply_nodes(item, pair.rough, picture, pictures, settings)
+        notes = [*notes, *((item.image, text) for text in node_notes)]
     else:
-        normals = _first(pair.normal_map, made.pictures)
-        said = said_of(pair.normal_map, [bpy.data.materials[name] for name in item.materials])
-        _with_nodes(said, pair.normal_map, normals, made.pictures, settings)
+        normals = _read_first(pair.normal_map, pictures)
+        users = [bpy.data.materials[name] for name in item.materials]
+        normal_item = describe_image(pair.normal_map, users)
+        _apply_nodes(normal_item, pair.normal_map, normals, pictures, settings)
     chosen = _format(settings, item, picture, "data", file)
     compensates = f"its levels compensate for detail lost in the levels of '{pair.normal_map.name}'"
-    row = made.rows[0]
+    row = prepared.rows[0]
     if pair.is_normal_map:
-        rough_row = _row(item, pair.rough, "data", made.settings, picture, file, chosen)
-        # Where one is stretched so is the other.
+        rough_row = _row(item, pair.rough, "data", prepared.settings, picture, file, chosen)
+        # If one is stretched, so is the other.
         sides = max(row.sides, rough_row.sides)
         rows = [
             replace(row, sides=sides),
@@ -165,33 +167,33 @@ def _with_roughness(
     else:
         rows = [replace(row, remarks=(compensates,))]
     own = replace(
-        made.settings,
+        prepared.settings,
         content="normal",
-        filepath=made.file if pair.is_normal_map else "",
+        filepath=prepared.file if pair.is_normal_map else "",
         roughness=pair.rough.name,
         roughness_channel=item.roughness_channel,
         roughness_filepath=file,
     )
-    return replace(made, settings=own, roughness_texture_format=chosen, rows=rows, notes=notes)
+    return replace(prepared, settings=own, roughness_texture_format=chosen, rows=rows, notes=notes)
 
 
-def _with_nodes(
+def _apply_nodes(
     item: Item,
     image: bpy.types.Image,
     picture: Picture,
-    read: dict[str, Picture],
+    pictures: dict[str, Picture],
     settings: Settings,
 ) -> tuple[Picture, list[str]]:
-    """Applies nodes to a picture for a file, in `read` too, and returns what is said of it.
+    """Applies shader nodes to a picture for a file; returns it with notes, and updates `pictures`.
 
-    Level images stay before the nodes, and tiles are left as they are.
+    Nodes are not applied to level images, which stay before them, and to tiles.
     """
     if settings.use_images:
         return picture, []
-    if image.name_full not in read:
-        return picture, node_texels.told_of_tiles(item, image)
-    read[image.name_full], told = node_texels.with_nodes(item, image, picture)
-    return read[image.name_full], told
+    if image.name_full not in pictures:
+        return picture, node_texels.tile_notes(item, image)
+    pictures[image.name_full], notes = node_texels.apply_nodes(item, image, picture)
+    return pictures[image.name_full], notes
 
 
 def _row(
@@ -229,16 +231,16 @@ def _target(file: str) -> Path | None:
     return Path(file) if file else None
 
 
-def _first(image: bpy.types.Image, read: dict[str, Picture]) -> Picture:
-    """Returns the pixels of an image, or of its first tile that can be read.
+def _read_first(image: bpy.types.Image, pictures: dict[str, Picture]) -> Picture:
+    """Reads the pixels of an image, or of its first readable tile.
 
-    `read` gets those of an image without tiles.
+    Stores the pixels of an image without tiles in `pictures`.
     """
     numbers = images.tile_numbers(image)
     if numbers:
         return images.read_tile(image, numbers[0])
-    read[image.name_full] = images.read(image)
-    return read[image.name_full]
+    pictures[image.name_full] = images.read(image)
+    return pictures[image.name_full]
 
 
 def _size(image: bpy.types.Image) -> str:

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The images of a scene as panels list them, looked up again after a change."""
+"""The images of a scene that can be baked, cached for panels."""
 
 from dataclasses import dataclass
 
 import bpy
 
 from ...bridge.meshes import may_show_image
-from ...core.remembered import Remembered
+from ...core.scene_cache import SceneCache
 from ...core.targets import selected
 from ...core.translations import marked, tr
 from .plan import Plan, plan
@@ -18,17 +18,17 @@ _NONE = {
     (False, False): marked("No selected mesh shows an image"),
     (False, True): marked("No selected mesh shows an image of '{}'"),
 }
-"""What is said where there is nothing to bake: of all visible objects or not, of a material."""
+"""Messages if there is nothing to bake, by whether all visible objects and a material are meant."""
 
 
 @dataclass(frozen=True)
-class Known:
+class Candidate:
     """An image to bake.
 
     Attributes:
         image: Its name.
         content: A key of `choices.CONTENTS`.
-        partner: The name of the normal map that it is the roughness of; empty for none.
+        partner: The name of the normal map that belongs to this roughness; empty for none.
     """
 
     image: str
@@ -36,15 +36,17 @@ class Known:
     partner: str
 
 
-def _look(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> Plan:
+def _plan(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> Plan:
     del scene
     return plan(depsgraph.view_layer, depsgraph)
 
 
-_plans = Remembered(_look)
+_plans = SceneCache(_plan)
 
 
-def images(context: bpy.types.Context, choice: str, material: str = "") -> list[Known] | None:
+def candidates(
+    context: bpy.types.Context, choice: str, material: str = ""
+) -> list[Candidate] | None:
     """Returns the images to bake; None before a view layer is evaluated.
 
     Args:
@@ -52,22 +54,22 @@ def images(context: bpy.types.Context, choice: str, material: str = "") -> list[
         choice: A key of `choices.MODEL_OBJECTS`.
         material: The name of the material whose images are baked; empty for all.
     """
-    found = _plans.get(context)
-    if found is None:
+    scene_plan = _plans.get(context)
+    if scene_plan is None:
         return None
-    chosen = chosen_objects(context, choice)
-    wanted = None if chosen is None else {obj.name for obj in chosen}
-    names = {item.key: item.image for item in found.items}
+    objects = chosen_objects(context, choice)
+    chosen = None if objects is None else {obj.name for obj in objects}
+    names = {item.key: item.image for item in scene_plan.items}
     return [
-        Known(item.image, item.content, names.get(item.normal_map, ""))
-        for item in found.items
-        if (wanted is None or not wanted.isdisjoint(item.objects))
+        Candidate(item.image, item.content, names.get(item.normal_map, ""))
+        for item in scene_plan.items
+        if (chosen is None or not chosen.isdisjoint(item.objects))
         and (not material or material in item.materials)
     ]
 
 
 def chosen_objects(context: bpy.types.Context, choice: str) -> list[bpy.types.Object] | None:
-    """Returns the selected objects if these are to be baked; None for all visible ones.
+    """Returns the selected objects if the bake is limited to them; None for all visible ones.
 
     Args:
         context: The context.
@@ -81,9 +83,9 @@ def chosen_objects(context: bpy.types.Context, choice: str) -> list[bpy.types.Ob
     return chosen
 
 
-def why_none(context: bpy.types.Context, choice: str, material: str = "") -> str:
-    """Returns why there is nothing to bake, as `images` says; empty if there is, or may be."""
-    if images(context, choice, material) != []:
+def missing_reason(context: bpy.types.Context, choice: str, material: str = "") -> str:
+    """Returns why there is nothing to bake; empty if there is something, or if that is unknown."""
+    if candidates(context, choice, material) != []:
         return ""
     is_all = chosen_objects(context, choice) is None
     return tr(_NONE[is_all, bool(material)]).format(material)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The first step of a bake: everything that it needs is copied out of Blender, and checked."""
+"""The inputs of a bake, copied from Blender and checked."""
 
 from collections.abc import Generator, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -14,7 +14,7 @@ from prefilter.workflows.mipmaps.outputs import Outputs
 
 from ..bridge import image_roles, images, meshes
 from ..bridge.images import Picture
-from ..core.doing import read_at_once
+from ..core.operator_hooks import run_steps
 from ..core.options import check
 from ..core.wording import Sentence, listed
 from . import frames, udim
@@ -28,31 +28,32 @@ class NoSurfaceError(ValueError):
     """No face shows the image.
 
     Attributes:
-        problems: Why faces that would do not count; empty if there are none.
+        problems: Why matching faces cannot be used; empty if no face matches.
     """
 
     def __init__(self, message: str, problems: Sequence[str]) -> None:
-        """Takes the message, and the reasons in it."""
+        """Stores the message and the problems."""
         super().__init__(message)
         self.problems = list(problems)
 
 
 @dataclass(frozen=True)
 class Request:
-    """What is to be baked, and on what.
+    """A request for a bake.
 
     Attributes:
         image: Level 0.
-        objects: The objects to look for the image on.
-        settings: What to bake.
+        objects: The objects on which to look for the image.
+        settings: The settings of the bake.
         depsgraph: The evaluated dependency graph.
         all_faces: See `meshes.image_surfaces`.
-        needs_surface: Whether a surface is needed for any filter.
-        roughness_texture_format: That of the file of the roughness; by default that of `checks`.
-        may_lose_channels: See `engines.format_warnings`.
-        writes_image: Whether the image itself is baked; else only the roughness that it is the
-            normal map of, for the surfaces of that.
-        pictures: What was read of images before, by their full names.
+        needs_surface: Whether a surface is required even if the filter needs none.
+        roughness_texture_format: The texel format of the roughness file; empty for the default of
+            `checks`.
+        may_lose_channels: See `engines.checked`.
+        writes_image: Whether the image itself is baked; otherwise only the roughness that belongs
+            to this normal map, on the surfaces that show the roughness.
+        pictures: Pixels read earlier, by the full names of their images.
         may_skip: See `Bake`.
     """
 
@@ -69,22 +70,22 @@ class Request:
     may_skip: bool = False
 
     def picture_of(self, image: bpy.types.Image) -> Picture:
-        """The pixels of an image without tiles."""
+        """Returns the pixels of an image without tiles."""
         return self.pictures.get(image.name_full) or images.read(image)
 
 
 @dataclass(frozen=True)
 class Level0:
-    """What was read of an image.
+    """The pixels and the content of an image.
 
     Attributes:
-        numbers: Of its tiles; none for an image without.
-        pictures: Of its tiles, or the one of an image without.
-        targets: The files of the tiles, or of the image; none for no file.
-        content: What it holds, a key of `choices.CONTENTS` and not "auto".
-        threshold: Of the alpha test of a cut-out.
-        is_encoded: Whether the image is to be decoded, whatever it holds.
-        told: What a user should know of the content.
+        numbers: The numbers of its tiles; empty for an image without tiles.
+        pictures: The pixels of its tiles, or of the image.
+        targets: The files of the tiles, or of the image; empty for no file.
+        content: Its content, a key of `choices.CONTENTS` except "auto".
+        threshold: The threshold of a cut-out's alpha test.
+        is_encoded: Whether the color space of the image is nonlinear.
+        notes: Remarks about the content for the user.
     """
 
     numbers: list[int]
@@ -93,24 +94,24 @@ class Level0:
     content: str
     threshold: float
     is_encoded: bool
-    told: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
 
 
 def read(request: Request) -> Bake | udim.TiledBake:
-    """Copies everything that the bake needs out of Blender.
+    """Copies all inputs of a bake from Blender.
 
     Raises:
         ValueError: There is nothing to bake, or the image or a mesh is unfit.
         OSError: The file of the settings cannot be written.
     """
-    return read_at_once(reading(request))
+    return run_steps(read_steps(request))
 
 
-def reading(request: Request) -> Generator[float, None, Bake | udim.TiledBake]:
-    """Does what `read` does, in steps: the images, then frame after frame.
+def read_steps(request: Request) -> Generator[float, None, Bake | udim.TiledBake]:
+    """Does the same as `read` in steps: the images, then frame by frame.
 
-    The scene is at other frames in between; closing the generator takes it back, as its end
-    does. Nothing else may change meanwhile.
+    Between steps the scene may be at another frame; the end of the generator, or closing it, sets
+    it back. Nothing else may change the scene meanwhile.
 
     Yields:
         The fraction done.
@@ -122,18 +123,18 @@ def reading(request: Request) -> Generator[float, None, Bake | udim.TiledBake]:
     level_0 = read_level_0(request)
     yield 0.0
     request = with_format(request, level_0)
-    told = [*level_0.told, *told_of_files(request, level_0)]
+    notes = [*level_0.notes, *file_notes(request, level_0)]
     rough = read_roughness(request, level_0)
-    told += told_of_roughness(request, rough)
+    notes += roughness_file_notes(request, rough)
     yield 0.0
-    found = yield from read_surfaces(request)
-    job = bake_of(request, level_0, rough, found)
-    job.warnings.extend(told + usage_warnings(request, level_0, rough))
-    return job
+    surfaces = yield from read_surfaces(request)
+    bake = create_bake(request, level_0, rough, surfaces)
+    bake.warnings.extend(notes + usage_warnings(request, level_0, rough))
+    return bake
 
 
 def read_level_0(request: Request) -> Level0:
-    """Copies the image, and checks what its settings say of it."""
+    """Copies the image, and checks it against the settings."""
     image, settings = request.image, request.settings
     numbers = images.tile_numbers(image)
     targets = [target_files.check_target(path) for path in udim.paths(settings.filepath, numbers)]
@@ -146,12 +147,12 @@ def read_level_0(request: Request) -> Level0:
     used_by = meshes.materials_of_objects(request.objects)
     if any(image_roles.has_alpha_of(material, image) for material in used_by):
         pictures = [replace(picture, covers=True) for picture in pictures]
-    content, threshold, told = settings.content, settings.threshold, list[str]()
+    content, threshold, notes = settings.content, settings.threshold, list[str]()
     if content == "auto":
-        item = plan.said_of(image, used_by)
-        decision = decisions.decided(item, pictures[0])
+        item = plan.describe_image(image, used_by)
+        decision = decisions.decide_content(item, pictures[0])
         content, threshold = decision.content, item.threshold
-        told += [f"image '{image.name}' {decision.note}"] if decision.note else []
+        notes += [f"image '{image.name}' {decision.note}"] if decision.note else []
     is_encoded = pictures[0].encoding is not images.Encoding.NONE
     pictures = [contents.as_content(picture, content) for picture in pictures]
     if content == "cutout":
@@ -162,11 +163,11 @@ def read_level_0(request: Request) -> Level0:
             f"Roughness: '{settings.roughness}' cannot be used, because '{image.name}' has "
             "UDIM tiles"
         )
-    return Level0(numbers, pictures, targets, content, threshold, is_encoded, tuple(told))
+    return Level0(numbers, pictures, targets, content, threshold, is_encoded, tuple(notes))
 
 
 def with_format(request: Request, level_0: Level0) -> Request:
-    """Returns the request with a format of texels in the place of "blocks"."""
+    """Returns the request with a certain texel format instead of "blocks"."""
     if request.settings.texture_format != "blocks":
         return request
     chosen = checks.suitable_blocks(level_0.pictures, level_0.content)
@@ -174,8 +175,9 @@ def with_format(request: Request, level_0: Level0) -> Request:
     return replace(request, settings=settings, may_lose_channels=True)
 
 
-def told_of_files(request: Request, level_0: Level0) -> list[str]:
-    """Returns what the files cannot hold of the image; raises ValueError where that is too much."""
+def file_notes(request: Request, level_0: Level0) -> list[str]:
+    """Returns notes on image contents that the files cannot store; raises ValueError if important
+    ones would be lost."""
     settings = request.settings
     threshold = level_0.threshold if level_0.content == "cutout" else None
     return [
@@ -192,8 +194,8 @@ def told_of_files(request: Request, level_0: Level0) -> list[str]:
     ]
 
 
-def told_of_roughness(request: Request, rough: RoughnessOutput) -> list[str]:
-    """Returns the same of the file of the roughness."""
+def roughness_file_notes(request: Request, rough: RoughnessOutput) -> list[str]:
+    """Returns the same notes for the roughness file."""
     if rough.roughness is None:
         return []
     return engines.format_warnings(
@@ -206,51 +208,51 @@ def told_of_roughness(request: Request, rough: RoughnessOutput) -> list[str]:
 
 
 def read_surfaces(request: Request) -> Generator[float, None, meshes.ImageSurfaces]:
-    """Copies the surfaces that show the image, in steps of a frame."""
+    """Copies the surfaces that show the image, one frame per step."""
     settings = request.settings
     image = request.image if request.writes_image else images.find(settings.roughness)
-    found = yield from frames.surfaces_over(
+    surfaces = yield from frames.surfaces_over_frames(
         image, request.objects, settings, request.depsgraph, all_faces=request.all_faces
     )
     needs_surface = request.needs_surface or settings.filter not in TEXTURE_SPACE_FILTERS
-    if needs_surface and not found.surfaces:
-        message = _no_surface(image, request.objects, settings.objects, found.problems)
-        raise NoSurfaceError(message, found.problems)
-    if settings.importance and found.surfaces and not any(s.area for s in found.surfaces):
+    if needs_surface and not surfaces.surfaces:
+        message = _no_surface(image, request.objects, settings.objects, surfaces.problems)
+        raise NoSurfaceError(message, surfaces.problems)
+    if settings.importance and surfaces.surfaces and not any(s.area for s in surfaces.surfaces):
         raise ValueError(
             f"Importance: '{settings.importance}' is 0 wherever objects "
-            f"{listed(dict.fromkeys(found.objects))} use the image"
+            f"{listed(dict.fromkeys(surfaces.objects))} use the image"
         )
-    return found
+    return surfaces
 
 
-def bake_of(
-    request: Request, level_0: Level0, rough: RoughnessOutput, found: meshes.ImageSurfaces
+def create_bake(
+    request: Request, level_0: Level0, rough: RoughnessOutput, surfaces: meshes.ImageSurfaces
 ) -> Bake | udim.TiledBake:
-    """Returns the bake of what was read."""
+    """Returns the bake of the inputs."""
     content, pictures = level_0.content, level_0.pictures
     settings = replace(request.settings, threshold=level_0.threshold)
     if level_0.numbers:
         tiles, warnings = udim.tiles(
-            request.image.name, pictures, level_0.numbers, found, settings, level_0.targets
+            request.image.name, pictures, level_0.numbers, surfaces, settings, level_0.targets
         )
         bakes = [
             Bake(
-                on_surfaces(one.picture, one.found, settings, content),
-                Outputs(one.target),
+                on_surfaces(tile.picture, tile.surfaces, settings, content),
+                Outputs(tile.target),
                 may_skip=request.may_skip,
             )
-            for one in tiles
+            for tile in tiles
         ]
         return udim.TiledBake(request.image.name, bakes, warnings)
     target = level_0.targets[0] if level_0.targets else None
     outputs = Outputs(target, rough.roughness, rough.target, request.writes_image)
-    source = on_surfaces(pictures[0], found, settings, content)
+    source = on_surfaces(pictures[0], surfaces, settings, content)
     return Bake(source, outputs, may_skip=request.may_skip)
 
 
 def read_roughness(request: Request, level_0: Level0) -> RoughnessOutput:
-    """Copies the roughness of a normal map, and checks what its settings say of it."""
+    """Copies the roughness of a normal map, and checks it against the settings."""
     settings = request.settings
     return checks.roughness_of(
         settings,
@@ -263,7 +265,7 @@ def read_roughness(request: Request, level_0: Level0) -> RoughnessOutput:
 
 
 def usage_warnings(request: Request, level_0: Level0, rough: RoughnessOutput) -> list[str]:
-    """Returns warnings of settings that do not go with the image, or with each other."""
+    """Returns warnings about settings that do not suit the image or each other."""
     return checks.usage_warnings(
         request.settings,
         level_0.pictures[0],
@@ -290,8 +292,8 @@ def _no_surface(
     start = f"image '{image.name}': no surface to bake for"
     if problems:
         return f"{start}; {'; '.join(problems)}"
-    found = ", ".join(f"'{obj.name}' ({obj.type.lower()})" for obj in objects)
-    if not found:
+    names = ", ".join(f"'{obj.name}' ({obj.type.lower()})" for obj in objects)
+    if not names:
         none = "object is selected" if choice == "selected" else "visible object uses it"
         return f"{start}; no {none}"
-    return f"{start}; no material on a face of a mesh uses it, among {found}"
+    return f"{start}; no material on a face of a mesh uses it, among {names}"
