@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Objects without what armatures do to them, which goes on doing it to what is made of them."""
+"""Evaluation of objects without armatures, which go on deforming the results."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -10,24 +10,24 @@ import bpy
 
 @contextmanager
 def at_rest(objects: Sequence[bpy.types.Object], depsgraph: bpy.types.Depsgraph) -> Iterator[None]:
-    """Has Blender evaluate objects as they are before armatures deform them.
+    """Disables the armatures of objects, and evaluates the objects in rest position.
 
     Args:
         objects: The objects.
-        depsgraph: The dependency graph, which is evaluated anew if there is an armature.
+        depsgraph: The dependency graph, which is reevaluated if there is an armature.
     """
     meshes = [obj for obj in objects if obj.type == "MESH"]
     modifiers = [
-        one
+        modifier
         for obj in meshes
-        for one in obj.modifiers
-        if one.type == "ARMATURE" and one.show_viewport
+        for modifier in obj.modifiers
+        if modifier.type == "ARMATURE" and modifier.show_viewport
     ]
     parented = [obj for obj in meshes if obj.parent_type == "ARMATURE"]
     if not modifiers and not parented:
         yield
         return
-    # Blender forgets the matrix where the type changes.
+    # Blender resets the matrix when the parent type changes.
     matrices = [obj.matrix_parent_inverse.copy() for obj in parented]
 
     def switch(*, deforms: bool) -> None:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Arrays of a mesh: where its vertices and corners are, attributes, and painted weights."""
+"""Arrays of meshes: positions, corners, attributes and weights."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -9,20 +9,20 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-# Rec. 709, as Blender makes a number of a color.
+# Rec. 709, as in Blender's conversion of colors to numbers.
 _LUMINANCE = (0.2126, 0.7152, 0.0722)
-# What weights may be.
+# Domains and types of attributes that can be weights.
 _DOMAINS = frozenset({"POINT", "FACE", "CORNER"})
 _COLOR_TYPES = frozenset({"FLOAT_COLOR", "BYTE_COLOR"})
 _NUMBER_TYPES = frozenset({"FLOAT", "INT", "INT8", "BOOLEAN"})
-# What Blender keeps in attributes, and the add-on carries by itself or not at all.
+# Attributes with a built-in meaning, which the add-on transfers separately or not at all.
 _BUILT_IN = frozenset(
     {
         *("position", "material_index", "sharp_face", "sharp_edge", "custom_normal", "uv_seam"),
         *("crease_vert", "crease_edge", "bevel_weight_vert", "bevel_weight_edge"),
     }
 )
-# By the type of an attribute: what its values are called, how many there are, and of which type.
+# By the type of an attribute: property of its values, number of components, and their type.
 _VALUES: dict[str, tuple[str, int, Any]] = {
     "FLOAT": ("value", 1, np.float32),
     "INT": ("value", 1, np.int32),
@@ -54,18 +54,18 @@ class Weights:
 
 
 def is_free(attribute: bpy.types.Attribute) -> bool:
-    """Returns whether an attribute is a user's, and nothing that Blender needs."""
+    """Whether an attribute is a user's, without a built-in meaning."""
     is_hidden = attribute.name.startswith(".") or attribute.is_internal
     return not (is_hidden or attribute.name in _BUILT_IN)
 
 
 def is_read(attribute: bpy.types.Attribute) -> bool:
-    """Returns whether an attribute is of a type whose values are arrays; texts are not."""
+    """Whether an attribute has a type whose values can be arrays; texts cannot."""
     return attribute.data_type in _VALUES
 
 
 def values_of(attribute: bpy.types.Attribute) -> NDArray[Any]:
-    """Returns the values, (n, c), of an attribute of a type that `is_read`."""
+    """Returns the values, (n, c), of an attribute for which `is_read` is true."""
     field, width, dtype = _VALUES[attribute.data_type]
     values = np.empty((len(attribute.data), width), dtype)
     attribute.data.foreach_get(field, values.ravel())
@@ -73,34 +73,34 @@ def values_of(attribute: bpy.types.Attribute) -> NDArray[Any]:
 
 
 def set_values(attribute: bpy.types.Attribute, values: NDArray[Any]) -> None:
-    """Gives an attribute the values that `values_of` would return."""
+    """Sets the values of an attribute, as `values_of` returns them."""
     field, _, dtype = _VALUES[attribute.data_type]
     attribute.data.foreach_set(field, np.ascontiguousarray(values, dtype).ravel())
 
 
 def positions(mesh: bpy.types.Mesh) -> NDArray[np.float32]:
-    """Returns the vertices, (n, 3), in the object's space."""
-    found = np.empty((len(mesh.vertices), 3), np.float32)
-    mesh.attributes["position"].data.foreach_get("vector", found.ravel())
-    return found
+    """Returns the positions of vertices, (n, 3), in the object's space."""
+    vectors = np.empty((len(mesh.vertices), 3), np.float32)
+    mesh.attributes["position"].data.foreach_get("vector", vectors.ravel())
+    return vectors
 
 
 def corner_vertices(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
     """Returns the vertex of each corner."""
-    found = np.empty(len(mesh.loops), np.int32)
-    mesh.attributes[".corner_vert"].data.foreach_get("value", found)
-    return found
+    vertices = np.empty(len(mesh.loops), np.int32)
+    mesh.attributes[".corner_vert"].data.foreach_get("value", vertices)
+    return vertices
 
 
 def is_triangulated(mesh: bpy.types.Mesh) -> bool:
-    """Returns whether all faces are triangles."""
+    """Whether all faces are triangles."""
     return len(mesh.loops) == 3 * len(mesh.polygons)
 
 
 def corner_triangles(
     mesh: bpy.types.Mesh,
 ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-    """Returns the corners of the triangles that faces are cut into, (m, 3), and their faces."""
+    """Triangulates faces; returns the corners of the triangles, (m, 3), and their faces."""
     mesh.calc_loop_triangles()
     count = len(mesh.loop_triangles)
     corners = np.empty(3 * count, np.int32)
@@ -111,7 +111,7 @@ def corner_triangles(
 
 
 def face_materials(mesh: bpy.types.Mesh, slots: int) -> NDArray[np.int32]:
-    """Returns the material slot of each face, of so many slots."""
+    """Returns the material slot of each face, clamped to the number of slots."""
     materials = np.zeros(len(mesh.polygons), np.int32)
     if "material_index" in mesh.attributes:
         mesh.attributes["material_index"].data.foreach_get("value", materials)
@@ -125,13 +125,13 @@ def read_weights(
     """Returns a vertex group, or an attribute of numbers or colors, as weights.
 
     Args:
-        object_name: For messages.
-        mesh: A mesh.
-        evaluated: Its object, which knows the vertex groups; None for a mesh without an object.
-        name: The name; a vertex group comes first where both have it.
+        object_name: Name of the object, for messages.
+        mesh: The mesh.
+        evaluated: Its object, which has the names of vertex groups; None for none.
+        name: The name; a vertex group takes precedence over an attribute.
 
     Returns:
-        The weights, or None where there is neither.
+        The weights; None if there is neither.
 
     Raises:
         ValueError: The attribute has another domain or type.
@@ -142,23 +142,23 @@ def read_weights(
     attribute = mesh.attributes.get(name)
     if attribute is None:
         return None
-    found = f"object '{object_name}', importance: attribute '{name}' is"
+    subject = f"object '{object_name}', importance: attribute '{name}' is"
     if attribute.domain not in _DOMAINS:
         raise ValueError(
-            f"{found} on the domain {attribute.domain}; POINT, FACE or CORNER is needed"
+            f"{subject} on the domain {attribute.domain}; POINT, FACE or CORNER is needed"
         )
     if attribute.data_type in _COLOR_TYPES:
         colors = values_of(attribute)
         return Weights(attribute.domain, colors[:, :3] @ np.array(_LUMINANCE))
     if attribute.data_type not in _NUMBER_TYPES:
         raise ValueError(
-            f"{found} of the type {attribute.data_type}; a number, a color or a boolean is needed"
+            f"{subject} of the type {attribute.data_type}; a number, a color or a boolean is needed"
         )
     return Weights(attribute.domain, values_of(attribute)[:, 0].astype(np.float64))
 
 
 def names_of_weights(obj: bpy.types.Object) -> list[str]:
-    """Returns what `read_weights` may be asked for: of an object, evaluated or not."""
+    """Returns the names that `read_weights` accepts, for an object, evaluated or not."""
     names = [group.name for group in obj.vertex_groups]
     names += [
         attribute.name
@@ -173,7 +173,7 @@ def names_of_weights(obj: bpy.types.Object) -> list[str]:
 def group_weights(
     shown: bpy.types.Object, mesh: bpy.types.Mesh
 ) -> list[tuple[str, NDArray[np.float32]]]:
-    """Returns the names and the weights, (n,), of all vertex groups; 0 stands for no member."""
+    """Returns the names and weights, (n,), of all vertex groups; 0 if not a member."""
     names = [group.name for group in shown.vertex_groups]
     if not names:
         return []

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Materials that show a color attribute, and views that do."""
+"""Materials and 3D views that show a color attribute."""
 
 import bpy
 
@@ -17,16 +17,16 @@ def show_attribute(data: bpy.types.Mesh | bpy.types.PointCloud, attribute: str) 
 
 def material_of(attribute: str) -> bpy.types.Material:
     """Returns the material that shows a color attribute, which objects share; made if missing."""
-    for found in bpy.data.materials:
-        if found.library is None and found.get(_MARK) == attribute:
-            return found
+    for material in bpy.data.materials:
+        if material.library is None and material.get(_MARK) == attribute:
+            return material
     made = bpy.data.materials.new(f"Color of {attribute}")
     made[_MARK] = attribute
     if made.node_tree is None:
         made.use_nodes = True
     tree = made.node_tree
     surface = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
-    # What a scanner sees has its light in it already.
+    # Scanned colors already include the lighting.
     surface.inputs["Roughness"].default_value = 1.0
     surface.inputs["Specular IOR Level"].default_value = 0.0
     color = tree.nodes.new("ShaderNodeAttribute")
@@ -39,12 +39,13 @@ def material_of(attribute: str) -> bpy.types.Material:
 def show_in_views(
     context: bpy.types.Context, *, are_points: bool = False, kind: str = "VERTEX"
 ) -> bool:
-    """Has 3D views of the window show colors that are Solid and show those of materials.
+    """Makes 3D views in Solid mode show attributes or textures, if they show material colors.
 
     Args:
-        context: Has the window; without one there are no views.
-        are_points: Points have no colors in Solid: Material Preview shows them.
-        kind: What Solid is to show: "VERTEX" for color attributes, or "TEXTURE".
+        context: The context, whose window has the views.
+        are_points: Whether points are to be shown, for which Solid mode has no colors: switches to
+            Material Preview.
+        kind: Color of Solid mode: "VERTEX" for color attributes, or "TEXTURE".
 
     Returns:
         Whether a view has changed.

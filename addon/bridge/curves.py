@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Curve and text objects as closed contours: chains of Bezier curves, rational ones included.
+"""Curve and text objects as closed contours: chains of Bezier curves, including rational ones.
 
-As Blender fills them: the closed splines of a curve fill together where they have the same
-material, by the even-odd rule; open splines fill nothing. Those of each letter of a text fill by
-themselves, by the nonzero rule, as fonts are made for: in variable ones contours overlap. That a
-curve is three-dimensional, or is not to be filled, does not count.
+Filled as in Blender: closed splines of a curve with the same material are filled together by the
+even-odd rule; open splines are not filled. The contours of each letter of a text are filled by the
+nonzero rule, as contours of variable fonts overlap. 3D curves, and curves with filling turned off,
+are filled, too.
 """
 
 from collections.abc import Iterable
@@ -28,10 +28,10 @@ class Fill:
     """Contours that are filled together.
 
     Attributes:
-        contours: (segments, degree + 1, 4) homogeneous control points of Bezier curves each:
-            coordinates multiplied by the weight, then the weight.
+        contours: Homogeneous control points of Bezier curves, (segments, degree + 1, 4) per
+            contour: coordinates multiplied by the weight, then the weight.
         color: Scene-linear red, green and blue, and alpha.
-        fill_rule: As `prefilter.Shape` has it.
+        fill_rule: A fill rule of `prefilter.Shape`.
     """
 
     contours: list[FloatArray]
@@ -41,14 +41,14 @@ class Fill:
 
 @dataclass
 class Curves:
-    """What a curve or text object fills.
+    """Filled contours of a curve or text object.
 
     Attributes:
-        name: The object's name.
-        fills: In world space; a later one lies over those before it.
-        center: The object's origin.
-        open_splines: How many splines were left out because they are open.
-        problems: What else was left out.
+        name: Name of the object.
+        fills: Fills in world space, from bottom to top.
+        center: Origin of the object.
+        open_splines: Number of splines left out because they are open.
+        problems: Other features that were left out.
     """
 
     name: str
@@ -59,17 +59,17 @@ class Curves:
 
 
 def is_curve(obj: bpy.types.Object) -> bool:
-    """Tells whether an object is a curve or a text."""
+    """Whether an object is a curve or a text."""
     return obj.type in CURVE_TYPES
 
 
 def read_curves(
     objects: Iterable[bpy.types.Object], depsgraph: bpy.types.Depsgraph
 ) -> list[Curves]:
-    """Copies what curve and text objects fill, one entry for each.
+    """Copies the filled contours of curve and text objects.
 
-    Modifiers that work on splines count, as do shape keys, and what edit mode has changed. Objects
-    that are hidden are read too, without their modifiers.
+    Modifiers on splines, shape keys and changes in Edit Mode are included. Hidden objects are read
+    without their modifiers.
 
     Args:
         objects: The objects.
@@ -89,10 +89,10 @@ def read_curves(
 
 
 def _read(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Curves:
-    found = Curves(obj.name, problems=_ignored(obj))
+    curves = Curves(obj.name, problems=_ignored_features(obj))
     shown = obj.evaluated_get(depsgraph) if obj.visible_get() else obj
     matrix = np.array(shown.matrix_world, np.float64)
-    found.center = matrix[:3, 3].copy()
+    curves.center = matrix[:3, 3].copy()
     colors = [materials.base_color(slot.material) for slot in obj.material_slots]
     fill_rule = "nonzero" if obj.type == "FONT" else "evenodd"
     fills: dict[tuple[int, int], Fill] = {}
@@ -100,7 +100,7 @@ def _read(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Curves:
     try:
         for spline in curve.splines:
             if not spline.use_cyclic_u:
-                found.open_splines += 1
+                curves.open_splines += 1
                 continue
             contour = _contour(spline)
             if contour is None:
@@ -113,12 +113,12 @@ def _read(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Curves:
             fill.contours.append(contour @ matrix.T)
     finally:
         shown.to_curve_clear()
-    found.fills = list(fills.values())
-    return found
+    curves.fills = list(fills.values())
+    return curves
 
 
 def _contour(spline: bpy.types.Spline) -> FloatArray | None:
-    """Returns a closed spline in the object's space; None where it has too few points."""
+    """Control points of a closed spline in the object's space; None if it has too few points."""
     if spline.type == "BEZIER":
         return _bezier_contour(spline)
     count = len(spline.points)
@@ -145,12 +145,10 @@ def _bezier_contour(spline: bpy.types.Spline) -> FloatArray | None:
     points = spline.bezier_points
     if len(points) < 2:
         return None
-    middle, left, right = (
+    ends, left, right = (
         _numbers(points, name, 3) for name in ("co", "handle_left", "handle_right")
     )
-    control = np.stack(
-        [middle, right, np.roll(left, -1, axis=0), np.roll(middle, -1, axis=0)], axis=1
-    )
+    control = np.stack([ends, right, np.roll(left, -1, axis=0), np.roll(ends, -1, axis=0)], axis=1)
     return np.concatenate([control, np.ones((*control.shape[:2], 1))], axis=2)
 
 
@@ -160,14 +158,14 @@ def _numbers(points: bpy.types.bpy_prop_collection, name: str, width: int) -> Fl
     return values.reshape(-1, width).astype(np.float64)
 
 
-def _ignored(obj: bpy.types.Object) -> list[str]:
-    """Returns what of an object does not show in an image of its outlines."""
-    found = []
+def _ignored_features(obj: bpy.types.Object) -> list[str]:
+    """Names the features of an object that its contours do not have."""
+    features = []
     data = obj.data
     if data.bevel_depth > 0.0 or data.bevel_object is not None or data.extrude > 0.0:
-        found.append("bevel and extrusion")
+        features.append("bevel and extrusion")
     if data.offset != 0.0:
-        found.append("offset")
-    if any(one.show_viewport and not one.use_apply_on_spline for one in obj.modifiers):
-        found.append("modifiers that are not applied on splines")
-    return found
+        features.append("offset")
+    if any(each.show_viewport and not each.use_apply_on_spline for each in obj.modifiers):
+        features.append("modifiers that are not applied on splines")
+    return features

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Images and texts that are made of an image: figures, views, copies. They are tagged with it."""
+"""Images and texts derived from an image: figures, views, copies. Tags name their source."""
 
 import bpy
 
@@ -15,13 +15,13 @@ _SUFFIX_KEY = "prefilter_copy_suffix"
 def write_picture(
     source: Picture, suffix: str, pixels: FloatArray, *, like_source: bool = False
 ) -> bpy.types.Image:
-    """Makes a packed image named `<source>.<suffix>`, in the place of one that was made before.
+    """Makes a packed image named `<source>.<suffix>`, and replaces an earlier one.
 
     Args:
-        source: What it is made of.
-        suffix: The end of its name.
+        source: The image that it is derived from.
+        suffix: End of its name.
         pixels: sRGB values for a byte image, unless `like_source`.
-        like_source: Whether it is stored as `source` is, and `pixels` are stored values.
+        like_source: Whether `pixels` are in the format and encoding of `source`.
 
     Raises:
         OSError: The image cannot be made.
@@ -44,28 +44,28 @@ def write_picture(
 
 
 def write_text(source: Picture, suffix: str, text: str) -> bpy.types.Text:
-    """Writes a text named `<source>.<suffix>`, over one that was written before."""
+    """Writes a text named `<source>.<suffix>`, over an earlier one."""
     name = suffixed(source.name, suffix)
-    found = bpy.data.texts.get(name)
-    if found is None or found.get(_PICTURE_KEY) != source.full_name:
-        found = bpy.data.texts.new(name)
-        found[_PICTURE_KEY] = source.full_name
-    found.from_string(text)
-    return found
+    block = bpy.data.texts.get(name)
+    if block is None or block.get(_PICTURE_KEY) != source.full_name:
+        block = bpy.data.texts.new(name)
+        block[_PICTURE_KEY] = source.full_name
+    block.from_string(text)
+    return block
 
 
 def source_of(image: bpy.types.Image | None) -> bpy.types.Image | None:
-    """Returns the image that a picture or a copy was made of, if that is still there."""
+    """Returns the source of a picture or a copy; None if it is gone."""
     return pictured(image) or _tagged(image, _COPY_KEY)
 
 
 def pictured(image: bpy.types.Image | None) -> bpy.types.Image | None:
-    """Returns the image that a picture is about, if that is still there; None for a copy."""
+    """Returns the source of a picture; None if it is gone, or for a copy."""
     return _tagged(image, _PICTURE_KEY)
 
 
 def copied(image: bpy.types.Image | None, suffix: str) -> bpy.types.Image | None:
-    """Returns the image that a copy with this suffix was made of, if that is still there."""
+    """Returns the source of a copy with this suffix; None if it is gone."""
     if image is None or image.get(_SUFFIX_KEY) != suffix:
         return None
     return _tagged(image, _COPY_KEY)

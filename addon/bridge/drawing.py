@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What is drawn in editors with the graphics card: colors, textures, and a wipe with its labels."""
+"""Drawing in editors with the GPU: textures, lines, labels and wipes."""
 
 from collections.abc import Sequence
 
@@ -37,17 +37,17 @@ vec3 decoded(vec3 value)
   return vec3(decoded(value.r), decoded(value.g), decoded(value.b));
 }
 """
-"""GLSL: between light and sRGB values."""
+"""GLSL functions that convert between linear and sRGB-encoded values."""
 
-_LINE_WIDTH = 2  # In pixels.
+_LINE_WIDTH = 2  # Pixels.
 _LABEL_SIZE, _LABEL_GAP = 13, 10
 _LINE, _ACTIVE = (1.0, 1.0, 1.0, 1.0), (1.0, 0.63, 0.16, 1.0)
 _RIM = (0.0, 0.0, 0.0, 0.6)
 _PLATE, _PLATE_MARGIN = (0.0, 0.0, 0.0, 0.85), 4
 
 
-def uploaded(pixels: FloatArray) -> gpu.types.GPUTexture:
-    """Returns a texture of 16-bit floats; where there are three channels, alpha is 1."""
+def upload(pixels: FloatArray) -> gpu.types.GPUTexture:
+    """Uploads pixels to a texture of 16-bit floats; alpha is 1 for three channels."""
     height, width = pixels.shape[:2]
     rgba = np.ones((height, width, 4), np.float32)
     rgba[..., : pixels.shape[2]] = pixels
@@ -59,13 +59,13 @@ def draw_wipe(share: float, left: str, right: str) -> None:
     """Draws a line from the bottom to the top of the region, and labels beside it.
 
     Args:
-        share: Where it is, as a share of the region's width.
-        left: What is to the left of it; empty for no line.
-        right: What is to the right of it.
+        share: Position of the line, as a share of the region's width.
+        left: Label of the left side; empty for no line.
+        right: Label of the right side.
     """
     scale = bpy.context.preferences.system.ui_scale
     x = share * bpy.context.region.width
-    # The header may lie over the region's upper edge.
+    # Labels are at the bottom, as the header may cover the region's upper edge.
     y = _LABEL_GAP * scale
     if left:
         _draw_wipe_line(x)
@@ -74,7 +74,7 @@ def draw_wipe(share: float, left: str, right: str) -> None:
 
 
 def _draw_wipe_line(x: float) -> None:
-    """Draws a line from the bottom to the top of the region, with arrows in its middle."""
+    """Draws a line from the bottom to the top of the region, with arrows at half its height."""
     region = bpy.context.region
     color = _ACTIVE if is_active(region) else _LINE
     half = _LINE_WIDTH * bpy.context.preferences.system.ui_scale / 2
@@ -88,19 +88,19 @@ def _draw_wipe_line(x: float) -> None:
 
 
 def label_size(text: str) -> tuple[float, float]:
-    """Returns the width and height of the letters of a label, in pixels of the region."""
+    """Width and height of the text of a label, in pixels of the region."""
     blf.size(0, _LABEL_SIZE * bpy.context.preferences.system.ui_scale)
     width, height = blf.dimensions(0, text)
     return width, height
 
 
 def draw_label(text: str, x: float, y: float) -> None:
-    """Draws white letters on a dark plate: they are read over any image.
+    """Draws white text on a dark plate, so that it is readable over any image.
 
     Args:
         text: One line.
-        x: Where it starts, in pixels of the region.
-        y: Where its baseline is.
+        x: Start of the text, in pixels of the region.
+        y: Its baseline.
     """
     width, height = label_size(text)
     margin = _PLATE_MARGIN * bpy.context.preferences.system.ui_scale
@@ -116,12 +116,12 @@ def draw_label(text: str, x: float, y: float) -> None:
 def draw_lines(
     points: Sequence[tuple[float, float]], color: Color, *, closed: bool = False
 ) -> None:
-    """Draws a line through points of the region, with a dark rim: it is seen on any image.
+    """Draws a polyline in the region, with a dark rim, so that it is visible on any image.
 
     Args:
-        points: In pixels.
+        points: Points in pixels.
         color: sRGB values and alpha.
-        closed: Whether it ends where it starts.
+        closed: Whether to connect the last point to the first.
     """
     shader = gpu.shader.from_builtin("POLYLINE_UNIFORM_COLOR")
     along = [*points, points[0]] if closed else list(points)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Image datablocks that are drawn by Prefilter, and drawn again in place."""
+"""Image datablocks drawn by Prefilter: new ones, and updates in place."""
 
 from dataclasses import dataclass
 
@@ -15,16 +15,16 @@ _SRGB, _DATA = "sRGB", "Non-Color"
 
 @dataclass(frozen=True)
 class Drawing:
-    """What an image datablock is to hold.
+    """Contents of an image datablock.
 
     Attributes:
-        width: In pixels.
-        height: In pixels.
-        png: Its PNG file; None for floats.
+        width: Width in pixels.
+        height: Height in pixels.
+        png: Contents as a PNG file; None for floats.
         floats: (height, width, 4), row 0 at the bottom; None for a PNG file.
-        is_half: Whether floats are kept with 16 bits.
-        is_data: Whether the values are no colors.
-        alpha_mode: The alpha mode of the datablock.
+        is_half: Whether floats have 16 bits.
+        is_data: Whether the values are not colors.
+        alpha_mode: Alpha mode of the datablock.
     """
 
     width: int
@@ -39,7 +39,7 @@ class Drawing:
 def new_image(name: str, drawing: Drawing) -> bpy.types.Image:
     """Makes a packed image datablock; Blender adds a number to a name that is taken.
 
-    Nothing uses it yet, and Blender does not save what has no user: it gets a fake one.
+    It gets a fake user, as Blender does not save unused datablocks.
     """
     image = bpy.data.images.new(name, 1, 1, alpha=True)
     image.use_fake_user = True
@@ -58,7 +58,7 @@ def draw_into(image: bpy.types.Image, drawing: Drawing) -> None:
         OSError: Blender cannot take the pixels.
     """
     try:
-        # The pixels of a generated image may be of another size and type.
+        # Only generated images may change their size and type.
         image.source = "GENERATED"
         image.generated_type = "BLANK"
         image.generated_width, image.generated_height = drawing.width, drawing.height

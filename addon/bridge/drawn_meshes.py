@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The triangles of objects that show an image, as the graphics card draws them."""
+"""Triangles of objects that show an image, for drawing with the GPU."""
 
 from dataclasses import dataclass
 
@@ -27,7 +27,7 @@ class Triangles:
 def triangles_with(
     obj: bpy.types.Object, image: bpy.types.Image, depsgraph: bpy.types.Depsgraph
 ) -> Triangles | None:
-    """Returns the triangles of an object, with its modifiers, whose material shows an image.
+    """Copies the triangles of an evaluated object whose material shows an image.
 
     Args:
         obj: A visible object.
@@ -35,24 +35,24 @@ def triangles_with(
         depsgraph: The evaluated dependency graph.
 
     Returns:
-        None where there are none.
+        The triangles; None if there are none.
     """
     shown = obj.evaluated_get(depsgraph)
     mesh = shown.data if isinstance(shown.data, bpy.types.Mesh) else None
-    # In Edit Mode the positions are elsewhere.
+    # In Edit Mode the mesh has no position attribute.
     if mesh is None or not mesh.uv_layers or "position" not in mesh.attributes:
         return None
     uses = [_use(slot.material, image) for slot in shown.material_slots]
     mesh.calc_loop_triangles()
-    found = mesh.loop_triangles
-    corners, materials = np.empty(3 * len(found), np.int32), np.empty(len(found), np.int32)
-    found.foreach_get("loops", corners)
-    found.foreach_get("material_index", materials)
-    vertices = np.empty(3 * len(found), np.int32)
-    found.foreach_get("vertices", vertices)
+    triangles = mesh.loop_triangles
+    corners, materials = np.empty(3 * len(triangles), np.int32), np.empty(len(triangles), np.int32)
+    triangles.foreach_get("loops", corners)
+    triangles.foreach_get("material_index", materials)
+    vertices = np.empty(3 * len(triangles), np.int32)
+    triangles.foreach_get("vertices", vertices)
     positions = np.empty(3 * len(mesh.vertices), np.float32)
     mesh.attributes["position"].data.foreach_get("vector", positions)
-    kept, uvs = np.zeros(len(found), bool), np.zeros((len(corners), 2), np.float32)
+    kept, uvs = np.zeros(len(triangles), bool), np.zeros((len(corners), 2), np.float32)
     for index, use in enumerate(uses):
         if use is not None:
             chosen = np.minimum(materials, len(uses) - 1) == index
@@ -66,14 +66,14 @@ def triangles_with(
 
 
 def _use(material: bpy.types.Material | None, image: bpy.types.Image) -> ImageUse | None:
-    """Returns the first way in which a material shows an image."""
+    """First way in which a material samples an image."""
     uses = image_uses(material, image)[0] if material is not None else []
     return uses[0] if uses else None
 
 
 def _mapped(mesh: bpy.types.Mesh, use: ImageUse, corners: NDArray[np.int32]) -> NDArray[np.float32]:
     layers = mesh.uv_layers
-    active = next((one for one in layers if one.active_render), layers[0])
+    active = next((layer for layer in layers if layer.active_render), layers[0])
     layer = layers.get(use.uv_map, active) if use.uv_map else active
     values = np.empty(2 * len(mesh.loops), np.float32)
     layer.uv.foreach_get("vector", values)

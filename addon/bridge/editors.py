@@ -1,22 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The editors that images are shown in."""
+"""Image editors: showing images, and redrawing."""
 
 import bpy
 
 
 def show(context: bpy.types.Context, image: bpy.types.Image) -> None:
-    """Shows an image in the editor that the operator was called from."""
+    """Shows an image in the Image editor of the context, if there is one."""
     if context.area is not None and context.area.type == "IMAGE_EDITOR":
         context.space_data.image = image
 
 
 def show_anywhere(context: bpy.types.Context, image: bpy.types.Image) -> bool:
-    """Shows an image in the editor that the operator was called from, or else in the largest Image
-    editor of the window that is not pinned.
+    """Shows an image in the Image editor of the context, or else in the window's largest unpinned
+    one.
 
     Returns:
-        Whether an editor shows it now that the operator was not called from.
+        Whether another editor than that of the context shows it now.
     """
     if context.area is not None and context.area.type == "IMAGE_EDITOR":
         context.space_data.image = image
@@ -35,7 +35,7 @@ def show_anywhere(context: bpy.types.Context, image: bpy.types.Image) -> bool:
 
 
 def redraw() -> None:
-    """Has every Image editor and 3D view drawn again."""
+    """Redraws all Image editors and 3D views."""
     for window in bpy.context.window_manager.windows:
         for area in window.screen.areas:
             if area.type in {"IMAGE_EDITOR", "VIEW_3D"}:
@@ -43,6 +43,6 @@ def redraw() -> None:
 
 
 def redraw_on_change(group: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    """Draws the editors again; for what properties call when they change."""
+    """Update callback of properties that redraws editors."""
     del group, context
     redraw()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Materials that show an image: new ones, and those that get it over their base color."""
+"""Materials that show an image, on its own or over their base color."""
 
 import bpy
 
@@ -15,13 +15,13 @@ def material_of(image: bpy.types.Image, *, is_mask: bool, is_opaque: bool) -> bp
     """Returns the material that shows an image as a decal; made if missing.
 
     Args:
-        image: Its color space says what its values are.
-        is_mask: Whether its values are an alpha, of white.
-        is_opaque: Whether its own alpha does not count.
+        image: The image.
+        is_mask: Whether its values are the alpha of white.
+        is_opaque: Whether its own alpha is ignored.
     """
-    for found in bpy.data.materials:
-        if found.library is None and found.get(_MARK) == image.name_full:
-            return found
+    for material in bpy.data.materials:
+        if material.library is None and material.get(_MARK) == image.name_full:
+            return material
     made = _new(image.name)
     made[_MARK] = image.name_full
     tree = made.node_tree
@@ -39,7 +39,7 @@ def material_of(image: bpy.types.Image, *, is_mask: bool, is_opaque: bool) -> bp
 
 
 def show_on(obj: bpy.types.Object, image: bpy.types.Image) -> bpy.types.Material:
-    """Returns a new material that shows an image by an object's UV map, and nothing else."""
+    """Makes a material that shows only an image, by an object's UV map."""
     made = _new(obj.name)
     tree = made.node_tree
     surface = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
@@ -54,7 +54,7 @@ def put_over(obj: bpy.types.Object, image: bpy.types.Image, *, is_mask: bool) ->
     Args:
         obj: A mesh with a UV map.
         image: The image.
-        is_mask: Whether its values are an alpha, of white.
+        is_mask: Whether its values are the alpha of white.
 
     Raises:
         ValueError: The material is linked, or shows no shader with a base color.
@@ -105,7 +105,7 @@ def _texture(
     texture = tree.nodes.new("ShaderNodeTexImage")
     texture.image, texture.extension = image, extension
     texture.location = (before.location.x - _GAP, before.location.y)
-    # Solid views show the image of the active node.
+    # 3D views in Solid mode show the image of the active node.
     for node in tree.nodes:
         node.select = False
     texture.select = True

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What operators share that work on an image, or make one."""
+"""Mixins for operators that work on an image, or make one."""
 
 from collections.abc import Sequence
 
@@ -14,7 +14,7 @@ from . import editors
 
 
 class ImageOperator:
-    """A mixin: works on an image, that of the editor if none is named."""
+    """A mixin: works on a named image, or else on the editor's image."""
 
     image: StringProperty(
         name="Image",
@@ -25,12 +25,12 @@ class ImageOperator:
 
     @classmethod
     def shown_image(cls, context: bpy.types.Context) -> bpy.types.Image | None:
-        """Returns the image that the editor is about."""
+        """Returns the image of the editor."""
         return getattr(context.space_data, "image", None)
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether there is an image."""
+        """Whether there is an image."""
         if context.area is not None and context.area.type == "IMAGE_EDITOR":
             if cls.shown_image(context) is None:
                 cls.poll_message_set(tr("Open an image in this editor first"))
@@ -41,7 +41,7 @@ class ImageOperator:
         return True
 
     def chosen_image(self, context: bpy.types.Context) -> bpy.types.Image:
-        """Returns the image that is named, or shown.
+        """Returns the named image, or else the editor's.
 
         Raises:
             ValueError: There is none.
@@ -57,14 +57,13 @@ class ImageOperator:
         """Returns the image."""
         return [self.chosen_image(context)]
 
-    def retarget(self, targets: Sequence[bpy.types.ID]) -> None:
-        """Names the image."""
+    def aim(self, targets: Sequence[bpy.types.ID]) -> None:
+        """Keeps the name of the image."""
         self.image = targets[0].name
 
 
 class MakesImage(WorkOperator):
-    """A mixin: work that makes an image, which the editor then shows that the operator is called
-    from."""
+    """A mixin: work that makes an image, and shows it in an Image editor."""
 
     queue_name = "images"
 
@@ -75,5 +74,5 @@ class MakesImage(WorkOperator):
         outcome = self.work.write()
         image = bpy.data.images[outcome.images[0]]
         is_elsewhere = editors.show_anywhere(context, image)
-        done = self.report_outcome(outcome)
-        return Sentence("{}, shown in the Image editor", done) if is_elsewhere else done
+        summary = self.tell(outcome)
+        return Sentence("{}, shown in the Image editor", summary) if is_elsewhere else summary

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What images are to a material: colors, normals, roughness, a channel of something, coverage."""
+"""Roles of images in a material: color, normals, data, coverage, and the channels used."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -20,27 +20,27 @@ _SEPARATING = frozenset({"SEPARATE_COLOR", "SEPRGB", "SEPXYZ"})
 _COMBINING = frozenset({"COMBINE_COLOR", "COMBRGB", "COMBXYZ"})
 _MIXING = frozenset({"MIX", "MIX_RGB"})
 _ORDER = ("red", "green", "blue")
-_OF_OTHER_NODES = {
+_NODE_INPUTS = {
     "NORMAL_MAP": ("Color", "Normal Map", "normal"),
     "BUMP": ("Height", "Bump", "data"),
     "DISPLACEMENT": ("Height", "Displacement", "data"),
     "VECTOR_DISPLACEMENT": ("Vector", "Vector Displacement", "data"),
 }
-"""Inputs of nodes that stand before shaders, with a label and a use."""
+"""Image inputs of nodes before shaders, with a label and a use."""
 
 
 @dataclass(frozen=True)
 class Role:
-    """What an input of a shader takes of an image.
+    """Use of an image by an input of a shader.
 
     Attributes:
         image: The image.
-        label: The input, such as "Base Color" or "Normal Map".
-        use: "color", "data", "normal", or "coverage" for what says how much of the surface shows.
+        label: Name of the input, such as "Base Color" or "Normal Map".
+        use: "color", "data", "normal", or "coverage" for the visible share of the surface.
         channel: "all", "red", "green" or "blue" of the color, or "alpha".
-        threshold: The value of the channel at which a test turns the input on or off; None
-            without one.
-        is_factor: Whether it only mixes what the input gets, as a mask.
+        threshold: Value of the channel at which a test turns the input on or off; None without a
+            test.
+        is_factor: Whether the image is only a mask: the factor by which other values are mixed.
     """
 
     image: bpy.types.Image
@@ -57,8 +57,8 @@ class Roughness:
 
     Attributes:
         image: The image.
-        channel: As in `Role`.
-        normal_maps: The images that its normals come from, through Normal Map nodes.
+        channel: Channel, as for `Role`.
+        normal_maps: Images of the Normal Map nodes of its normals.
     """
 
     image: bpy.types.Image
@@ -68,7 +68,7 @@ class Roughness:
 
 @dataclass(frozen=True)
 class _Request:
-    """What is asked of a socket on the way from an input to images."""
+    """Channel, threshold and masking, while following links from an input back to images."""
 
     channel: str = "all"
     threshold: float | None = None
@@ -76,33 +76,33 @@ class _Request:
 
 
 def roles(material: bpy.types.Material) -> list[Role]:
-    """Returns what images are to the shaders of a material, each role once.
+    """Returns the roles of images in the shaders of a material, each once.
 
-    Groups, reroutes and nodes that change values are followed, muted nodes passed by. A shader
-    needs no connection to the output.
+    Links are followed through groups, reroutes and nodes that change values; muted nodes are
+    bypassed. Shaders need not be connected to the output.
     """
-    found: dict[Role, None] = {}
+    distinct: dict[Role, None] = {}
     for socket, groups, label, use in _inputs(material):
         for image, request in _sources(socket, groups):
             threshold = request.threshold if use == "coverage" else None
             role = Role(image, label, use, request.channel, threshold, request.is_factor)
-            found[role] = None
-    return list(found)
+            distinct[role] = None
+    return list(distinct)
 
 
 def inputs_of(
     material: bpy.types.Material, image: bpy.types.Image
 ) -> Iterator[tuple[Role, bpy.types.NodeSocket, Groups]]:
-    """Yields the inputs that get values from an image, each once for what it takes; no masks."""
+    """Yields the inputs that get values from an image, once per channel, except through masks."""
     for socket, groups, label, use in _inputs(material):
-        for found, request in dict.fromkeys(_sources(socket, groups)):
-            if found == image and not request.is_factor:
+        for source, request in dict.fromkeys(_sources(socket, groups)):
+            if source == image and not request.is_factor:
                 yield Role(image, label, use, request.channel), socket, groups
 
 
 def roughness(material: bpy.types.Material) -> list[Roughness]:
-    """Returns the shaders of a material whose roughness comes from images."""
-    found: dict[Roughness, None] = {}
+    """Returns the roughness images of the shaders of a material."""
+    shaders: dict[Roughness, None] = {}
     for node, groups in nodes.walk(nodes.tree_of(material)):
         if not _is_shader(node) or "Roughness" not in node.inputs:
             continue
@@ -111,14 +111,14 @@ def roughness(material: bpy.types.Material) -> list[Roughness]:
             normals.update((image, None) for image in _normal_maps(node.inputs["Normal"], groups))
         for image, request in _sources(node.inputs["Roughness"], groups):
             if not request.is_factor:
-                found[Roughness(image, request.channel, tuple(normals))] = None
-    return list(found)
+                shaders[Roughness(image, request.channel, tuple(normals))] = None
+    return list(shaders)
 
 
 def has_base_color_of(material: bpy.types.Material, image: bpy.types.Image) -> bool:
-    """Tells whether a shader of a material gets its base color from an image.
+    """Whether a shader of a material gets its base color from an image.
 
-    That is the input Base Color, or the only color of a Diffuse BSDF and an Emission.
+    The base color is the input Base Color, or the color of a Diffuse BSDF or an Emission.
     """
     labels = {"Base Color", *_ONE_COLOR.values()}
     return any(
@@ -128,11 +128,11 @@ def has_base_color_of(material: bpy.types.Material, image: bpy.types.Image) -> b
 
 
 def has_alpha_of(material: bpy.types.Material, image: bpy.types.Image) -> bool:
-    """Tells whether a material shows as much of the surface as the alpha of an image says.
+    """Whether the alpha of an image is the coverage of a material.
 
-    So it does where the Alpha output of an Image Texture node leads to the input Alpha of a shader,
-    or to the factor of a Mix Shader that has a Transparent BSDF on one side. An image whose alpha
-    mode is None has no alpha to a shader.
+    It is where the Alpha output of an Image Texture node leads to the input Alpha of a shader, or
+    to the factor of a Mix Shader with a Transparent BSDF on one side. An image with the alpha mode
+    None has no alpha for shaders.
     """
     return image.alpha_mode != "NONE" and any(
         role.use == "coverage" and role.channel == "alpha" and not role.is_factor
@@ -141,21 +141,20 @@ def has_alpha_of(material: bpy.types.Material, image: bpy.types.Image) -> bool:
 
 
 def shows_as_color(material: bpy.types.Material, image: bpy.types.Image) -> bool:
-    """Tells whether a shader of a material has an image as a color, and no other image there.
+    """Whether an image, and no other one, is a color of a shader of a material.
 
-    It may be multiplied by what is no image; what a ramp or other nodes make of its values is
-    another color.
+    The image may be mixed with constants, but not changed by a ramp or other nodes.
     """
     for socket, groups, _, use in _inputs(material):
         if use == "color" and image in _unchanged(socket, groups):
             sources = _sources(socket, groups)
-            if {found for found, asked in sources if not asked.is_factor} == {image}:
+            if {source for source, request in sources if not request.is_factor} == {image}:
                 return True
     return False
 
 
 def _unchanged(socket: bpy.types.NodeSocket, groups: Groups) -> Iterator[bpy.types.Image]:
-    """Yields the images whose colors lead to a socket as they are, or are mixed there."""
+    """Yields the images whose colors reach a socket unchanged, or mixed."""
     for node, source, around in _before(socket, groups):
         if node.type == "TEX_IMAGE" and node.image is not None and source.name == "Color":
             yield node.image
@@ -172,11 +171,11 @@ def _of(material: bpy.types.Material, image: bpy.types.Image) -> Iterator[Role]:
 def _inputs(
     material: bpy.types.Material,
 ) -> Iterator[tuple[bpy.types.NodeSocket, Groups, str, str]]:
-    """Yields the inputs where roles are told apart, with a label and a use."""
+    """Yields the inputs that define roles, with a label and a use."""
     tree = nodes.tree_of(material)
     for node, groups in nodes.walk(tree):
-        if node.type in _OF_OTHER_NODES:
-            name, label, use = _OF_OTHER_NODES[node.type]
+        if node.type in _NODE_INPUTS:
+            name, label, use = _NODE_INPUTS[node.type]
             yield node.inputs[name], groups, label, use
         elif node.type == "MIX_SHADER":
             factor, *shaders = node.inputs
@@ -188,7 +187,7 @@ def _inputs(
                 if socket.is_linked and socket.type in _VALUES:
                     yield socket, groups, _label(node, socket), _use(socket)
     for node in tree.nodes if tree is not None else ():
-        # Groups without outputs are where the glTF importer keeps what Blender has no input for.
+        # The glTF importer keeps values without an input in Blender in groups without outputs.
         if node.type == "GROUP" and not node.mute and not node.outputs:
             for socket in node.inputs:
                 yield socket, (), socket.name, "color" if socket.type == "RGBA" else "data"
@@ -216,14 +215,14 @@ def _is_transparent(shader: bpy.types.NodeSocket) -> bool:
 
 
 def _normal_maps(socket: bpy.types.NodeSocket, groups: Groups) -> Iterator[bpy.types.Image]:
-    """Yields the images of the Normal Map nodes that a Normal input gets its value from."""
+    """Yields the images of the Normal Map nodes before a Normal input."""
     pending, seen = [(socket, groups)], set()
     while pending:
-        place = pending.pop()
-        if place in seen:
+        position = pending.pop()
+        if position in seen:
             continue
-        seen.add(place)
-        for node, _, around in _before(*place):
+        seen.add(position)
+        for node, _, around in _before(*position):
             if node.type == "NORMAL_MAP":
                 yield from (image for image, _ in _sources(node.inputs["Color"], around))
             elif node.type == "BUMP":
@@ -235,7 +234,7 @@ def _normal_maps(socket: bpy.types.NodeSocket, groups: Groups) -> Iterator[bpy.t
 def _before(
     socket: bpy.types.NodeSocket, groups: Groups
 ) -> Iterator[tuple[bpy.types.Node, bpy.types.NodeSocket, Groups]]:
-    """Yields the node and its output that a socket gets its value from, however far it is led."""
+    """Yields the node and output that a socket gets its value from, through reroutes and groups."""
     source, node, around = nodes.origin(socket, groups)
     if node is not None:
         yield node, source, around
@@ -244,77 +243,77 @@ def _before(
 def _sources(
     socket: bpy.types.NodeSocket, groups: Groups
 ) -> Iterator[tuple[bpy.types.Image, _Request]]:
-    """Yields the images that a socket gets its value from, and what it takes of them."""
+    """Yields the images that a socket gets its value from, and the channels that it uses."""
     pending: list[tuple[bpy.types.NodeSocket, Groups, _Request]] = [(socket, groups, _Request())]
     seen: set[Any] = set()
     while pending:
-        place = pending.pop(0)
-        if place in seen:
+        position = pending.pop(0)
+        if position in seen:
             continue
-        seen.add(place)
-        asked = place[2]
-        for node, source, around in _before(place[0], place[1]):
+        seen.add(position)
+        request = position[2]
+        for node, source, around in _before(position[0], position[1]):
             if node.type == "TEX_IMAGE":
                 if node.image is not None:
                     is_alpha = source.name == "Alpha"
-                    yield node.image, replace(asked, channel="alpha") if is_alpha else asked
+                    yield node.image, replace(request, channel="alpha") if is_alpha else request
             else:
                 pending += [
-                    (input_, around, request)
-                    for input_, request in _asked_of(node, source, asked)
+                    (input_, around, before)
+                    for input_, before in _input_requests(node, source, request)
                     if input_.enabled
                 ]
 
 
-def _asked_of(
-    node: bpy.types.Node, source: bpy.types.NodeSocket, asked: _Request
+def _input_requests(
+    node: bpy.types.Node, source: bpy.types.NodeSocket, request: _Request
 ) -> list[tuple[bpy.types.NodeSocket, _Request]]:
-    """Returns the inputs of a node that matter to an output of it, and what they are asked for."""
+    """Converts a request at an output of a node to requests at the inputs that affect it."""
     inputs = list(node.inputs)
     if node.type in _SEPARATING:
         is_rgb = getattr(node, "mode", "RGB") == "RGB"
         channel = _SEPARATED.get(source.name, "all") if is_rgb else "all"
-        return [(inputs[0], replace(asked, channel=channel))]
+        return [(inputs[0], replace(request, channel=channel))]
     if node.type in _COMBINING:
         is_rgb = getattr(node, "mode", "RGB") == "RGB"
-        if is_rgb and asked.channel in _ORDER:
-            inputs = inputs[_ORDER.index(asked.channel) :][:1]
-        return [(input_, replace(asked, channel="all")) for input_ in inputs]
+        if is_rgb and request.channel in _ORDER:
+            inputs = inputs[_ORDER.index(request.channel) :][:1]
+        return [(input_, replace(request, channel="all")) for input_ in inputs]
     if node.type == "MATH":
-        return [(input_, _before_math(node, i, asked)) for i, input_ in enumerate(inputs)]
+        return [(input_, _before_math(node, i, request)) for i, input_ in enumerate(inputs)]
     if node.type == "VALTORGB":
-        return [(inputs[0], _before_ramp(node, asked))]
-    if node.type in _OF_OTHER_NODES or node.type.startswith("TEX_"):
-        # These have their own roles, and other textures make their colors themselves.
+        return [(inputs[0], _before_ramp(node, request))]
+    if node.type in _NODE_INPUTS or node.type.startswith("TEX_"):
+        # These nodes define roles themselves, and other textures generate their colors.
         return []
     return [
-        (input_, replace(asked, channel="all", threshold=None, is_factor=True))
+        (input_, replace(request, channel="all", threshold=None, is_factor=True))
         if input_.name in _FACTORS
-        else (input_, asked)
+        else (input_, request)
         for input_ in inputs
     ]
 
 
-def _before_math(node: bpy.types.Node, index: int, asked: _Request) -> _Request:
-    """Returns what the input of a Math node is asked for: a test, or a threshold carried over."""
+def _before_math(node: bpy.types.Node, index: int, request: _Request) -> _Request:
+    """Request at an input of a Math node, with the threshold of a test converted to the input."""
     others = [other for i, other in enumerate(node.inputs) if i != index and other.enabled]
     if any(nodes.link_into(other) is not None for other in others):
-        return asked
+        return request
     constants = [other.default_value for other in others]
-    threshold = _threshold(node.operation, index, constants, asked.threshold)
-    return replace(asked, threshold=threshold)
+    threshold = _threshold(node.operation, index, constants, request.threshold)
+    return replace(request, threshold=threshold)
 
 
 def _threshold(
     operation: str, index: int, others: list[float], threshold: float | None
 ) -> float | None:
-    """Returns at which value of an operand a test changes, given that of the result.
+    """Converts the threshold of a result to that of an operand.
 
     Args:
-        operation: Of a Math node.
-        index: Of the operand.
-        others: The other operands, constants.
-        threshold: Of the result; None if it is not tested.
+        operation: Operation of a Math node.
+        index: Index of the operand.
+        others: Constants of the other operands.
+        threshold: Threshold of the result; None if it is not tested.
     """
     if operation in {"LESS_THAN", "GREATER_THAN"}:
         return others[0]
@@ -338,9 +337,9 @@ def _threshold(
     return threshold
 
 
-def _before_ramp(node: bpy.types.Node, asked: _Request) -> _Request:
-    """Returns what the input of a Color Ramp is asked for: a test if it has two flat colors."""
+def _before_ramp(node: bpy.types.Node, request: _Request) -> _Request:
+    """Request at the input of a Color Ramp, which is a test if it has two constant colors."""
     stops = node.color_ramp.elements
     if node.color_ramp.interpolation == "CONSTANT" and len(stops) == 2:
-        return _Request("all", stops[1].position, asked.is_factor)
-    return _Request("all", None, asked.is_factor)
+        return _Request("all", stops[1].position, request.is_factor)
+    return _Request("all", None, request.is_factor)

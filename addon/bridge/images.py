@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Image datablocks to scene-linear arrays, and what decoded colors are stored as.
+"""Pixels of image datablocks as arrays, and their color spaces.
 
-What Blender keeps in `Image.pixels` (rows from the bottom, always four channels):
+`Image.pixels` has rows from the bottom, and always four channels:
 
-* a byte image: display values of the image's color space, with straight alpha. Even with the
-  alpha mode Premultiplied: Blender divides by alpha on load;
-* a float image: scene-linear values, with associated alpha. Blender converts on load.
+* byte images: display values of the image's color space, with straight alpha, even for the alpha
+  mode Premultiplied: Blender divides by alpha on load;
+* float images: scene-linear values, with associated alpha. Blender converts on load.
 
 Alpha is coverage unless the alpha mode is Channel Packed or None or the color space is data; then
-the four channels are independent. But a material may use the alpha of a Channel Packed image as
-coverage all the same, as those of Blender's glTF importer do: colors are straight then, of
-floats too, as such an image is not converted on load.
+the four channels are independent. A material may still use the alpha of a Channel Packed image as
+coverage, as those of Blender's glTF importer do. Colors are straight then, even of float images,
+as Channel Packed images are not converted on load.
 """
 
 import os
@@ -77,11 +77,12 @@ _KIND_OF_TYPE = {
     "RENDER_RESULT": "a render result",
     "COMPOSITING": "a compositor result",
 }
-_VALUES_A_BAND = 1 << 20
+_BAND_SIZE = 1 << 20
+"""Values converted at once."""
 
 
 def find(name: str) -> bpy.types.Image:
-    """Returns the image datablock of that name.
+    """Finds an image datablock by name.
 
     Raises:
         ValueError: There is none.
@@ -94,12 +95,12 @@ def find(name: str) -> bpy.types.Image:
 
 
 def load(argument: str, path: str, *, is_data: bool) -> bpy.types.Image:
-    """Loads a picture file; an image that the .blend file has of it stays as it is there.
+    """Loads a picture file, or returns the existing datablock of it, unchanged.
 
     Args:
-        argument: What the path is called in messages.
+        argument: Name of the path in messages.
         path: The file.
-        is_data: Whether its values are no colors.
+        is_data: Whether its values are not colors.
 
     Raises:
         OSError: It cannot be loaded.
@@ -118,7 +119,7 @@ def read(image: bpy.types.Image) -> Picture:
     """Copies an image datablock's pixels.
 
     Raises:
-        ValueError: The datablock is no single still image, or it has no pixels.
+        ValueError: The datablock is not a single still image, or it has no pixels.
     """
     kind = _KIND_OF_SOURCE.get(image.source) or _KIND_OF_TYPE.get(image.type)
     if kind is not None:
@@ -153,21 +154,21 @@ def read(image: bpy.types.Image) -> Picture:
         is_gray=file.is_gray,
     )
     if not was_loaded and image.source == "FILE" and not image.is_dirty:
-        # Blender read the file for this alone, and reads it again where it needs it.
+        # Free the pixels that were loaded only for this; Blender reloads them if needed.
         image.buffers_free()
     return picture
 
 
-# A large image leaves no memory for a second one of floats: a band is copied, and written to memory
-# that was read before.
-
-
 def _as_bytes(pixels: FloatArray) -> NDArray[np.uint8]:
-    """Returns what bytes were, of one axis, in the memory of the floats, which is cut down."""
+    """Converts values of a byte image, (n,), back to bytes, in the memory of the floats.
+
+    Large images leave no memory for a second array: bands are copied, and the bytes written over
+    floats that were read before; then the memory is shrunk.
+    """
     count = len(pixels)
     narrow = pixels.view(np.uint8)
-    for start in range(0, count, _VALUES_A_BAND):
-        band = pixels[start : start + _VALUES_A_BAND] * np.float32(255)
+    for start in range(0, count, _BAND_SIZE):
+        band = pixels[start : start + _BAND_SIZE] * np.float32(255)
         narrow[start : start + len(band)] = np.rint(band, out=band)
     del narrow
     pixels.resize(-(-count // 4), refcheck=False)
@@ -175,7 +176,7 @@ def _as_bytes(pixels: FloatArray) -> NDArray[np.uint8]:
 
 
 def _file_of(image: bpy.types.Image) -> openimageio.ValueKind:
-    """Returns what the file of an image holds: integers, as 16-bit PNG, are floats in Blender."""
+    """Properties of an image's file: a 16-bit PNG has integers, which are floats in Blender."""
     if image.source != "FILE":
         return openimageio.ValueKind(is_integer=False, is_gray=False)
     if image.packed_file is None:
@@ -198,7 +199,7 @@ def tile_numbers(image: bpy.types.Image) -> list[int]:
 
 
 def read_tile(image: bpy.types.Image, number: int) -> Picture:
-    """Copies the pixels of a UDIM tile, from its file: Blender gives out those of one tile only.
+    """Copies the pixels of a UDIM tile from its file, as Blender's API has one tile's only.
 
     Raises:
         ValueError: The tile has no file, it cannot be read, or it differs from what Blender shows.
@@ -221,13 +222,13 @@ def read_tile(image: bpy.types.Image, number: int) -> Picture:
 
 
 def files_of(image: bpy.types.Image) -> dict[int | None, Path]:
-    """Returns the file that a still image is rendered from, or those of a UDIM image's tiles.
+    """Returns the files that a still image or a UDIM image is rendered from.
 
     Returns:
-        Absolute paths, by the number of the tile; None stands for an image without tiles.
+        Absolute paths by tile number; the key is None for an image without tiles.
 
     Raises:
-        ValueError: The image is rendered from something else, or a file is missing.
+        ValueError: The image is not rendered from files, or a file is missing.
     """
     kind = kind_that_is_no_still(image)
     if kind is not None:
@@ -249,7 +250,7 @@ def files_of(image: bpy.types.Image) -> dict[int | None, Path]:
 
 
 def kind_that_is_no_still(image: bpy.types.Image) -> str | None:
-    """Returns what an image is that has no file of a still, packed or not; None for others."""
+    """Describes an image that is not a still from a file, packed or not; None for others."""
     kind = _KIND_OF_TYPE.get(image.type)
     if kind is None and image.source not in {"FILE", "TILED"}:
         kind = _KIND_OF_SOURCE.get(image.source, "a generated image, which has no file")
@@ -257,7 +258,7 @@ def kind_that_is_no_still(image: bpy.types.Image) -> str | None:
 
 
 def kind_that_is_not_read(image: bpy.types.Image) -> str | None:
-    """Returns what an image is whose pixels, or those of its tiles, are not read; else None."""
+    """Describes an image whose pixels or tiles cannot be read; None for others."""
     if image.source == "TILED":
         return None
     return _KIND_OF_SOURCE.get(image.source) or _KIND_OF_TYPE.get(image.type)
@@ -265,7 +266,7 @@ def kind_that_is_not_read(image: bpy.types.Image) -> str | None:
 
 @contextmanager
 def _tile_file(image: bpy.types.Image, number: int, who: str) -> Iterator[str]:
-    """Yields the path of a tile's file, for the time being where the tile is packed."""
+    """Yields the path of a tile's file, a temporary file if the tile is packed."""
     path = str(tile_path(image, number))
     packed = next((file for file in image.packed_files if file.tile_number == number), None)
     if packed is not None:
@@ -311,7 +312,7 @@ def _ocio_config() -> str:
 
 
 def scene_linear_name() -> str:
-    """Returns the name of the scene-linear space, which is what new float images have."""
+    """Returns the name of the scene-linear space, the default of new float images."""
     probe = bpy.data.images.new("prefilter probe", 1, 1, float_buffer=True)
     try:
         return probe.colorspace_settings.name

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Some points of an object that shows points: where they are, and the object with fewer of them."""
+"""Removal of points from objects, and their world positions."""
 
 from collections.abc import Sequence
 
@@ -16,12 +16,12 @@ _POSITION = "position"
 
 
 def may_lose_points(obj: bpy.types.Object) -> bool:
-    """Returns whether an object has points of its own, and not only by its modifiers."""
+    """Whether an object has points of its own, not only from modifiers."""
     return may_be_points(obj) and _POSITION in obj.data.attributes
 
 
 def check_editable(obj: bpy.types.Object) -> None:
-    """Raises ValueError where points cannot be taken from an object."""
+    """Raises ValueError if points cannot be removed from an object."""
     if obj.data.library is not None or obj.library is not None:
         raise ValueError(Sentence("object '{}' is linked from another file", obj.name))
     if isinstance(obj.data, bpy.types.PointCloud) and not hasattr(obj.data, "resize"):
@@ -39,55 +39,55 @@ def world_positions(obj: bpy.types.Object) -> NDArray[np.float64]:
 
 
 def keep_points(obj: bpy.types.Object, kept: NDArray[np.bool_]) -> None:
-    """Gives an object new data with some of its points, and all their attributes.
+    """Gives an object new data with only the kept points, and all their attributes.
 
-    Other objects with the same data keep all.
+    Other objects with the same data keep all points.
     """
     old = obj.data
     if isinstance(old, bpy.types.Mesh):
-        made = _fewer_vertices(old, kept)
+        new = _fewer_vertices(old, kept)
     else:
-        made = old.copy()
-        values = {one.name: attributes.values_of(one)[kept] for one in _read(made)}
-        made.resize(int(kept.sum()))
-        _write(made, values)
+        new = old.copy()
+        values = {each.name: attributes.values_of(each)[kept] for each in _transferable(new)}
+        new.resize(int(kept.sum()))
+        _write(new, values)
     name = old.name
-    obj.data = made
+    obj.data = new
     if old.users == 0:
         bpy.data.batch_remove([old])
-        made.name = name
-    made.update_tag()
+        new.name = name
+    new.update_tag()
 
 
 def _fewer_vertices(old: bpy.types.Mesh, kept: NDArray[np.bool_]) -> bpy.types.Mesh:
-    made = bpy.data.meshes.new(old.name)
-    made.vertices.add(int(kept.sum()))
+    new = bpy.data.meshes.new(old.name)
+    new.vertices.add(int(kept.sum()))
     for material in old.materials:
-        made.materials.append(material)
+        new.materials.append(material)
     for key, value in old.items():
-        made[key] = value
-    read = _read(old)
-    for one in read:
-        if one.name not in made.attributes:
-            made.attributes.new(one.name, one.data_type, "POINT")
-    _write(made, {one.name: attributes.values_of(one)[kept] for one in read})
+        new[key] = value
+    transferred = _transferable(old)
+    for attribute in transferred:
+        if attribute.name not in new.attributes:
+            new.attributes.new(attribute.name, attribute.data_type, "POINT")
+    _write(new, {each.name: attributes.values_of(each)[kept] for each in transferred})
     colors = old.color_attributes
     if colors.active_color_name:
-        made.color_attributes.active_color_name = colors.active_color_name
+        new.color_attributes.active_color_name = colors.active_color_name
     if colors.render_color_index >= 0:
         rendered = colors[colors.render_color_index].name
-        made.color_attributes.render_color_index = made.color_attributes.find(rendered)
-    return made
+        new.color_attributes.render_color_index = new.color_attributes.find(rendered)
+    return new
 
 
-def _read(data: bpy.types.ID) -> Sequence[bpy.types.Attribute]:
+def _transferable(data: bpy.types.ID) -> Sequence[bpy.types.Attribute]:
     return [
-        one
-        for one in data.attributes
-        if one.domain == "POINT" and attributes.is_read(one) and not one.name.startswith(".")
+        each
+        for each in data.attributes
+        if each.domain == "POINT" and attributes.is_read(each) and not each.name.startswith(".")
     ]
 
 
-def _write(data: bpy.types.ID, values: dict[str, NDArray[np.generic]]) -> None:
-    for name, some in values.items():
-        attributes.set_values(data.attributes[name], some)
+def _write(data: bpy.types.ID, columns: dict[str, NDArray[np.generic]]) -> None:
+    for name, values in columns.items():
+        attributes.set_values(data.attributes[name], values)

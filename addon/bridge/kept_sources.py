@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What objects were made of: kept with them, and shown in their place.
+"""Sources of results: stored with the results, and shown in their stead.
 
-An object that got a mesh of its own in place keeps a copy of what it was, which is in no
-collection until it is shown. Others keep the objects that they were made of. The group of
-properties is that of the subject `comparison`.
+An object whose mesh was replaced keeps a copy of the original object, which is in no collection
+until it is shown. New objects keep references to their sources. The property group belongs to the
+subject `comparison`.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -15,16 +15,16 @@ import bpy
 _ENDING = ".source"
 
 
-def copied(obj: bpy.types.Object) -> bpy.types.Object:
-    """Returns a copy of an object as it is, with the same data, that is in no collection."""
-    made = obj.copy()
-    made.name = f"{obj.name}{_ENDING}"
-    made.prefilter_made_of.is_copy = True
-    return made
+def copy_source(obj: bpy.types.Object) -> bpy.types.Object:
+    """Copies an object, with the same data, into no collection."""
+    copy = obj.copy()
+    copy.name = f"{obj.name}{_ENDING}"
+    copy.prefilter_made_of.is_copy = True
+    return copy
 
 
 def keep(result: bpy.types.Object, sources: Sequence[bpy.types.Object]) -> None:
-    """Keeps what an object was made of; what was kept before is then kept by its copy."""
+    """Sets the sources of a result; its copied source keeps the earlier ones."""
     kept = result.prefilter_made_of
     kept.sources.clear()
     for obj in sources:
@@ -34,7 +34,7 @@ def keep(result: bpy.types.Object, sources: Sequence[bpy.types.Object]) -> None:
 
 
 def keep_more(result: bpy.types.Object, sources: Sequence[bpy.types.Object]) -> None:
-    """Keeps more of what an object was made of, where something is kept."""
+    """Adds sources to a result that has some."""
     kept = result.prefilter_made_of
     for obj in sources if len(kept.sources) else ():
         kept.sources.add().obj = obj
@@ -42,24 +42,24 @@ def keep_more(result: bpy.types.Object, sources: Sequence[bpy.types.Object]) -> 
 
 
 def sources_of(result: bpy.types.Object) -> list[bpy.types.Object]:
-    """Returns what an object was made of and that is still there."""
+    """Returns the sources of a result that still exist."""
     kept = result.prefilter_made_of
-    found = [entry.obj for entry in kept.sources if entry.obj is not None]
-    # Objects that were deleted stay in the file for as long as something knows them.
-    return [obj for obj in found if obj.users_collection or _is_hidden_copy(obj, kept)]
+    sources = [entry.obj for entry in kept.sources if entry.obj is not None]
+    # Deleted objects remain in the file as long as anything refers to them.
+    return [obj for obj in sources if obj.users_collection or _is_hidden_copy(obj, kept)]
 
 
 def original_of(result: bpy.types.Object) -> bpy.types.Object | None:
-    """Returns what an object was, which is the first of what it was made of; None if it is gone."""
+    """Returns the original of a result, its first source; None if it is gone."""
     sources = result.prefilter_made_of.sources
     first = sources[0].obj if len(sources) else None
     return first if first is not None and first in sources_of(result) else None
 
 
 def put_in_place(results: Sequence[bpy.types.Object]) -> None:
-    """Puts what objects were where they are, unless it is seen; each was made of the next."""
+    """Moves hidden originals to their results; each result was made of the next one."""
     bpy.context.view_layer.update()
-    # What is in no collection has no place in the world that Blender knows.
+    # Blender updates no world matrix of objects in no collection.
     world = results[0].matrix_world.copy()
     for result in results:
         original = original_of(result)
@@ -68,7 +68,7 @@ def put_in_place(results: Sequence[bpy.types.Object]) -> None:
         if result.prefilter_made_of.is_source_shown:
             world = original.matrix_world.copy()
         elif _is_copy(original, result):
-            _place(original, result)
+            _copy_transform(original, result)
         elif not original.visible_get():
             original.matrix_world = world
 
@@ -77,7 +77,7 @@ def put_in_place(results: Sequence[bpy.types.Object]) -> None:
 def evaluated(
     sources: Sequence[bpy.types.Object], context: bpy.types.Context
 ) -> Iterator[bpy.types.Depsgraph]:
-    """Has Blender evaluate objects, hidden or not, and in no collection too."""
+    """Evaluates objects even if they are hidden or in no collection."""
     root = context.scene.collection
     linked = [obj for obj in sources if not obj.visible_get() and obj.name not in root.objects]
     for obj in linked:
@@ -98,19 +98,19 @@ def evaluated(
 
 
 def copies_of(results: Iterable[bpy.types.Object]) -> list[bpy.types.Object]:
-    """Returns the copies of what objects were, and of what these were."""
-    found: list[bpy.types.Object] = []
-    todo = list(results)
-    while todo:
-        one = todo.pop()
-        copies = [obj for obj in sources_of(one) if _is_copy(obj, one) and obj not in found]
-        found += copies
-        todo += copies
-    return found
+    """Returns the copied sources of results, and recursively of these."""
+    copies: list[bpy.types.Object] = []
+    pending = list(results)
+    while pending:
+        result = pending.pop()
+        new = [obj for obj in sources_of(result) if _is_copy(obj, result) and obj not in copies]
+        copies += new
+        pending += new
+    return copies
 
 
 def result_of(obj: bpy.types.Object | None) -> bpy.types.Object | None:
-    """Returns what was made of an object, or the object itself if that keeps its sources."""
+    """Returns the result that shows an object as its source, or the object if it has sources."""
     if obj is None:
         return None
     if obj.prefilter_made_of.is_source:
@@ -124,17 +124,17 @@ def result_of(obj: bpy.types.Object | None) -> bpy.types.Object | None:
 def show(
     result: bpy.types.Object, context: bpy.types.Context, *, source: bool
 ) -> list[bpy.types.Object]:
-    """Shows what an object was made of in its place, or the object again; returns what is shown."""
+    """Shows the sources of a result in its stead, or the result; returns the shown objects."""
     sources = sources_of(result)
     shown, hidden = (sources, [result]) if source else ([result], sources)
     copy = next((obj for obj in sources if _is_copy(obj, result)), None)
     original = original_of(result)
     if copy is not None:
-        _place(*((copy, result) if source else (result, copy)))
+        _copy_transform(*((copy, result) if source else (result, copy)))
     elif original is not None:
         context.view_layer.update()
-        moved, there = (original, result) if source else (result, original)
-        moved.matrix_world = there.matrix_world
+        moved, fixed = (original, result) if source else (result, original)
+        moved.matrix_world = fixed.matrix_world
     if source and copy is not None:
         for collection in result.users_collection:
             collection.objects.link(copy)
@@ -156,13 +156,13 @@ def show(
 def _hide(obj: bpy.types.Object, context: bpy.types.Context, *, hides: bool) -> None:
     obj.hide_render = hides
     if obj.name in context.view_layer.objects:
-        # What is hidden cannot be selected.
+        # Hidden objects cannot be selected.
         obj.hide_set(hides)
         obj.select_set(not hides)
 
 
 def forget(result: bpy.types.Object, context: bpy.types.Context) -> None:
-    """Removes the copies of what an object was; other sources stay as they are."""
+    """Removes the copied sources of a result; other sources remain."""
     kept = result.prefilter_made_of
     if kept.is_source_shown:
         show(result, context, source=False)
@@ -176,7 +176,7 @@ def forget(result: bpy.types.Object, context: bpy.types.Context) -> None:
 
 
 def _is_copy(obj: bpy.types.Object, result: bpy.types.Object) -> bool:
-    """Tells whether a source is the copy of what an object was, which is its first one."""
+    """Whether a source is the copy of a result's original, which is its first source."""
     return bool(obj.prefilter_made_of.is_copy) and obj == result.prefilter_made_of.sources[0].obj
 
 
@@ -184,8 +184,8 @@ def _is_hidden_copy(obj: bpy.types.Object, kept: bpy.types.PropertyGroup) -> boo
     return bool(obj.prefilter_made_of.is_copy) and not kept.is_source_shown
 
 
-def _place(obj: bpy.types.Object, like: bpy.types.Object) -> None:
-    """Puts an object where another one is."""
+def _copy_transform(obj: bpy.types.Object, like: bpy.types.Object) -> None:
+    """Copies the parent and transform of another object."""
     obj.parent, obj.parent_type, obj.parent_bone = like.parent, like.parent_type, like.parent_bone
     obj.matrix_parent_inverse = like.matrix_parent_inverse
     obj.rotation_mode = like.rotation_mode

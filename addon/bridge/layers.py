@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Attributes of meshes that are carried from the corners of triangles to other triangles."""
+"""Attributes of meshes, by triangle corners, for transfer between meshes."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
@@ -19,29 +19,30 @@ ATTRIBUTE = "ATTRIBUTE"
 VERTEX_GROUP = "VERTEX_GROUP"
 NORMALS = "NORMALS"
 FREESTYLE = "FREESTYLE"
-"""Faces that are marked for Freestyle, in Blenders that have no attribute for that."""
+"""Faces marked for Freestyle, in Blender versions without an attribute for that."""
 SHADED_KEY = "prefilter_shaded"
-"""Tags meshes whose normals follow from their triangles: other triangles get others."""
+"""Tags meshes with computed custom normals, which are not transferred."""
 
 _FREESTYLE_PROPERTY = "use_freestyle_mark"
 _DOMAINS = ("POINT", "CORNER", "FACE")
 _ROTATIONS = frozenset({"QUATERNION", "FLOAT4X4"})
 FACE_SETS = ".sculpt_face_set"
 _SCULPTED = frozenset({".sculpt_mask", FACE_SETS})
-"""What Sculpt Mode keeps in attributes."""
+"""Attributes of Sculpt Mode."""
 
 
 @dataclass(frozen=True)
 class Layer:
-    """Values of a mesh, and which of them the corners of its triangles have.
+    """Values of a mesh, indexed by the corners of its triangles.
 
     Attributes:
         kind: COLOR, UV_MAP, ATTRIBUTE, VERTEX_GROUP, NORMALS or FREESTYLE.
-        name: The attribute's; empty for the last two.
-        data_type: As Blender names types of attributes.
+        name: Name of the attribute; empty for NORMALS and FREESTYLE.
+        data_type: Blender's name of the attribute type.
         domain: POINT, CORNER or FACE.
         values: (k, c).
-        corners: (m, 3) int32, of POINT and CORNER; (m, 1) of FACE.
+        corners: Indices of values per corner, (m, 3) int32, for POINT and CORNER; per triangle,
+            (m, 1), for FACE.
     """
 
     kind: str
@@ -53,20 +54,20 @@ class Layer:
 
     @property
     def key(self) -> tuple[str, str]:
-        """What layers of several meshes have in common that become one."""
+        """Kind and name; layers of several meshes with the same key are joined."""
         return self.kind, self.name
 
     @property
     def is_blended(self) -> bool:
-        """Whether a mean of values is a value in between; of matrices it is none."""
+        """Whether values can be averaged; rotations and matrices cannot."""
         return self.values.dtype.kind == "f" and self.data_type not in _ROTATIONS
 
-    def turned(self) -> "Layer":
-        """Returns the layer of triangles that go the other way around."""
+    def reversed(self) -> "Layer":
+        """Returns the layer for triangles with reversed orientation."""
         return self if self.domain == "FACE" else replace(self, corners=self.corners[:, ::-1])
 
     def rotated(self, linear: NDArray[np.float64]) -> "Layer":
-        """Returns the layer of a mesh in another space: normals turn with it."""
+        """Returns the layer after a linear transform of the mesh, which rotates normals."""
         if self.kind != NORMALS:
             return self
         normals = self.values @ np.linalg.inv(linear)
@@ -79,11 +80,11 @@ class NewLayer:
     """Values of a new mesh: one for each vertex, corner or face.
 
     Attributes:
-        kind: As of `Layer`.
-        name: Likewise.
-        data_type: Likewise.
-        domain: Likewise.
-        values: (k, c).
+        kind: As for `Layer`.
+        name: As for `Layer`.
+        data_type: As for `Layer`.
+        domain: As for `Layer`.
+        values: (k, c), one row per element of the domain.
     """
 
     kind: str
@@ -94,8 +95,8 @@ class NewLayer:
 
 
 @dataclass(frozen=True)
-class Wanted:
-    """Which layers to read.
+class LayerSelection:
+    """Kinds of layers to read.
 
     Attributes:
         colors: Color attributes.
@@ -110,12 +111,12 @@ class Wanted:
 
 @dataclass(frozen=True)
 class Triangles:
-    """Which vertices, corners and faces the triangles of an evaluated mesh have.
+    """Vertices, corners and faces of the triangles of an evaluated mesh.
 
     Attributes:
         vertices: (m, 3).
-        corners: (m, 3); None where all faces are triangles.
-        faces: (m,), likewise.
+        corners: (m, 3); None if all faces are triangles.
+        faces: (m,); None if all faces are triangles.
     """
 
     vertices: NDArray[np.int32]
@@ -123,7 +124,7 @@ class Triangles:
     faces: NDArray[np.int32] | None = None
 
     def indices(self, domain: str) -> NDArray[np.int32]:
-        """Returns where the values of the triangles are in a domain: (m, 3), of faces (m, 1)."""
+        """Indices of the triangles' values in a domain: (m, 3), for faces (m, 1)."""
         count = len(self.vertices)
         if domain == "POINT":
             return self.vertices
@@ -136,19 +137,19 @@ class Triangles:
 
 
 def read_layers(
-    shown: bpy.types.Object, mesh: bpy.types.Mesh, triangles: Triangles, wanted: Wanted
+    shown: bpy.types.Object, mesh: bpy.types.Mesh, triangles: Triangles, selection: LayerSelection
 ) -> Iterator[Layer]:
     """Yields the layers of an evaluated mesh.
 
     Args:
-        shown: The object that shows it, which knows the names of vertex groups.
+        shown: The object of the mesh, which has the names of vertex groups.
         mesh: The mesh.
         triangles: Its triangles.
-        wanted: What to read.
+        selection: Layers to read.
     """
     indices = cache(triangles.indices)
-    yield from _read_attributes(mesh, indices, wanted)
-    if not wanted.attributes:
+    yield from _read_attributes(mesh, indices, selection)
+    if not selection.attributes:
         return
     if _FREESTYLE_PROPERTY in bpy.types.MeshPolygon.bl_rna.properties:
         flags = np.empty((len(mesh.polygons), 1), np.bool_)
@@ -164,7 +165,7 @@ def read_layers(
 
 
 def _read_attributes(
-    mesh: bpy.types.Mesh, indices: Callable[[str], NDArray[np.int32]], wanted: Wanted
+    mesh: bpy.types.Mesh, indices: Callable[[str], NDArray[np.int32]], selection: LayerSelection
 ) -> Iterator[Layer]:
     uv_maps = {layer.name for layer in mesh.uv_layers}
     colors = {layer.name for layer in mesh.color_attributes}
@@ -172,33 +173,33 @@ def _read_attributes(
         kind = COLOR if attribute.name in colors else ATTRIBUTE
         if attribute.name in uv_maps:
             kind = UV_MAP
-        is_wanted = {
-            COLOR: wanted.colors,
-            UV_MAP: wanted.uv_maps,
-            ATTRIBUTE: wanted.attributes and _is_wanted(attribute),
+        is_selected = {
+            COLOR: selection.colors,
+            UV_MAP: selection.uv_maps,
+            ATTRIBUTE: selection.attributes and _is_transferable(attribute),
         }
         domain = attribute.domain
-        if is_wanted[kind] and domain in _DOMAINS and attributes.is_read(attribute):
+        if is_selected[kind] and domain in _DOMAINS and attributes.is_read(attribute):
             values = attributes.values_of(attribute)
             yield Layer(kind, attribute.name, attribute.data_type, domain, values, indices(domain))
 
 
 def write_layer(mesh: bpy.types.Mesh, layer: NewLayer) -> None:
-    """Adds a color attribute, a UV map or another attribute to a mesh, or marks its faces."""
+    """Adds a color attribute, a UV map or another attribute to a mesh, or sets Freestyle marks."""
     if layer.kind == FREESTYLE:
         mesh.polygons.foreach_set(_FREESTYLE_PROPERTY, layer.values[:, 0])
         return
     if layer.kind == UV_MAP:
-        # Attributes of UVs that are made as such become no maps in all versions.
-        made = mesh.uv_layers.new(name=layer.name, do_init=False)
-        attribute = mesh.attributes[made.name]
+        # In some versions a new UV attribute does not become a UV map by itself.
+        uv_map = mesh.uv_layers.new(name=layer.name, do_init=False)
+        attribute = mesh.attributes[uv_map.name]
     else:
         attribute = mesh.attributes.new(layer.name, layer.data_type, layer.domain)
     attributes.set_values(attribute, layer.values)
 
 
 def unread(mesh: bpy.types.Mesh) -> set[str]:
-    """Returns the names of a user's attributes that are of no type that can be carried."""
+    """Returns the names of a user's attributes whose types cannot be transferred."""
     return {
         attribute.name
         for attribute in mesh.attributes
@@ -206,5 +207,5 @@ def unread(mesh: bpy.types.Mesh) -> set[str]:
     }
 
 
-def _is_wanted(attribute: bpy.types.Attribute) -> bool:
+def _is_transferable(attribute: bpy.types.Attribute) -> bool:
     return attribute.name in _SCULPTED or attributes.is_free(attribute)

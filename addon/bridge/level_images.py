@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The levels of an image as image datablocks."""
+"""Levels of an image as image datablocks."""
 
 import re
 from collections.abc import Sequence
@@ -12,12 +12,12 @@ from .images import FloatArray, Picture
 from .new_images import new_packed, suffixed
 
 _SOURCE_KEY = "prefilter_level_of"
-_MOST_LEVELS = 31
+_MAX_LEVELS = 31
 
 
 @dataclass(frozen=True)
 class StagedLevels:
-    """Level images that are finished, and replace none yet.
+    """Finished level images that have not replaced earlier ones yet.
 
     Attributes:
         picture: Level 0.
@@ -28,10 +28,10 @@ class StagedLevels:
     images: list[bpy.types.Image]
 
     def commit(self) -> list[str]:
-        """Gives the images their names, and puts each in the place of that of an earlier bake.
+        """Renames the images, and replaces those of an earlier bake.
 
         Returns:
-            The names of the images. One that belongs to another image gets a number behind it.
+            The names of the images. A name that another image has gets a number appended.
         """
         made_before = _earlier_levels(self.picture)
         for number, image in enumerate(self.images, start=1):
@@ -52,14 +52,13 @@ class StagedLevels:
 def stage_levels(picture: Picture, levels: Sequence[FloatArray]) -> StagedLevels:
     """Makes packed image datablocks of levels, to be named `<image>.mip01`, `<image>.mip02` ...
 
-    An image of an earlier bake is replaced, so that materials that showed it show the new one.
-    Deeper levels of an earlier bake are kept. Every image keeps a fake user, as Blender
-    saves no unused datablock.
+    Images of an earlier bake are replaced in the materials that use them. Deeper levels of an
+    earlier bake are kept. All images have a fake user, as Blender does not save unused datablocks.
 
-    A byte level has the picture's color space, and straight alpha where the picture's is
+    A byte level has the picture's color space, and straight alpha if the picture's is
     Premultiplied. A float level is scene-linear (or data, like the picture), with associated alpha.
-    Only these survive packing, saving and loading: Blender's packing does not convert colors, and
-    its loading does.
+    Only these formats survive packing, saving and loading: Blender's packing does not convert
+    colors, but its loading does.
 
     Args:
         picture: Level 0.
@@ -83,44 +82,44 @@ def stage_levels(picture: Picture, levels: Sequence[FloatArray]) -> StagedLevels
 
 
 def level_name(image_name: str, number: int) -> str:
-    """Returns the name of the image that holds a level.
-
-    A base that is too long is cut, and gets a hash of what it was.
-    """
+    """Returns the name of a level's image; a base name that is too long is cut, with a hash."""
     return suffixed(image_name, f"mip{number:02d}")
 
 
 def is_level(image: bpy.types.Image) -> bool:
-    """Tells whether a bake has made an image as a level of another."""
+    """Whether an image is a level that a bake made."""
     return image.get(_SOURCE_KEY) is not None
 
 
 def source_of_level(image: bpy.types.Image | None) -> bpy.types.Image | None:
-    """Returns the image that a bake has made an image as a level of, if that is still there."""
+    """Returns the image that a level was made from; None if it is gone."""
     name = image.get(_SOURCE_KEY) if image is not None else None
     return next((other for other in bpy.data.images if other.name_full == name), None)
 
 
 def levels_of(image: bpy.types.Image) -> list[bpy.types.Image]:
-    """Returns the images that bakes have made as levels of an image."""
-    found = bpy.data.images
-    return [one for one in found if one.library is None and one.get(_SOURCE_KEY) == image.name_full]
+    """Returns the levels that bakes made of an image."""
+    return [
+        level
+        for level in bpy.data.images
+        if level.library is None and level.get(_SOURCE_KEY) == image.name_full
+    ]
 
 
 def _earlier_levels(picture: Picture) -> dict[int, list[bpy.types.Image]]:
-    """Returns the level images that bakes of a picture have made, in the order of their names."""
-    numbers = {level_name(picture.name, number): number for number in range(1, _MOST_LEVELS)}
-    found: dict[int, list[bpy.types.Image]] = {}
+    """Level images of earlier bakes of a picture, by level, ordered by name."""
+    numbers = {level_name(picture.name, number): number for number in range(1, _MAX_LEVELS)}
+    levels: dict[int, list[bpy.types.Image]] = {}
     for image in bpy.data.images:
         name = _unnumbered(image.name)
         is_ours = image.library is None and image.get(_SOURCE_KEY) == picture.full_name
         if is_ours and name in numbers:
-            found.setdefault(numbers[name], []).append(image)
-    return found
+            levels.setdefault(numbers[name], []).append(image)
+    return levels
 
 
 def _unnumbered(name: str) -> str:
-    """Returns a name without the number that Blender adds to one that is taken."""
+    """Removes the number that Blender appends to a name that is taken."""
     return re.sub(r"\.\d{3,}$", "", name)
 
 

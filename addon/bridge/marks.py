@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What edges and vertices are marked with: seams, Freestyle's marks, weights, other attributes."""
+"""Marks of edges and vertices: seams, Freestyle marks, weights and other attributes."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -14,17 +14,17 @@ from .attributes import is_free, is_read, set_values, values_of
 
 _FLAG = "FLAG"
 _FLAGS = {"use_seam": "uv_seam", "use_freestyle_mark": "freestyle_edge"}
-"""Properties of edges, and the attributes that later Blenders keep them in."""
+"""Properties of edges, and the attributes that store them in later Blender versions."""
 _WEIGHTS = frozenset({"crease_edge", "bevel_weight_edge", "crease_vert", "bevel_weight_vert"})
 
 
 @dataclass(frozen=True)
 class MarkKind:
-    """What is kept for each edge or vertex.
+    """Kind of mark of edges or vertices.
 
     Attributes:
-        name: Of Blender's attribute, or of the property of edges.
-        data_type: As Blender names types of attributes; that of properties is their own.
+        name: Name of Blender's attribute, or of the property of edges.
+        data_type: Blender's name of the attribute type, or FLAG for a property.
         domain: EDGE or POINT.
     """
 
@@ -35,11 +35,11 @@ class MarkKind:
 
 @dataclass(frozen=True)
 class Marks:
-    """Marked edges, or vertices.
+    """Marked edges or vertices.
 
     Attributes:
-        kind: What they have.
-        ends: (k, 2, 3) in space; of vertices, both are one place.
+        kind: Kind of the marks.
+        ends: Positions of the ends of edges, (k, 2, 3); both are the same for vertices.
         values: (k, c), not 0.
     """
 
@@ -50,11 +50,11 @@ class Marks:
 
 @dataclass(frozen=True)
 class NewMarks:
-    """What a new mesh has of them.
+    """Marks of a new mesh.
 
     Attributes:
-        kind: As of `Marks`.
-        values: (n, c) of all edges, or vertices; 0 where they are not marked.
+        kind: Kind of the marks.
+        values: Values of all edges or vertices, (n, c); 0 where not marked.
     """
 
     kind: MarkKind
@@ -64,17 +64,17 @@ class NewMarks:
 def read_marks(
     mesh: bpy.types.Mesh,
 ) -> Iterator[tuple[MarkKind, NDArray[np.int32], NDArray[Any]]]:
-    """Yields kinds of marks, the vertices (k, 2) of what has them, and values that are not 0."""
+    """Yields kinds of marks, the vertices of marked edges or vertices, (k, 2), and their values."""
     ends = np.empty((len(mesh.edges), 2), np.int32)
     mesh.edges.foreach_get("vertices", ends.ravel())
     for kind, values in _kinds(mesh):
         marked = np.flatnonzero(values.any(axis=1))
         if not len(marked):
             continue
-        of = ends[marked]
+        vertices = ends[marked]
         if kind.domain == "POINT":
-            of = np.stack([marked, marked], axis=1).astype(np.int32)
-        yield kind, of, values[marked]
+            vertices = np.stack([marked, marked], axis=1).astype(np.int32)
+        yield kind, vertices, values[marked]
 
 
 def write_marks(mesh: bpy.types.Mesh, marks: NewMarks) -> None:
@@ -88,7 +88,9 @@ def write_marks(mesh: bpy.types.Mesh, marks: NewMarks) -> None:
 
 def _kinds(mesh: bpy.types.Mesh) -> Iterator[tuple[MarkKind, NDArray[Any]]]:
     flags = {
-        name: of for name, of in _FLAGS.items() if name in bpy.types.MeshEdge.bl_rna.properties
+        name: attribute
+        for name, attribute in _FLAGS.items()
+        if name in bpy.types.MeshEdge.bl_rna.properties
     }
     for name in flags:
         values = np.empty((len(mesh.edges), 1), np.bool_)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Where a material samples an image: which UV map, moved how, extended how."""
+"""How materials sample images: UV maps, mappings and extensions; and their base colors."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -15,13 +15,13 @@ WRAP_OF_EXTENSION = {
     "REPEAT": "repeat",
     "EXTEND": "clamp",
     "CLIP": "border",
-    # A mirrored image goes on with its edge, as far as a lookup inside of it can see.
+    # Within half a texel of the border, where lookups inside the image reach, both are the same.
     "MIRROR": "clamp",
 }
-"""The library's wrap mode for what an Image Texture node does outside of its image."""
+"""The library's wrap mode for each extension of an Image Texture node."""
 
 WHITE = (1.0, 1.0, 1.0, 1.0)
-"""The color of what has no material."""
+"""Color of surfaces without a material."""
 
 _ONE_COLOR = frozenset({"BSDF_DIFFUSE", "EMISSION"})
 
@@ -31,9 +31,9 @@ class ImageUse:
     """One way in which a material samples an image.
 
     Attributes:
-        uv_map: The name of the UV map; empty for the active render UV map.
-        transform: The rows of the 2 x 3 matrix that takes (u, v, 1) to texture coordinates.
-        extension: What the Image Texture node does outside of the image.
+        uv_map: Name of the UV map; empty for the active render UV map.
+        transform: Rows of the 2 x 3 matrix from (u, v, 1) to texture coordinates.
+        extension: Extension of the Image Texture node.
     """
 
     uv_map: str
@@ -42,7 +42,7 @@ class ImageUse:
 
 
 class _NotUvError(Exception):
-    """The coordinates come from something else than a UV map; the message says from what."""
+    """The coordinates do not come from a UV map; the message names their source."""
 
 
 def image_uses(
@@ -50,11 +50,11 @@ def image_uses(
 ) -> tuple[list[ImageUse], list[str]]:
     """Finds the Image Texture nodes of a material that show an image.
 
-    Node groups, reroutes, muted nodes and Mapping nodes are followed. A node needs no connection to
-    the output: a texture that is yet to be used counts.
+    Links are followed through groups, reroutes, muted nodes and Mapping nodes. The nodes need not
+    be connected to the output.
 
     Returns:
-        The different uses, and a warning for each node whose coordinates are no UV map.
+        The different uses, and a warning for each node whose coordinates are not a UV map's.
     """
     uses: list[ImageUse] = []
     warnings: list[str] = []
@@ -77,17 +77,17 @@ def images_of(owner: nodes.Owner, kind: str = "TEX_IMAGE") -> list[bpy.types.Ima
     """Returns the images of a material's Image Texture nodes, each once.
 
     Args:
-        owner: The material, or something else with shader nodes.
+        owner: A material, world or light.
         kind: The type of the nodes; "TEX_ENVIRONMENT" for Environment Texture nodes.
     """
     return list(dict.fromkeys(node.image for node, _ in _image_nodes(owner, kind)))
 
 
 def base_color(material: bpy.types.Material | None) -> tuple[float, float, float, float]:
-    """Returns the color that a material gives a surface that is the same everywhere.
+    """Returns the uniform color of a material.
 
-    That is the base color and the alpha of the shader that the output shows, or of an RGB node that
-    leads there; without such a shader the color of the viewport.
+    This is the base color (from its RGB node, if one is linked) and the alpha of the shader that
+    the output shows, or else the viewport color.
 
     Returns:
         Scene-linear red, green and blue, and alpha.
@@ -111,7 +111,7 @@ def base_color(material: bpy.types.Material | None) -> tuple[float, float, float
 
 
 def shown_shader(material: bpy.types.Material) -> bpy.types.Node | None:
-    """Returns the shader with a base color that the output of a material shows directly."""
+    """Returns the shader with a base color that is linked to a material's output; None if none."""
     tree = nodes.tree_of(material)
     if tree is None:
         return None
@@ -126,7 +126,7 @@ def shown_shader(material: bpy.types.Material) -> bpy.types.Node | None:
 
 
 def color_input(shader: bpy.types.Node) -> str:
-    """Returns the name of the input of a shader that is the color of its surface."""
+    """Returns the name of the base color input of a shader."""
     return "Color" if shader.type in _ONE_COLOR else "Base Color"
 
 
@@ -145,7 +145,7 @@ def _use(node: bpy.types.Node, groups: Groups) -> ImageUse:
 
 
 def _trace(socket: bpy.types.NodeSocket, groups: Groups) -> tuple[str, Matrix]:
-    """Follows an input socket back to a UV map, gathering the mappings on the way."""
+    """Follows an input socket back to a UV map; returns its name and the combined mapping."""
     matrix = Matrix.Identity(4)
     while True:
         link = nodes.link_into(socket)
@@ -157,10 +157,10 @@ def _trace(socket: bpy.types.NodeSocket, groups: Groups) -> tuple[str, Matrix]:
             )
         node, source = link.from_node, link.from_socket
         if node.mute:
-            handed_on = nodes.bypassed(node, source)
-            if handed_on is None:
+            bypass = nodes.bypassed(node, source)
+            if bypass is None:
                 raise _NotUvError(f"gets its coordinates from the muted node '{node.name}'")
-            socket = handed_on
+            socket = bypass
         elif node.type == "REROUTE":
             socket = node.inputs[0]
         elif node.type == "MAPPING":
@@ -199,15 +199,15 @@ def _mapping_matrix(node: bpy.types.Node) -> Matrix:
         if name in node.inputs and nodes.link_into(node.inputs[name]) is not None:
             raise _NotUvError(f"has a '{node.name}' node whose {name} is not a constant")
         values[name] = node.inputs[name].default_value[:] if name in node.inputs else (0, 0, 0)
-    turned = Euler(values["Rotation"], "XYZ").to_matrix().to_4x4() @ Matrix.Diagonal(
+    linear = Euler(values["Rotation"], "XYZ").to_matrix().to_4x4() @ Matrix.Diagonal(
         (*values["Scale"], 1.0)
     )
-    moved = Matrix.Translation(values["Location"]) @ turned
+    affine = Matrix.Translation(values["Location"]) @ linear
     if node.vector_type == "POINT":
-        return moved
+        return affine
     if node.vector_type == "VECTOR":
-        return turned
-    if node.vector_type == "TEXTURE" and moved.determinant() != 0.0:
-        return moved.inverted()
-    found = "of scale 0" if node.vector_type == "TEXTURE" else f"of type {node.vector_type}"
-    raise _NotUvError(f"has a '{node.name}' node {found}")
+        return linear
+    if node.vector_type == "TEXTURE" and affine.determinant() != 0.0:
+        return affine.inverted()
+    problem = "of scale 0" if node.vector_type == "TEXTURE" else f"of type {node.vector_type}"
+    raise _NotUvError(f"has a '{node.name}' node {problem}")

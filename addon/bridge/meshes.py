@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Evaluated meshes to `prefilter.Surface`: the part of each mesh that uses an image."""
+"""Surfaces of evaluated meshes: the faces of each mesh that use an image."""
 
 import re
 from collections import Counter, defaultdict
@@ -24,16 +24,16 @@ Matrices = list[NDArray[np.float64]]
 
 @dataclass
 class ImageSurfaces:
-    """The surfaces that an image is mapped on.
+    """Surfaces that an image is mapped on.
 
     Attributes:
-        surfaces: One for each object, or mesh that is instanced, and each way in which its
-            materials sample the image.
-        objects: The name of the object that each surface comes from.
+        surfaces: One per object, or instanced mesh, and per way in which its materials sample the
+            image.
+        objects: Name of the object of each surface.
         uses: How each surface samples the image.
-        extensions: What the Image Texture nodes do outside of the image, most common first.
-        problems: What was left out and why.
-        weighted: Whether some object has the importance that was asked for.
+        extensions: Extensions of the Image Texture nodes, most common first.
+        problems: Descriptions of omitted parts, with reasons.
+        weighted: Whether any object has the importance attribute.
     """
 
     surfaces: list[prefilter.Surface] = field(default_factory=list)
@@ -44,10 +44,10 @@ class ImageSurfaces:
     weighted: bool = False
 
     def add_pose(self, other: "ImageSurfaces") -> None:
-        """Adds what the same objects look like at another time.
+        """Adds the surfaces of the same objects at another time.
 
-        Surfaces that differ in space alone are joined: their areas are added, which to a filter is
-        the same as keeping both.
+        Surfaces that differ only in vertex positions are merged by adding their areas, which is the
+        same to a filter as both surfaces.
         """
         for surface, name, use in zip(other.surfaces, other.objects, other.uses, strict=True):
             for i, known in enumerate(zip(self.objects, self.uses, strict=True)):
@@ -67,11 +67,12 @@ class ImageSurfaces:
 
 @dataclass(frozen=True)
 class SurfaceOptions:
-    """What counts as an object's surface.
+    """Options for reading surfaces.
 
     Attributes:
-        subdivision_limit: Take the limit surface of objects with a Catmull-Clark modifier on top.
-        importance: The name of a vertex group or attribute that areas are multiplied by; empty for
+        subdivision_limit: Whether to use the limit surface of objects with a Catmull-Clark modifier
+            at the end.
+        importance: Name of a vertex group or attribute by which areas are multiplied; empty for
             none.
     """
 
@@ -87,43 +88,43 @@ def image_surfaces(
     *,
     all_faces: bool = False,
 ) -> ImageSurfaces:
-    """Copies the faces that use an image, with the UVs that they use it with.
+    """Copies the faces that use an image, with their UVs for it.
 
-    Meshes are evaluated (modifiers, shape keys, edit mode) and in world space, so that the areas of
-    different objects compare. What objects are instancers of counts with them: each instance with
-    its own place in space.
+    Meshes are evaluated (modifiers, shape keys, Edit Mode) and in world space, so that areas of
+    different objects are comparable. Instances belong to their instancer, each with its own
+    transform.
 
     Args:
-        objects: Objects; those that do not use the image are passed over.
+        objects: Objects; those that do not use the image are skipped.
         image: The image to look for in the materials.
         depsgraph: The evaluated dependency graph.
-        options: What counts; `SurfaceOptions()` if None.
-        all_faces: Where no material of any of the objects uses the image, take all faces of all of
-            them, with the active render UV map.
+        options: Options; `SurfaceOptions()` if None.
+        all_faces: Whether to use all faces, with the active render UV map, if no material of any
+            object uses the image.
 
     Raises:
-        ValueError: The geometry is bad, such as NaN positions, and the message names the object; or
-            no object has the importance that is asked for.
+        ValueError: The geometry is invalid, such as NaN positions (the message names the object),
+            or no object has the importance attribute.
     """
     objects = list(objects)
     options = options or SurfaceOptions()
-    found = _search_one(objects, image, depsgraph, options, all_faces=False)
-    if all_faces and not found.surfaces and not found.problems:
-        found = _search_one(objects, image, depsgraph, options, all_faces=True)
-    if options.importance and found.surfaces and not found.weighted:
-        names = ", ".join(f"'{name}'" for name in dict.fromkeys(found.objects))
+    surfaces = _search_one(objects, image, depsgraph, options, all_faces=False)
+    if all_faces and not surfaces.surfaces and not surfaces.problems:
+        surfaces = _search_one(objects, image, depsgraph, options, all_faces=True)
+    if options.importance and surfaces.surfaces and not surfaces.weighted:
+        names = ", ".join(f"'{name}'" for name in dict.fromkeys(surfaces.objects))
         raise ValueError(
             f"Importance: found no vertex group or attribute named '{options.importance}' "
             f"on {names}"
         )
-    return found
+    return surfaces
 
 
 def surfaces_of_images(
     users: Mapping[bpy.types.Image, Iterable[bpy.types.Object]],
     depsgraph: bpy.types.Depsgraph,
 ) -> dict[bpy.types.Image, ImageSurfaces | ValueError]:
-    """Does what `image_surfaces` does for each image, but reads every mesh once for all of them.
+    """Returns `image_surfaces` of several images, but reads every mesh only once.
 
     Images that sample the same faces in the same way share their surfaces.
 
@@ -132,30 +133,30 @@ def surfaces_of_images(
         depsgraph: The evaluated dependency graph.
 
     Returns:
-        What each image is mapped on, or why that cannot be read.
+        The surfaces of each image, or the error in reading them.
     """
     return _search(users, depsgraph, SurfaceOptions(), all_faces=False)
 
 
 def materials_of_objects(objects: Iterable[bpy.types.Object]) -> list[bpy.types.Material]:
-    """Returns the materials of objects and collections on them, each once."""
-    found: dict[bpy.types.Material, None] = {}
+    """Returns the materials of objects and of the collections that they instance, each once."""
+    materials: dict[bpy.types.Material, None] = {}
     for obj in objects:
         collection = obj.instance_collection if obj.instance_type == "COLLECTION" else None
         for shown in (obj, *(collection.all_objects if collection is not None else ())):
             slots = shown.material_slots
-            found.update((slot.material, None) for slot in slots if slot.material is not None)
-    return list(found)
+            materials.update((slot.material, None) for slot in slots if slot.material is not None)
+    return list(materials)
 
 
 def images_of_objects(objects: Iterable[bpy.types.Object]) -> list[bpy.types.Image]:
-    """Returns the images that the materials of objects and collections on them show, each once."""
+    """Returns the images in `materials_of_objects`, each once."""
     shown = (image for material in materials_of_objects(objects) for image in images_of(material))
     return list(dict.fromkeys(shown))
 
 
 def may_show_image(obj: bpy.types.Object) -> bool:
-    """Returns whether an object is a mesh or an instance of a collection."""
+    """Whether an object is a mesh or an instance of a collection."""
     return obj.type == "MESH" or obj.instance_type == "COLLECTION"
 
 
@@ -167,10 +168,10 @@ def _search_one(
     *,
     all_faces: bool,
 ) -> ImageSurfaces:
-    found = _search({image: objects}, depsgraph, options, all_faces=all_faces)[image]
-    if isinstance(found, ValueError):
-        raise found
-    return found
+    surfaces = _search({image: objects}, depsgraph, options, all_faces=all_faces)[image]
+    if isinstance(surfaces, ValueError):
+        raise surfaces
+    return surfaces
 
 
 def _search(
@@ -186,8 +187,8 @@ def _search(
         for obj in objects:
             images[obj].append(image)
     instances = _Instances(list(images), depsgraph)
-    # Blender makes the objects of instanced geometry up while it walks over them. They go first:
-    # reading the others may evaluate the graph anew.
+    # The objects of instanced geometry exist only during the iteration. They are read first, as
+    # reading others may reevaluate the graph.
     for pointer, instance in _walk(depsgraph) if instances.of_geometry else ():
         parent = instance.parent.original
         matrices = instances.of_geometry.pop((parent, pointer), None)
@@ -207,7 +208,7 @@ def _search(
 def _walk(
     depsgraph: bpy.types.Depsgraph,
 ) -> Iterator[tuple[int, bpy.types.DepsgraphObjectInstance]]:
-    """Yields instances of meshes, with the address of the mesh; they last until the next one."""
+    """Yields instances of meshes, valid until the next one, with the address of the mesh."""
     for instance in depsgraph.object_instances:
         if instance.is_instance and instance.object.type == "MESH":
             yield instance.object.data.as_pointer(), instance
@@ -218,16 +219,16 @@ def _may_have_instances(obj: bpy.types.Object) -> bool:
 
 
 class _Instances:
-    """What the objects are instancers of, and where.
+    """Instances of objects and of geometry, with their matrices.
 
     Attributes:
-        of_geometry: Matrices by instancer and address of a mesh that no object has.
-        of_objects: Instancers, objects, and the matrices that the one puts the other at.
+        of_geometry: Matrices by instancer and address of a mesh without an object.
+        of_objects: Instancers, instanced objects, and the matrices of the instances.
         parents: The instancers.
     """
 
     def __init__(self, objects: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph) -> None:
-        """Walks over the instances of a dependency graph."""
+        """Collects the instances of a dependency graph."""
         self.of_geometry: dict[tuple[bpy.types.Object, int], Matrices] = defaultdict(list)
         grouped: dict[tuple[bpy.types.Object, bpy.types.Object], Matrices] = defaultdict(list)
         chosen = {obj for obj in objects if _may_have_instances(obj)}
@@ -256,19 +257,19 @@ class _Reader:
         *,
         all_faces: bool,
     ) -> None:
-        """Starts with nothing found."""
-        self._found = {image: ImageSurfaces() for image in images}
+        """Starts without surfaces."""
+        self._surfaces = {image: ImageSurfaces() for image in images}
         self._failures: dict[bpy.types.Image, ValueError] = {}
         self._depsgraph = depsgraph
         self._options = options
         self._all_faces = all_faces
 
     def result(self) -> dict[bpy.types.Image, ImageSurfaces | ValueError]:
-        """Returns what was found for each image, or why its surfaces cannot be read."""
-        for found in self._found.values():
-            found.extensions = [name for name, _ in Counter(found.extensions).most_common()]
-            found.problems = list(dict.fromkeys(found.problems))
-        return {**self._found, **self._failures}
+        """Returns the surfaces of each image, or the error in reading them."""
+        for surfaces in self._surfaces.values():
+            surfaces.extensions = [name for name, _ in Counter(surfaces.extensions).most_common()]
+            surfaces.problems = list(dict.fromkeys(surfaces.problems))
+        return {**self._surfaces, **self._failures}
 
     def read_object(
         self,
@@ -313,18 +314,20 @@ class _Reader:
         evaluated: bpy.types.Object | None = None,
         rules: subdivision.Rules | None = None,
     ) -> None:
-        """Reads a mesh that is alive now, placed by matrices.
+        """Reads instances of a mesh.
 
         Args:
-            name: Its object's.
-            mesh: The mesh.
+            name: Name of its object.
+            mesh: The mesh, which is valid during the call.
             materials: The material of each slot.
-            matrices: Where it is, once or several times.
-            images: Those that it may use.
+            matrices: World matrices of its instances.
+            images: Images that it may use.
             evaluated: Its object, if it has one, for vertex groups.
-            rules: How to make a limit surface of it, if at all.
+            rules: Rules for its limit surface; None for the mesh itself.
         """
-        one = _OneMesh(name, mesh, len(materials), matrices, evaluated, rules, self._options)
+        mesh_surfaces = _MeshSurfaces(
+            name, mesh, len(materials), matrices, evaluated, rules, self._options
+        )
         for image in images:
             if image in self._failures:
                 continue
@@ -333,27 +336,27 @@ class _Reader:
                 slots = {_WHOLE_IMAGE: set(range(max(1, len(materials))))}
             if slots:
                 try:
-                    one.add(slots, self._found[image])
+                    mesh_surfaces.add(slots, self._surfaces[image])
                 except ValueError as error:
                     self._failures[image] = error
 
     def _slots_by_use(
         self, image: bpy.types.Image, materials: list[bpy.types.Material | None]
     ) -> dict[ImageUse, set[int]]:
-        """Returns the material slots that sample an image, by the way in which they do."""
+        """Material slots that sample an image, by use."""
         slots: dict[ImageUse, set[int]] = {}
         for index, material in enumerate(materials):
             if material is None:
                 continue
             uses, warnings = image_uses(material.original, image)
-            self._found[image].problems.extend(warnings)
+            self._surfaces[image].problems.extend(warnings)
             for use in uses:
                 slots.setdefault(use, set()).add(index)
         return slots
 
 
-class _OneMesh:
-    """A mesh that is alive now, and the surfaces that were made of it."""
+class _MeshSurfaces:
+    """A mesh, and the surfaces already made of it."""
 
     def __init__(
         self,
@@ -365,7 +368,7 @@ class _OneMesh:
         rules: subdivision.Rules | None,
         options: SurfaceOptions,
     ) -> None:
-        """Keeps what `_Reader.read_mesh` gets."""
+        """Keeps the arguments of `_Reader.read_mesh`."""
         self._name = name
         self._mesh = mesh
         self._slot_count = slot_count
@@ -375,38 +378,38 @@ class _OneMesh:
         self._options = options
         self._surfaces: dict[object, prefilter.Surface | None] = {}
 
-    def add(self, slots: dict[ImageUse, set[int]], found: ImageSurfaces) -> None:
+    def add(self, slots: dict[ImageUse, set[int]], result: ImageSurfaces) -> None:
         """Adds the surfaces of the faces that sample an image.
 
         Raises:
-            ValueError: The geometry is bad.
+            ValueError: The geometry is invalid.
         """
         if len(self._mesh.polygons) == 0:
-            found.problems.append(f"object '{self._name}' has no faces")
+            result.problems.append(f"object '{self._name}' has no faces")
             return
         if self._options.importance:
             if self._weights is None:
-                found.problems.append(
+                result.problems.append(
                     f"object '{self._name}' has no vertex group or attribute "
                     f"'{self._options.importance}'; all of it counts as 1"
                 )
             else:
-                found.weighted = True
+                result.weighted = True
         for use, indices in slots.items():
             layer = _uv_layer(self._mesh, use.uv_map)
             if layer is None:
-                wanted = f"named '{use.uv_map}'" if use.uv_map else "at all"
-                found.problems.append(f"object '{self._name}' has no UV map {wanted}")
+                name = f"named '{use.uv_map}'" if use.uv_map else "at all"
+                result.problems.append(f"object '{self._name}' has no UV map {name}")
                 continue
             key = layer.name, use.transform, frozenset(indices)
             if key not in self._surfaces:
                 self._surfaces[key] = self._surface(layer, use, indices)
             surface = self._surfaces[key]
             if surface is not None:
-                found.surfaces.append(surface)
-                found.extensions.append(use.extension)
-                found.objects.append(self._name)
-                found.uses.append(use)
+                result.surfaces.append(surface)
+                result.extensions.append(use.extension)
+                result.objects.append(self._name)
+                result.uses.append(use)
 
     @cached_property
     def _weights(self) -> attributes.Weights | None:
@@ -435,7 +438,7 @@ class _OneMesh:
                 )
             return surface.placed(self._matrices)
         except ValueError as error:
-            # What the library calls weights has another name here.
+            # The library's weights are called importance here.
             message = re.sub("^weights", f"importance '{self._options.importance}'", str(error))
             raise ValueError(f"object '{self._name}': {message}") from error
 
@@ -446,7 +449,7 @@ def _evaluated(
 ) -> Iterator[tuple[bpy.types.Object, bpy.types.Mesh]]:
     """Yields the evaluated object and its mesh.
 
-    `to_mesh` is called plainly: with preserve_all_data_layers it ignores what edit mode changed.
+    `to_mesh` is called without preserve_all_data_layers, which would ignore changes in Edit Mode.
     """
     evaluated = obj.evaluated_get(depsgraph)
     mesh = evaluated.to_mesh()

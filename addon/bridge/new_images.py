@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""New image datablocks, and picture files, of arrays."""
+"""New image datablocks and picture files from arrays."""
 
 import hashlib
 from pathlib import Path
@@ -10,7 +10,7 @@ import numpy as np
 
 from .images import FloatArray, Picture
 
-# Blender's limit is 63 bytes; this leaves room for the .001 of a name that is taken.
+# Blender's limit is 63 bytes; this leaves space for ".001" if the name is taken.
 _MAX_NAME_BYTES = 59
 _HASH_DIGITS = 8
 
@@ -29,8 +29,9 @@ def new_packed(name: str, like: Picture | None, pixels: FloatArray) -> bpy.types
     """Makes a packed image datablock with a fake user.
 
     Args:
-        name: Its name; Blender adds a number to one that is taken.
-        like: What it is stored as (see `level_images.stage_levels`); None for an sRGB byte image.
+        name: Its name; Blender appends a number if it is taken.
+        like: Picture with the same format (see `level_images.stage_levels`); None for an sRGB byte
+            image.
         pixels: Its values, row 0 at the bottom.
     """
     height, width = pixels.shape[:2]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Surfaces to Blender: meshes with materials and colors, and the objects that show them."""
+"""New meshes of surfaces, with materials and attributes, and the objects that show them."""
 
 import math
 from collections.abc import Generator, Sequence, Set
@@ -19,16 +19,16 @@ from .solids import SOLID_TYPES, MaterialKey
 
 _HAS_FREE_NORMALS = bpy.app.version >= (4, 5, 0)
 _FEW_FACES = 200_000
-"""So many get normals that turn with them within a second."""
+"""Number of faces up to which custom normals that follow deformations take less than a second."""
 _KEPT = (
     *(f"use_mirror_{name}" for name in ("x", "y", "z", "vertex_groups", "topology")),
     *(f"remesh_{name}" for name in ("mode", "voxel_size", "voxel_adaptivity")),
     *(f"use_remesh_{name}" for name in ("fix_poles", "preserve_volume", "preserve_attributes")),
     *("use_auto_texspace", "texspace_location", "texspace_size"),
 )
-"""Settings of meshes that are the object's, such as those of symmetric sculpting."""
+"""Settings of a mesh that its replacement keeps, such as symmetric sculpting."""
 _WEIGHT_STEPS = 65535
-"""Of vertex groups: so many weights are told apart, and vertices with one are added together."""
+"""Weights of vertex groups are rounded to 1/65535: vertices with one weight are added together."""
 
 
 @dataclass(frozen=True)
@@ -38,18 +38,18 @@ class Contour:
     Attributes:
         positions: (n, 3) float32.
         faces: (m, 3) int32, or (m, 4) for quads.
-        materials: What the indices mean.
-        face_materials: (m,) int32, or None where there is one material or none.
-        layers: Its attributes; vertex groups are the object's, and normals come last.
-        active: By kind, the names of the active color attribute and UV map.
-        rendered: Likewise of those that renders use.
-        sharp_angle: Edges with a greater angle are sharp, in radians; None for flat faces.
-        edges: Its edges; None has Blender find them, on the main thread.
-        normals: (3 m, 3) float32 of corners, which follow from the triangles; None for Blender's.
-        marks: Of its edges and vertices, if `edges` are given.
-        locked_groups: The vertex groups whose weights are locked.
-        kept_modifiers: The modifiers that the object keeps.
-        made: The mesh of it, while that is made and nothing shows it.
+        materials: Materials by index.
+        face_materials: (m,) int32; None if there is at most one material.
+        layers: Its attributes; vertex groups belong to the object, and normals are set last.
+        active: Names of the active color attribute and UV map, by kind.
+        rendered: Names of the color attribute and UV map used by renders, by kind.
+        sharp_angle: Angle in radians above which edges are sharp; None for flat shading.
+        edges: Its edges; None: Blender finds them, on the main thread.
+        normals: Computed corner normals, (3 m, 3) float32; None for Blender's.
+        marks: Marks of its edges and vertices; they need `edges`.
+        locked_groups: Names of vertex groups with locked weights.
+        kept_modifiers: Names of modifiers that the object keeps.
+        made: Its mesh, once made and until an object shows it.
     """
 
     positions: NDArray[np.float32]
@@ -69,12 +69,12 @@ class Contour:
 
 
 def is_editable(obj: bpy.types.Object) -> bool:
-    """Returns whether an object's mesh can be replaced."""
+    """Whether an object's mesh can be replaced."""
     return obj.library is None and obj.override_library is None
 
 
 def check_editable(obj: bpy.types.Object) -> None:
-    """Raises ValueError where an object's mesh cannot be replaced."""
+    """Raises ValueError if an object's mesh cannot be replaced."""
     if obj.library is not None:
         text = "object '{}' is linked from '{}'; make it local first"
         raise ValueError(Sentence(text, obj.name, obj.library.filepath))
@@ -84,7 +84,7 @@ def check_editable(obj: bpy.types.Object) -> None:
 
 
 def new_mesh(name: str, contour: Contour) -> bpy.types.Mesh:
-    """Makes a mesh datablock of a surface, if `making_mesh` has not yet."""
+    """Returns a mesh datablock of a surface; makes it unless `making_mesh` did."""
     for _ in making_mesh(contour):
         pass
     mesh = contour.made.pop()
@@ -93,12 +93,12 @@ def new_mesh(name: str, contour: Contour) -> bpy.types.Mesh:
 
 
 def making_mesh(contour: Contour) -> Generator[None, None, None]:
-    """Makes a mesh datablock of a surface in steps, for `new_mesh` to return."""
+    """Makes a mesh datablock of a surface in steps, for `new_mesh`."""
     if contour.made:
         return
     mesh = bpy.data.meshes.new("Surface")
     try:
-        yield from _filling(mesh, contour)
+        yield from _fill(mesh, contour)
     except BaseException:
         bpy.data.meshes.remove(mesh)
         raise
@@ -106,13 +106,13 @@ def making_mesh(contour: Contour) -> Generator[None, None, None]:
 
 
 def forget_mesh(contour: Contour) -> None:
-    """Removes what `making_mesh` has made, if nothing shows it."""
+    """Removes the mesh of `making_mesh`, if no object shows it."""
     for mesh in contour.made:
         bpy.data.meshes.remove(mesh)
     contour.made.clear()
 
 
-def _filling(mesh: bpy.types.Mesh, contour: Contour) -> Generator[None, None, None]:
+def _fill(mesh: bpy.types.Mesh, contour: Contour) -> Generator[None, None, None]:
     count, sides = contour.faces.shape
     mesh.vertices.add(len(contour.positions))
     yield
@@ -126,7 +126,7 @@ def _filling(mesh: bpy.types.Mesh, contour: Contour) -> Generator[None, None, No
     yield
     mesh.polygons.foreach_set("loop_start", np.arange(0, sides * count, sides, dtype=np.int32))
     yield
-    # Attributes take arrays as they are, a hundred times faster than loops and polygons do.
+    # Writing whole arrays to attributes is a hundred times faster than to loops and polygons.
     mesh.attributes[".corner_vert"].data.foreach_set(
         "value", np.ascontiguousarray(contour.faces, np.int32).ravel()
     )
@@ -162,8 +162,8 @@ def _filling(mesh: bpy.types.Mesh, contour: Contour) -> Generator[None, None, No
 def _set_normals(mesh: bpy.types.Mesh, values: NDArray[np.float32], *, is_deformed: bool) -> None:
     """Sets the normals of corners.
 
-    As an attribute they are exact and there at once, but do not turn with what deforms the mesh;
-    relative to the mesh, as Blender stores them otherwise, they take five seconds a million faces.
+    As an attribute they are exact and set at once, but do not follow deformations of the mesh.
+    Blender's custom normals do, but take five seconds per million faces.
     """
     if _HAS_FREE_NORMALS and not is_deformed:
         normals = mesh.attributes.new("custom_normal", "FLOAT_VECTOR", "CORNER")
@@ -189,18 +189,18 @@ def _add_edges(mesh: bpy.types.Mesh, contour: Contour) -> None:
 def show_contour(
     obj: bpy.types.Object, contour: Contour, *, keeps_source: bool = False
 ) -> bpy.types.Object:
-    """Has an object show a surface, and returns the object that does.
+    """Makes an object show a surface, or a new one if it is no mesh; returns that object.
 
-    A mesh object gets a mesh of its own, and loses the modifiers and instances that the surface has
-    in it. Any other object is hidden, and a new mesh object takes its place.
+    A mesh object gets a new mesh, and loses the modifiers and instances that the surface already
+    includes. Other objects are hidden, and a new mesh object is added.
 
     Args:
         obj: The object.
         contour: The surface.
-        keeps_source: Whether what the object was can be shown again.
+        keeps_source: Whether the original is kept.
     """
     if obj.type == "MESH":
-        source = kept_sources.copied(obj) if keeps_source else None
+        source = kept_sources.copy_source(obj) if keeps_source else None
         _replace_mesh(obj, contour, source)
         if source is not None:
             kept_sources.keep(obj, [source])
@@ -215,14 +215,14 @@ def show_contour(
 
 
 def show_again(obj: bpy.types.Object, contour: Contour) -> bpy.types.Object:
-    """Has an object show another surface, with its modifiers, and returns it."""
+    """Makes an object show another surface, with its modifiers; returns the object."""
     replace_data(obj, new_mesh(obj.data.name, contour))
     _add_groups(obj, contour)
     return obj
 
 
 def replace_data(obj: bpy.types.Object, mesh: bpy.types.Mesh) -> None:
-    """Gives an object another mesh, by the name of its own unless others have that too."""
+    """Replaces the mesh of an object; the new one gets the old name if that becomes free."""
     old, name = obj.data, obj.data.name
     _keep_settings(old, mesh)
     obj.data = mesh
@@ -232,7 +232,7 @@ def replace_data(obj: bpy.types.Object, mesh: bpy.types.Mesh) -> None:
 
 
 def new_object_beside(obj: bpy.types.Object, data: bpy.types.ID, suffix: str) -> bpy.types.Object:
-    """Adds an object where another one is, in its collections, selected in its stead."""
+    """Adds an object in the position and collections of another one, and selects it instead."""
     made = bpy.data.objects.new(f"{obj.name}{suffix}", data)
     root = bpy.context.scene.collection
     for collection in obj.users_collection:
@@ -251,12 +251,12 @@ def new_object_beside(obj: bpy.types.Object, data: bpy.types.ID, suffix: str) ->
 
 
 def is_solid(obj: bpy.types.Object) -> bool:
-    """Returns whether an object may show something that has an inside."""
+    """Whether an object may show a solid."""
     return obj.type in SOLID_TYPES or (obj.type == "EMPTY" and obj.is_instancer)
 
 
 def _replace_mesh(obj: bpy.types.Object, contour: Contour, source: bpy.types.Object | None) -> None:
-    """Gives an object a mesh, by the name of its own unless others have that too."""
+    """Replaces an object's mesh and modifiers; the new mesh gets the old name if possible."""
     old = obj.data
     mesh = new_mesh(old.name, contour)
     _keep_settings(old, mesh)
@@ -303,7 +303,7 @@ def _add_groups(obj: bpy.types.Object, contour: Contour) -> None:
         group.lock_weight = layer.name in contour.locked_groups
         steps = np.round(np.clip(layer.values[:, 0], 0.0, 1.0) * _WEIGHT_STEPS).astype(np.int64)
         order = np.argsort(steps, kind="stable")
-        found, starts = np.unique(steps[order], return_index=True)
-        for step, members in zip(found, np.split(order, starts[1:]), strict=True):
+        weights, starts = np.unique(steps[order], return_index=True)
+        for step, members in zip(weights, np.split(order, starts[1:]), strict=True):
             if step:
                 group.add(members.tolist(), float(step / _WEIGHT_STEPS), "REPLACE")

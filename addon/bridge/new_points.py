@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Points to Blender: objects that show them, as a point cloud or a mesh without faces."""
+"""New objects of points: point clouds, or meshes without faces."""
 
 import math
 from collections.abc import Sequence
@@ -15,10 +15,10 @@ from .layers import COLOR, NewLayer, write_layer
 from .points import FROM_ABOVE, NORMAL, VIEWPOINT
 
 OFFSET = "scan_offset"
-"""The property of an object that says by how much its points were moved to be near the origin."""
-_FAR = 100.0
-"""Points so many times their extent away from an origin have few digits left for detail: single
-precision then has steps of a fortieth of the smallest cells."""
+"""Property of an object: offset that was subtracted from its points to move them to the origin."""
+_MAX_DISTANCE_EXTENTS = 100.0
+"""Distance from the origin, in extents of the points, above which they are moved to the origin. At
+this distance the steps of single precision are a fortieth of the smallest cells."""
 _MARK = "prefilter_draws_points"
 _RADIUS = "radius"
 _BUILT_IN = frozenset({"position", "id", NORMAL, VIEWPOINT, _RADIUS})
@@ -29,13 +29,12 @@ class Cloud:
     """Points for a new object.
 
     Attributes:
-        name: What the object is called.
+        name: Name of the object.
         positions: (n, 3) float64, finite.
-        normals: (n, 3); None where there are none.
+        normals: (n, 3); None if there are none.
         layers: Its attributes, of the domain POINT.
-        viewpoint: Where the scanner stood, (3,), or for each point, (n, 3); None where that is not
-            known.
-        is_from_above: A scanner looked down at them.
+        viewpoint: Position of the scanner, (3,), or per point, (n, 3); None if it is not known.
+        is_from_above: Whether the scanner looked down.
     """
 
     name: str
@@ -47,40 +46,40 @@ class Cloud:
 
     @property
     def color(self) -> str:
-        """The name of the first color attribute; empty for none."""
+        """Name of the first color attribute; empty for none."""
         return next((layer.name for layer in self.layers if layer.kind == COLOR), "")
 
 
 def far_offset(positions: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Returns the middle of points that are far from the origin, as round numbers; else zero.
+    """Rounded center of points that are far from the origin; zero for others.
 
-    These have as few digits as the extent of the points allows.
+    It is rounded to the order of magnitude of the points' extent.
     """
     low, high = positions.min(axis=0), positions.max(axis=0)
-    middle = (low + high) / 2
+    center = (low + high) / 2
     extent = float((high - low).max())
-    if not float(np.abs(middle).max()) > _FAR * extent:
+    if not float(np.abs(center).max()) > _MAX_DISTANCE_EXTENTS * extent:
         return np.zeros(3)
     step = 10.0 ** max(math.floor(math.log10(extent)), 0) if extent > 0.0 else 1.0
-    return np.asarray(np.round(middle / step) * step)
+    return np.asarray(np.round(center / step) * step)
 
 
 def kept_offset(obj: bpy.types.Object) -> NDArray[np.float64]:
-    """Returns by how much an object's points were moved to be near the origin; zero if not."""
+    """Offset that was subtracted from an object's points; zero if none was."""
     try:
-        found = np.array(obj.get(OFFSET, (0.0, 0.0, 0.0)), np.float64)
+        offset = np.array(obj.get(OFFSET, (0.0, 0.0, 0.0)), np.float64)
     except (TypeError, ValueError):
-        return np.zeros(3)  # a user may set the property to anything
-    return found if found.shape == (3,) and np.isfinite(found).all() else np.zeros(3)
+        return np.zeros(3)  # Users can set the property to anything.
+    return offset if offset.shape == (3,) and np.isfinite(offset).all() else np.zeros(3)
 
 
 def shown_offset(offset: NDArray[np.float64]) -> str:
-    """Returns an offset, as users read it."""
+    """Formats an offset for users."""
     return ", ".join(f"{value:.0f}" for value in offset)
 
 
 def scene_offset(positions: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Returns `far_offset`, or the offset of another object of the scene that suits points, too."""
+    """Returns the offset of an object of the scene if it suits the points, or else `far_offset`."""
     offset = far_offset(positions)
     if offset.any():
         for obj in bpy.context.scene.objects:
@@ -95,7 +94,7 @@ def new_points(cloud: Cloud, offset: NDArray[np.float64]) -> bpy.types.Object:
 
     Args:
         cloud: The points.
-        offset: What is subtracted from their positions; the object keeps it as a property.
+        offset: Subtracted from their positions, and stored as a property of the object.
     """
     local = (cloud.positions - offset).astype(np.float32)
     if "resize" in bpy.types.PointCloud.bl_rna.functions:
@@ -132,25 +131,25 @@ def new_points(cloud: Cloud, offset: NDArray[np.float64]) -> bpy.types.Object:
 
 
 def _write_vectors(data: bpy.types.ID, name: str, vectors: NDArray[np.floating]) -> None:
-    made = data.attributes.new(name, "FLOAT_VECTOR", "POINT")
-    made.data.foreach_set("vector", np.ascontiguousarray(vectors, np.float32).ravel())
+    attribute = data.attributes.new(name, "FLOAT_VECTOR", "POINT")
+    attribute.data.foreach_set("vector", np.ascontiguousarray(vectors, np.float32).ravel())
 
 
 def layer_name(name: str) -> str:
-    """Returns what an attribute of a file can be called that Blender may know otherwise."""
+    """Changes the name of a file's attribute if it means something else in Blender."""
     name = name.lstrip(".") or "value"
     return f"{name}_value" if name in _BUILT_IN else name
 
 
 def spacing(positions: NDArray[np.floating]) -> float:
-    """Returns about how far points of a surface are apart: of half the box around most of them."""
+    """Estimates the point spacing, as if points covered half the box around most of them."""
     low, high = np.quantile(positions[:: len(positions) // 100_000 + 1], (0.02, 0.98), axis=0)
     a, b, c = (float(side) for side in high - low)
     return float(np.sqrt((a * b + b * c + c * a) / len(positions)))
 
 
 def _draw_points(obj: bpy.types.Object, radius: float) -> None:
-    """Has a mesh without faces drawn and rendered as balls in the colors of its material."""
+    """Adds a modifier that draws vertices as balls in the colors of the material."""
     group = _drawing_nodes()
     modifier = obj.modifiers.new(group.name, "NODES")
     modifier.node_group = group
@@ -161,10 +160,10 @@ def _draw_points(obj: bpy.types.Object, radius: float) -> None:
 
 
 def _drawing_nodes() -> bpy.types.NodeTree:
-    """Returns the nodes that make a point cloud of vertices; made if missing."""
-    for found in bpy.data.node_groups:
-        if found.library is None and found.get(_MARK):
-            return found
+    """Returns the node group that draws vertices as a point cloud; made if missing."""
+    for group in bpy.data.node_groups:
+        if group.library is None and group.get(_MARK):
+            return group
     group = bpy.data.node_groups.new("Points as Balls", "GeometryNodeTree")
     group[_MARK] = True
     sockets = {"Geometry": "Geometry", "Radius": "Float", "Material": "Material"}

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What shader nodes calculate, on arrays: as Cycles does, texel by texel."""
+"""Shader nodes' calculations on arrays, as Cycles does them per texel."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -12,16 +12,16 @@ Values = NDArray[np.float32]
 
 
 class UnknownOperationError(Exception):
-    """An operation that is not known here."""
+    """An operation that is not implemented here."""
 
 
 def as_factor(values: Values) -> Values:
-    """Returns numbers as the factor of colors."""
+    """Adds an axis, so that the values are factors of colors."""
     return values[..., None]
 
 
-def mixed(factor: Values, first: Values, second: Values) -> Values:
-    """Returns the mix of two values."""
+def mix(factor: Values, first: Values, second: Values) -> Values:
+    """Interpolates between two values."""
     return first + factor * (second - first)
 
 
@@ -114,29 +114,29 @@ _OPERATIONS: dict[str, Callable[..., Any]] = {
     "RADIANS": lambda a, b, c: np.deg2rad(a),
     "DEGREES": lambda a, b, c: np.rad2deg(a),
 }
-_OF_VECTORS = frozenset(
+_ELEMENTWISE = frozenset(
     {
         *("ADD", "SUBTRACT", "MULTIPLY", "DIVIDE", "MULTIPLY_ADD", "ABSOLUTE", "MINIMUM"),
         *("MAXIMUM", "FLOOR", "CEIL", "MODULO", "WRAP", "SNAP", "SINE", "COSINE", "TANGENT"),
         *("POWER", "SIGN", "ROUND"),
     }
 )
-"""Operations of vectors that are those of numbers, axis by axis."""
+"""Vector operations that apply an operation of numbers to each axis."""
 
 
-def calculated(operation: str, inputs: Sequence[Values]) -> Values:
-    """Returns the result of a Math node."""
+def evaluate_math(operation: str, inputs: Sequence[Values]) -> Values:
+    """Evaluates a Math node."""
     evaluate = _OPERATIONS.get(operation)
     if evaluate is None:
         raise UnknownOperationError
     return np.asarray(evaluate(*[*inputs, 0.0, 0.0, 0.0][:3]), np.float32)
 
 
-def vectors_calculated(operation: str, vectors: Sequence[Values], scale: Values) -> Values:
-    """Returns the result of a Vector Math node: a vector, or a number."""
+def evaluate_vector_math(operation: str, vectors: Sequence[Values], scale: Values) -> Values:
+    """Evaluates a Vector Math node; returns a vector or a number."""
     a, b, c = vectors
-    if operation in _OF_VECTORS:
-        return calculated(operation, vectors)
+    if operation in _ELEMENTWISE:
+        return evaluate_math(operation, vectors)
     if operation == "FRACTION":
         return np.asarray(_fraction(a), np.float32)
     if operation == "SCALE":
@@ -154,7 +154,7 @@ def vectors_calculated(operation: str, vectors: Sequence[Values], scale: Values)
         length = np.sqrt((a * a).sum(axis=-1, keepdims=True))
         return np.asarray(_quotient(a, length), np.float32)
     if operation == "REFLECT":
-        normal = vectors_calculated("NORMALIZE", (b, b, c), scale)
+        normal = evaluate_vector_math("NORMALIZE", (b, b, c), scale)
         return a - 2 * normal * (normal * a).sum(axis=-1, keepdims=True)
     raise UnknownOperationError
 
@@ -203,24 +203,24 @@ _BLENDS: dict[str, Callable[[Any, Any, Any], Any]] = {
 }
 
 
-def blended(blend: str, factor: Values, first: Values, second: Values) -> Values:
-    """Returns the result of a Mix node for colors; `factor` has an axis of 1 or 3 for these."""
+def blend_colors(blend: str, factor: Values, first: Values, second: Values) -> Values:
+    """Evaluates a Mix node for colors; the last axis of `factor` has length 1 or 3."""
     if blend not in _BLENDS:
         raise UnknownOperationError
     return np.asarray(_BLENDS[blend](factor, first, second), np.float32)
 
 
-def mapped(
+def map_range(
     kind: str, value: Values, ends: Sequence[Values], steps: Values | None, *, is_clamped: bool
 ) -> Values:
-    """Returns the result of a Map Range node for numbers.
+    """Evaluates a Map Range node for numbers.
 
     Args:
         kind: Its interpolation.
         value: Its value.
         ends: From Min, From Max, To Min and To Max.
-        steps: How many there are of "STEPPED".
-        is_clamped: Whether the result stays between the ends.
+        steps: Number of steps, for "STEPPED".
+        is_clamped: Whether the result is clamped to the target range.
     """
     low, high, to_low, to_high = ends
     share = _quotient(value - low, high - low)
@@ -232,14 +232,14 @@ def mapped(
     elif kind == "SMOOTHERSTEP":
         share = np.clip(share, 0, 1)
         share = share**3 * (share * (share * 6 - 15) + 10)
-    found = to_low + share * (to_high - to_low)
+    result = to_low + share * (to_high - to_low)
     if is_clamped and kind in ("LINEAR", "STEPPED"):
-        found = np.clip(found, np.minimum(to_low, to_high), np.maximum(to_low, to_high))
-    return np.asarray(np.where(high != low, found, 0), np.float32)
+        result = np.clip(result, np.minimum(to_low, to_high), np.maximum(to_low, to_high))
+    return np.asarray(np.where(high != low, result, 0), np.float32)
 
 
 def to_mode(mode: str, colors: Values) -> Values:
-    """Returns colors in the way that Separate Color gives them: "RGB", "HSV" or "HSL"."""
+    """Converts RGB colors to a mode of Separate Color: "RGB", "HSV" or "HSL"."""
     if mode == "RGB":
         return colors
     high, low = colors.max(axis=-1), colors.min(axis=-1)
@@ -262,7 +262,7 @@ def to_mode(mode: str, colors: Values) -> Values:
 
 
 def from_mode(mode: str, parts: Values) -> Values:
-    """Returns the colors that Combine Color makes of such parts."""
+    """Converts the inputs of Combine Color in a mode to RGB colors."""
     if mode == "RGB":
         return parts
     hue, saturation, third = np.moveaxis(parts, -1, 0)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Walking over the nodes of shaders, into groups and out of them again, and against the links."""
+"""Traversal of shader nodes, through groups and backward along links."""
 
 from collections.abc import Iterator
 from typing import TypeAlias
@@ -8,16 +8,16 @@ from typing import TypeAlias
 import bpy
 
 Groups: TypeAlias = tuple[bpy.types.Node, ...]
-"""The group nodes that a node lies in, the outermost first."""
+"""Group nodes that contain a node, outermost first."""
 
 Owner: TypeAlias = bpy.types.Material | bpy.types.World | bpy.types.Light
-"""What may have shader nodes."""
+"""Datablocks that may have shader nodes."""
 
 
 def tree_of(owner: Owner) -> bpy.types.NodeTree | None:
-    """Returns the shader nodes that something uses; None if there are none."""
+    """Returns the node tree that a datablock uses; None if it uses none."""
     switch = owner.bl_rna.properties.get("use_nodes")
-    # Where Blender is about to do without the switch, it is always on, and reading it warns.
+    # Later Blender versions deprecate the switch: it is always on, and reading it warns.
     is_gone = switch is None or getattr(switch, "is_deprecated", False)
     return owner.node_tree if is_gone or owner.use_nodes else None
 
@@ -25,7 +25,7 @@ def tree_of(owner: Owner) -> bpy.types.NodeTree | None:
 def walk(
     tree: bpy.types.NodeTree | None, groups: Groups = ()
 ) -> Iterator[tuple[bpy.types.Node, Groups]]:
-    """Yields the nodes that are not muted, those in groups too, each with the groups around it."""
+    """Yields all nodes that are not muted, in groups too, each with its groups."""
     for node in tree.nodes if tree is not None else ():
         if node.mute:
             continue
@@ -36,24 +36,24 @@ def walk(
 
 
 def link_into(socket: bpy.types.NodeSocket) -> bpy.types.NodeLink | None:
-    """Returns the link that an input socket gets its value by; None if there is none."""
+    """Returns the link into an input socket; None if there is none."""
     return next((link for link in socket.links if not link.is_muted), None)
 
 
 def bypassed(node: bpy.types.Node, output: bpy.types.NodeSocket) -> bpy.types.NodeSocket | None:
-    """Returns the input that a muted node hands on to an output; None if there is none."""
-    found = (link.from_socket for link in node.internal_links if link.to_socket == output)
-    return next(found, None)
+    """Returns the input that a muted node passes through to an output; None if there is none."""
+    inputs = (link.from_socket for link in node.internal_links if link.to_socket == output)
+    return next(inputs, None)
 
 
 def origin(
     socket: bpy.types.NodeSocket, groups: Groups
 ) -> tuple[bpy.types.NodeSocket, bpy.types.Node | None, Groups]:
-    """Returns where an input socket gets its value from, however far that is led.
+    """Follows an input socket back to its value, through reroutes, groups and muted nodes.
 
     Returns:
-        The output of a node, this node, and the groups around it; or an input that has a value of
-        its own, and None.
+        The output of a node, that node, and its groups; or an unlinked input with a value of its
+        own, and None instead of a node.
     """
     while True:
         link = link_into(socket)
@@ -62,7 +62,7 @@ def origin(
         node, source = link.from_node, link.from_socket
         following: bpy.types.NodeSocket | None
         if node.mute:
-            # A texture that is muted shows nothing.
+            # Muted textures pass nothing through.
             following = bypassed(node, source) if node.type != "TEX_IMAGE" else None
         elif node.type == "REROUTE":
             following = node.inputs[0]
@@ -79,7 +79,7 @@ def origin(
 
 
 def group_output(group: bpy.types.Node, identifier: str) -> bpy.types.NodeSocket | None:
-    """Returns the socket inside a group that an output of it gets its value from."""
+    """Returns the socket inside a group that feeds an output of the group."""
     for node in group.node_tree.nodes:
         if node.type == "GROUP_OUTPUT" and node.is_active_output:
             return _socket(node.inputs, identifier)
@@ -87,7 +87,7 @@ def group_output(group: bpy.types.Node, identifier: str) -> bpy.types.NodeSocket
 
 
 def group_input(group: bpy.types.Node, identifier: str) -> bpy.types.NodeSocket:
-    """Returns the socket outside of a group that an input of it gets its value from."""
+    """Returns the input of a group node that feeds a socket inside the group."""
     return _socket(group.inputs, identifier)
 
 

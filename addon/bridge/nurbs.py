@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""NURBS curves of Blender as rational Bezier curves, by knot insertion."""
+"""Conversion of Blender's NURBS curves to rational Bezier curves, by knot insertion."""
 
 from collections.abc import Sequence
 
@@ -13,12 +13,12 @@ FloatArray = NDArray[np.float64]
 def bezier_segments(
     points: FloatArray, order: int, *, cyclic: bool, endpoint: bool, bezier: bool
 ) -> FloatArray:
-    """Returns the curve as it is, in segments.
+    """Splits a curve into Bezier segments of the same shape.
 
     Args:
-        points: (n, c) homogeneous control points: the last number is the weight, by which the
-            others are multiplied.
-        order: The degree and 1; at most n.
+        points: (n, c) homogeneous control points: coordinates multiplied by the weight, then the
+            weight.
+        order: Degree + 1; at most n.
         cyclic: Whether the curve is closed.
         endpoint: Whether it reaches its end points.
         bezier: Whether it has the knots of a chain of Bezier curves.
@@ -33,13 +33,13 @@ def bezier_segments(
     segments = np.empty((len(spans), order, points.shape[1]))
     for segment, j in zip(segments, spans, strict=True):
         for k in range(order):
-            place = [knots[j]] * (degree - k) + [knots[j + 1]] * k
-            segment[k] = _blossom(control[j - degree : j + 1], knots, j, place)
+            arguments = [knots[j]] * (degree - k) + [knots[j + 1]] * k
+            segment[k] = _blossom(control[j - degree : j + 1], knots, j, arguments)
     return segments
 
 
 def _knots(count: int, order: int, *, cyclic: bool, endpoint: bool, bezier: bool) -> FloatArray:
-    """Returns the knots that Blender gives a curve (calcknots in its source)."""
+    """Knots of a curve in Blender (calcknots in its source)."""
     inner = order - 1 if bezier else 1
     head = (order - (1 if cyclic else 0)) if endpoint else (min(2, inner) if bezier else 1)
     tail = 2 * order - 1 if cyclic else (order if endpoint else 0)
@@ -57,15 +57,16 @@ def _knots(count: int, order: int, *, cyclic: bool, endpoint: bool, bezier: bool
     return knots
 
 
-def _blossom(control: FloatArray, knots: FloatArray, j: int, place: Sequence[float]) -> FloatArray:
-    """Returns the polar form of the polynomial on the span j (Ramshaw, 1987), by de Boor's scheme.
+def _blossom(
+    control: FloatArray, knots: FloatArray, j: int, arguments: Sequence[float]
+) -> FloatArray:
+    """Polar form of the polynomial on span j (Ramshaw, 1987), by de Boor's scheme.
 
-    At so many times the first knot of the span and so many times its second one it is a Bezier
-    control point of that span.
+    If all arguments are the first or the second knot of the span, it is a Bezier control point.
     """
     degree = len(control) - 1
     points = control.copy()
-    for level, value in enumerate(place, start=1):
+    for level, value in enumerate(arguments, start=1):
         for i in range(degree, level - 1, -1):
             low, high = knots[j - degree + i], knots[j + i + 1 - level]
             share = (value - low) / (high - low)

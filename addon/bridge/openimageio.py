@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Blender's own OpenImageIO module for Python, which the package then uses, too.
+"""Blender's own OpenImageIO module for Python, which the package uses, too.
 
-Official Blender builds carry it. A second copy of the library inside Blender's process is a known
-source of crashes, so the add-on brings none.
+Official Blender builds include it. A second copy of the library in Blender's process is a known
+cause of crashes, so the add-on has none.
 """
 
 from types import ModuleType

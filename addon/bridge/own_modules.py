@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Python modules that Blender brings along, wherever it keeps them.
+"""Python modules that are part of Blender.
 
-The application finds them by itself. An official build that is a module of Python, `bpy`, has them
-in a folder that is not searched; and another copy that is installed beside it may not meet the
+The application finds them by itself. An official build as a Python module, `bpy`, has them in a
+folder that Python does not search, and another installed copy may be incompatible with the
 libraries that Blender has loaded.
 """
 
@@ -22,10 +22,10 @@ _LOCK = threading.Lock()
 
 
 def load(name: str) -> ModuleType:
-    """Returns a module: Blender's own where it has one, else what is installed.
+    """Loads Blender's own module, or else an installed one.
 
     Raises:
-        ImportError: There is none, or it cannot be loaded.
+        ImportError: There is no such module, or it cannot be loaded.
     """
     with _LOCK:
         if name not in sys.modules:
@@ -41,7 +41,7 @@ def load(name: str) -> ModuleType:
 
 
 def _folder() -> Path:
-    """Returns where an official build has its modules; a folder that may not exist."""
+    """Folder of modules of an official build; it may not exist."""
     library = Path(bpy.utils.resource_path("LOCAL"), "python", "lib")
     if os.name != "nt":
         library /= f"python{sys.version_info.major}.{sys.version_info.minor}"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Images that are packed into the .blend file, as files beside it."""
+"""Unpacking of images in the .blend file to files beside it."""
 
 from pathlib import Path
 
@@ -11,7 +11,7 @@ from .files import staging
 from .images import kind_that_is_no_still, tile_numbers
 
 FOLDER = "textures"
-"""The folder beside the .blend file, where Blender's own Unpack writes as well."""
+"""The folder beside the .blend file, the same as of Blender's own Unpack."""
 
 _STARTS = (
     (b"\x89PNG", ".png"),
@@ -26,13 +26,13 @@ _STARTS = (
 
 
 def unpack(image: bpy.types.Image) -> list[Path]:
-    """Writes the packed bytes of an image beside the .blend file, and lets it use the files.
+    """Writes a packed image to files beside the .blend file, and makes the image use them.
 
-    A file of another content is never replaced: the new one gets a number. A file that holds the
-    same bytes is used.
+    A file with other contents is never replaced: the new one gets a number. A file with the same
+    contents is reused.
 
     Returns:
-        The files: one, or those of the tiles.
+        The file, or the files of the tiles.
 
     Raises:
         ValueError: The image cannot be unpacked.
@@ -97,5 +97,5 @@ def _stem(image: bpy.types.Image) -> str:
 def _ending(image: bpy.types.Image, data: bytes) -> str:
     if data[:4] == b"RIFF" and data[8:12] == b"WEBP":
         return ".webp"
-    found = next((ending for start, ending in _STARTS if data.startswith(start)), "")
-    return found or Path(image.filepath).suffix.lower() or ".tga"
+    extension = next((ending for start, ending in _STARTS if data.startswith(start)), "")
+    return extension or Path(image.filepath).suffix.lower() or ".tga"

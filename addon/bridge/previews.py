@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What editors draw in the place of an image: kept, and told when the image or an object changes.
+"""Previews that editors draw instead of an image, marked as stale when datablocks change.
 
-Previews are kept by the image's session_uid, which an undo does not change, and no datablock is
-held.
+They are stored by the image's session_uid, which undo preserves, and hold no datablocks.
 """
 
 from typing import Generic, Protocol, TypeVar
@@ -13,25 +12,25 @@ from bpy.app.handlers import persistent
 
 
 class Preview(Protocol):
-    """What is kept of an image."""
+    """A preview of an image."""
 
     image_uid: int
     """The image's session_uid."""
     is_stale: bool
-    """Whether the image, or what else it was made of, has changed since."""
+    """Whether the image or an object that it was made of has changed since."""
 
     def depends_on(self, name: str) -> bool:
-        """Tells whether it was made of an object of this name."""
+        """Whether it was made of the object of this name."""
 
 
 T = TypeVar("T", bound=Preview)
 
 
 class Previews(Generic[T]):
-    """Those of one kind, at most one for an image."""
+    """Previews of one kind, at most one per image."""
 
     def __init__(self) -> None:
-        """Keeps none."""
+        """Starts empty."""
         self._kept: dict[int, T] = {}
 
         @persistent
@@ -46,19 +45,19 @@ class Previews(Generic[T]):
         self._drop_all, self._follow = drop_all, mark_stale
 
     def __len__(self) -> int:
-        """Returns how many are kept."""
+        """Returns the number of previews."""
         return len(self._kept)
 
     def keep(self, preview: T) -> None:
-        """Keeps a preview in the place of an earlier one of the same image."""
+        """Stores a preview, and replaces an earlier one of the same image."""
         self._kept[preview.image_uid] = preview
 
     def find(self, image: bpy.types.Image | None) -> T | None:
-        """Returns the preview of an image, if there is one."""
+        """Returns the preview of an image; None if there is none."""
         return None if image is None else self._kept.get(image.session_uid)
 
     def drop(self, image: bpy.types.Image) -> None:
-        """Forgets the preview of an image."""
+        """Removes the preview of an image."""
         self._kept.pop(image.session_uid, None)
 
     def register(self) -> None:
@@ -67,7 +66,7 @@ class Previews(Generic[T]):
         bpy.app.handlers.depsgraph_update_post.append(self._follow)
 
     def unregister(self) -> None:
-        """Removes the handlers and forgets the previews."""
+        """Removes the handlers and the previews."""
         bpy.app.handlers.depsgraph_update_post.remove(self._follow)
         bpy.app.handlers.load_pre.remove(self._drop_all)
         self._kept.clear()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a render of a scene shows: which objects use an image, and who else reads it."""
+"""Users of images in renders of a scene: meshes, worlds, lights and others."""
 
 from dataclasses import dataclass, field
 
@@ -13,12 +13,12 @@ from .users import materials_of_evaluated
 
 @dataclass
 class Viewers:
-    """What shows an image.
+    """Users of an image in a render.
 
     Attributes:
-        objects: The objects whose meshes, or those that they are instancers of, use it.
-        others: What shows it in a way that is no UV map on a mesh.
-        alpha_covers: Whether a material shows as much of a mesh as the image's alpha says.
+        objects: Objects whose meshes or instanced meshes use it.
+        others: Descriptions of other uses, without a UV map on a mesh.
+        alpha_covers: Whether a material uses the image's alpha as coverage.
     """
 
     objects: dict[bpy.types.Object, None] = field(default_factory=dict)
@@ -29,73 +29,73 @@ class Viewers:
 def viewers(
     scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph
 ) -> dict[bpy.types.Image, Viewers]:
-    """Returns who shows which image in renders of a scene.
+    """Returns the users of each image in renders of a scene.
 
     Args:
-        scene: The scene, with all view layers that are rendered.
+        scene: The scene; all its rendered view layers count.
         depsgraph: The evaluated dependency graph of one of them.
     """
-    found: dict[bpy.types.Image, Viewers] = {}
+    users: dict[bpy.types.Image, Viewers] = {}
     objects = _rendered_objects(scene)
-    # Blender makes objects of instanced geometry up while it walks over them: they go first.
+    # The objects of instanced geometry exist only during this iteration.
     for instance in depsgraph.object_instances:
         if instance.is_instance and instance.parent.original in objects:
-            _add_object(found, instance.parent.original, instance.object)
+            _add_object(users, instance.parent.original, instance.object)
     for obj in objects:
-        _add_object(found, obj, obj.evaluated_get(depsgraph))
+        _add_object(users, obj, obj.evaluated_get(depsgraph))
         if obj.type == "LIGHT":
-            _add_others(found, obj.data, f"the light '{obj.data.name}'")
+            _add_others(users, obj.data, f"the light '{obj.data.name}'")
     if scene.world is not None:
-        _add_others(found, scene.world, f"the world '{scene.world.name}'")
-    return found
+        _add_others(users, scene.world, f"the world '{scene.world.name}'")
+    return users
 
 
 def _rendered_objects(scene: bpy.types.Scene) -> dict[bpy.types.Object, None]:
-    found: dict[bpy.types.Object, None] = {}
+    objects: dict[bpy.types.Object, None] = {}
 
     def visit(layer: bpy.types.LayerCollection) -> None:
         if layer.collection.hide_render:
             return
         if not layer.exclude:
-            found.update((obj, None) for obj in layer.collection.objects if not obj.hide_render)
+            objects.update((obj, None) for obj in layer.collection.objects if not obj.hide_render)
         for child in layer.children:
             visit(child)
 
     for view_layer in scene.view_layers:
         if view_layer.use:
             visit(view_layer.layer_collection)
-    return found
+    return objects
 
 
 def _add_object(
-    found: dict[bpy.types.Image, Viewers], owner: bpy.types.Object, shown: bpy.types.Object
+    users: dict[bpy.types.Image, Viewers], owner: bpy.types.Object, shown: bpy.types.Object
 ) -> None:
     for material in materials_of_evaluated(shown):
         for image in images_of(material):
-            entry = found.setdefault(image, Viewers())
+            entry = users.setdefault(image, Viewers())
             if shown.type == "MESH":
                 entry.objects[owner] = None
                 entry.others.update(dict.fromkeys(image_uses(material, image)[1]))
                 entry.alpha_covers = entry.alpha_covers or has_alpha_of(material, image)
             else:
                 entry.others[f"object '{owner.name}' ({shown.type.lower()}) shows it"] = None
-        _add_environment(found, material, f"the material '{material.name}'")
+        _add_environment(users, material, f"the material '{material.name}'")
 
 
 def _add_others(
-    found: dict[bpy.types.Image, Viewers],
+    users: dict[bpy.types.Image, Viewers],
     owner: bpy.types.World | bpy.types.Light,
     who: str,
 ) -> None:
     for image in images_of(owner):
-        found.setdefault(image, Viewers()).others[f"{who} shows it"] = None
-    _add_environment(found, owner, who)
+        users.setdefault(image, Viewers()).others[f"{who} shows it"] = None
+    _add_environment(users, owner, who)
 
 
 def _add_environment(
-    found: dict[bpy.types.Image, Viewers],
+    users: dict[bpy.types.Image, Viewers],
     owner: bpy.types.Material | bpy.types.World | bpy.types.Light,
     who: str,
 ) -> None:
     for image in images_of(owner, "TEX_ENVIRONMENT"):
-        found.setdefault(image, Viewers()).others[f"{who} shows it as an environment"] = None
+        users.setdefault(image, Viewers()).others[f"{who} shows it as an environment"] = None

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Evaluated objects to triangles in space: what a solid is made of, with its materials and layers.
+"""Triangles of evaluated objects, with materials and layers.
 
-Positions are in the axes and units of the world, from an origin that is near, so that objects far
-away keep their precision.
+Positions are in the axes and units of the world, relative to a nearby origin, so that distant
+objects keep their precision.
 """
 
 from collections.abc import Iterable
@@ -15,15 +15,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import attributes
-from .layers import COLOR, UV_MAP, Layer, Triangles, Wanted, read_layers, unread
+from .layers import COLOR, UV_MAP, Layer, LayerSelection, Triangles, read_layers, unread
 from .marks import MarkKind, Marks, read_marks
 
 FloatArray = NDArray[np.float64]
 Positions = NDArray[np.floating]
 
 _ROWS = 1 << 18
-_NEAR = 8.0
-"""How many times its extent a mesh may be away from the origin, for single precision."""
+_MAX_DISTANCE_FOR_SINGLE = 8.0
+"""Greatest distance from the origin, in extents of the mesh, that uses single precision."""
 
 SOLID_TYPES = frozenset({"MESH", "CURVE", "SURFACE", "FONT", "META"})
 """Types of objects that evaluate to a mesh."""
@@ -31,35 +31,35 @@ SOLID_TYPES = frozenset({"MESH", "CURVE", "SURFACE", "FONT", "META"})
 
 @dataclass(frozen=True)
 class MaterialKey:
-    """What a material is found by again, after an undo too."""
+    """Name and library of a material, to find it again even after an undo."""
 
     name: str
     library: str | None
 
     @classmethod
     def of(cls, material: bpy.types.Material | None) -> "MaterialKey | None":
-        """Returns the key of a material slot's content."""
+        """Returns the key of a material, None for an empty slot."""
         if material is None:
             return None
         material = material.original
         return cls(material.name, material.library.filepath if material.library else None)
 
     def find(self) -> bpy.types.Material | None:
-        """Returns the material, or None where it is gone."""
+        """Returns the material; None if it is gone."""
         return bpy.data.materials.get((self.name, self.library))
 
 
 @dataclass(frozen=True)
 class Part:
-    """A mesh, placed once.
+    """One instance of a mesh.
 
     Attributes:
-        positions: (n, 3), float32 where that is precise enough, else float64.
-        triangles: (m, 3) int32; counter-clockwise from outside, mirrored or not.
-        materials: (m,) int32, indices in the materials of the solid; or (1,) for one of all.
+        positions: (n, 3), float32 if that is precise enough, else float64.
+        triangles: (m, 3) int32; counter-clockwise from outside, even where mirrored.
+        materials: (m,) int32, indices of the solid's materials, or (1,) if all are the same.
         layers: Its attributes.
-        faces: (m,) int32, the face that each triangle is cut from; None if all are triangles.
-        is_own: Whether it is the mesh of the object itself, and no instance.
+        faces: (m,) int32, face of each triangle; None if all faces are triangles.
+        is_own: Whether it is the mesh of the object itself, not of an instance.
     """
 
     positions: Positions
@@ -72,18 +72,18 @@ class Part:
 
 @dataclass
 class Solid:
-    """What an object shows: its mesh and its instances.
+    """The evaluated meshes of an object and its instances.
 
     Attributes:
-        name: The object's.
-        parts: Its meshes, in space.
-        materials: Those of the object's slots, in their order, then those of its instances.
-        active: By kind, the names of the active color attribute and UV map.
-        rendered: Likewise of those that renders use.
-        marks: Seams, and weights and other attributes of edges and vertices, in space.
-        left_out: The names of attributes of other types.
-        locked_groups: The vertex groups whose weights are locked.
-        kept_modifiers: Those of its modifiers that it does not show.
+        name: Name of the object.
+        parts: Its meshes, transformed.
+        materials: Materials of the object's slots in their order, then of its instances.
+        active: Names of the active color attribute and UV map, by kind.
+        rendered: Names of the color attribute and UV map used by renders, by kind.
+        marks: Seams, weights and other attributes of edges and vertices, with their positions.
+        left_out: Names of attributes whose types cannot be transferred.
+        locked_groups: Names of vertex groups with locked weights.
+        kept_modifiers: Names of modifiers disabled in the viewport, which the object keeps.
     """
 
     name: str
@@ -98,7 +98,7 @@ class Solid:
 
 
 def frame_origin(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> FloatArray:
-    """Returns where an object is, as the origin of positions."""
+    """Position of an evaluated object, as the origin of positions."""
     return np.array(obj.evaluated_get(depsgraph).matrix_world.translation, np.float64)
 
 
@@ -106,31 +106,33 @@ def read_solids(
     objects: Iterable[bpy.types.Object],
     depsgraph: bpy.types.Depsgraph,
     origins: Iterable[FloatArray],
-    wanted: Wanted,
+    selection: LayerSelection,
 ) -> list[Solid]:
-    """Copies what objects show, with modifiers, shape keys and instances.
+    """Copies the meshes of objects, with modifiers, shape keys and instances.
 
     Args:
         objects: Objects, each once.
         depsgraph: The evaluated dependency graph.
-        origins: For each object, what its positions are relative to.
-        wanted: Which layers to read.
+        origins: Origin of the positions of each object.
+        selection: Layers to read.
 
     Raises:
         ValueError: A coordinate is not finite; the message names the object.
     """
     objects = list(objects)
     readers = {
-        obj: _Reader(Solid(obj.name), origin, wanted)
+        obj: _Reader(Solid(obj.name), origin, selection)
         for obj, origin in zip(objects, origins, strict=True)
     }
     for obj, reader in readers.items():
         evaluated = obj.evaluated_get(depsgraph)
         solid = reader.solid
-        solid.locked_groups.update(one.name for one in obj.vertex_groups if one.lock_weight)
-        # The details of Multires are the mesh's own.
+        solid.locked_groups.update(group.name for group in obj.vertex_groups if group.lock_weight)
+        # Multires stores its details in the mesh, which is replaced.
         solid.kept_modifiers.update(
-            one.name for one in obj.modifiers if not one.show_viewport and one.type != "MULTIRES"
+            modifier.name
+            for modifier in obj.modifiers
+            if not modifier.show_viewport and modifier.type != "MULTIRES"
         )
         for slot in evaluated.material_slots:
             solid.materials.append(MaterialKey.of(slot.material))
@@ -144,15 +146,15 @@ def read_solids(
         parent = instance.parent.original
         if parent in readers:
             matrix = np.array(instance.matrix_world, np.float64)
-            is_made_up = instance.instance_object.original == parent
-            readers[parent].read(instance.object, matrix, is_made_up=is_made_up)
+            is_temporary = instance.instance_object.original == parent
+            readers[parent].read(instance.object, matrix, is_temporary=is_temporary)
     return [reader.solid for reader in readers.values()]
 
 
 def _is_seen_as_instances(obj: bpy.types.Object) -> bool:
-    """Returns whether all or a part of an object comes as instances.
+    """Whether the dependency graph has all or a part of an object as instances.
 
-    The meshes that curves, texts and metaballs evaluate to do, too.
+    This includes the meshes of curves, texts and metaballs.
     """
     return (
         obj.type != "MESH"
@@ -175,13 +177,13 @@ class _LocalMesh:
 
 
 class _Reader:
-    """Reads the meshes of one solid; a mesh that is placed often is read once."""
+    """Reads the meshes of one solid; a mesh with many instances is read once."""
 
-    def __init__(self, solid: Solid, origin: FloatArray, wanted: Wanted) -> None:
+    def __init__(self, solid: Solid, origin: FloatArray, selection: LayerSelection) -> None:
         """Starts without parts."""
         self.solid = solid
         self._origin = origin
-        self._wanted = wanted
+        self._selection = selection
         self._known: dict[int, _LocalMesh] = {}
 
     def read(
@@ -190,35 +192,35 @@ class _Reader:
         matrix: FloatArray,
         *,
         is_own: bool = False,
-        is_made_up: bool = False,
+        is_temporary: bool = False,
     ) -> None:
-        """Adds the mesh that an evaluated object shows, at a matrix.
+        """Adds an instance of the mesh of an evaluated object.
 
         Args:
             shown: The object.
-            matrix: Where it is.
-            is_own: Whether it is that of the solid itself.
-            is_made_up: Whether Blender made the object up for a mesh that no object has.
+            matrix: Its world matrix.
+            is_own: Whether the mesh is the solid's own.
+            is_temporary: Whether Blender created the object for a mesh without an object.
         """
         if len(shown.data.polygons) == 0:
             return
         key = shown.data.as_pointer()
         if key not in self._known:
-            self._known[key] = self._copied(shown, shown.data, is_made_up=is_made_up)
+            self._known[key] = self._copied(shown, shown.data, is_temporary=is_temporary)
         local = self._known[key]
         linear = matrix[:3, :3]
-        positions = _placed(local.positions, linear, matrix[:3, 3] - self._origin)
+        positions = _transform(local.positions, linear, matrix[:3, 3] - self._origin)
         triangles = local.triangles
         layers = [layer.rotated(linear) for layer in local.layers]
         if np.linalg.det(linear) < 0:
             triangles = triangles[:, ::-1]
-            layers = [layer.turned() for layer in layers]
-        # An object's own slots are the first ones, as many as they are.
+            layers = [layer.reversed() for layer in layers]
+        # The object's own slots come first, and stay separate even if they have the same material.
         if is_own:
-            found = list(range(len(local.slots)))
+            indices = list(range(len(local.slots)))
         else:
-            found = [self._slot(key) for key in local.slots]
-        slots = np.array(found or [self._slot(None)], np.int32)
+            indices = [self._slot(key) for key in local.slots]
+        slots = np.array(indices or [self._slot(None)], np.int32)
         for kind, ends, values in local.marks:
             self.solid.marks.append(Marks(kind, positions[ends], values))
         materials = slots[local.face_materials]
@@ -232,7 +234,7 @@ class _Reader:
         return self.solid.materials.index(key)
 
     def _copied(
-        self, shown: bpy.types.Object, mesh: bpy.types.Mesh, *, is_made_up: bool
+        self, shown: bpy.types.Object, mesh: bpy.types.Mesh, *, is_temporary: bool
     ) -> _LocalMesh:
         positions = attributes.positions(mesh)
         self._check_finite(positions)
@@ -243,7 +245,7 @@ class _Reader:
         else:
             corners, faces = attributes.corner_triangles(mesh)
             triangles = triangles[corners]
-        if is_made_up:
+        if is_temporary:
             slots = [MaterialKey.of(material) for material in mesh.materials]
         else:
             slots = [MaterialKey.of(slot.material) for slot in shown.material_slots]
@@ -252,16 +254,18 @@ class _Reader:
             materials = materials[:1]
         elif faces is not None:
             materials = materials[faces]
-        layers = list(read_layers(shown, mesh, Triangles(triangles, corners, faces), self._wanted))
+        layers = list(
+            read_layers(shown, mesh, Triangles(triangles, corners, faces), self._selection)
+        )
         marks = []
-        if self._wanted.attributes:
+        if self._selection.attributes:
             marks = list(read_marks(mesh))
             self.solid.left_out |= unread(mesh)
         self._note_active(mesh)
         return _LocalMesh(positions, triangles, materials, slots, layers, marks, faces)
 
     def _check_finite(self, positions: NDArray[np.float32]) -> None:
-        # Sums in double precision do not overflow, and hold no memory.
+        # A sum in double precision does not overflow, and needs no memory.
         if np.isfinite(positions.sum(dtype=np.float64)):
             return
         broken = np.flatnonzero(~np.isfinite(positions).all(axis=1))
@@ -272,8 +276,8 @@ class _Reader:
 
     def _note_active(self, mesh: bpy.types.Mesh) -> None:
         colors, maps = mesh.color_attributes, mesh.uv_layers
-        found = {COLOR: colors.active_color_name or "", UV_MAP: maps.active.name if maps else ""}
-        for kind, name in found.items():
+        active = {COLOR: colors.active_color_name or "", UV_MAP: maps.active.name if maps else ""}
+        for kind, name in active.items():
             if name:
                 self.solid.active.setdefault(kind, name)
         default = colors.render_color_index
@@ -284,16 +288,16 @@ class _Reader:
             self.solid.rendered.setdefault(UV_MAP, rendered)
 
 
-def _placed(positions: NDArray[np.float32], linear: FloatArray, offset: FloatArray) -> Positions:
-    """Returns where points are; in double precision only where they are far from the origin."""
+def _transform(positions: NDArray[np.float32], linear: FloatArray, offset: FloatArray) -> Positions:
+    """Transforms points; the result is in double precision only if it is far from the origin."""
     if np.array_equal(linear, np.eye(3)) and not offset.any():
         return positions
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     placed: Positions = np.empty_like(positions)
     for start in range(0, len(positions), _ROWS):
-        some = positions[start : start + _ROWS].astype(np.float64) @ linear.T + offset
-        placed[start : start + _ROWS] = some
-        low, high = np.minimum(low, some.min(axis=0)), np.maximum(high, some.max(axis=0))
-    if np.abs([low, high]).max() <= _NEAR * (high - low).max():
+        rows = positions[start : start + _ROWS].astype(np.float64) @ linear.T + offset
+        placed[start : start + _ROWS] = rows
+        low, high = np.minimum(low, rows.min(axis=0)), np.maximum(high, rows.max(axis=0))
+    if np.abs([low, high]).max() <= _MAX_DISTANCE_FOR_SINGLE * (high - low).max():
         return placed
     return np.asarray(positions.astype(np.float64) @ linear.T + offset)

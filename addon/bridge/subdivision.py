@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Subdivision modifiers: the mesh below, and its limit surface."""
+"""Subdivision modifiers: their control meshes and limit surfaces."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from . import attributes
 
 _LEVEL = 3
-# What a mesh may become; a mesh that is finer than that has its weights about right as it is.
+# Limit for a refined mesh; the areas of finer meshes are accurate enough without refinement.
 _MAX_TRIANGLES = 1 << 21
 
 _BOUNDARIES = {"ALL": "edge-only", "PRESERVE_CORNERS": "edge-and-corner"}
@@ -23,12 +23,12 @@ _BOUNDARIES = {"ALL": "edge-only", "PRESERVE_CORNERS": "edge-and-corner"}
 
 @dataclass(frozen=True)
 class Rules:
-    """What a modifier asks for.
+    """Settings of a modifier.
 
     Attributes:
-        boundary: As `prefilter.Surface.from_subdivision` has it.
-        uv_smooth: Likewise.
-        level: Likewise.
+        boundary: As for `prefilter.Surface.from_subdivision`.
+        uv_smooth: As for `prefilter.Surface.from_subdivision`.
+        level: As for `prefilter.Surface.from_subdivision`.
         use_creases: Whether creases count.
     """
 
@@ -39,7 +39,7 @@ class Rules:
 
     @classmethod
     def of(cls, modifier: bpy.types.SubsurfModifier, mesh: bpy.types.Mesh) -> "Rules | None":
-        """Reads a modifier on a mesh; None where the mesh is too fine to be refined once more."""
+        """Reads a modifier on a mesh; None if the mesh is too fine to be refined."""
         level = _LEVEL
         while level > 0 and len(mesh.loops) * 4**level // 2 > _MAX_TRIANGLES:
             level -= 1
@@ -56,7 +56,7 @@ class Rules:
 def top_modifier(
     obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph
 ) -> bpy.types.SubsurfModifier | None:
-    """Returns the Catmull-Clark modifier that is the last of the modifiers that are on."""
+    """Returns the last enabled modifier if it is a Catmull-Clark modifier; else None."""
     shown = "show_viewport" if depsgraph.mode == "VIEWPORT" else "show_render"
     editing = obj.mode == "EDIT"
     enabled = [
@@ -76,9 +76,9 @@ def without(
     modifier: bpy.types.SubsurfModifier,
     depsgraph: bpy.types.Depsgraph,
 ) -> Iterator[bool]:
-    """Evaluates the object without the modifier for a while.
+    """Evaluates the object without the modifier, and again with it at the end.
 
-    Yields whether that worked: a driver or an animation may keep the modifier on.
+    Yields whether that worked: a driver or an animation may keep the modifier enabled.
     """
     shown = "show_viewport" if depsgraph.mode == "VIEWPORT" else "show_render"
     setattr(modifier, shown, False)
@@ -97,17 +97,17 @@ def limit_surface(
     weights: attributes.Weights | None,
     rules: Rules,
 ) -> prefilter.Surface:
-    """Returns the limit surface over some faces of a mesh.
+    """Returns the limit surface of faces of a control mesh.
 
     Args:
         mesh: The mesh below the modifier.
-        chosen: Which faces to take.
-        uvs: Of each corner.
+        chosen: Mask of the faces.
+        uvs: UVs of all corners.
         weights: Importance.
-        rules: What the modifier says.
+        rules: Settings of the modifier.
 
     Raises:
-        ValueError: The mesh is bad.
+        ValueError: The geometry is invalid.
     """
     starts = np.empty(len(mesh.polygons), np.int32)
     mesh.polygons.foreach_get("loop_start", starts)
@@ -121,40 +121,40 @@ def limit_surface(
         level=rules.level,
         boundary=rules.boundary,
         uv_smooth=rules.uv_smooth,
-        weights=None if weights is None else _of_control_mesh(weights, vertices, mesh),
+        weights=None if weights is None else _control_mesh_weights(weights, vertices, mesh),
         faces=chosen,
         **sharp,
     )
 
 
 def _creases(mesh: bpy.types.Mesh) -> dict[str, tuple[NDArray[np.int32], NDArray[np.float64]]]:
-    found = {}
+    creases = {}
     if "crease_edge" in mesh.attributes:
         crease = np.empty(len(mesh.edges), np.float32)
         mesh.attributes["crease_edge"].data.foreach_get("value", crease)
-        of_corner = np.empty(len(mesh.loops), np.int32)
-        mesh.attributes[".corner_edge"].data.foreach_get("value", of_corner)
+        corner_edges = np.empty(len(mesh.loops), np.int32)
+        mesh.attributes[".corner_edge"].data.foreach_get("value", corner_edges)
         edges = np.empty((len(mesh.edges), 2), np.int32)
         mesh.edges.foreach_get("vertices", edges.ravel())
-        chosen = np.intersect1d(of_corner, np.flatnonzero(crease > 0))
-        found["creases"] = edges[chosen], _sharpness(crease[chosen])
+        chosen = np.intersect1d(corner_edges, np.flatnonzero(crease > 0))
+        creases["creases"] = edges[chosen], _sharpness(crease[chosen])
     if "crease_vert" in mesh.attributes:
         crease = np.empty(len(mesh.vertices), np.float32)
         mesh.attributes["crease_vert"].data.foreach_get("value", crease)
         chosen = np.flatnonzero(crease > 0).astype(np.int32)
-        found["corners"] = chosen, _sharpness(crease[chosen])
-    return found
+        creases["corners"] = chosen, _sharpness(crease[chosen])
+    return creases
 
 
 def _sharpness(crease: NDArray[np.float32]) -> NDArray[np.float64]:
-    """Returns the sharpness that Blender gives a crease; 10 is infinite."""
+    """Sharpness of a crease in Blender; 10 is infinite."""
     return 10.0 * np.square(np.clip(crease, 0.0, 1.0), dtype=np.float64)
 
 
-def _of_control_mesh(
+def _control_mesh_weights(
     weights: attributes.Weights, vertices: NDArray[np.int32], mesh: bpy.types.Mesh
 ) -> NDArray[np.float64]:
-    """Returns weights of vertices or faces; those of corners are averaged over each vertex."""
+    """Weights of vertices or faces; corner weights are averaged per vertex."""
     if weights.domain == "POINT":
         return weights.values
     if weights.domain == "FACE":

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What shader nodes make of the texels of one image, on their way to an input of a shader."""
+"""Evaluation of shader nodes between one image and an input of a shader, per texel."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -17,31 +17,32 @@ Values: Any = NDArray[np.float32]
 """(height, width) numbers, or (height, width, 3) colors or vectors; a constant has sides of 1."""
 
 _SAMPLES = 255 * 16 + 1
-"""Of curves and ramps between 0 and 1: the values of bytes are among them."""
+"""Number of samples of curves and ramps between 0 and 1, including all byte values."""
 _PASSING = frozenset({"NORMAL_MAP", "SEPARATE_COLOR", "SEPRGB", "SEPXYZ"})
-"""What formats for engines say themselves: what a normal map is, and which channel is read."""
+"""Nodes that engines' formats express themselves: normal maps, and the channel of a texture."""
 
 
 class OtherNodeError(Exception):
-    """A node whose result is not known from the texel alone.
+    """A node whose result does not depend on the texel alone.
 
     Attributes:
         node: The node.
     """
 
     def __init__(self, node: bpy.types.Node) -> None:
-        """Takes the node."""
+        """Keeps the node."""
         super().__init__(node.name)
         self.node = node
 
 
 @dataclass
 class TexelFunction:
-    """The values that reach an input, from those of an image.
+    """Evaluates inputs of shaders as functions of an image's texels.
 
     Attributes:
-        image: The image; None before `values` has met one.
-        changing: The nodes on the way that change values.
+        color_of: Returns the texels of an image.
+        image: The image; None before `values` has found one.
+        changing: Nodes between image and input that change values.
     """
 
     color_of: Callable[[bpy.types.Image], NDArray[np.float32]]
@@ -49,16 +50,15 @@ class TexelFunction:
     changing: dict[bpy.types.Node, None] = field(default_factory=dict)
 
     def values(self, socket: bpy.types.NodeSocket, groups: Groups) -> NDArray[np.float32]:
-        """Returns what an input gets, in the shape of its type.
+        """Returns the values of an input, in the shape of its type.
 
         Raises:
-            OtherNodeError: Something else than one image has a part in it.
+            OtherNodeError: The values depend on anything but one image.
         """
-        last, node, around = nodes.origin(socket, groups)
+        source, node, around = nodes.origin(socket, groups)
         if node is None:
-            return _as_type(_constant(last), socket.type)
-        found = self._output(node, last, around)
-        return _as_type(found, socket.type)
+            return _as_type(_constant(source), socket.type)
+        return _as_type(self._output(node, source, around), socket.type)
 
     def _output(
         self, node: bpy.types.Node, output: bpy.types.NodeSocket, groups: Groups
@@ -94,10 +94,10 @@ class TexelFunction:
 def before_factor(
     socket: bpy.types.NodeSocket, groups: Groups
 ) -> tuple[bpy.types.NodeSocket, Groups]:
-    """Returns the input whose values a texture for an engine is to have.
+    """Returns the input whose values an exported texture should have.
 
-    A multiplication with a constant just before the shader is a factor of the material there. The
-    input Color of a Normal Map node is that of normals.
+    A multiplication by a constant directly before the shader is exported as a factor of the
+    material. For normals it is the input Color of a Normal Map node.
     """
     _, node, around = nodes.origin(socket, groups)
     if node is None:
@@ -107,21 +107,21 @@ def before_factor(
     operands: list[bpy.types.NodeSocket] = []
     if socket.type == "RGBA" and node.type == "MIX" and node.data_type == "RGBA":
         names = ("A_Color", "B_Color") if node.blend_type == "MULTIPLY" else ()
-        operands = [one for one in node.inputs if one.identifier in names]
+        operands = [operand for operand in node.inputs if operand.identifier in names]
     elif socket.type == "VALUE" and node.type == "MATH" and node.operation == "MULTIPLY":
         operands = list(node.inputs[:2])
-    varying = [one for one in operands if not _is_constant(one, around)]
+    varying = [operand for operand in operands if not _is_constant(operand, around)]
     if len(operands) == 2 and len(varying) == 1:
         return varying[0], around
     return socket, groups
 
 
 def partial_factor(socket: bpy.types.NodeSocket, groups: Groups) -> bpy.types.Node | None:
-    """Returns the multiplication that `before_factor` leaves out, if it is not of full strength."""
+    """Returns the multiplication that `before_factor` skips if its mix factor is not 1."""
     _, node, _around = nodes.origin(socket, groups)
     if node is None or node.type != "MIX" or before_factor(socket, groups) == (socket, groups):
         return None
-    strength = next(one for one in node.inputs if one.identifier == "Factor_Float")
+    strength = next(each for each in node.inputs if each.identifier == "Factor_Float")
     is_full = nodes.link_into(strength) is None and strength.default_value == 1.0
     return None if is_full else node
 
@@ -132,13 +132,13 @@ def _is_constant(socket: bpy.types.NodeSocket, groups: Groups) -> bool:
 
 
 def _constant(socket: bpy.types.NodeSocket) -> NDArray[np.float32]:
-    """Returns the value that a socket without a link has, as an image of one texel."""
+    """Value of an unlinked socket, as an image of one texel."""
     value = np.array(getattr(socket, "default_value", 0.0), np.float32)
     return value.reshape(1, 1) if value.ndim == 0 else value[:3].reshape(1, 1, -1)
 
 
 def _as_type(values: NDArray[np.float32], kind: str) -> NDArray[np.float32]:
-    """Returns values as sockets of a type get them."""
+    """Converts values to the type of a socket."""
     is_number = kind in ("VALUE", "INT", "BOOLEAN")
     if is_number and values.ndim == 3:
         return values @ np.array([0.2126729, 0.7151522, 0.0721750], np.float32)
@@ -151,23 +151,23 @@ _Get = Callable[[Any], NDArray[np.float32]]
 
 
 def _sampled(values: NDArray[np.float32], table: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Looks values from 0 to 1 up in a table."""
-    places = np.linspace(0.0, 1.0, len(table))
-    return np.interp(np.clip(values, 0.0, 1.0), places, table).astype(np.float32)
+    """Looks up values from 0 to 1 in a table, with interpolation."""
+    positions = np.linspace(0.0, 1.0, len(table))
+    return np.interp(np.clip(values, 0.0, 1.0), positions, table).astype(np.float32)
 
 
 def _curve(mapping: Any, number: int) -> NDArray[np.float32]:
     mapping.initialize()
     curve = mapping.curves[number]
-    places = np.linspace(0.0, 1.0, _SAMPLES).tolist()
-    return np.array([mapping.evaluate(curve, place) for place in places], np.float32)
+    positions = np.linspace(0.0, 1.0, _SAMPLES).tolist()
+    return np.array([mapping.evaluate(curve, position) for position in positions], np.float32)
 
 
 def _rgb_curves(node: bpy.types.Node, get: _Get, _: Any) -> NDArray[np.float32]:
     color, factor = get("Color"), node_math.as_factor(get(0))
     combined = _sampled(color, _curve(node.mapping, 3))
-    found = [_sampled(combined[..., k], _curve(node.mapping, k)) for k in range(3)]
-    return node_math.mixed(factor, color, np.stack(found, axis=-1))
+    channels = [_sampled(combined[..., k], _curve(node.mapping, k)) for k in range(3)]
+    return node_math.mix(factor, color, np.stack(channels, axis=-1))
 
 
 def _float_curve(node: bpy.types.Node, get: _Get, _: Any) -> NDArray[np.float32]:
@@ -176,8 +176,8 @@ def _float_curve(node: bpy.types.Node, get: _Get, _: Any) -> NDArray[np.float32]
 
 
 def _ramp(node: bpy.types.Node, get: _Get, output: Any) -> NDArray[np.float32]:
-    places = np.linspace(0.0, 1.0, _SAMPLES).tolist()
-    table = np.array([tuple(node.color_ramp.evaluate(place)) for place in places], np.float32)
+    positions = np.linspace(0.0, 1.0, _SAMPLES).tolist()
+    table = np.array([tuple(node.color_ramp.evaluate(each)) for each in positions], np.float32)
     value = get(0)
     if output.name == "Alpha":
         return _sampled(value, table[:, 3])
@@ -186,7 +186,7 @@ def _ramp(node: bpy.types.Node, get: _Get, output: Any) -> NDArray[np.float32]:
 
 def _invert(_node: bpy.types.Node, get: _Get, _: Any) -> NDArray[np.float32]:
     color = get("Color")
-    return node_math.mixed(node_math.as_factor(get(0)), color, 1 - color)
+    return node_math.mix(node_math.as_factor(get(0)), color, 1 - color)
 
 
 def _separate(node: bpy.types.Node, get: _Get, output: Any) -> NDArray[np.float32]:
@@ -200,13 +200,13 @@ def _combine(node: bpy.types.Node, get: _Get, _: Any) -> NDArray[np.float32]:
 
 
 def _math(node: bpy.types.Node, get: _Get, _: Any) -> NDArray[np.float32]:
-    found = node_math.calculated(node.operation, [get(k) for k in range(len(node.inputs))])
-    return np.clip(found, 0, 1) if node.use_clamp else found
+    result = node_math.evaluate_math(node.operation, [get(k) for k in range(len(node.inputs))])
+    return np.clip(result, 0, 1) if node.use_clamp else result
 
 
 def _vector_math(node: bpy.types.Node, get: _Get, output: Any) -> NDArray[np.float32]:
     vectors = [get(k) for k in range(3)]
-    return node_math.vectors_calculated(node.operation, vectors, get(3))
+    return node_math.evaluate_vector_math(node.operation, vectors, get(3))
 
 
 def _mix(node: bpy.types.Node, get: _Get, _: Any) -> NDArray[np.float32]:
@@ -217,8 +217,8 @@ def _mix(node: bpy.types.Node, get: _Get, _: Any) -> NDArray[np.float32]:
         raise node_math.UnknownOperationError
     is_uniform = node.data_type != "VECTOR" or node.factor_mode == "UNIFORM"
     names = kinds[node.data_type] if is_uniform else ("Factor_Vector", "A_Vector", "B_Vector")
-    numbers = {one.identifier: number for number, one in enumerate(node.inputs)}
-    factor, first, second = (get(numbers[name]) for name in names)
+    indices = {socket.identifier: index for index, socket in enumerate(node.inputs)}
+    factor, first, second = (get(indices[name]) for name in names)
     if node.clamp_factor:
         factor = np.clip(factor, 0, 1)
     if node.data_type == "FLOAT":
@@ -226,14 +226,14 @@ def _mix(node: bpy.types.Node, get: _Get, _: Any) -> NDArray[np.float32]:
     factor = factor if factor.ndim == 3 else factor[..., None]
     if node.data_type == "VECTOR":
         return first + factor * (second - first)
-    found = node_math.blended(node.blend_type, factor, first, second)
-    return np.clip(found, 0, 1) if node.clamp_result else found
+    result = node_math.blend_colors(node.blend_type, factor, first, second)
+    return np.clip(result, 0, 1) if node.clamp_result else result
 
 
 def _mix_rgb(node: bpy.types.Node, get: _Get, _: Any) -> NDArray[np.float32]:
     factor = node_math.as_factor(np.clip(get(0), 0, 1))
-    found = node_math.blended(node.blend_type, factor, get(1), get(2))
-    return np.clip(found, 0, 1) if node.use_clamp else found
+    result = node_math.blend_colors(node.blend_type, factor, get(1), get(2))
+    return np.clip(result, 0, 1) if node.use_clamp else result
 
 
 def _bright_contrast(_node: bpy.types.Node, get: _Get, _: Any) -> NDArray[np.float32]:
@@ -247,15 +247,15 @@ def _gamma(_node: bpy.types.Node, get: _Get, _: Any) -> NDArray[np.float32]:
 
 
 def _hue_saturation(node: bpy.types.Node, get: _Get, _: Any) -> NDArray[np.float32]:
-    numbers = {one.identifier: number for number, one in enumerate(node.inputs)}
+    indices = {socket.identifier: index for index, socket in enumerate(node.inputs)}
     names = ("Hue", "Saturation", "Value")
-    hue, saturation, value = (get(numbers[name]) for name in names)
-    color = get(numbers["Color"])
-    factor = node_math.as_factor(get(numbers["Fac" if "Fac" in numbers else "Factor"]))
+    hue, saturation, value = (get(indices[name]) for name in names)
+    color = get(indices["Color"])
+    factor = node_math.as_factor(get(indices["Fac" if "Fac" in indices else "Factor"]))
     h, s, v = np.moveaxis(node_math.to_mode("HSV", color), -1, 0)
     changed = [(h + hue + 0.5) % 1.0, np.clip(s * saturation, 0, 1), v * value]
-    found = node_math.from_mode("HSV", np.stack(np.broadcast_arrays(*changed), axis=-1))
-    return np.maximum(node_math.mixed(factor, color, found), 0)
+    result = node_math.from_mode("HSV", np.stack(np.broadcast_arrays(*changed), axis=-1))
+    return np.maximum(node_math.mix(factor, color, result), 0)
 
 
 def _map_range(node: bpy.types.Node, get: _Get, _: Any) -> NDArray[np.float32]:
@@ -263,7 +263,7 @@ def _map_range(node: bpy.types.Node, get: _Get, _: Any) -> NDArray[np.float32]:
         raise node_math.UnknownOperationError
     value, *ends = (get(k) for k in range(5))
     steps = get("Steps") if node.interpolation_type == "STEPPED" else None
-    return node_math.mapped(node.interpolation_type, value, ends, steps, is_clamped=node.clamp)
+    return node_math.map_range(node.interpolation_type, value, ends, steps, is_clamped=node.clamp)
 
 
 def _clamp(node: bpy.types.Node, get: _Get, _: Any) -> NDArray[np.float32]:
@@ -296,5 +296,5 @@ _NODES: dict[str, Callable[[Any, _Get, Any], Any]] = {
     "CLAMP": _clamp,
     "RGBTOBW": lambda _node, get, _: _as_type(get(0), "VALUE"),
 }
-"""What nodes make of their inputs, by type: of the node, of a function that gets these, and of the
-output that is asked for."""
+"""Functions that evaluate nodes, by type: of the node, of a function that evaluates an input, and
+of the output."""

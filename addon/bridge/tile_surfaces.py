@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""UDIM tiles: which part of surfaces lies in each."""
+"""Surfaces cut by UDIM tiles."""
 
 import numpy as np
 import prefilter
@@ -12,18 +12,18 @@ FloatArray = NDArray[np.float64]
 
 
 class TileSurfaces:
-    """The parts of surfaces that lie in tiles; each is cut out once, whatever uses it."""
+    """Parts of surfaces in UDIM tiles; each part is cut out once, and cached."""
 
     def __init__(self) -> None:
-        """Starts without any."""
-        # With the surface, which keeps its identity from becoming another's.
+        """Starts empty."""
+        # By id; storing the surface, too, keeps the id from being reused.
         self._bounds: dict[int, tuple[prefilter.Surface, FloatArray, FloatArray]] = {}
         self._parts: dict[tuple[int, int], prefilter.Surface | None] = {}
 
-    def inside(self, found: ImageSurfaces, number: int) -> ImageSurfaces:
-        """Returns what lies in a tile, with the names of its objects, in the unit square."""
+    def inside(self, surfaces: ImageSurfaces, number: int) -> ImageSurfaces:
+        """Returns the parts of surfaces in a tile, moved to the unit square."""
         inside = ImageSurfaces()
-        for surface, name in zip(found.surfaces, found.objects, strict=True):
+        for surface, name in zip(surfaces.surfaces, surfaces.objects, strict=True):
             part = self._part(surface, number)
             if part is not None:
                 inside.surfaces.append(part)

@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Lengths and volumes as a user reads them, in the units of the scene."""
+"""Lengths and volumes as text, in the units of the scene."""
 
 import bpy
 
 
 def length(value: float) -> str:
-    """Returns a length of the world's space in words."""
+    """Formats a length in world space."""
     return _in_units(value, "LENGTH", 1)
 
 
 def volume(value: float) -> str:
-    """Returns a volume of the world's space in words."""
+    """Formats a volume in world space."""
     return _in_units(value, "VOLUME", 3)
 
 

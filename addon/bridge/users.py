@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Which objects show which images in a view layer."""
+"""Objects and the images that they show in a view layer."""
 
 from collections.abc import Iterable
 
@@ -11,44 +11,41 @@ from .meshes import images_of_objects
 
 
 def shown_images(depsgraph: bpy.types.Depsgraph) -> dict[bpy.types.Image, list[bpy.types.Object]]:
-    """Returns the images that visible meshes show, each with the objects that show it.
-
-    See `shown_materials`.
-    """
-    found: dict[bpy.types.Image, dict[bpy.types.Object, None]] = {}
+    """Returns the images of visible meshes, each with its objects; see `shown_materials`."""
+    by_image: dict[bpy.types.Image, dict[bpy.types.Object, None]] = {}
     images: dict[bpy.types.Material, list[bpy.types.Image]] = {}
     for owner, materials in shown_materials(depsgraph).items():
         for material in materials:
             if material not in images:
                 images[material] = images_of(material)
             for image in images[material]:
-                found.setdefault(image, {})[owner] = None
-    return {image: list(owners) for image, owners in found.items()}
+                by_image.setdefault(image, {})[owner] = None
+    return {image: list(owners) for image, owners in by_image.items()}
 
 
 def shown_materials(
     depsgraph: bpy.types.Depsgraph,
 ) -> dict[bpy.types.Object, list[bpy.types.Material]]:
-    """Returns the visible objects that show meshes, with the materials of these.
+    """Returns visible objects with meshes, with their materials.
 
-    Those of an instance are shown by the object that makes it. No mesh is evaluated.
+    Materials of an instance belong to its instancer. No mesh is evaluated.
 
     Args:
-        depsgraph: The dependency graph, evaluated before.
+        depsgraph: The evaluated dependency graph.
     """
-    found: dict[bpy.types.Object, dict[bpy.types.Material, None]] = {}
+    by_object: dict[bpy.types.Object, dict[bpy.types.Material, None]] = {}
     seen = set()
     for instance in depsgraph.object_instances:
         shown = instance.object
         if shown.type != "MESH":
             continue
         owner = (instance.parent if instance.is_instance else shown).original
-        place = (owner, shown.original, shown.data.as_pointer())
-        if place in seen:
+        key = (owner, shown.original, shown.data.as_pointer())
+        if key in seen:
             continue
-        seen.add(place)
-        found.setdefault(owner, {}).update(dict.fromkeys(materials_of_evaluated(shown)))
-    return {owner: list(materials) for owner, materials in found.items()}
+        seen.add(key)
+        by_object.setdefault(owner, {}).update(dict.fromkeys(materials_of_evaluated(shown)))
+    return {owner: list(materials) for owner, materials in by_object.items()}
 
 
 def hidden_users(
@@ -56,7 +53,7 @@ def hidden_users(
     view_layer: bpy.types.ViewLayer,
     shown: Iterable[bpy.types.Object],
 ) -> list[bpy.types.Object]:
-    """Returns the objects of a view layer that use an image, and are hidden.
+    """Returns the hidden objects of a view layer that use an image.
 
     Args:
         image: The image.
@@ -72,7 +69,10 @@ def hidden_users(
 
 
 def materials_of_evaluated(obj: bpy.types.Object) -> Iterable[bpy.types.Material]:
-    """Returns an evaluated object's materials; geometry nodes may set some that no slot has."""
+    """Returns an evaluated object's materials, of its slots and of its mesh.
+
+    Geometry nodes may set materials that are in no slot.
+    """
     materials = [slot.material for slot in obj.material_slots]
     materials.extend(getattr(obj.data, "materials", ()))
     return dict.fromkeys(material.original for material in materials if material is not None)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The UV map of a mesh as what its faces cover: closed polygons around charts."""
+"""The area covered by a UV map: closed polygons around its charts."""
 
 import bpy
 import numpy as np
@@ -15,15 +15,15 @@ FloatArray = NDArray[np.float64]
 
 
 def has_uv_map(obj: bpy.types.Object | None) -> bool:
-    """Tells whether an object is a mesh with a UV map."""
+    """Whether an object is a mesh with a UV map."""
     return obj is not None and obj.type == "MESH" and len(obj.data.uv_layers) > 0
 
 
 def read_layout(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> list[FloatArray]:
-    """Returns the borders of what the faces of a mesh cover in its active UV map.
+    """Returns the borders of the area covered by a mesh in its active UV map.
 
-    Modifiers count, and what edit mode has changed. Where faces lie over each other, so do their
-    borders, all in one direction: by the non-zero rule the polygons enclose the union of the faces.
+    Modifiers and changes in Edit Mode are included. Overlapping faces have overlapping borders, all
+    in the same direction: by the nonzero rule the polygons enclose the union of the faces.
 
     Args:
         obj: A mesh object.

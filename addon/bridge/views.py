@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Views: what editors draw in the place of images, whether they do, and how that ends."""
+"""Views: previews that editors draw instead of images, and the settings that show them."""
 
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
@@ -16,12 +16,12 @@ T = TypeVar("T", bound=Preview)
 
 @dataclass(frozen=True)
 class View(Generic[T]):
-    """One kind of previews, and the settings of all editors for it.
+    """One kind of preview, and its settings for all editors.
 
     Attributes:
-        previews: What is kept of images.
-        group: The settings, a property of the window manager: no undo changes them.
-        switch: The property of these that says whether editors draw it.
+        previews: The previews of images.
+        group: Property of the window manager with the settings, which undo does not change.
+        switch: Property of the settings: whether editors draw the previews.
     """
 
     previews: Previews[T]
@@ -33,16 +33,16 @@ class View(Generic[T]):
         return getattr(context.window_manager, self.group)
 
     def here(self, context: bpy.types.Context) -> T | None:
-        """Returns what is kept of the editor's image."""
+        """Returns the preview of the editor's image."""
         return self.previews.find(getattr(context.space_data, "image", None))
 
     def draw_switch(self, layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-        """Draws the switch, where something is kept of the editor's image."""
+        """Draws the switch if the editor's image has a preview."""
         if self.here(context) is not None:
             layout.prop(self.state(context), self.switch, text="")
 
     def show(self, context: bpy.types.Context, image_name: str) -> None:
-        """Has the editors draw what is kept of an image."""
+        """Makes the editors draw the preview of an image."""
         from . import images
 
         editors.show(context, images.find(image_name))
@@ -51,22 +51,22 @@ class View(Generic[T]):
 
 
 class EndsView:
-    """A mixin for operators: forgets what a view keeps of the editor's image."""
+    """A mixin for operators: removes a view's preview of the editor's image."""
 
     view: View[Any]
     nothing: str
-    """What is said where there is nothing to forget."""
+    """Message if there is no preview."""
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether something is kept of the editor's image."""
+        """Whether the editor's image has a preview."""
         if cls.view.here(context) is None:
             cls.poll_message_set(tr(cls.nothing))
             return False
         return True
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Forgets it."""
+        """Removes the preview."""
         self.view.previews.drop(context.space_data.image)
         editors.redraw()
         return {"FINISHED"}

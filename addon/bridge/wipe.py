@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The line of a wipe, dragged in the Image editor: a gizmo, which each view with a wipe has."""
+"""Gizmo for the line of a wipe, dragged in the Image editor."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -9,22 +9,22 @@ import bpy
 from .views import View
 
 _REACH = 6.0
-"""How far from the line it is taken, in pixels of the region at a scale of 1."""
-_SLOWNESS = 0.1
+"""Distance from the line at which the mouse grabs it, in pixels at a UI scale of 1."""
+_PRECISE_SPEED = 0.1
 _SNAP = 0.125
-"""Of the width: where the line snaps to with Ctrl."""
+"""Snapping distance with Ctrl, as a share of the width."""
 
 _active = ("", 0)
-"""The settings of the view, and the region, on whose line the mouse is."""
+"""Settings of the view, and region, of the line under the mouse."""
 
 
 def is_active(region: bpy.types.Region) -> bool:
-    """Tells whether the mouse is on the line of a region."""
+    """Whether the mouse is on the line of a region."""
     return _active[1] == region.as_pointer()
 
 
 def _point(context: bpy.types.Context, view: View[Any], *, is_on: bool) -> None:
-    """Changes the pointer where the mouse comes onto the line or leaves it."""
+    """Changes the mouse cursor on entering or leaving the line."""
     global _active
     here = (view.group, context.region.as_pointer())
     if is_on == (_active == here):
@@ -37,7 +37,7 @@ def _point(context: bpy.types.Context, view: View[Any], *, is_on: bool) -> None:
 
 
 class WipeGizmo:
-    """A mixin: the line. A subclass has `view`, whose settings have the position as `wipe`."""
+    """A mixin: the line. Subclasses set `view`, whose settings have the position as `wipe`."""
 
     view: View[Any]
     if TYPE_CHECKING:
@@ -45,22 +45,22 @@ class WipeGizmo:
         is_modal: bool
 
     def setup(self) -> None:
-        """Has no state before it is dragged."""
+        """Initializes the state of dragging."""
         self._share = self._share_before = 0.0
         self._mouse_x = 0
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Shows whether the line can be taken; the view draws the line, over what is drawn here."""
+        """Updates the mouse cursor; the view draws the line itself, on top of gizmos."""
         _point(context, self.view, is_on=self.is_highlight or self.is_modal)
 
     def test_select(self, context: bpy.types.Context, location: tuple[float, float]) -> int:
-        """Returns 0 where the mouse is on the line, and -1 elsewhere."""
+        """Returns 0 if the mouse is on the line, else -1."""
         line = self.view.state(context).wipe * context.region.width
         reach = _REACH * context.preferences.system.ui_scale
         return 0 if abs(location[0] - line) <= reach else -1
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Takes the line."""
+        """Starts dragging."""
         self._share = self._share_before = self.view.state(context).wipe
         self._mouse_x = event.mouse_x
         return {"RUNNING_MODAL"}
@@ -68,25 +68,22 @@ class WipeGizmo:
     def modal(
         self, context: bpy.types.Context, event: bpy.types.Event, tweak: set[str]
     ) -> set[str]:
-        """Moves it with the mouse."""
+        """Moves the line with the mouse."""
         step = (event.mouse_x - self._mouse_x) / context.region.width
         self._mouse_x = event.mouse_x
-        self._share += step * (_SLOWNESS if "PRECISE" in tweak else 1.0)
+        self._share += step * (_PRECISE_SPEED if "PRECISE" in tweak else 1.0)
         share = min(max(self._share, 0.0), 1.0)
         self.view.state(context).wipe = _snapped(share) if "SNAP" in tweak else share
         return {"RUNNING_MODAL"}
 
     def exit(self, context: bpy.types.Context, cancel: bool) -> None:
-        """Leaves it, or puts it back."""
+        """Ends dragging; restores the position if cancelled."""
         if cancel:
             self.view.state(context).wipe = self._share_before
 
 
 class WipeGroup:
-    """A mixin: shows the line where a view has one.
-
-    A subclass has `gizmo` and its `view`.
-    """
+    """A mixin: shows the line of a view. Subclasses set `gizmo` and its `view`."""
 
     bl_label = "Wipe"
     bl_space_type = "IMAGE_EDITOR"
@@ -100,7 +97,7 @@ class WipeGroup:
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether the editor draws the line."""
+        """Whether the editor draws the line."""
         is_there = cls.is_there(context)
         if not is_there:
             _point(context, cls.view, is_on=False)
@@ -108,7 +105,7 @@ class WipeGroup:
 
     @classmethod
     def is_there(cls, context: bpy.types.Context) -> bool:
-        """Tells whether the editor draws the line."""
+        """Whether the editor draws the line."""
         state = cls.view.state(context)
         return cls.view.here(context) is not None and getattr(state, cls.view.switch)
 

@@ -18,7 +18,7 @@ class _ResultOperator:
             cls.poll_message_set(tr("Switch to Object Mode first"))
             return False
         if result_of(context.active_object) is None:
-            cls.poll_message_set(tr("The active object does not know what it was made of"))
+            cls.poll_message_set(tr("The active object has no stored sources"))
             return False
         return True
 

@@ -13,8 +13,8 @@ MANUAL = {
         *("subsample_points", "remove_outliers", "crop_points", "align_scans"),
     )
 }
-"""The pages about its operators and settings; see `manual.Manual`."""
+"""Manual pages of operators and settings; see `manual.Manual`."""
 KEYS = (Key("reconstruct", "R", "Object Mode"),)
-"""What its operators have at first; see `keys.Keys`."""
+"""Default key bindings of its operators; see `keys.Keys`."""
 
 register, unregister = registration(properties, operators, panel, menus)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Scans moved onto each other, in three steps: read from Blender, compute, write to Blender."""
+"""Alignment of scans in three steps: read from Blender, compute, write to Blender."""
 
 from collections.abc import Sequence
 from typing import Any, cast
@@ -11,8 +11,8 @@ import prefilter
 from mathutils import Matrix
 from numpy.typing import NDArray
 
-from ..bridge.place import still_there
 from ..bridge.points import Points, read_points
+from ..bridge.target_frame import find_object
 from ..bridge.units import length
 from ..core.jobs import Progress
 from ..core.options import check
@@ -22,7 +22,7 @@ from .choices import AlignSettings
 
 
 class Alignment:
-    """Objects with points, all but the first of which move onto the others."""
+    """Aligns objects with points; all but the first move."""
 
     def __init__(
         self,
@@ -30,24 +30,24 @@ class Alignment:
         settings: AlignSettings,
         depsgraph: bpy.types.Depsgraph,
     ) -> None:
-        """Copies the points of objects; raises ValueError where one has none."""
+        """Copies the points of objects; raises ValueError if one has none."""
         check(settings)
         if len(objects) < 2:
             raise ValueError(Sentence("one object is selected that has points; two are needed"))
         self._settings = settings
         self._origin: NDArray[np.float64] = np.array(objects[0].matrix_world.translation)
         self._names = [obj.name for obj in objects]
-        read = read_points(objects, depsgraph, self._origin)
-        self._scans = [_scan(name, read) for name in self._names]
-        self._found: prefilter.ScanAlignment | None = None
+        parts = read_points(objects, depsgraph, self._origin)
+        self._scans = [_scan(name, parts) for name in self._names]
+        self._alignment: prefilter.ScanAlignment | None = None
 
     def compute(self, progress: Progress) -> None:
         """Finds the motions.
 
         Raises:
-            prefilter.Cancelled: `progress` has said so.
+            prefilter.Cancelled: `progress` returned False.
         """
-        self._found = prefilter.align_scans(
+        self._alignment = prefilter.align_scans(
             self._scans,
             against=cast("Any", self._settings.against),
             reach=self._settings.reach or None,
@@ -60,19 +60,18 @@ class Alignment:
         Raises:
             ValueError: An object is gone.
         """
-        assert self._found is not None
-        objects = [still_there(name) for name in self._names]
-        there, back = Matrix.Translation(self._origin), Matrix.Translation(-self._origin)
-        for obj, matrix in zip(objects[1:], self._found.matrices[1:], strict=True):
-            obj.matrix_world = there @ Matrix(matrix.tolist()) @ back @ obj.matrix_world
-        apart = [
-            name for name, pairs in zip(self._names, self._found.pairs, strict=True) if pairs == 0
-        ]
+        assert self._alignment is not None
+        objects = [find_object(name) for name in self._names]
+        to_world, from_world = Matrix.Translation(self._origin), Matrix.Translation(-self._origin)
+        for obj, matrix in zip(objects[1:], self._alignment.matrices[1:], strict=True):
+            obj.matrix_world = to_world @ Matrix(matrix.tolist()) @ from_world @ obj.matrix_world
+        pairs = zip(self._names, self._alignment.pairs, strict=True)
+        apart = [name for name, count in pairs if count == 0]
         warnings: list[str] = []
         if apart:
             text = "not near any other scan, or of another shape, and not moved: {}"
             warnings.append(Sentence(text, listed(apart)))
-        before, after = length(self._found.before), length(self._found.after)
+        before, after = length(self._alignment.before), length(self._alignment.after)
         return Outcome(
             Sentence(
                 "Aligned {}: typically {} apart, before {}", counted(objects, "scan"), after, before
@@ -82,17 +81,17 @@ class Alignment:
         )
 
     def discard(self) -> None:
-        """Lets go of what was read."""
+        """Releases the copied points."""
         self._scans.clear()
 
 
-def _scan(name: str, read: Sequence[Points]) -> "prefilter.ScanPoints":
-    """Returns the points of an object, which may have several parts."""
-    own = [one for one in read if one.name == name]
+def _scan(name: str, parts: Sequence[Points]) -> "prefilter.ScanPoints":
+    """Joins the points of an object, which may have several parts."""
+    own = [part for part in parts if part.name == name]
     if not own:
         raise ValueError(Sentence("object {}: no points", listed([name])))
-    normals = [one.normals for one in own if one.normals is not None]
+    normals = [part.normals for part in own if part.normals is not None]
     return prefilter.ScanPoints(
-        np.concatenate([one.positions for one in own]),
+        np.concatenate([part.positions for part in own]),
         np.concatenate(normals) if len(normals) == len(own) else None,
     )

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a user may set for the surface of points, and for files of them."""
+"""Settings of the operators on scans."""
 
 from dataclasses import dataclass
 
@@ -21,7 +21,6 @@ from ..core.options import number, one_of, switch, text
 
 __all__ = (
     "DIRECTIONS",
-    "EXTENSIONS",
     "ISOVALUES",
     "POINTS",
     "RESOLUTIONS",
@@ -36,11 +35,6 @@ __all__ = (
     "TrimSettings",
 )
 
-EXTENSIONS = (
-    *(".las", ".laz", ".e57", ".pcd", ".ply", ".ply.gz", ".obj"),
-    *(".xyz", ".xyzn", ".pts", ".ptx", ".asc", ".txt", ".csv"),
-)
-"""Of files of points: `prefilter.POINT_EXTENSIONS`, which takes long to import."""
 
 METHODS = {
     "poisson": Choice("Poisson Disk", "No two points are nearer to each other than the spacing"),
@@ -54,7 +48,7 @@ KEEP = {
 
 @dataclass(frozen=True)
 class SubsampleSettings:
-    """What `prefilter.subsample_points` keeps."""
+    """Settings of `prefilter.subsample_points`."""
 
     spacing: float = number(
         0.01,
@@ -69,7 +63,7 @@ class SubsampleSettings:
 
 @dataclass(frozen=True)
 class OutlierSettings:
-    """What `prefilter.remove_outliers` removes."""
+    """Settings of `prefilter.remove_outliers`."""
 
     neighbors: int = number(
         16,
@@ -92,14 +86,14 @@ class OutlierSettings:
 
 @dataclass(frozen=True)
 class CropSettings:
-    """What `prefilter.crop_points` keeps."""
+    """Settings of `prefilter.crop_points`."""
 
     keep: str = one_of("inside", "Keep", "Which points are kept", KEEP)
 
 
 @dataclass(frozen=True)
 class AlignSettings:
-    """How `prefilter.align_scans` moves scans."""
+    """Settings of `prefilter.align_scans`."""
 
     against: str = one_of("scans", "Align To", "What scans are aligned to", AGAINST)
     reach: float = number(
@@ -115,7 +109,7 @@ class AlignSettings:
 
 @dataclass(frozen=True)
 class PaintSettings:
-    """What texture `prefilter.paint_texture` makes."""
+    """Settings of `prefilter.paint_texture`."""
 
     size: int = number(
         2048, "Size", "Width and height of the texture, in texels", low=1, high=16384
@@ -133,7 +127,7 @@ class PaintSettings:
 
 @dataclass(frozen=True)
 class ImportSettings:
-    """What is read of files of points."""
+    """Settings of `prefilter.import_points`."""
 
     most_points: int = number(
         20_000_000,
@@ -163,7 +157,7 @@ class ImportSettings:
 
 @dataclass(frozen=True)
 class TrimSettings:
-    """How much of a reconstructed surface is cut afterward."""
+    """Settings of `prefilter.trim_reconstruction`."""
 
     limit: float = number(
         1.5,

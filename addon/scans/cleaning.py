@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Objects with fewer points, in three steps: read from Blender, choose points, write to Blender."""
+"""Removal of points in three steps: read from Blender, choose points, write to Blender."""
 
 from collections.abc import Callable, Sequence
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from prefilter.workflows.scans import labeled
 
 from ..bridge.kept_points import check_editable, keep_points, may_lose_points, world_positions
-from ..bridge.place import still_there
+from ..bridge.target_frame import find_object
 from ..core.jobs import Progress
 from ..core.options import check
 from ..core.outcome import Outcome
@@ -19,19 +19,19 @@ from ..core.wording import Sentence, amount, listed
 from .choices import CropSettings, OutlierSettings, SubsampleSettings
 
 Keep = Callable[[NDArray[np.float64], Progress], NDArray[np.bool_]]
-"""Tells which of some points are kept."""
+"""Returns a mask of the points to keep, from their positions."""
 
 
 class Cleaning:
-    """Points of objects, each by itself or all together, of which some are kept."""
+    """Removes points of objects; the points of all objects count as one cloud."""
 
     def __init__(self, objects: Sequence[bpy.types.Object], keep: Keep) -> None:
-        """Reads the points; raises ValueError where there are none, or they cannot be changed."""
+        """Copies the positions; raises ValueError if there are none, or points are not editable."""
         for obj in objects:
             check_editable(obj)
         self._names = [obj.name for obj in objects]
         self._positions = [world_positions(obj) for obj in objects]
-        if not any(len(one) for one in self._positions):
+        if not any(map(len, self._positions)):
             text = "object {}: no points" if len(objects) == 1 else "objects {}: no points"
             raise ValueError(Sentence(text, listed(self._names)))
         self._keep = keep
@@ -42,22 +42,21 @@ class Cleaning:
 
         Raises:
             ValueError: A setting does not suit the points, or none is left.
-            prefilter.Cancelled: `progress` has said so.
+            prefilter.Cancelled: `progress` returned False.
         """
-        together = np.concatenate(self._positions)
         with labeled():
-            kept = self._keep(together, progress)
+            kept = self._keep(np.concatenate(self._positions), progress)
         if not kept.any():
             raise ValueError(Sentence("no point would be left"))
-        self._kept = np.split(kept, np.cumsum([len(one) for one in self._positions])[:-1])
+        self._kept = np.split(kept, np.cumsum(list(map(len, self._positions)))[:-1])
 
     def write(self) -> Outcome:
-        """Takes the other points from the objects.
+        """Removes the other points from the objects.
 
         Raises:
-            ValueError: An object is gone, or has other points by now.
+            ValueError: An object is gone, or its points have changed.
         """
-        objects = [still_there(name) for name in self._names]
+        objects = [find_object(name) for name in self._names]
         for obj, kept in zip(objects, self._kept, strict=True):
             if not may_lose_points(obj) or len(obj.data.attributes["position"].data) != len(kept):
                 raise ValueError(Sentence("object '{}' has changed meanwhile", obj.name))
@@ -71,12 +70,12 @@ class Cleaning:
         )
 
     def discard(self) -> None:
-        """Lets go of what was read."""
+        """Releases the copied positions."""
         self._positions.clear()
 
 
 def subsampling(objects: Sequence[bpy.types.Object], settings: SubsampleSettings) -> Cleaning:
-    """Returns what thins the points of objects, all together."""
+    """Prepares subsampling the points of objects."""
     check(settings)
 
     def keep(positions: NDArray[np.float64], progress: Progress) -> NDArray[np.bool_]:
@@ -92,7 +91,7 @@ def subsampling(objects: Sequence[bpy.types.Object], settings: SubsampleSettings
 
 
 def without_outliers(objects: Sequence[bpy.types.Object], settings: OutlierSettings) -> Cleaning:
-    """Returns what takes outliers from objects, whose points are looked at together."""
+    """Prepares removing the outliers of objects."""
     check(settings)
 
     def keep(positions: NDArray[np.float64], progress: Progress) -> NDArray[np.bool_]:
@@ -109,7 +108,7 @@ def without_outliers(objects: Sequence[bpy.types.Object], settings: OutlierSetti
 def cropping(
     objects: Sequence[bpy.types.Object], box: bpy.types.Object, settings: CropSettings
 ) -> Cleaning:
-    """Returns what keeps the points of objects in the box of another one, turned as it is.
+    """Prepares cropping the points of objects to the oriented bounding box of another object.
 
     Raises:
         ValueError: The box is flat.

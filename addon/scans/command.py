@@ -10,6 +10,7 @@ from typing import Any
 import bpy
 from prefilter.commands import reconstruct
 from prefilter.commands.program import COMMANDS
+from prefilter.points.extensions import POINT_EXTENSIONS
 from prefilter.workflows.scans import STREAMED_TARGET, Streaming
 
 from ..bridge.files import scenes
@@ -18,12 +19,12 @@ from ..bridge.units import length
 from ..core import command, presets
 from ..core.flags import tables
 from .choices import ScanSettings
-from .files import SOURCES, FilesReconstruction, place_back
+from .files import FilesReconstruction, move_back
 from .properties import RECONSTRUCT
-from .reconstruction import ObjectsStreaming, Reconstruction
+from .reconstruction import ObjectsReconstruction, ObjectsStreaming
 
 _BLEND = ".blend"
-_SOURCES = (*SOURCES, _BLEND)
+_SOURCES = (*POINT_EXTENSIONS, _BLEND)
 _WANTED = "visible object with points and no faces"
 _NOTES = """\
 Several SOURCEs count as one cloud. Points without normals are read into memory, and their normals
@@ -91,14 +92,15 @@ def _reconstruct(options: argparse.Namespace) -> None:
 def _from_objects(options: argparse.Namespace, target: Path, settings: ScanSettings) -> None:
     groups = scenes.load(options.sources, _is_wanted, _WANTED)
     objects = scenes.chosen([obj for group in groups for obj in group], options.object, _WANTED)
-    work = Reconstruction.read(objects, objects[0], settings, bpy.context.evaluated_depsgraph_get())
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    work = ObjectsReconstruction.read(objects, objects[0], settings, depsgraph)
     if target.suffix.lower() == STREAMED_TARGET and work.offset.any():
         command.run_and_report(ObjectsStreaming(work, target))
         return
     outcome = command.run_work(work)
     warnings = []
     for name in outcome.objects:
-        warnings += place_back(bpy.data.objects[name], work.offset, target)
+        warnings += move_back(bpy.data.objects[name], work.offset, target)
     scenes.save(target, outcome.objects)
     command.report_outcome(replace(outcome, warnings=[*outcome.warnings, *warnings]))
 

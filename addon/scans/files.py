@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The surface of points in files, without objects of them: to a file of it, or of a scene."""
+"""Reconstruction from files of points to a file, without objects of the points."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -18,26 +18,25 @@ from ..bridge.files import scenes
 from ..bridge.layers import ATTRIBUTE, COLOR, NewLayer
 from ..bridge.new_meshes import Contour, new_mesh
 from ..bridge.new_points import OFFSET, far_offset, layer_name, shown_offset
-from ..bridge.place import Place
+from ..bridge.target_frame import TargetFrame
 from ..bridge.units import length
 from ..core.jobs import Progress
 from ..core.outcome import Outcome
 from ..core.wording import Sentence
 from .choices import ScanSettings
-from .surface import Look, Surface, contour, reconstructed
+from .surface import Look, contour, reconstruct, support_layers
 
-SOURCES = prefilter.POINT_EXTENSIONS
-_WITH_PLACES = frozenset({".glb", ".gltf", ".fbx"})
-"""Files that keep the place of an object by itself: round numbers are exact there."""
+_WITH_TRANSFORMS = frozenset({".glb", ".gltf", ".fbx"})
+"""Formats that store the object's position separately, so that a rounded offset is exact."""
 
 _COLOR = "Col"
-"""What Blender's imports call the colors of points."""
+"""Name of the color attribute in Blender's imports."""
 _CHANNELS = ("red", "green", "blue")
 _ALPHA = "alpha"
 
 
 class FilesReconstruction:
-    """Files of points as one cloud, and its surface as an object in an empty scene, then a file."""
+    """Reconstructs the surface of files, as an object of an empty scene, and exports it."""
 
     def __init__(
         self,
@@ -46,16 +45,13 @@ class FilesReconstruction:
         settings: ScanSettings,
         viewpoint: Sequence[Sequence[float]] | None = None,
     ) -> None:
-        """Takes what to read, what to write, and how.
-
-        `viewpoint`: see `prefilter.reconstruct`.
-        """
+        """Keeps sources, target and settings; for `viewpoint` see `prefilter.reconstruct`."""
         self._viewpoint = viewpoint
         self._sources = sources
         self._target = target
         self._settings = settings
         self._origin: NDArray[np.float64] = np.zeros(3)
-        self._surface: Surface | None = None
+        self._surface: prefilter.Reconstruction | None = None
         self._contour: Contour | None = None
 
     def compute(self, progress: Progress) -> None:
@@ -66,11 +62,11 @@ class FilesReconstruction:
             OSError: A source cannot be read.
             MemoryError: The points or the surface do not fit into memory.
         """
-        surface = reconstructed(self._sources, self._settings, progress, self._viewpoint)
+        surface = reconstruct(self._sources, self._settings, progress, self._viewpoint)
         self._origin = far_offset(surface.positions)
         surface.positions[:] -= self._origin
-        place = Place(self._sources[0].stem, self._origin, np.eye(3))
-        self._contour = contour(surface, place, _look(surface), self._settings)
+        frame = TargetFrame(self._sources[0].stem, self._origin, np.eye(3))
+        self._contour = contour(surface, frame, _look(surface), self._settings)
         self._surface = surface
 
     def write(self) -> Outcome:
@@ -85,20 +81,20 @@ class FilesReconstruction:
         name = self._sources[0].stem
         mesh = new_mesh(name, self._contour)
         show_attribute(mesh, self._contour.active[COLOR])
-        made = bpy.data.objects.new(name, mesh)
-        bpy.context.scene.collection.objects.link(made)
+        obj = bpy.data.objects.new(name, mesh)
+        bpy.context.scene.collection.objects.link(obj)
         bpy.context.view_layer.update()
-        warnings = place_back(made, self._origin, self._target)
-        scenes.save(self._target, [made.name])
-        found = outcome(self._sources, self._target, self._surface.report, length, [made.name])
-        return replace(found, warnings=[*found.warnings, *warnings])
+        warnings = move_back(obj, self._origin, self._target)
+        scenes.save(self._target, [obj.name])
+        summary = outcome(self._sources, self._target, self._surface.report, length, [obj.name])
+        return replace(summary, warnings=[*summary.warnings, *warnings])
 
     def discard(self) -> None:
         """Does nothing: nothing is staged."""
 
 
-def moved(offset: NDArray[np.float64]) -> str:
-    """Returns that points were moved to be near the origin, as a warning."""
+def offset_warning(offset: NDArray[np.float64]) -> str:
+    """Warns that points were moved near the origin."""
     text = (
         "far from the origin: moved by the negative of ({}), which is kept as the custom "
         "property 'scan_offset'"
@@ -106,8 +102,8 @@ def moved(offset: NDArray[np.float64]) -> str:
     return Sentence(text, shown_offset(offset))
 
 
-def place_back(made: bpy.types.Object, offset: NDArray[np.float64], target: Path) -> list[str]:
-    """Puts an object that was moved near the origin where it was, as far as a file can hold that.
+def move_back(obj: bpy.types.Object, offset: NDArray[np.float64], target: Path) -> list[str]:
+    """Moves an object back from the origin if the target's format is precise enough.
 
     Returns:
         Warnings.
@@ -115,13 +111,13 @@ def place_back(made: bpy.types.Object, offset: NDArray[np.float64], target: Path
     if not offset.any():
         return []
     ending = target.suffix.lower()
-    if ending in _WITH_PLACES:
-        made.matrix_world = Matrix.Translation(offset) @ made.matrix_world
-        bpy.context.view_layer.update()  # exporters read what was evaluated
+    if ending in _WITH_TRANSFORMS:
+        obj.matrix_world = Matrix.Translation(offset) @ obj.matrix_world
+        bpy.context.view_layer.update()  # Exporters use evaluated objects.
         return []
-    made[OFFSET] = offset.tolist()
+    obj[OFFSET] = offset.tolist()
     if ending == ".blend":
-        return [moved(offset)]
+        return [offset_warning(offset)]
     text = (
         "'{}': far from the origin, where its format has too few digits; ({}) is to be added to "
         "its coordinates. A .ply file has enough"
@@ -129,10 +125,10 @@ def place_back(made: bpy.types.Object, offset: NDArray[np.float64], target: Path
     return [Sentence(text, target.name, shown_offset(offset))]
 
 
-def _look(surface: Surface) -> Look:
-    """Returns what the vertices carry, as Blender's imports of files name it."""
+def _look(surface: prefilter.Reconstruction) -> Look:
+    """Attributes of the vertices, with the names of Blender's imports."""
     layers = attribute_layers(surface.attributes, len(surface.positions))
-    layers += surface.support_layers([layer.name for layer in layers])
+    layers += support_layers(surface, [layer.name for layer in layers])
     shown = next((layer.name for layer in layers if layer.kind == COLOR), "")
     return Look(layers, shown, shown)
 
@@ -140,7 +136,7 @@ def _look(surface: Surface) -> Look:
 def attribute_layers(
     attributes: Mapping[str, NDArray[np.uint8 | np.float32]], count: int
 ) -> list[NewLayer]:
-    """Returns what points or vertices carry, as Blender's imports of files name it."""
+    """Converts attributes of points or vertices to layers, with the names of Blender's imports."""
     values = dict(attributes)
     layers = []
     if all(channel in values for channel in _CHANNELS):

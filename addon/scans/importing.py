@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Files of points as objects, in two steps: read the files, make the objects."""
+"""Import of files of points in two steps: read the files, make the objects."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -19,18 +19,18 @@ from ..core.options import check
 from ..core.outcome import Outcome
 from ..core.wording import Sentence, amount, counted
 from .choices import ImportSettings
-from .files import attribute_layers, moved
+from .files import attribute_layers, offset_warning
 
 _CONFIDENCE = "confidence"
-_COARSE = 0.25
-"""Of how far points are apart: coordinates of larger steps are those of other points, too."""
+_MAX_STEP_SPACINGS = 0.25
+"""Rounding step of coordinates, in point spacings, above which a warning is given."""
 
 
 class PointsImport:
-    """Files of points, each as an object; all of them relative to one offset."""
+    """Imports files of points, each as an object, all relative to one offset."""
 
     def __init__(self, sources: Sequence[Path], settings: ImportSettings) -> None:
-        """Takes what to read, and how; raises ValueError where that is not allowed."""
+        """Keeps sources and settings; raises ValueError for a wrong setting."""
         check(settings)
         self._sources = sources
         self._settings = settings
@@ -40,111 +40,111 @@ class PointsImport:
 
     @property
     def has_colors(self) -> bool:
-        """Whether there are colors to be seen."""
+        """Whether points have colors."""
         return any(cloud.color for cloud in self._clouds)
 
     def compute(self, progress: Progress) -> None:
         """Reads the files.
 
         Raises:
-            ValueError: A file is damaged, is of another kind, or has no points.
+            ValueError: A file is damaged, has another format, or has no points.
             OSError: A file cannot be read.
             MemoryError: The points do not fit into memory.
-            prefilter.Cancelled: `progress` has said so.
+            prefilter.Cancelled: `progress` returned False.
         """
         count = len(self._sources)
         for k, path in enumerate(self._sources):
             self._clouds.append(self._read(path, share(progress, k / count, (k + 1) / count)))
 
     def write(self) -> Outcome:
-        """Makes the objects, which are then the selected ones, the first of them active."""
-        everywhere = np.concatenate(
+        """Makes the objects, selects them, and makes the first one active."""
+        corners = np.concatenate(
             [
-                np.stack([one.positions.min(axis=0), one.positions.max(axis=0)])
-                for one in self._clouds
+                np.stack([cloud.positions.min(axis=0), cloud.positions.max(axis=0)])
+                for cloud in self._clouds
             ]
         )
-        offset = scene_offset(everywhere)
+        offset = scene_offset(corners)
         for obj in bpy.context.selected_objects:
             obj.select_set(False)
-        made = [new_points(cloud, offset) for cloud in self._clouds]
-        for obj in made:
+        objects = [new_points(cloud, offset) for cloud in self._clouds]
+        for obj in objects:
             obj.select_set(True)
-        bpy.context.view_layer.objects.active = made[0]
+        bpy.context.view_layer.objects.active = objects[0]
         if offset.any():
-            self._warnings.append(moved(offset))
+            self._warnings.append(offset_warning(offset))
         self._warnings += [
             rounding_warning(length(step))
             for step in dict.fromkeys(map(_merging_step, self._clouds))
             if step > 0.0
         ]
         points = sum(len(cloud.positions) for cloud in self._clouds)
-        from_files = f"'{self._sources[0].name}'" if len(made) == 1 else counted(made, "file")
+        files = f"'{self._sources[0].name}'" if len(objects) == 1 else counted(objects, "file")
         return Outcome(
-            Sentence("Imported {} from {}", amount(points, "point"), from_files),
-            objects=[obj.name for obj in made],
+            Sentence("Imported {} from {}", amount(points, "point"), files),
+            objects=[obj.name for obj in objects],
             warnings=self._warnings,
             notes=self._notes,
         )
 
     def discard(self) -> None:
-        """Lets go of what was read."""
+        """Releases the points."""
         self._clouds.clear()
 
     def _read(self, path: Path, progress: Progress) -> Cloud:
-        found = self._points(path, progress)
-        is_finite = np.asarray(np.isfinite(found.positions).all(axis=1))
+        scan = self._points(path, progress)
+        is_finite = np.asarray(np.isfinite(scan.positions).all(axis=1))
         unfit = int(np.count_nonzero(~is_finite))
         if unfit == len(is_finite):
             raise ValueError(Sentence("'{}': no points", path.name))
         if unfit:
             text = "'{}': left out, because they have no finite position: {}"
             self._notes.append(Sentence(text, path.name, amount(unfit, "point")))
-        layers = attribute_layers(found.attributes, len(is_finite))
-        if found.weights is not None:
-            weights = np.asarray(found.weights, np.float32)[:, None]
+        layers = attribute_layers(scan.attributes, len(is_finite))
+        if scan.weights is not None:
+            weights = np.asarray(scan.weights, np.float32)[:, None]
             layers.append(NewLayer(ATTRIBUTE, _CONFIDENCE, "FLOAT", "POINT", weights))
-        viewpoint = found.viewpoint
+        viewpoint = scan.viewpoint
         return Cloud(
             path.stem,
-            found.positions[is_finite],
-            None if found.normals is None else found.normals[is_finite],
-            [replace(one, values=one.values[is_finite]) for one in layers],
+            scan.positions[is_finite],
+            None if scan.normals is None else scan.normals[is_finite],
+            [replace(layer, values=layer.values[is_finite]) for layer in layers],
             viewpoint[is_finite] if viewpoint is not None and viewpoint.ndim == 2 else viewpoint,
-            found.is_from_above,
+            scan.is_from_above,
         )
 
     def _points(self, path: Path, progress: Progress) -> "prefilter.ScanPoints":
-        """Returns the points of a file, with the normals that a grid or faces in it tell."""
+        """Reads the points of a file; derives normals from its grid or faces if it has none."""
         most = self._settings.most_points
         classes, returns = as_classes(self._settings.classes), self._settings.returns
-        # A grid and faces name points of the whole file.
+        # Grids and faces index points of the whole file.
         is_whole = has_connections(path)
         try:
-            found = prefilter.read_points(
+            scan = prefilter.read_points(
                 path,
                 most=most or None,
                 classes=None if is_whole else classes,
                 returns="all" if is_whole else returns,
                 progress=share(progress, 0.0, 0.7),
             )
-            told = None
-            if found.normals is None and found.stride == 1 and is_whole:
-                told = prefilter.file_normals(path, found, progress=share(progress, 0.7, 1.0))
+            derived = None
+            if scan.normals is None and scan.stride == 1 and is_whole:
+                derived = prefilter.file_normals(path, scan, progress=share(progress, 0.7, 1.0))
         except MemoryError as error:
             raise MemoryError(f"{error}; a lower value of Most Points keeps fewer") from error
-        self._warnings += found.warnings
-        if found.stride > 1:
+        self._warnings += scan.warnings
+        if scan.stride > 1:
             text = "'{}': one of {} points was kept, as Most Points is {}"
-            self._warnings.append(Sentence(text, path.name, found.stride, most))
-        if told is not None:
-            found = replace(found, normals=told[0], weights=told[1])
+            self._warnings.append(Sentence(text, path.name, scan.stride, most))
+        if derived is not None:
+            scan = replace(scan, normals=derived[0], weights=derived[1])
         if is_whole:
-            found = prefilter.choose_points(found, classes=classes, returns=returns)
-        return found
+            scan = prefilter.choose_points(scan, classes=classes, returns=returns)
+        return scan
 
 
 def _merging_step(cloud: Cloud) -> float:
-    """Returns what coordinates were rounded to in the file, if that is much; else 0."""
+    """Rounding step of coordinates in the file if it is large beside the spacing; else 0."""
     step = float(prefilter.float_step(cloud.positions))
-    return step if step > _COARSE * spacing(cloud.positions) else 0.0
+    return step if step > _MAX_STEP_SPACINGS * spacing(cloud.positions) else 0.0

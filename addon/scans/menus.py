@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Where a user finds what reads files of points: File > Import."""
+"""Menu entry of the importer of point files: File > Import."""
 
 import bpy
 
@@ -12,7 +12,7 @@ def _draw_import(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     del context
     menu.layout.operator(
         PREFILTER_OT_import_points.bl_idname,
-        text="Point Cloud (.las/.laz/.e57/.pcd/.xyz/.pts/.ply)",
+        text="Point Cloud (.las/.laz/.e57/.pcd/.xyz/.pts/.ply ...)",
     )
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Reconstructing, and what comes before: in the 3D view's sidebar, and in Object > Prefilter."""
+"""Panels in the 3D view's sidebar, and entries of the menu Object > Prefilter."""
 
 import bpy
 
@@ -24,7 +24,7 @@ class _SidebarPanel(SidebarPanel):
 
     @staticmethod
     def fits(obj: bpy.types.Object) -> bool:
-        """Tells whether the panel is for an object."""
+        """Whether the panel applies to an object."""
         from ..bridge.points import may_be_points
 
         return may_be_points(obj)
@@ -36,7 +36,7 @@ _RECONSTRUCT = Button(
 
 
 class PREFILTER_PT_reconstruct(_SidebarPanel, SettingsPanel, bpy.types.Panel):
-    """Button and settings."""
+    """Button and settings of the reconstruction."""
 
     bl_label = "Reconstruct Surface"
     presets = RECONSTRUCT
@@ -50,11 +50,11 @@ _STEPS = (
     (PREFILTER_OT_remove_outliers, "BRUSH_DATA"),
     (PREFILTER_OT_subsample_points, "STICKY_UVS_DISABLE"),
 )
-"""What may be done to points before, in a usual order; each with its icon."""
+"""Operators that prepare points, in the usual order, each with its icon."""
 
 
 class PREFILTER_PT_points(_SidebarPanel, bpy.types.Panel):
-    """Buttons of steps before."""
+    """Buttons of the operators that prepare points."""
 
     bl_label = "Points"
     bl_parent_id = PREFILTER_PT_reconstruct.__name__

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The settings of operators on scans as properties, of these and of the scene."""
+"""Settings of the operators on scans as properties, of operators and of the scene."""
 
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import bpy
 from bpy.props import CollectionProperty, StringProperty
@@ -64,8 +64,18 @@ class ScanProperties(GroupedSettings):
             body.prop(self, "wavelet")
 
 
+class SettingsProperties:
+    """Base of properties made from the fields of a settings dataclass, `settings`."""
+
+    settings: ClassVar[type[Any]]
+
+    def to_settings(self) -> Any:
+        """Returns the settings."""
+        return values(self, self.settings)
+
+
 class FilesProperties:
-    """Which files an operator reads: one, or several of a folder, as Blender drops them."""
+    """Files that an operator reads: one, or several in a folder, as Blender drops them."""
 
     filepath: StringProperty(subtype="FILE_PATH", options={"HIDDEN", "SKIP_SAVE"})
     directory: StringProperty(subtype="DIR_PATH", options={"HIDDEN", "SKIP_SAVE"})
@@ -74,86 +84,65 @@ class FilesProperties:
     )
 
     def named_files(self) -> dict[str, Any]:
-        """Returns the files as another operator takes them."""
-        files = [{"name": one.name} for one in self.files]
+        """Returns the files as arguments of another operator."""
+        files = [{"name": file.name} for file in self.files]
         return {"filepath": self.filepath, "directory": self.directory, "files": files}
 
     def paths(self) -> list[Path]:
         """Returns the files."""
         if self.directory and self.files:
             folder = Path(bpy.path.abspath(self.directory))
-            return [folder / one.name for one in self.files if one.name]
+            return [folder / file.name for file in self.files if file.name]
         return [Path(bpy.path.abspath(self.filepath))] if self.filepath else []
 
 
-class ImportProperties(FilesProperties):
+class ImportProperties(FilesProperties, SettingsProperties):
     """The properties of `prefilter.import_points`."""
 
+    settings = ImportSettings
     __annotations__ = properties(ImportSettings)
 
-    def to_settings(self) -> ImportSettings:
-        """Returns the settings."""
-        return values(self, ImportSettings)
 
-
-class TrimProperties:
+class TrimProperties(SettingsProperties):
     """The properties of `prefilter.trim_reconstruction`."""
 
+    settings = TrimSettings
     __annotations__ = properties(TrimSettings)
 
-    def to_settings(self) -> TrimSettings:
-        """Returns the settings."""
-        return values(self, TrimSettings)
 
-
-class SubsampleProperties:
+class SubsampleProperties(SettingsProperties):
     """The properties of `prefilter.subsample_points`."""
 
+    settings = SubsampleSettings
     __annotations__ = properties(SubsampleSettings)
 
-    def to_settings(self) -> SubsampleSettings:
-        """Returns the settings."""
-        return values(self, SubsampleSettings)
 
-
-class OutlierProperties:
+class OutlierProperties(SettingsProperties):
     """The properties of `prefilter.remove_outliers`."""
 
+    settings = OutlierSettings
     __annotations__ = properties(OutlierSettings)
 
-    def to_settings(self) -> OutlierSettings:
-        """Returns the settings."""
-        return values(self, OutlierSettings)
 
-
-class CropProperties:
+class CropProperties(SettingsProperties):
     """The properties of `prefilter.crop_points`."""
 
+    settings = CropSettings
     __annotations__ = properties(CropSettings)
 
-    def to_settings(self) -> CropSettings:
-        """Returns the settings."""
-        return values(self, CropSettings)
 
-
-class AlignProperties:
+class AlignProperties(SettingsProperties):
     """The properties of `prefilter.align_scans`."""
 
+    settings = AlignSettings
     __annotations__ = properties(AlignSettings)
 
-    def to_settings(self) -> AlignSettings:
-        """Returns the settings."""
-        return values(self, AlignSettings)
 
-
-class PaintProperties:
+class PaintProperties(SettingsProperties):
     """The properties of `prefilter.paint_texture`."""
 
+    settings = PaintSettings
     __annotations__ = properties(PaintSettings)
-
-    def to_settings(self) -> PaintSettings:
-        """Returns the settings."""
-        return values(self, PaintSettings)
 
 
 class PREFILTER_PG_reconstruct(ScanProperties, bpy.types.PropertyGroup):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The surface of selected points in three steps: read from Blender, compute, write to Blender."""
+"""Reconstruction of objects' points in three steps: read, compute, write."""
 
 import dataclasses
 import math
@@ -18,8 +18,8 @@ from ..bridge.color_materials import show_attribute
 from ..bridge.kept_sources import keep
 from ..bridge.layers import ATTRIBUTE, COLOR, NewLayer
 from ..bridge.new_points import OFFSET, kept_offset
-from ..bridge.place import Place, still_there
-from ..bridge.points import Carried, Points, read_points
+from ..bridge.points import PointAttribute, Points, read_points
+from ..bridge.target_frame import TargetFrame, find_object
 from ..core.jobs import Progress, go_on
 from ..core.options import check
 from ..core.outcome import Outcome
@@ -27,89 +27,89 @@ from ..core.wording import Sentence, listed
 from .choices import ScanSettings
 from .surface import (
     Look,
-    Surface,
     contour,
     directions,
     labeled,
     oddities,
     openings,
     options,
-    reconstructed,
-    told,
+    reconstruct,
+    summarize,
+    support_layers,
 )
 
 _CHANNELS = ("red", "green", "blue", "alpha")
 _CONFIDENCE = "confidence"
-"""The attribute that says how much each point counts."""
+"""Attribute with the weights of points."""
 
-# What a load takes in seconds, as measured once on two cores; ratios are what counts.
-_ALWAYS = 0.01
+# Seconds, measured once on two cores; only their ratios matter.
+_CONSTANT = 0.01
 _PER_POINT = {"haar": 0.15e-6, "d4": 0.45e-6}
 _PER_TRIANGLE = {"haar": 1.1e-6, "d4": 2.7e-6}
 _FITTING = 0.2e-6
 _TRIANGLES_OF_CUBE = 5.5
-"""How many triangles there are in unit cells where the points are those of a solid, about."""
+"""Typical number of triangles of a solid, divided by the square of the cells per side."""
 _TRIANGLES_PER_POINT = 5.5
-_TRIANGLES_PER_CARRIED_POINT = 1.6
-"""Where the depth is the one that points carry, about: one to four points a face of a cell."""
+_TRIANGLES_PER_POINT_AUTO = 1.6
+"""Typical number of triangles per point at the automatic depth: 1 to 4 points per cell face."""
 
 
 @dataclass(frozen=True)
 class Load:
-    """What decides how long points take.
+    """Amount of work, from which its duration is estimated.
 
     Attributes:
-        points: How many there are.
-        extent: The longest side of the box around them.
+        points: Number of points.
+        extent: Longest side of the box around them.
     """
 
     points: int
     extent: float
 
     def seconds(self, settings: ScanSettings) -> float:
-        """Returns about how long it takes on two cores; settings that are refused take none."""
+        """Estimated duration on two cores, in seconds; 0 for settings that will be refused."""
         depth: float = settings.depth
         per_point = _TRIANGLES_PER_POINT
         if settings.resolution == "auto":
-            depth, per_point = prefilter.MAX_DEPTH, _TRIANGLES_PER_CARRIED_POINT
+            depth, per_point = prefilter.MAX_DEPTH, _TRIANGLES_PER_POINT_AUTO
         elif settings.resolution == "size":
             depth = math.log2(max(self.extent / settings.voxel_size, 2.0))
             if depth > prefilter.MAX_DEPTH:
                 return 0.0
         triangles = min(_TRIANGLES_OF_CUBE * 4.0**depth, per_point * self.points)
         per_triangle = _PER_TRIANGLE[settings.wavelet] + (_FITTING if settings.use_fit else 0.0)
-        return _ALWAYS + _PER_POINT[settings.wavelet] * self.points + per_triangle * triangles
+        return _CONSTANT + _PER_POINT[settings.wavelet] * self.points + per_triangle * triangles
 
 
-class Reconstruction:
-    """The points of objects as one cloud, and its surface as a new object.
+class ObjectsReconstruction:
+    """Reconstructs the surface of the points of objects, as a new object.
 
-    `read` and `write` belong on the main thread; `compute` touches no Blender data and runs on any
+    `read` and `write` run on the main thread; `compute` uses no Blender data and runs on any
     thread. Nothing is written before everything is computed.
     """
 
     def __init__(
-        self, place: Place, names: list[str], read: list[Points], settings: ScanSettings
+        self, frame: TargetFrame, names: list[str], read: list[Points], settings: ScanSettings
     ) -> None:
-        """Keeps copies of what was read; use `Reconstruction.read`."""
+        """Keeps copied points; use `ObjectsReconstruction.read`."""
         self.load = Load(
             sum(len(points.positions) for points in read),
             max((_extent(points.positions) for points in read), default=0.0),
         )
         self.offset: NDArray[np.float64] = np.zeros(3)
-        """By how much the points were moved to be near the origin."""
-        self._place = place
+        """Offset that was subtracted from the points to move them near the origin."""
+        self._frame = frame
         self._names = names
         self._read = read
         self.settings = settings
         self._warnings: list[str] = []
         self._notes: list[str] = []
-        self._surface: Surface | None = None
+        self._surface: prefilter.Reconstruction | None = None
         self._contour: new_meshes.Contour | None = None
 
     @property
     def has_colors(self) -> bool:
-        """Whether there are colors to be seen."""
+        """Whether the surface has colors."""
         return self._contour is not None and bool(self._contour.active[COLOR])
 
     @classmethod
@@ -119,17 +119,18 @@ class Reconstruction:
         active: bpy.types.Object | None,
         settings: ScanSettings,
         depsgraph: bpy.types.Depsgraph,
-    ) -> "Reconstruction":
-        """Copies everything that the work needs out of Blender.
+    ) -> "ObjectsReconstruction":
+        """Copies the points out of Blender.
 
         Args:
-            objects: What has the points.
-            active: The one of them whose space the surface is in; if it is none of them, the first.
-            settings: What to do.
+            objects: Objects with points.
+            active: The object that the surface is placed beside; the first one if it is not one of
+                the objects.
+            settings: The settings.
             depsgraph: The evaluated dependency graph.
 
         Raises:
-            ValueError: There is no object, or one is unfit.
+            ValueError: There is no object, or one cannot be reconstructed.
         """
         check(settings)
         if not objects:
@@ -138,29 +139,29 @@ class Reconstruction:
             for obj in objects:
                 new_meshes.check_editable(obj)
         beside = active if active in objects else objects[0]
-        place = Place.beside(beside, depsgraph)
-        read = read_points(objects, depsgraph, place.origin)
+        frame = TargetFrame.beside(beside, depsgraph)
+        read = read_points(objects, depsgraph, frame.origin)
         names = [obj.name for obj in objects]
         if not read:
             text = "object {}: no points" if len(names) == 1 else "objects {}: no points"
             raise ValueError(Sentence(text, listed(names)))
-        made = cls(place, names, read, settings)
-        made.offset = kept_offset(beside)
-        return made
+        work = cls(frame, names, read, settings)
+        work.offset = kept_offset(beside)
+        return work
 
     def scans(self) -> list["prefilter.ScanPoints"]:
-        """Returns the points, relative to the place of the surface, along the axes of the world."""
-        carried = _carried(self._read)
-        return [_scan(one, carried, self.settings) for one in self._read]
+        """Returns the points relative to the object of the surface, along the axes of the world."""
+        transferred = _transferred(self._read)
+        return [_scan(points, transferred, self.settings) for points in self._read]
 
     def scans_in_place(self) -> list["prefilter.ScanPoints"]:
-        """Returns the points where they were before they were moved near the origin."""
-        place = self._place.origin + self.offset
+        """Returns the points before they were moved near the origin."""
+        frame = self._frame.origin + self.offset
         return [
             dataclasses.replace(
                 scan,
-                positions=scan.positions + place,
-                viewpoint=None if scan.viewpoint is None else scan.viewpoint + place,
+                positions=scan.positions + frame,
+                viewpoint=None if scan.viewpoint is None else scan.viewpoint + frame,
             )
             for scan in self.scans()
         ]
@@ -171,37 +172,37 @@ class Reconstruction:
         Raises:
             ValueError: There is none, or cells are too small.
             MemoryError: The result does not fit into memory.
-            prefilter.Cancelled: `progress` has said so.
+            prefilter.Cancelled: `progress` returned False.
         """
-        without = list(dict.fromkeys(one.name for one in self._read if one.normals is None))
-        if without:
-            self._notes.append(Sentence("normals were estimated for {}", listed(without)))
-        carried = _carried(self._read)
-        surface = reconstructed(self.scans(), self.settings, progress)
-        self._warnings.extend(oddities(surface.report, self._place.origin.tolist()))
+        names = list(dict.fromkeys(each.name for each in self._read if each.normals is None))
+        if names:
+            self._notes.append(Sentence("normals were estimated for {}", listed(names)))
+        transferred = _transferred(self._read)
+        surface = reconstruct(self.scans(), self.settings, progress)
+        self._warnings.extend(oddities(surface.report, self._frame.origin.tolist()))
         self._notes.extend(directions(surface.report))
         self._notes.extend(openings(surface.report))
         self._surface = surface
-        look = self._look(surface, carried)
-        self._contour = contour(surface, self._place, look, self.settings)
+        look = self._look(surface, transferred)
+        self._contour = contour(surface, self._frame, look, self.settings)
         go_on(progress, 1.0)
         self._read.clear()
 
-    def build_steps(self) -> Generator[None, None, None]:
-        """Makes the mesh that `write` shows, in steps."""
+    def making(self) -> Generator[None, None, None]:
+        """Makes the surface's mesh in steps, before `write` shows it."""
         assert self._contour is not None
         yield from new_meshes.making_mesh(self._contour)
 
     def write(self) -> Outcome:
-        """Adds the object, and does with the points as was chosen.
+        """Adds the object; hides or deletes the points if so chosen.
 
         Raises:
             ValueError: An object is gone.
         """
         assert self._surface is not None
         assert self._contour is not None
-        beside = still_there(self._place.name)
-        objects = [still_there(name) for name in self._names]
+        beside = find_object(self._frame.name)
+        objects = [find_object(name) for name in self._names]
         name = f"{beside.name}.surface"
         mesh = new_meshes.new_mesh(name, self._contour)
         show_attribute(mesh, self._contour.active[COLOR])
@@ -219,25 +220,27 @@ class Reconstruction:
         if self.settings.points != "delete":
             keep(made, objects)
         return Outcome(
-            Sentence("Reconstructed '{}' from {}", made.name, told(self._surface.report)),
+            Sentence("Reconstructed '{}' from {}", made.name, summarize(self._surface.report)),
             objects=[made.name],
             warnings=self._warnings,
             notes=self._notes,
         )
 
     def discard(self) -> None:
-        """Removes a mesh that nothing shows."""
+        """Removes a mesh that was made and is not shown."""
         if self._contour is not None:
             new_meshes.forget_mesh(self._contour)
 
-    def _look(self, surface: Surface, carried: dict[str, Carried]) -> Look:
-        """Returns what the surface has, with the active object's materials and colors if it can."""
-        first = next((one for one in self._read if one.name == self._place.name), self._read[0])
-        colored = next((one for one in (first, *self._read) if one.active_color), first)
+    def _look(
+        self, surface: "prefilter.Reconstruction", transferred: dict[str, PointAttribute]
+    ) -> Look:
+        """Attributes of the surface, with materials and colors of the active object if possible."""
+        first = next((each for each in self._read if each.name == self._frame.name), self._read[0])
+        colored = next((each for each in (first, *self._read) if each.active_color), first)
         return Look(
             [
-                *(_layer(name, one.data_type, surface) for name, one in carried.items()),
-                *surface.support_layers(carried),
+                *(_layer(name, each.data_type, surface) for name, each in transferred.items()),
+                *support_layers(surface, transferred),
             ],
             colored.active_color,
             colored.render_color,
@@ -246,11 +249,14 @@ class Reconstruction:
 
 
 class ObjectsStreaming:
-    """The points of objects that were moved near the origin, to a .ply file where they were."""
+    """Writes the surface of objects that were moved near the origin, in their original position.
 
-    def __init__(self, read: Reconstruction, target: Path) -> None:
-        """Takes what was read, and what to write."""
-        self._read = read
+    The target is a .ply file.
+    """
+
+    def __init__(self, work: ObjectsReconstruction, target: Path) -> None:
+        """Keeps copied points, and the target."""
+        self._work = work
         self._target = target
         self._report: prefilter.ReconstructionReport | None = None
 
@@ -263,17 +269,17 @@ class ObjectsStreaming:
         """
         with labeled():
             self._report = prefilter.reconstruct_file(
-                self._read.scans_in_place(),
+                self._work.scans_in_place(),
                 self._target,
                 progress=progress,
-                **options(self._read.settings),
+                **options(self._work.settings),
             )
 
     def write(self) -> Outcome:
-        """Returns what was done."""
+        """Returns the outcome."""
         assert self._report is not None
         return Outcome(
-            Sentence("Reconstructed '{}' from {}", self._target.name, told(self._report)),
+            Sentence("Reconstructed '{}' from {}", self._target.name, summarize(self._report)),
             files=[str(self._target)],
             warnings=oddities(self._report),
             notes=[*directions(self._report), *openings(self._report)],
@@ -284,38 +290,38 @@ class ObjectsStreaming:
 
 
 def _extent(positions: NDArray[np.float64]) -> float:
-    """Returns the longest side of the box around the points that are finite; 0 without any."""
+    """Longest side of the box around the finite points; 0 without any."""
     finite = positions[np.isfinite(positions).all(axis=1)]
     return float(np.ptp(finite, axis=0).max()) if len(finite) else 0.0
 
 
-def _carried(parts: Sequence[Points]) -> dict[str, Carried]:
-    """Returns for each attribute the first one of its name, whose kind the others must be of."""
-    found: dict[str, Carried] = {}
+def _transferred(parts: Sequence[Points]) -> dict[str, PointAttribute]:
+    """Attributes of all parts by name; the first one of a name determines its type."""
+    attributes: dict[str, PointAttribute] = {}
     for part in parts:
-        for name, one in part.attributes.items():
-            found.setdefault(name, one)
-    return found
+        for name, attribute in part.attributes.items():
+            attributes.setdefault(name, attribute)
+    return attributes
 
 
 def _columns(name: str, width: int) -> list[str]:
-    """Returns what the library calls the numbers of an attribute."""
+    """The library's names for the components of an attribute."""
     return [name] if width == 1 else [f"{name}.{channel}" for channel in _CHANNELS]
 
 
 def _scan(
-    points: Points, carried: dict[str, Carried], settings: ScanSettings
+    points: Points, transferred: dict[str, PointAttribute], settings: ScanSettings
 ) -> "prefilter.ScanPoints":
     attributes: dict[str, NDArray[np.uint8 | np.float32]] = {}
-    for name, like in carried.items():
+    for name, like in transferred.items():
         width = like.values.shape[1]
-        one = points.attributes.get(name)
-        if one is not None and one.values.shape[1] == width:
-            attributes |= dict(zip(_columns(name, width), one.values.T, strict=True))
+        own = points.attributes.get(name)
+        if own is not None and own.values.shape[1] == width:
+            attributes |= dict(zip(_columns(name, width), own.values.T, strict=True))
         elif name == _CONFIDENCE:
             attributes[name] = np.ones(len(points.positions), np.float32)
-    weighs = _CONFIDENCE in carried and carried[_CONFIDENCE].data_type == "FLOAT"
-    weights = attributes[_CONFIDENCE].astype(np.float32, copy=False) if weighs else None
+    has_weights = _CONFIDENCE in transferred and transferred[_CONFIDENCE].data_type == "FLOAT"
+    weights = attributes[_CONFIDENCE].astype(np.float32, copy=False) if has_weights else None
     viewpoint = points.viewpoint
     if viewpoint is None and settings.direction == "viewpoint":
         viewpoint = points.scan_origin
@@ -329,7 +335,7 @@ def _scan(
     )
 
 
-def _layer(name: str, data_type: str, surface: Surface) -> NewLayer:
+def _layer(name: str, data_type: str, surface: "prefilter.Reconstruction") -> NewLayer:
     columns = _columns(name, 1 if data_type == "FLOAT" else len(_CHANNELS))
     values = np.stack([surface.attributes[column] for column in columns], axis=1)
     return NewLayer(ATTRIBUTE if data_type == "FLOAT" else COLOR, name, data_type, "POINT", values)

@@ -12,12 +12,12 @@ MANUAL = {
         *("select_found", "found", "found_places"),
     )
 }
-"""The pages about its operators and settings; see `manual.Manual`."""
+"""Manual pages of operators and settings; see `manual.Manual`."""
 KEYS = (
     Key("voxelize", "V", "Object Mode"),
     Key("voxelize", "V", "Sculpt"),
     Key("boolean", "B", "Object Mode"),
 )
-"""What its operators have at first; see `keys.Keys`."""
+"""Default key bindings of its operators; see `keys.Keys`."""
 
 register, unregister = registration(properties, operators, panel, report_panel)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a user may set for voxels and booleans."""
+"""Settings of voxels and booleans."""
 
 from prefilter.options.voxels import (
     FACES,

@@ -148,7 +148,7 @@ def _boolean(options: argparse.Namespace) -> None:
         options, host, BooleanSettings, operands="hide"
     )
     if not (options.preset or given(options, BooleanSettings).keys() & set(RESOLUTIONS)):
-        settings = memory.as_before(operands[0], settings)
+        settings = memory.with_same_cells(operands[0], settings)
     else:
         settings = replace(settings, use_keep_resolution=False)
     work = Boolean.read(operands[0], operands[1:], settings, bpy.context.evaluated_depsgraph_get())

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Which edges and vertices of a surface lie where those of its sources were marked."""
+"""Marks of edges and vertices, transferred from the sources of a surface to it."""
 
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from ..bridge.marks import MarkKind, Marks, NewMarks
 
-_REACH = 0.1
-"""In cells, of edges and vertices from what they stand for."""
-_ALONG = 0.97
-"""Least cosine between an edge and what it lies on."""
+_REACH_CELLS = 0.1
+"""Greatest distance between an edge or vertex and its source, in cells."""
+_ALONG_MIN_COSINE = 0.97
+"""Least cosine between an edge and the source edge that it lies on."""
 
 FloatArray = NDArray[np.float64]
 Values = NDArray[Any]
@@ -27,18 +27,18 @@ def carried_marks(
     cell: float,
     threads: int,
 ) -> list[NewMarks]:
-    """Returns what a surface gets of its sources' marks.
+    """Transfers marks to a surface.
 
     Args:
-        marks: Of the sources.
-        positions: (n, 3) of the surface, in the space of the marks.
-        edges: Its edges.
-        cell: The side of a cell.
-        threads: How many, or 0.
+        marks: Marks of the sources.
+        positions: (n, 3), vertices of the surface, in the space of the marks.
+        edges: Edges of the surface.
+        cell: Side of a cell.
+        threads: Number of threads; 0 for all processors.
     """
     return [
         NewMarks(kind, values)
-        for kind, values in _carried(marks, positions, edges, _REACH * cell, threads)
+        for kind, values in _carried(marks, positions, edges, _REACH_CELLS * cell, threads)
         if values.any()
     ]
 
@@ -51,41 +51,41 @@ def _carried(
     threads: int,
 ) -> Iterator[tuple[MarkKind, Values]]:
     kinds: dict[str, MarkKind] = {}
-    for one in marks:
-        kinds.setdefault(one.kind.name, one.kind)
+    for each in marks:
+        kinds.setdefault(each.kind.name, each.kind)
     for kind in kinds.values():
-        of_kind = [one for one in marks if one.kind == kind]
-        ends = np.concatenate([one.ends for one in of_kind]).astype(np.float64)
-        values = np.concatenate([one.values for one in of_kind])
+        of_kind = [each for each in marks if each.kind == kind]
+        ends = np.concatenate([each.ends for each in of_kind]).astype(np.float64)
+        values = np.concatenate([each.values for each in of_kind])
         if kind.domain == "POINT":
-            yield kind, _of_vertices(ends[:, 0], values, positions, reach, threads)
+            yield kind, _vertex_values(ends[:, 0], values, positions, reach, threads)
         else:
-            yield kind, _of_edges(ends, values, positions, edges, reach, threads)
+            yield kind, _edge_values(ends, values, positions, edges, reach, threads)
 
 
 def _nearest(
     points: FloatArray, ends: FloatArray, threads: int
 ) -> tuple[NDArray[np.int64], FloatArray]:
-    """Returns the nearest segment of each point, and how far it is."""
+    """Nearest segment of each point, and its distance."""
     first = 2 * np.arange(len(ends))
-    found = prefilter.nearest_points(
+    segments, _, distances = prefilter.nearest_points(
         points,
         ends.reshape(-1, 3),
         np.stack([first, first + 1, first + 1], axis=1),
         threads=threads,
     )
-    return found[0].astype(np.int64), found[2]
+    return segments.astype(np.int64), distances
 
 
-def _of_vertices(
-    places: FloatArray,
+def _vertex_values(
+    marked: FloatArray,
     values: Values,
     positions: FloatArray,
     reach: float,
     threads: int,
 ) -> Values:
-    """Returns values of vertices: the nearest one to each marked place has that of the place."""
-    nearest, distances = _nearest(positions, np.stack([places, places], axis=1), threads)
+    """Values of vertices: the vertex nearest to each marked position gets its value."""
+    nearest, distances = _nearest(positions, np.stack([marked, marked], axis=1), threads)
     near = np.flatnonzero(distances <= reach)
     order = near[np.argsort(distances[near], kind="stable")]
     _, firsts = np.unique(nearest[order], return_index=True)
@@ -95,7 +95,7 @@ def _of_vertices(
     return result
 
 
-def _of_edges(
+def _edge_values(
     ends: FloatArray,
     values: Values,
     positions: FloatArray,
@@ -103,7 +103,7 @@ def _of_edges(
     reach: float,
     threads: int,
 ) -> Values:
-    """Returns values of edges: those that lie on marked ones have theirs."""
+    """Values of edges: an edge that lies on a marked one gets its value."""
     _, distances = _nearest(positions, ends, threads)
     is_near = distances <= reach
     candidates = np.flatnonzero(is_near[edges.vertices].all(axis=1))
@@ -112,9 +112,9 @@ def _of_edges(
         return result
     a, b = np.moveaxis(positions[edges.vertices[candidates]], 1, 0)
     nearest, distances = _nearest((a + b) / 2.0, ends, threads)
-    along, of = b - a, ends[nearest, 1] - ends[nearest, 0]
-    lengths = np.linalg.norm(along, axis=1) * np.linalg.norm(of, axis=1)
-    is_along = np.abs(np.einsum("ij,ij->i", along, of)) >= _ALONG * lengths
+    along, source = b - a, ends[nearest, 1] - ends[nearest, 0]
+    lengths = np.linalg.norm(along, axis=1) * np.linalg.norm(source, axis=1)
+    is_along = np.abs(np.einsum("ij,ij->i", along, source)) >= _ALONG_MIN_COSINE * lengths
     lies = is_along & (distances <= reach)
     result[candidates[lies]] = values[nearest[lies]]
     return result

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What voxels made of meshes: numbers for a report, and the places that they are about."""
+"""Findings about voxelized meshes: numbers for a report, and the faces and edges concerned."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -17,13 +17,13 @@ from .solid_meshes import SolidMesh
 
 Indices = NDArray[np.int32]
 THIN, LOST, OPEN, TURNED = "THIN", "LOST", "OPEN", "TURNED"
-"""Kinds of places."""
-_USUAL = 1.5
-"""The thickness, in cells, that holds together."""
-_SHARE = 0.9
-"""Of the area that is thin: so much is kept by the depth that is named."""
-_SHEET = 1e-3
-"""In cells: what is thinner has no thickness of its own."""
+"""Kinds of reported faces and edges."""
+_SAFE_THICKNESS = 1.5
+"""Least thickness of walls that do not fall apart, in cells."""
+_KEPT_SHARE = 0.9
+"""Share of the area of thin walls that is preserved at the advised depth."""
+_SHEET_THICKNESS = 1e-3
+"""Thickness below which a wall counts as a sheet without thickness, in cells."""
 
 
 @dataclass(frozen=True)
@@ -31,9 +31,9 @@ class Walls:
     """Thin walls.
 
     Attributes:
-        thickness: In cells, of nine tenths of their area at least.
-        refinement: How many times smaller cells keep as much of them; infinity for sheets.
-        are_few: Whether there is a greater area of sheets.
+        thickness: Least thickness over nine tenths of their area, in cells.
+        refinement: Factor by which cells have to shrink to preserve that area; infinity for sheets.
+        are_few: Whether sheets have a greater area.
     """
 
     thickness: float
@@ -42,10 +42,10 @@ class Walls:
 
     @classmethod
     def of(cls, thin: "prefilter.ThinPlaces") -> "Walls | None":
-        """Returns what there is of thin walls; sheets alone if there is nothing else."""
+        """Measures thin walls, or sheets if there is nothing else."""
         if len(thin.triangles) == 0:
             return None
-        is_wall = thin.thickness > _SHEET
+        is_wall = thin.thickness > _SHEET_THICKNESS
         if not is_wall.any():
             return cls(0.0, math.inf)
         walls = prefilter.ThinPlaces(
@@ -55,11 +55,11 @@ class Walls:
             thin.areas[is_wall],
         )
         are_few = bool(thin.areas[is_wall].sum() < thin.areas[~is_wall].sum())
-        return cls(walls.thickness_of(_SHARE), walls.refinement(_SHARE), are_few)
+        return cls(walls.thickness_of(_KEPT_SHARE), walls.refinement(_KEPT_SHARE), are_few)
 
     @property
     def levels(self) -> int | None:
-        """How many times cells have to be halved; None if no cells are small enough."""
+        """Number of times that cells have to be halved; None if no cells are small enough."""
         if self.refinement == math.inf:
             return None
         return math.ceil(math.log2(self.refinement) - 1e-6)
@@ -67,18 +67,18 @@ class Walls:
 
 @dataclass(frozen=True)
 class Findings:
-    """What was found in the mesh of an object, and done about it.
+    """Findings about the mesh of an object, and repairs made to it.
 
     Attributes:
-        name: The object's.
-        parts: What hangs together as a solid.
-        cavities: Of all parts.
-        genus: Of all parts; None if that is not known.
-        thin: How many faces were thickened.
-        closed: How many holes were closed.
-        lost: How many parts.
-        walls: The thin ones, if any.
-        places: By kind, the faces of the object's own mesh, or the vertices of edges, (n, 2).
+        name: Name of the object.
+        parts: Number of connected solids.
+        cavities: Number of cavities of all parts.
+        genus: Genus of all parts; None if it is not known.
+        thin: Number of thickened faces.
+        closed: Number of closed holes.
+        lost: Number of lost parts.
+        walls: The thin walls, if any.
+        places: By kind, faces of the object's own mesh, (n,), or vertices of edges, (n, 2).
     """
 
     name: str
@@ -94,11 +94,11 @@ class Findings:
 
 @dataclass(frozen=True)
 class Report:
-    """What is said of the meshes that an object was made of.
+    """Report on the sources of a result.
 
     Attributes:
-        findings: Of what it was, and then of what it was combined with.
-        advice: Which depth keeps what is thin.
+        findings: Findings about the original, then about the operands.
+        advice: Depth or voxel size that preserves thin walls.
     """
 
     findings: Sequence[Findings]
@@ -114,18 +114,18 @@ def find(
     closed: int,
     threads: int,
 ) -> Findings:
-    """Returns what there is to say of a mesh.
+    """Finds thin, lost, open and flipped faces and edges of a voxelized mesh.
 
     Args:
-        name: Of its object.
-        mesh: As it was read.
-        solid: What was made of it.
-        origins: Where the triangles come from that were voxelized; None if from the mesh.
+        name: Name of its object.
+        mesh: The mesh as it was read.
+        solid: The solid made of it.
+        origins: Source triangle in `mesh` of each voxelized triangle; None if they are the same.
         tree: The voxels.
-        closed: How many holes were closed.
+        closed: Number of closed holes.
         threads: 0 means all processors.
     """
-    # Which parts are cavities is only known once they are turned.
+    # Parts can be told from cavities only after flipping inverted triangles.
     triangles = mesh.triangles.copy()
     triangles[solid.turned] = triangles[solid.turned, ::-1]
     topology = prefilter.mesh_topology(mesh.positions, triangles, threads=threads)
@@ -133,7 +133,7 @@ def find(
     below = thin.triangles if origins is None else origins[thin.triangles]
     below = np.unique(below[below >= 0])
     lost = tree.lost_parts(mesh.positions, mesh.triangles, topology.part_of, threads=threads)
-    of_lost = np.flatnonzero(np.isin(topology.part_of, lost)) if len(lost) else lost
+    lost_triangles = np.flatnonzero(np.isin(topology.part_of, lost)) if len(lost) else lost
     places = {}
     count = len(below)
     if mesh.own is not None:
@@ -142,13 +142,13 @@ def find(
         edges = topology.border_edges
         places = {
             THIN: faces_of(below),
-            LOST: faces_of(of_lost),
+            LOST: faces_of(lost_triangles),
             OPEN: edges[(edges < own.vertices).all(axis=1)],
             TURNED: faces_of(solid.turned),
         }
     walls = Walls.of(tree.thin_walls)
     if len(lost) and walls is None:
-        walls = walls_in(tree, mesh.positions, mesh.triangles[of_lost], threads)
+        walls = walls_in(tree, mesh.positions, mesh.triangles[lost_triangles], threads)
     return Findings(
         name,
         topology.solids,
@@ -168,14 +168,14 @@ def walls_in(
     triangles: NDArray[np.integer],
     threads: int,
 ) -> Walls | None:
-    """Returns the walls of a mesh that the cells of a tree do not hold together."""
+    """Walls of a mesh that are too thin for the cells of a tree."""
     try:
         thick = prefilter.voxelize(
             positions,
             triangles,
             depth=tree.depth,
             bounds=tree.bounds,
-            thickness=_USUAL,
+            thickness=_SAFE_THICKNESS,
             threads=threads,
         )
     except ValueError:
@@ -197,18 +197,18 @@ _SHEETS = marked("sheets: no depth keeps them")
 
 
 def line(name: str, report: Report, after: "prefilter.MeshTopology | None") -> Sentence:
-    """Returns what was found in the meshes that an object was made of, in one line.
+    """One line of text about the sources of a result.
 
     Args:
-        name: The object's.
-        report: What was found.
-        after: That of the result; None of a volume.
+        name: Name of the object.
+        report: The report.
+        after: Topology of the result; None for a volume.
     """
     findings = report.findings
     rows: list[str] = []
     if after is not None:
-        rows.append(Sentence(_PARTS, sum(one.parts for one in findings), after.solids))
-        cavities = sum(one.cavities for one in findings)
+        rows.append(Sentence(_PARTS, sum(each.parts for each in findings), after.solids))
+        cavities = sum(each.cavities for each in findings)
         if cavities != after.cavities:
             rows.append(Sentence(_CAVITIES, cavities, after.cavities))
         before = total_genus(findings)
@@ -217,9 +217,9 @@ def line(name: str, report: Report, after: "prefilter.MeshTopology | None") -> S
         elif after.genus is not None:
             rows.append(Sentence(_GENUS_AFTER, after.genus))
     for text, count in (
-        (_THICKENED, sum(one.thin for one in findings)),
-        (_CLOSED, sum(one.closed for one in findings)),
-        (_LOST, sum(one.lost for one in findings)),
+        (_THICKENED, sum(each.thin for each in findings)),
+        (_CLOSED, sum(each.closed for each in findings)),
+        (_LOST, sum(each.lost for each in findings)),
     ):
         if count:
             rows.append(Sentence(text, count))
@@ -229,26 +229,26 @@ def line(name: str, report: Report, after: "prefilter.MeshTopology | None") -> S
 
 
 def total_genus(findings: Sequence[Findings]) -> int | None:
-    """Returns the genus of all meshes together, if it is known of each."""
-    known = [one.genus for one in findings if one.genus is not None]
+    """Genus of all meshes together; None if any is not known."""
+    known = [each.genus for each in findings if each.genus is not None]
     return sum(known) if len(known) == len(findings) else None
 
 
 def advice_on(
     walls: Sequence[Walls | None], grid: Grid, length: Callable[[float], str], *, by_depth: bool
 ) -> Sentence | None:
-    """Returns which depth, or which voxel size, keeps the thinnest walls as they are."""
-    found = [one for one in walls if one is not None]
-    if not found:
+    """Advises a depth, or a voxel size, that preserves the thinnest walls."""
+    thin = [each for each in walls if each is not None]
+    if not thin:
         return None
-    solid = [one for one in found if one.levels is not None]
+    solid = [each for each in thin if each.levels is not None]
     if not solid:
         return Sentence(_SHEETS)
-    thinnest = max(solid, key=lambda one: one.refinement)
+    thinnest = max(solid, key=lambda each: each.refinement)
     assert thinnest.levels is not None
     depth = grid.depth + thinnest.levels
     if depth > prefilter.MAX_DEPTH and thinnest.are_few:
-        return Sentence(_SHEETS)  # Where these cross, the walls between them have no least width.
+        return Sentence(_SHEETS)  # Between crossing sheets walls become arbitrarily thin.
     number = f"{thinnest.thickness:.1f}"
     if thinnest.thickness < 0.1:
         number = f"{thinnest.thickness:.1g}"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Where the cells of a tree are, and what they cost of what Blender may use."""
+"""Grids of cells, and checks of their memory against the memory that Blender may use."""
 
 from functools import partial
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""How an object was made, which it remembers, so that it can be made again in place."""
+"""Recipes of results, stored with them: settings and operands, for updates."""
 
 import zlib
 from collections.abc import Sequence
@@ -17,15 +17,15 @@ from .choices import BooleanSettings, VoxelizeSettings, VoxelSettings
 
 
 @dataclass(frozen=True)
-class Request:
-    """What to make again.
+class Recipe:
+    """How to make a result again.
 
     Attributes:
-        result: The object that gets it.
-        source: What it was.
-        operands: With what it is combined, if the settings are those of a boolean.
-        settings: How.
-        warnings: What is gone.
+        result: The object that gets the result.
+        source: The original object.
+        operands: The objects to combine it with, for a boolean.
+        settings: The settings.
+        warnings: Warnings about operands that are gone.
     """
 
     result: bpy.types.Object
@@ -41,12 +41,12 @@ def remember(
     operands: Sequence[bpy.types.Object],
     cell: float,
 ) -> None:
-    """Keeps with an object how it was made.
+    """Stores an object's recipe with it.
 
     Args:
         made: The object.
-        settings: How.
-        operands: With what it was combined.
+        settings: The settings it was made with.
+        operands: The objects it was combined with.
         cell: The side of a cell in its own space.
     """
     kept = made.prefilter_voxels
@@ -64,12 +64,12 @@ def remember(
 
 
 def remember_mesh(made: bpy.types.Object) -> None:
-    """Keeps with an object which mesh was made."""
+    """Stores a checksum of an object's mesh with it."""
     made.prefilter_voxels.mesh = _checksum(made.data)
 
 
 def is_changed(made: bpy.types.Object) -> bool:
-    """Tells whether the mesh of an object has changed since that was made."""
+    """Whether the mesh of an object has changed since it was made."""
     return bool(made.prefilter_voxels.mesh != _checksum(made.data))
 
 
@@ -78,17 +78,17 @@ def _checksum(mesh: bpy.types.Mesh) -> str:
 
 
 def cell_of(obj: bpy.types.Object | None) -> float:
-    """Returns the side of the cells, in the world, that an object was made in; 0 if in none."""
+    """Side, in world space, of the cells that an object was made with; 0 without a recipe."""
     if obj is None:
         return 0.0
     matrix: NDArray[np.float64] = np.array(obj.matrix_world, np.float64)[:3, :3]
     return float(obj.prefilter_voxels.cell * abs(np.linalg.det(matrix)) ** (1.0 / 3.0))
 
 
-def as_before(obj: bpy.types.Object | None, settings: BooleanSettings) -> BooleanSettings:
-    """Returns settings with cells as large as those that an object was made in, if in any.
+def with_same_cells(obj: bpy.types.Object | None, settings: BooleanSettings) -> BooleanSettings:
+    """Changes the resolution to the cells that an object was made with, if it has any.
 
-    Where there would be too many, the other resolution counts.
+    If there would be too many cells, the boolean falls back to the depth.
     """
     cell = cell_of(obj)
     if not (cell > 0.0 and settings.use_keep_resolution):
@@ -96,20 +96,20 @@ def as_before(obj: bpy.types.Object | None, settings: BooleanSettings) -> Boolea
     return replace(settings, resolution="size", voxel_size=cell)
 
 
-def made_of(obj: bpy.types.Object | None) -> bpy.types.Object | None:
-    """Returns the object that can be made again of an object: itself, or what is shown as it.
+def updatable_result(obj: bpy.types.Object | None) -> bpy.types.Object | None:
+    """Finds the result to update for an object: itself, or the result whose source it is.
 
-    Of an operand that is the object that was made last with it.
+    For an operand that is the last result made with it.
     """
     if obj is None:
         return None
-    found = kept_sources.result_of(obj)
-    if found is not None and found.prefilter_voxels.is_made and kept_sources.original_of(found):
-        return found
+    result = kept_sources.result_of(obj)
+    if result is not None and result.prefilter_voxels.is_made and kept_sources.original_of(result):
+        return result
     users = [
         outermost
         for other in (bpy.data.objects if obj.prefilter_voxels.is_operand else ())
-        if any(one.obj == obj for one in other.prefilter_voxels.operands)
+        if any(entry.obj == obj for entry in other.prefilter_voxels.operands)
         and kept_sources.original_of(other) is not None
         and (outermost := _outermost(other)) is not None
     ]
@@ -117,49 +117,49 @@ def made_of(obj: bpy.types.Object | None) -> bpy.types.Object | None:
 
 
 def chain(result: bpy.types.Object) -> list[bpy.types.Object]:
-    """Returns an object that was made, and those before it that it was made of likewise.
+    """Returns a result, and before it the results that it was made of, latest first.
 
-    What was changed by hand since it was made is not made again, and nothing before it.
+    The chain ends before a result that was edited manually since it was made.
     """
-    found = [result]
+    results = [result]
     while True:
-        source = kept_sources.original_of(found[-1])
+        source = kept_sources.original_of(results[-1])
         is_made = source is not None and source.prefilter_voxels.is_made
         if not is_made or kept_sources.original_of(source) is None or is_changed(source):
-            return found
-        found.append(source)
+            return results
+        results.append(source)
 
 
 def _outermost(obj: bpy.types.Object | None) -> bpy.types.Object | None:
-    """Returns the object that was made last of a copy; an object that is no copy is its own."""
+    """Last result made of a copied source, or the object itself if it is no copy."""
     while obj is not None and obj.prefilter_made_of.is_copy:
         users = (other for other in bpy.data.objects if kept_sources.original_of(other) == obj)
         obj = next(users, None)
     return obj if obj is not None and obj.prefilter_voxels.is_made else None
 
 
-def recall(result: bpy.types.Object) -> Request:
-    """Returns how to make an object again.
+def recall(result: bpy.types.Object) -> Recipe:
+    """Returns the recipe of an object.
 
     Raises:
-        ValueError: What it was made of is gone.
+        ValueError: Its source or all operands are gone.
     """
     kept, source = result.prefilter_voxels, kept_sources.original_of(result)
     if source is None:
-        raise ValueError(Sentence("object '{}': what it was made of is gone", result.name))
+        raise ValueError(Sentence("object '{}': its source is gone", result.name))
     settings = kept.to_settings()
     if not isinstance(settings, BooleanSettings):
-        return Request(result, source, [], settings, [])
-    there = [one.obj for one in kept.operands]
-    operands = [obj for obj in there if obj is not None and obj.users_collection]
+        return Recipe(result, source, [], settings, [])
+    stored = [entry.obj for entry in kept.operands]
+    operands = [obj for obj in stored if obj is not None and obj.users_collection]
     if not operands:
         text = "object '{}': the objects that it was combined with are gone"
         raise ValueError(Sentence(text, result.name))
-    gone = len(there) - len(operands)
+    gone = len(stored) - len(operands)
     warnings: list[str] = []
     if gone:
         text = "{} objects that it was combined with are gone"
         if gone == 1:
             text = "1 object that it was combined with is gone"
         warnings.append(Sentence(text, gone))
-    return Request(result, source, operands, settings, warnings)
+    return Recipe(result, source, operands, settings, warnings)

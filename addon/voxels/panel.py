@@ -27,7 +27,7 @@ class _SidebarPanel(SidebarPanel):
 
     @staticmethod
     def fits(obj: bpy.types.Object) -> bool:
-        """Tells whether the panel is for an object."""
+        """Whether the panel applies to an object."""
         from ..bridge.new_meshes import is_solid
 
         return is_solid(obj)
@@ -38,7 +38,7 @@ _BOOLEAN = Button(PREFILTER_OT_boolean, "MOD_BOOLEAN", BOOLEAN.group, {BooleanSe
 
 
 class _BooleanPanel:
-    """A mixin: in the panel of voxelizing, which has the other settings."""
+    """A mixin: subpanel of Voxelize, which has the shared settings."""
 
     bl_options = frozenset({"DEFAULT_CLOSED"})
     layout: bpy.types.UILayout
@@ -58,7 +58,7 @@ class _BooleanPanel:
 
 
 class PREFILTER_PT_voxelize(_RemeshPanel, SettingsPanel, bpy.types.Panel):
-    """Button and settings of voxelizing, of meshes."""
+    """Button and settings of voxelizing, in the properties of a mesh."""
 
     bl_label = "Prefilter Voxelize"
     bl_parent_id = "DATA_PT_remesh"
@@ -69,14 +69,14 @@ class PREFILTER_PT_voxelize(_RemeshPanel, SettingsPanel, bpy.types.Panel):
 
 
 class PREFILTER_PT_boolean(_BooleanPanel, _RemeshPanel, bpy.types.Panel):
-    """Button and own settings of booleans, of meshes."""
+    """Button and settings of booleans, in the properties of a mesh."""
 
     bl_label = "Prefilter Boolean"
     bl_parent_id = "PREFILTER_PT_voxelize"
 
 
 class PREFILTER_PT_voxelize_sidebar(_SidebarPanel, SettingsPanel, bpy.types.Panel):
-    """Button and settings of voxelizing."""
+    """Button and settings of voxelizing, in the sidebar."""
 
     bl_label = "Voxelize"
     presets = VOXELIZE
@@ -85,7 +85,7 @@ class PREFILTER_PT_voxelize_sidebar(_SidebarPanel, SettingsPanel, bpy.types.Pane
 
 
 class PREFILTER_PT_voxelize_sculpt(_SidebarPanel, SettingsPanel, bpy.types.Panel):
-    """Button and settings of voxelizing what is sculpted."""
+    """Button and settings of voxelizing in Sculpt Mode, in the sidebar."""
 
     bl_label = "Voxelize"
     bl_context = "sculpt_mode"
@@ -96,38 +96,38 @@ class PREFILTER_PT_voxelize_sculpt(_SidebarPanel, SettingsPanel, bpy.types.Panel
 
 
 class PREFILTER_PT_boolean_sidebar(_BooleanPanel, _SidebarPanel, bpy.types.Panel):
-    """Button and own settings of booleans."""
+    """Button and settings of booleans, in the sidebar."""
 
     bl_label = "Voxel Boolean"
     bl_parent_id = "PREFILTER_PT_voxelize_sidebar"
 
 
 class PREFILTER_PT_voxel_result(Tab, bpy.types.Panel):
-    """The button that makes an object again, and what it was made with."""
+    """Button that updates a result, and its recipe."""
 
     bl_label = "Voxel Result"
     bl_context = "objectmode"
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether the active object remembers how it was made, or was used for one."""
-        from .memory import made_of
+        """Whether there is a result to update for the active object."""
+        from .memory import updatable_result
 
-        return made_of(context.active_object) is not None
+        return updatable_result(context.active_object) is not None
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        from .memory import made_of
+        from .memory import updatable_result
 
-        result = made_of(context.active_object)
+        result = updatable_result(context.active_object)
         assert result is not None
-        place = main_button(self.layout, context, PREFILTER_OT_update_voxels)
-        if place:
+        row = main_button(self.layout, context, PREFILTER_OT_update_voxels)
+        if row:
             update = PREFILTER_OT_update_voxels.bl_idname
-            place.operator(update, text="Update", icon="FILE_REFRESH")
+            row.operator(update, text="Update", icon="FILE_REFRESH")
             is_source = result.prefilter_made_of.is_source_shown
             icon = "LOOP_FORWARDS" if is_source else "LOOP_BACK"
-            place.operator("prefilter.switch_source", text="", icon=icon)
+            row.operator("prefilter.switch_source", text="", icon=icon)
         if result != context.active_object:
             note(self.layout, context, f"'{result.name}'", "OBJECT_DATA")
         result.prefilter_voxels.draw_collapsed(self.layout)

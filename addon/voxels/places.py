@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The places that a report is about: kept with a result, and selected in what it was made of."""
+"""Faces and edges of a report: stored with a result, and selected in its sources."""
 
 import base64
 import zlib
@@ -21,49 +21,49 @@ Indices = NDArray[np.int32]
 
 
 def keep(made: bpy.types.Object, report: Report, after: prefilter.MeshTopology) -> None:
-    """Keeps with an object what was found in the meshes that it was made of, if these are kept.
+    """Stores a report with an object, if the object keeps its sources.
 
     Args:
         made: The object.
-        report: What was found.
-        after: How its surface hangs together.
+        report: The report on its sources.
+        after: Topology of its surface.
     """
-    found = made.prefilter_found
-    found.is_there = kept_sources.original_of(made) is not None
-    found.places.clear()
-    if not found.is_there:
+    stored = made.prefilter_found
+    stored.is_there = kept_sources.original_of(made) is not None
+    stored.places.clear()
+    if not stored.is_there:
         return
     findings = report.findings
     before = total_genus(findings)
     advice = "" if report.advice is None else tr(report.advice)
-    found.advice = advice[:1].upper() + advice[1:]
-    found.parts = (sum(one.parts for one in findings), after.solids)
-    found.cavities = (sum(one.cavities for one in findings), after.cavities)
-    found.genus = (-1 if before is None else before, -1 if after.genus is None else after.genus)
-    for i, one in enumerate(findings):
-        for kind, rows in one.places.items():
-            place = found.places.add()
-            place.kind = kind
-            place.operand = one.name if i else ""
-            place.count = len(rows)
-            place.rows = _packed(rows)
+    stored.advice = advice[:1].upper() + advice[1:]
+    stored.parts = (sum(each.parts for each in findings), after.solids)
+    stored.cavities = (sum(each.cavities for each in findings), after.cavities)
+    stored.genus = (-1 if before is None else before, -1 if after.genus is None else after.genus)
+    for i, each in enumerate(findings):
+        for kind, rows in each.places.items():
+            entry = stored.places.add()
+            entry.kind = kind
+            entry.operand = each.name if i else ""
+            entry.count = len(rows)
+            entry.rows = _pack(rows)
 
 
 def select(result: bpy.types.Object, index: int, context: bpy.types.Context) -> bpy.types.Object:
-    """Shows what an object was made of, and selects places there in Edit Mode.
+    """Shows the source of a result in its stead, and selects faces or edges there in Edit Mode.
 
     Args:
-        result: The object.
-        index: Of the places.
+        result: The result.
+        index: Index of the entry of the report.
         context: The context.
 
     Raises:
-        ValueError: What they are on is gone, or cannot be edited.
+        ValueError: The source is gone, or cannot be edited.
     """
-    place = result.prefilter_found.places[index]
-    source = _source_of(result, place.operand)
+    entry = result.prefilter_found.places[index]
+    source = _source_of(result, entry.operand)
     if source is None:
-        raise ValueError(Sentence("object '{}': what it was made of is gone", result.name))
+        raise ValueError(Sentence("object '{}': its source is gone", result.name))
     if source.data.library is not None:
         text = "object '{}' is linked from '{}'; make it local first"
         raise ValueError(Sentence(text, source.name, source.data.library.filepath))
@@ -77,7 +77,7 @@ def select(result: bpy.types.Object, index: int, context: bpy.types.Context) -> 
     source.select_set(True)
     context.view_layer.objects.active = source
     context.view_layer.update()
-    rows, is_edges = _unpacked(place.rows), place.kind == OPEN
+    rows, is_edges = _unpack(entry.rows), entry.kind == OPEN
     if is_edges:
         _select_edges(source, rows.reshape(-1, 2), context)
     else:
@@ -88,23 +88,23 @@ def select(result: bpy.types.Object, index: int, context: bpy.types.Context) -> 
 
 
 def _source_of(result: bpy.types.Object, operand: str) -> bpy.types.Object | None:
-    found = bpy.data.objects.get(operand) if operand else kept_sources.original_of(result)
-    return found if found is not None and found.type == "MESH" else None
+    obj = bpy.data.objects.get(operand) if operand else kept_sources.original_of(result)
+    return obj if obj is not None and obj.type == "MESH" else None
 
 
-def _packed(rows: Indices) -> str:
-    """Returns numbers as a text, as properties keep arrays of one length only."""
+def _pack(rows: Indices) -> str:
+    """Encodes indices as text: array properties have a fixed length."""
     steps = np.diff(rows.ravel(), prepend=0).astype("<i4")
     return base64.b85encode(zlib.compress(steps.tobytes())).decode()
 
 
-def _unpacked(text: str) -> Indices:
+def _unpack(text: str) -> Indices:
     steps = np.frombuffer(zlib.decompress(base64.b85decode(text)), "<i4")
     return np.cumsum(steps).astype(np.int32)
 
 
 def _select_faces(obj: bpy.types.Object, faces: Indices, context: bpy.types.Context) -> None:
-    """Selects faces of an object as it is evaluated: those of its mesh where these are."""
+    """Selects the faces of an object's mesh at the given faces of its evaluated mesh."""
     mesh = obj.data
     shown = obj.evaluated_get(context.evaluated_depsgraph_get()).data
     faces = faces[faces < len(shown.polygons)]
@@ -112,8 +112,8 @@ def _select_faces(obj: bpy.types.Object, faces: Indices, context: bpy.types.Cont
         tree = BVHTree.FromPolygons(
             [vertex.co for vertex in mesh.vertices], [face.vertices for face in mesh.polygons]
         )
-        near = (tree.find_nearest(shown.polygons[i].center)[2] for i in faces.tolist())
-        faces = np.unique([i for i in near if i is not None]).astype(np.int32)
+        nearest = (tree.find_nearest(shown.polygons[i].center)[2] for i in faces.tolist())
+        faces = np.unique([i for i in nearest if i is not None]).astype(np.int32)
     is_face = _flags(len(mesh.polygons), faces)
     starts, totals = (np.empty(len(mesh.polygons), np.int32) for _ in range(2))
     mesh.polygons.foreach_get("loop_start", starts)
@@ -133,34 +133,34 @@ def _select_faces(obj: bpy.types.Object, faces: Indices, context: bpy.types.Cont
 
 
 def _select_edges(obj: bpy.types.Object, pairs: Indices, context: bpy.types.Context) -> None:
-    """Selects edges of an object as it is evaluated: those of its mesh where these are."""
+    """Selects the edges of an object's mesh at the given edges of its evaluated mesh."""
     mesh = obj.data
     shown = obj.evaluated_get(context.evaluated_depsgraph_get()).data
     pairs = pairs[(pairs < len(shown.vertices)).all(axis=1)]
-    places, ends = _positions(mesh), np.empty((len(mesh.edges), 2), np.int32)
+    positions, ends = _positions(mesh), np.empty((len(mesh.edges), 2), np.int32)
     mesh.edges.foreach_get("vertices", ends.ravel())
     if len(shown.vertices) == len(mesh.vertices):
-        # Of vertices at one place the report names the first.
-        names = np.unique(places, axis=0, return_inverse=True)[1].reshape(-1)
-        wanted = np.sort(names[pairs], axis=1).astype(np.int64)
-        known = np.sort(names[ends], axis=1).astype(np.int64)
-        count = len(places)
-        chosen = np.isin(known @ [count, 1], wanted @ [count, 1])
+        # The report was made on welded vertices: compare edges by positions.
+        ids = np.unique(positions, axis=0, return_inverse=True)[1].reshape(-1)
+        reported = np.sort(ids[pairs], axis=1).astype(np.int64)
+        own = np.sort(ids[ends], axis=1).astype(np.int64)
+        count = len(positions)
+        chosen = np.isin(own @ [count, 1], reported @ [count, 1])
     else:
         tree = KDTree(len(mesh.edges))
-        for i, middle in enumerate(places[ends].mean(axis=1)):
-            tree.insert(middle, i)
+        for i, center in enumerate(positions[ends].mean(axis=1)):
+            tree.insert(center, i)
         tree.balance()
-        middles = _positions(shown)[pairs].mean(axis=1)
-        chosen = _flags(len(mesh.edges), np.array([tree.find(one)[1] for one in middles], int))
+        centers = _positions(shown)[pairs].mean(axis=1)
+        chosen = _flags(len(mesh.edges), np.array([tree.find(each)[1] for each in centers], int))
     is_vertex = _flags(len(mesh.vertices), ends[chosen].ravel())
     _select(mesh, is_vertex, chosen, np.zeros(len(mesh.polygons), bool))
 
 
 def _positions(mesh: bpy.types.Mesh) -> NDArray[np.float32]:
-    places = np.empty((len(mesh.vertices), 3), np.float32)
-    mesh.vertices.foreach_get("co", places.ravel())
-    return places
+    positions = np.empty((len(mesh.vertices), 3), np.float32)
+    mesh.vertices.foreach_get("co", positions.ravel())
+    return positions
 
 
 def _flags(count: int, chosen: NDArray[np.integer]) -> NDArray[np.bool_]:
@@ -175,7 +175,7 @@ def _select(
     edges: NDArray[np.bool_],
     faces: NDArray[np.bool_],
 ) -> None:
-    """Selects these alone, and shows what of them is hidden."""
+    """Selects only these elements, and unhides them."""
     for items, flags in ((mesh.vertices, vertices), (mesh.edges, edges), (mesh.polygons, faces)):
         is_hidden = np.empty(len(items), bool)
         items.foreach_get("hide", is_hidden)

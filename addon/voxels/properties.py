@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The settings of voxelizing and of booleans as properties: of operators, scenes and results.
+"""Settings of voxelizing and booleans as properties of operators, scenes and results.
 
-A scene has one set of what both have in common.
+In a scene both share the settings that they have in common.
 """
 
 import bpy
@@ -23,14 +23,14 @@ from ..core.sidebar import GroupedSettings, note, subpanel
 from ..core.translations import tr
 from .choices import BooleanSettings, VoxelizeSettings, VoxelSettings
 
-# The presets of both are the same.
+# Both have the same presets, which leave these settings to the scene.
 _OF_SCENES = ("output", "originals", "operation", "operands", "use_keep_resolution")
 VOXELIZE = presets.Kind("voxelize", "prefilter_voxelize", [(VoxelizeSettings, _OF_SCENES)])
 BOOLEAN = presets.Kind("voxelize", "prefilter_boolean", [(BooleanSettings, _OF_SCENES)])
 
 
 class VoxelProperties(GroupedSettings):
-    """How the settings are drawn that both have in common; a mixin for their properties."""
+    """A mixin: draws the settings that voxelizing and booleans have in common."""
 
     def draw_basic(self, layout: bpy.types.UILayout) -> None:
         """Draws the usual settings."""
@@ -38,7 +38,7 @@ class VoxelProperties(GroupedSettings):
         layout.prop(self, "resolution")
         layout.prop(self, "depth" if self.resolution == "depth" else "voxel_size")
         if bpy.context.mode == "SCULPT":
-            # The mesh of what is sculpted is replaced, by triangles as small as brushes need.
+            # Sculpting replaces the mesh, with small triangles for brushes.
             return
         if self._makes_mesh():
             layout.prop(self, "faces")
@@ -90,14 +90,14 @@ class VoxelProperties(GroupedSettings):
         return True
 
     def _draw_originals(self, layout: bpy.types.UILayout) -> None:
-        """Draws what becomes of the original."""
+        """Draws the treatment of the original."""
         layout.prop(self, "originals")
 
     def _draw_first(self, layout: bpy.types.UILayout) -> None:
-        """Draws what comes before the resolution."""
+        """Draws the settings before the resolution."""
 
     def _draw_last(self, layout: bpy.types.UILayout) -> None:
-        """Draws what comes after the size."""
+        """Draws the settings after the resolution."""
 
 
 class VoxelizeProperties(VoxelProperties):
@@ -134,7 +134,7 @@ class BooleanProperties(VoxelProperties):
         return values(self, BooleanSettings)
 
     def draw_own(self, layout: bpy.types.UILayout) -> None:
-        """Draws what voxelizing does not have."""
+        """Draws the settings that only booleans have."""
         layout.use_property_split = True
         layout.use_property_decorate = False
         layout.prop(self, "operation")
@@ -142,7 +142,7 @@ class BooleanProperties(VoxelProperties):
         self._draw_keeping(layout)
 
     def _draw_keeping(self, layout: bpy.types.UILayout) -> None:
-        """Draws nothing: the resolution is said by the other settings."""
+        """Draws nothing; the operator sets the resolution itself."""
 
     def _draw_first(self, layout: bpy.types.UILayout) -> None:
         self.draw_own(layout)
@@ -153,7 +153,7 @@ class PREFILTER_PG_voxelize(VoxelizeProperties, bpy.types.PropertyGroup):
 
 
 class PREFILTER_PG_boolean(BooleanProperties, bpy.types.PropertyGroup):
-    """The settings that the panel shows; what voxelizing has too is that of its settings."""
+    """The settings that the panel shows; shared ones are stored with those of voxelizing."""
 
     __annotations__ = shared_properties(VoxelSettings, VOXELIZE.group)
 
@@ -168,15 +168,15 @@ class PREFILTER_PG_operand(bpy.types.PropertyGroup):
 
 
 class PREFILTER_PG_voxel_result(VoxelProperties, bpy.types.PropertyGroup):
-    """How an object was made, which its panel shows.
+    """The recipe of an object, which its panel shows.
 
     Attributes:
-        is_made: Whether it was made.
-        is_boolean: Whether by a boolean.
-        is_operand: Whether something was combined with it.
-        operands: With what it was combined.
-        mesh: Tells the mesh that was made from others.
-        cell: The side of a cell in its own space: of a cube with the volume of the cell there.
+        is_made: Whether the object is a result.
+        is_boolean: Whether a boolean made it.
+        is_operand: Whether a result was made with it as an operand.
+        operands: Objects that it was combined with.
+        mesh: Checksum of the mesh as it was made.
+        cell: Side of a cell in the object's own space: of a cube with the cell's volume there.
     """
 
     __annotations__ = (
@@ -203,17 +203,17 @@ class PREFILTER_PG_voxel_result(VoxelProperties, bpy.types.PropertyGroup):
             layout.prop(self, "operation")
 
     def _draw_originals(self, layout: bpy.types.UILayout) -> None:
-        """Draws nothing: it is kept."""
+        """Draws nothing; the original is kept for updates."""
 
 
 class PREFILTER_PG_found_places(bpy.types.PropertyGroup):
-    """Places of one kind, on one mesh.
+    """Faces or edges of one kind, on one mesh.
 
     Attributes:
-        kind: As `findings` names it.
-        operand: The object; empty for what the result was.
-        count: How many faces or edges.
-        rows: Which.
+        kind: A kind of `findings`.
+        operand: Name of the operand; empty for the original.
+        count: Number of faces or edges.
+        rows: Their encoded indices; see `places`.
     """
 
     kind: StringProperty()
@@ -223,15 +223,15 @@ class PREFILTER_PG_found_places(bpy.types.PropertyGroup):
 
 
 class PREFILTER_PG_found(bpy.types.PropertyGroup):
-    """What an object keeps of the report on what it was made of; see `places`.
+    """Stored report on the sources of a result; see `places`.
 
     Attributes:
-        is_there: Whether the rest is.
-        parts: Before and after.
-        cavities: Likewise.
-        genus: Likewise; -1 if it is not known.
-        advice: Which depth keeps what is thin, in the language of the user.
-        places: Where.
+        is_there: Whether a report is stored.
+        parts: Number before and after.
+        cavities: Number before and after.
+        genus: Genus before and after; -1 if it is not known.
+        advice: Resolution that preserves thin walls, in the user's language.
+        places: The faces and edges.
     """
 
     is_there: BoolProperty()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Faces that are triangles, or quads, which are cut from the first corner to the third."""
+"""Triangles and quads; the diagonal of a quad is from its first corner to its third."""
 
 import numpy as np
 import prefilter
@@ -12,17 +12,17 @@ _HALVES = [[0, 1, 2], [0, 2, 3]]
 
 
 def halves(faces: IntArray) -> IntArray:
-    """Returns triangles as they are, and of quads both."""
+    """Splits quads into triangles; returns triangles unchanged."""
     return faces if faces.shape[1] == 3 else faces[:, _HALVES].reshape(-1, 3)
 
 
 def each_half(values: IntArray, faces: IntArray) -> IntArray:
-    """Returns a value for each triangle of faces that have one each."""
+    """Converts per-face values to per-triangle values."""
     return values if faces.shape[1] == 3 else np.repeat(values, 2)
 
 
 def corners_of(halved: IntArray, faces: IntArray) -> IntArray:
-    """Returns what the corners of faces have, from what those of their triangles have."""
+    """Converts per-triangle-corner values to per-face-corner values."""
     if faces.shape[1] == 3:
         return halved
     pairs = halved.reshape(-1, 6)
@@ -32,7 +32,7 @@ def corners_of(halved: IntArray, faces: IntArray) -> IntArray:
 def face_edges(
     positions: NDArray[np.float32], faces: IntArray, threads: int
 ) -> "prefilter.MeshEdges":
-    """Returns the edges of faces, without those within quads."""
+    """Edges of faces, without the diagonals of quads."""
     edges = prefilter.mesh_edges(positions, halves(faces), threads=threads)
     if faces.shape[1] == 3:
         return edges

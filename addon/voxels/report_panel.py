@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The report on what a result was made of, in the 3D view's tab, with buttons that select."""
+"""Panel of the report on a result's sources, with buttons that select faces and edges."""
 
 import bpy
 
@@ -20,42 +20,42 @@ _ICONS = {"OPEN": "EDGESEL"}
 
 
 class PREFILTER_PT_voxel_report(Tab, bpy.types.Panel):
-    """Parts, cavities and genus before and after, and the places that were changed."""
+    """Parts, cavities and genus before and after, and the faces and edges concerned."""
 
     bl_label = "Voxel Report"
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether the active object has a report, or is what one is about."""
-        from .memory import made_of
+        """Whether there is a report on the active object or on its result."""
+        from .memory import updatable_result
 
-        result = made_of(context.active_object)
+        result = updatable_result(context.active_object)
         is_fitting = context.mode in {"OBJECT", "EDIT_MESH"}
         return is_fitting and result is not None and result.prefilter_found.is_there
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        from .memory import made_of
+        from .memory import updatable_result
 
-        result = made_of(context.active_object)
+        result = updatable_result(context.active_object)
         if result is None:
             return
-        found = result.prefilter_found
+        report = result.prefilter_found
         column = self.layout.column(align=True)
-        rows = [(_PARTS, found.parts), (_CAVITIES, found.cavities), (_GENUS, found.genus)]
-        if len(set(found.cavities)) == 1:
+        rows = [(_PARTS, report.parts), (_CAVITIES, report.cavities), (_GENUS, report.genus)]
+        if len(set(report.cavities)) == 1:
             del rows[1]
         for label, numbers in rows:
             before, after = ("?" if number < 0 else str(number) for number in numbers)
             column.label(text=f"{tr(label)}: {before} \N{RIGHTWARDS ARROW} {after}")
-        if found.advice:
-            note(self.layout, context, found.advice, "INFO")
+        if report.advice:
+            note(self.layout, context, report.advice, "INFO")
         column = self.layout.column(align=True)
-        for i, place in enumerate(found.places):
-            text = f"{tr(_LABELS[place.kind])}: {place.count}"
-            if place.operand:
-                text = f"{place.operand}, {text}"
-            icon = _ICONS.get(place.kind, "FACESEL")
+        for i, entry in enumerate(report.places):
+            text = f"{tr(_LABELS[entry.kind])}: {entry.count}"
+            if entry.operand:
+                text = f"{entry.operand}, {text}"
+            icon = _ICONS.get(entry.kind, "FACESEL")
             operator = PREFILTER_OT_select_found.bl_idname
             column.operator(operator, text=text, icon=icon, translate=False).index = i
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Arithmetic on what solids are made of: one mesh, with the layers and materials of all parts."""
+"""Solids joined into one mesh, with the layers and materials of all parts."""
 
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -16,12 +16,12 @@ IntArray = NDArray[np.int32]
 
 @dataclass(frozen=True)
 class OwnMesh:
-    """The mesh of an object, and not of its instances, in a joined one.
+    """The part of a joined mesh that is the object's own, without instances; it comes first.
 
     Attributes:
-        vertices: How many there are.
-        triangles: Likewise.
-        faces: The face of each triangle; None if all are triangles.
+        vertices: Number of vertices.
+        triangles: Number of triangles.
+        faces: Face of each triangle; None if all faces are triangles.
     """
 
     vertices: int
@@ -29,9 +29,9 @@ class OwnMesh:
     faces: IntArray | None
 
     def faces_of(self, triangles: NDArray[np.integer]) -> IntArray:
-        """Returns the faces of some triangles of the joined mesh, each once, in order."""
-        known = triangles[triangles < self.triangles]
-        return np.unique(known if self.faces is None else self.faces[known]).astype(np.int32)
+        """Own faces of triangles of the joined mesh, each once, ascending."""
+        own = triangles[triangles < self.triangles]
+        return np.unique(own if self.faces is None else self.faces[own]).astype(np.int32)
 
 
 @dataclass(frozen=True)
@@ -41,9 +41,9 @@ class SolidMesh:
     Attributes:
         positions: (n, 3), float32 or float64.
         triangles: (m, 3) int32, counter-clockwise from outside.
-        materials: (m,) int32, or (1,) for one of all.
-        layers: Its attributes; parts that lack one are white there, or 0.
-        own: What comes first, if that is the mesh of an object itself.
+        materials: (m,) int32, or (1,) if all triangles have the same.
+        layers: Its attributes; parts that lack one have white or 0 there.
+        own: The object's own part, if there is one.
     """
 
     positions: Positions
@@ -54,16 +54,16 @@ class SolidMesh:
 
     @property
     def has_several_materials(self) -> bool:
-        """Whether the triangles differ in their materials."""
+        """Whether triangles have different materials."""
         return len(self.materials) > 1
 
     @property
     def uvs(self) -> list[NDArray[np.float32]]:
-        """The UVs of the triangles' corners, (m, 3, 2), of each map."""
+        """UVs of the triangles' corners, (m, 3, 2), per map."""
         return [layer.values[layer.corners] for layer in self.layers if layer.kind == UV_MAP]
 
     def material_of(self, triangles: NDArray[np.integer]) -> IntArray:
-        """Returns the materials of some triangles."""
+        """Materials of triangles."""
         if self.has_several_materials:
             return self.materials[triangles]
         return np.full(len(triangles), self.materials[0], np.int32)
@@ -72,7 +72,7 @@ class SolidMesh:
 def solid_mesh(parts: list[Part]) -> SolidMesh:
     """Joins the parts of a solid."""
     mesh = join(
-        [SolidMesh(one.positions, one.triangles, one.materials, one.layers) for one in parts]
+        [SolidMesh(part.positions, part.triangles, part.materials, part.layers) for part in parts]
     )
     first = parts[0]
     if not first.is_own:
@@ -82,7 +82,7 @@ def solid_mesh(parts: list[Part]) -> SolidMesh:
 
 
 def join(meshes: list[SolidMesh]) -> SolidMesh:
-    """Returns one mesh of all the triangles."""
+    """Joins meshes."""
     if len(meshes) == 1:
         return meshes[0]
     starts = np.cumsum([0, *(len(mesh.positions) for mesh in meshes)])
@@ -100,7 +100,7 @@ def join(meshes: list[SolidMesh]) -> SolidMesh:
 
 
 def _joined_layers(meshes: list[SolidMesh]) -> list[Layer]:
-    """Returns the layers of all; those of one name are one if they are of one type and domain."""
+    """Joins layers by kind and name, if they have the same type and domain."""
     firsts: dict[tuple[str, str], Layer] = {}
     for mesh in meshes:
         for layer in mesh.layers:
@@ -113,9 +113,9 @@ def _joined_layer(first: Layer, meshes: list[SolidMesh]) -> Layer:
     corners = []
     start = 0
     for mesh in meshes:
-        layer = next((one for one in mesh.layers if _are_alike(one, first)), None)
+        layer = next((each for each in mesh.layers if _are_alike(each, first)), None)
         if layer is None:
-            layer = _missing(first, mesh)
+            layer = _default_layer(first, mesh)
         values.append(layer.values)
         corners.append(layer.corners + start)
         start += len(layer.values)
@@ -124,15 +124,15 @@ def _joined_layer(first: Layer, meshes: list[SolidMesh]) -> Layer:
     )
 
 
-def _are_alike(one: Layer, other: Layer) -> bool:
-    if one.key != other.key or one.values.dtype != other.values.dtype:
+def _are_alike(layer: Layer, other: Layer) -> bool:
+    if layer.key != other.key or layer.values.dtype != other.values.dtype:
         return False
-    width, faces = one.values.shape[1], one.domain == "FACE"
+    width, faces = layer.values.shape[1], layer.domain == "FACE"
     return width == other.values.shape[1] and faces == (other.domain == "FACE")
 
 
-def _missing(first: Layer, mesh: SolidMesh) -> Layer:
-    """Returns a layer for a mesh that lacks it: white, its own normals, no turn, set 1, or 0."""
+def _default_layer(first: Layer, mesh: SolidMesh) -> Layer:
+    """Layer for a mesh that lacks it: white, face normals, identity rotations, set 1, or 0."""
     width = 1 if first.domain == "FACE" else 3
     if first.kind == NORMALS:
         a, b, c = np.moveaxis(mesh.positions[mesh.triangles], 1, 0)

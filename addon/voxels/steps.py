@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What voxelizing and combining have in common: meshes to cells, and cells to a surface."""
+"""Steps shared by voxelizing and booleans: meshes to cells, and cells to a surface."""
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
@@ -13,9 +13,9 @@ from prefilter.workflows.voxels.empty_results import NO_FILLED_CELL, NothingLeft
 
 from ..bridge import solids
 from ..bridge.files.staging import StagedFile
-from ..bridge.layers import COLOR, NORMALS, NewLayer, Wanted
+from ..bridge.layers import COLOR, NORMALS, LayerSelection, NewLayer
 from ..bridge.new_meshes import Contour
-from ..bridge.place import Place
+from ..bridge.target_frame import TargetFrame
 from ..bridge.units import length, volume
 from ..core.jobs import Progress, go_on, share
 from ..core.translations import marked
@@ -29,8 +29,8 @@ from .shading import sharp_angle, weighted_normals
 from .solid_meshes import SolidMesh, solid_mesh
 from .transfer import Source, Transfer, find_groups, find_labels, groups_of
 
-# What a load takes in seconds, as measured once on two cores; ratios are what counts.
-_ALWAYS = 0.01
+# Seconds, measured once on two cores; only their ratios matter.
+_CONSTANT = 0.01
 _PER_TRIANGLE = 1e-6
 _VOXELIZING = 0.5e-6
 _CONTOURING = {"sharp": 6e-6, "plane": 4e-6, "occupancy": 2e-6, "linear": 2e-6}
@@ -39,37 +39,43 @@ _CLEANING = 12e-6
 _TRANSFERRING = 3e-6
 _WRITING = 1e-8
 VOXELIZED, _CONTOURED = 0.5, 0.75
-"""What the progress is once the tree is made, and once there is a surface."""
+"""Progress after the tree is made, and after the surface is made."""
 
 
 @dataclass(frozen=True)
 class Result:
-    """A surface, or a staged file of a volume, and numbers about it.
+    """A surface, or a staged volume file, and numbers about it.
 
-    `volume` is what the surface encloses; of a volume, how much is filled.
+    Attributes:
+        frame: Target object and its space.
+        grid: The cells.
+        volume: Volume that the surface encloses, or that is filled.
+        faces: Number of faces.
+        contour: The surface; None for a volume.
+        staged: The volume's file; None for a surface.
+        topology: Topology of the surface.
+        walls: Walls that fell apart, per source.
     """
 
-    place: Place
+    frame: TargetFrame
     grid: Grid
     volume: float
     faces: int
     contour: Contour | None = None
     staged: StagedFile | None = None
     topology: "prefilter.MeshTopology | None" = None
-    """Of the surface."""
     walls: tuple[Walls | None, ...] = ()
-    """Those that fell apart."""
 
 
 @dataclass(frozen=True)
 class Operand:
-    """A mesh, and how large it is.
+    """A mesh with its measures.
 
     Attributes:
-        name: Of the object.
-        mesh: What was read.
-        measures: Of the mesh.
-        left_out: The names of attributes that are not carried.
+        name: Name of the object.
+        mesh: The mesh as read.
+        measures: Measures of the mesh.
+        left_out: Names of attributes that cannot be transferred.
     """
 
     name: str
@@ -79,7 +85,7 @@ class Operand:
 
     @classmethod
     def of(cls, solid: solids.Solid, settings: VoxelSettings) -> "Operand":
-        """Returns the mesh of a solid."""
+        """Joins the parts of a solid into one mesh."""
         mesh = solid_mesh(solid.parts)
         measures = prefilter.measure_mesh(mesh.positions, mesh.triangles, threads=settings.threads)
         return cls(solid.name, mesh, measures, solid.left_out)
@@ -87,13 +93,13 @@ class Operand:
 
 @dataclass(frozen=True)
 class Load:
-    """What decides how long meshes in one grid take.
+    """Amount of work for meshes in one grid, from which its duration is estimated.
 
     Attributes:
-        box: What the grid is around.
-        area: The area of the triangles.
-        triangles: How many there are.
-        transfers: Whether the result gets values of the nearest points.
+        box: Box that the grid covers.
+        area: Area of the triangles.
+        triangles: Number of triangles.
+        transfers: Whether attributes are transferred to the result.
     """
 
     box: Box
@@ -103,22 +109,22 @@ class Load:
 
     @classmethod
     def of(cls, box: Box, operands: Sequence[Operand]) -> "Load":
-        """Returns the load of meshes in a box."""
+        """Sums up the work for meshes in a box."""
         return cls(
             box,
-            sum(one.measures.area for one in operands),
-            sum(len(one.mesh.triangles) for one in operands),
-            any(one.mesh.layers for one in operands),
+            sum(operand.measures.area for operand in operands),
+            sum(len(operand.mesh.triangles) for operand in operands),
+            any(operand.mesh.layers for operand in operands),
         )
 
     def seconds(self, settings: VoxelSettings) -> float:
-        """Returns about how long it takes on two cores; settings that are refused take none."""
+        """Estimated duration on two cores, in seconds; 0 for settings that will be refused."""
         try:
             grid = choose_grid(self.box, settings)
         except ValueError:
             return 0.0
         crossed = cells_crossed(grid, self.area)
-        seconds = _ALWAYS + _PER_TRIANGLE * self.triangles + _VOXELIZING * crossed
+        seconds = _CONSTANT + _PER_TRIANGLE * self.triangles + _VOXELIZING * crossed
         if getattr(settings, "output", "mesh") == "volume":
             return seconds + _WRITING * float(grid.cells) ** 3
         per_cell = _QUADS
@@ -131,36 +137,38 @@ class Load:
         return seconds + per_cell * crossed
 
 
-def wanted(settings: VoxelSettings) -> Wanted:
-    """Returns the layers to read."""
+def layers_to_read(settings: VoxelSettings) -> LayerSelection:
+    """Chooses the layers that the settings transfer."""
     if getattr(settings, "output", "mesh") == "volume":
-        return Wanted(colors=False, uv_maps=False, attributes=False)
-    return Wanted(
+        return LayerSelection(colors=False, uv_maps=False, attributes=False)
+    return LayerSelection(
         colors=settings.use_colors,
         uv_maps=settings.use_uv_maps,
         attributes=settings.use_attributes,
     )
 
 
-def voxelized(
+def voxelize(
     operand: Operand,
     grid: Grid,
     settings: VoxelSettings,
-    told: "Told",
+    messages: "Messages",
     progress: Progress,
 ) -> tuple["prefilter.Octree", Source]:
-    """Returns the occupancy of a mesh made a solid, and what it was made of."""
+    """Makes a mesh a solid; returns its occupancy, and the source of the contour."""
     mesh = operand.mesh
-    made = surfaces.occupancy(mesh.positions, mesh.triangles, grid, settings, progress)
-    positions, triangles, origins = made.positions, made.triangles, made.origins
-    told.tell(operand.name, made)
+    occupancy = surfaces.occupancy(mesh.positions, mesh.triangles, grid, settings, progress)
+    positions, triangles, origins = occupancy.positions, occupancy.triangles, occupancy.origins
+    messages.add_occupancy(operand.name, occupancy)
     if operand.left_out:
-        told.warnings.append(Sentence(_LEFT_OUT, operand.name, listed(sorted(operand.left_out))))
+        messages.warnings.append(
+            Sentence(_LEFT_OUT, operand.name, listed(sorted(operand.left_out)))
+        )
     if _adaptivity(settings) and _has_painted_colors(mesh):
-        told.notes.append(Sentence(_SMALL, operand.name))
-    tree = made.tree
-    told.findings.append(
-        find(operand.name, mesh, made.solid, origins, tree, made.holes, settings.threads)
+        messages.notes.append(Sentence(_SMALL, operand.name))
+    tree, solid = occupancy.tree, occupancy.solid
+    messages.findings.append(
+        find(operand.name, mesh, solid, origins, tree, occupancy.holes, settings.threads)
     )
     if getattr(settings, "output", "mesh") == "volume":
         return tree, Source(mesh, positions, triangles, origins)
@@ -169,32 +177,32 @@ def voxelized(
     return tree, Source(mesh, positions, triangles, origins, labels, groups)
 
 
-def contoured(
+def contour_tree(
     tree: "prefilter.Octree",
     grid: Grid,
     sources: list[Source],
     solid: solids.Solid,
-    place: Place,
+    frame: TargetFrame,
     settings: VoxelSettings,
     progress: Progress,
 ) -> Result:
-    """Returns the surface of a tree, with what it gets from its sources.
+    """Extracts the surface of a tree, and transfers the sources' materials and layers to it.
 
     Raises:
         ValueError: There is no surface.
     """
-    middle = (_CONTOURED - VOXELIZED) / (1.0 - VOXELIZED)
-    positions, faces, origins = _surface(tree, sources, settings, share(progress, 0.0, middle))
+    split = (_CONTOURED - VOXELIZED) / (1.0 - VOXELIZED)
+    positions, faces, origins = _surface(tree, sources, settings, share(progress, 0.0, split))
     if len(faces) == 0:
         raise NothingLeftError(NO_FILLED_CELL)
     transfer = Transfer(sources, positions, faces, origins, grid.spacing, settings.threads)
-    face_materials, layers = transfer.run(place, share(progress, middle, 1.0))
+    face_materials, layers = transfer.run(frame, share(progress, split, 1.0))
     go_on(progress, 1.0)
-    local, turned = place.localize(positions, faces)
-    edges = face_edges(local, turned, settings.threads)
+    local, local_faces = frame.localize(positions, faces)
+    edges = face_edges(local, local_faces, settings.threads)
     contour = Contour(
         local,
-        turned,
+        local_faces,
         solid.materials if settings.use_materials else (),
         face_materials if settings.use_materials else None,
         layers,
@@ -202,7 +210,7 @@ def contoured(
         solid.rendered,
         sharp_angle(settings.smooth_angle) if settings.use_smooth_shading else None,
         edges,
-        _shading(local, turned, edges, layers, settings),
+        _shading_normals(local, local_faces, edges, layers, settings),
         carried_marks(solid.marks, positions, edges, grid.spacing, settings.threads),
         solid.locked_groups,
         solid.kept_modifiers,
@@ -210,20 +218,20 @@ def contoured(
     triangles = halves(faces)
     topology = prefilter.mesh_topology(positions, triangles, weld=False, threads=settings.threads)
     return Result(
-        place,
+        frame,
         grid,
         prefilter.measure_mesh(positions, triangles, threads=settings.threads).volume,
         len(faces),
         contour,
         topology=topology,
-        walls=_apart(tree, topology.solids, sources, settings),
+        walls=_broken_walls(tree, topology.solids, sources, settings),
     )
 
 
-def _apart(
+def _broken_walls(
     tree: "prefilter.Octree", parts: int, sources: list[Source], settings: VoxelSettings
 ) -> tuple[Walls | None, ...]:
-    """Returns the walls of sources that fell apart as nothing was to thicken them."""
+    """Thin walls of each source, if the result has more parts and no thickness was set."""
     if settings.thickness or parts == 1:
         return ()
     meshes = [(source.positions, source.triangles) for source in sources]
@@ -236,7 +244,7 @@ def _apart(
 def _surface(
     tree: "prefilter.Octree", sources: list[Source], settings: VoxelSettings, progress: Progress
 ) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int64] | None]:
-    """Returns a surface, and the sources' triangles that its faces come from, where it is known."""
+    """Extracts a surface; returns the sources' triangle of each face, too, where it is known."""
     is_painted = any(_has_painted_colors(source.mesh) for source in sources)
     return surfaces.surface(
         tree,
@@ -252,19 +260,19 @@ def _adaptivity(settings: VoxelSettings) -> float:
 
 
 def _has_painted_colors(mesh: SolidMesh) -> bool:
-    """Returns whether colors differ between vertices, of which large triangles keep too few."""
+    """Whether colors vary over the mesh; large triangles would lose too many of them."""
     colors = [layer.values for layer in mesh.layers if layer.kind == COLOR and len(layer.values)]
     return any(bool((values != values[0]).any()) for values in colors)
 
 
-def _shading(
+def _shading_normals(
     positions: NDArray[np.float32],
     triangles: NDArray[np.int32],
     edges: "prefilter.MeshEdges",
     layers: Sequence[NewLayer],
     settings: VoxelSettings,
 ) -> NDArray[np.float32] | None:
-    """Returns the normals that large triangles need, where the sources have none of their own."""
+    """Normals for shading large triangles, unless the sources have custom normals."""
     is_closed = 2 * len(edges.vertices) == edges.corners.size and (edges.corners >= 0).all()
     has_normals = any(layer.kind == NORMALS for layer in layers)
     if not (_adaptivity(settings) and settings.use_smooth_shading and is_closed) or has_normals:
@@ -276,48 +284,48 @@ _LEFT_OUT = marked("object '{}': attributes of types that cannot be kept: {}")
 _SMALL = marked("object '{}' has painted colors, for which triangles stay small")
 
 
-class Told:
-    """What is odd about meshes, and what was done about it, in words."""
+class Messages:
+    """Warnings, notes and findings about meshes."""
 
     def __init__(self) -> None:
-        """Starts with nothing."""
+        """Starts empty."""
         self.warnings: list[str] = []
         self.notes: list[str] = []
         self.findings: list[Findings] = []
 
-    def sum_up(
+    def add_summary(
         self, result: Result, findings: Sequence[Findings], settings: VoxelSettings
     ) -> Report:
-        """Adds a line of what became of meshes: a warning if parts are lost."""
-        walls = [*(one.walls for one in findings), *result.walls]
+        """Adds a summary of the findings on an object's sources: a warning if parts are lost."""
+        walls = [*(each.walls for each in findings), *result.walls]
         by_depth = settings.resolution == "depth"
-        found = Report(findings, advice_on(walls, result.grid, length, by_depth=by_depth))
-        summed = line(result.place.name, found, result.topology)
-        (self.warnings if any(one.lost for one in findings) else self.notes).append(summed)
-        return found
+        report = Report(findings, advice_on(walls, result.grid, length, by_depth=by_depth))
+        summary = line(result.frame.name, report, result.topology)
+        (self.warnings if any(each.lost for each in findings) else self.notes).append(summary)
+        return report
 
-    def add(self, other: "Told") -> None:
-        """Adds what was told elsewhere."""
+    def extend(self, other: "Messages") -> None:
+        """Adds other messages."""
         self.warnings += other.warnings
         self.notes += other.notes
         self.findings += other.findings
 
-    def tell(self, name: str, made: surfaces.Occupancy) -> None:
-        """Adds what was found in the mesh of an object."""
-        warnings, notes = surfaces.repair_lines(name, made)
+    def add_occupancy(self, name: str, occupancy: surfaces.Occupancy) -> None:
+        """Adds warnings and notes on the mesh of an object."""
+        warnings, notes = surfaces.repair_lines(name, occupancy)
         self.warnings += warnings
         self.notes += notes
 
 
 def faces_of(settings: VoxelSettings, count: int) -> Sentence:
-    """Returns how many faces there are, in words."""
+    """Number of faces, as text."""
     return amount(count, "quad") if settings.faces == "quads" else amount(count, "triangle")
 
 
-def told(result: Result, settings: VoxelSettings) -> str:
-    """Returns numbers about a result, in words."""
+def summarize(result: Result, settings: VoxelSettings) -> str:
+    """Numbers about a result, as text."""
     size = length(result.grid.spacing)
-    cells = Sentence("'{}' in {}³ cells of {}", result.place.name, result.grid.cells, size)
+    cells = Sentence("'{}' in {}³ cells of {}", result.frame.name, result.grid.cells, size)
     if result.contour is None:
         return Sentence("{}: volume {}", cells, volume(result.volume))
     faces = faces_of(settings, result.faces)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a surface gets from the meshes that it was made of: materials, and values of their layers.
+"""Transfer of materials and layers to a surface from the meshes that it was made of.
 
-Each face of the surface comes from a triangle of a mesh. Values at its corners are those of the
-nearest points of triangles with the same label, so that none gets values of two objects, materials
-or charts of a UV map.
+Each face of the surface originates from a source triangle. Its corners get the values of the
+nearest points on triangles with the same label, so that no face gets values of two objects,
+materials or UV charts.
 """
 
 from dataclasses import dataclass, replace
@@ -15,15 +15,15 @@ import prefilter
 from numpy.typing import NDArray
 
 from ..bridge.layers import COLOR, NORMALS, UV_MAP, VERTEX_GROUP, Layer, NewLayer
-from ..bridge.place import Place
 from ..bridge.solids import Positions
+from ..bridge.target_frame import TargetFrame
 from ..core.jobs import Progress, share
 from .quads import corners_of, each_half, halves
 from .small_sets import NumberedFaces, with_small_sets
 from .solid_meshes import SolidMesh, join
 
-_LEAST_CHART = 4.0
-"""Area in faces of a cell below which the border of a chart of UVs is no edge of the surface."""
+_MIN_CHART_CELL_FACES = 4.0
+"""Area of a UV chart, in faces of a cell, below which its border is no edge of the surface."""
 _ROWS = 1 << 18
 
 Labels = NDArray[np.int32]
@@ -34,14 +34,15 @@ class Source:
     """A mesh as it was read, and as it was voxelized.
 
     Attributes:
-        mesh: As read.
+        mesh: The mesh as read.
         positions: (n, 3) as voxelized.
         triangles: (m, 3) as voxelized.
-        origins: For each of these the triangle of the mesh that it came from, or -1; None where
-            they are the mesh's own.
-        labels: Of the mesh's triangles: those with one number may share values at a vertex. None
-            where all do.
-        groups: Likewise of the triangles as voxelized: between two the surface has an edge.
+        origins: Triangle of `mesh` that each voxelized triangle came from, or -1; None if the
+            triangles are the same.
+        labels: Label of each triangle of `mesh`; triangles with the same label may share values at
+            a vertex. None if all have the same.
+        groups: Group of each voxelized triangle; the surface has edges between groups. None if all
+            have the same.
     """
 
     mesh: SolidMesh
@@ -53,13 +54,13 @@ class Source:
 
     @property
     def for_contour(self) -> tuple[Any, ...]:
-        """The arrays as `Octree.contour` takes them."""
+        """Arrays for `Octree.contour`."""
         arrays = (self.positions, self.triangles)
         return arrays if self.groups is None else (*arrays, self.groups)
 
 
 def find_labels(mesh: SolidMesh, threads: int) -> Labels | None:
-    """Returns a number for each triangle, by its material and its chart; None where all are one."""
+    """Labels triangles by material and UV chart; None if all have the same label."""
     charts = (
         prefilter.uv_charts(mesh.positions, mesh.triangles, mesh.uvs, threads=threads)
         if (mesh.uvs)
@@ -74,9 +75,9 @@ def find_labels(mesh: SolidMesh, threads: int) -> Labels | None:
 
 
 def find_groups(mesh: SolidMesh, labels: Labels | None, cell: float) -> Labels | None:
-    """Returns the labels without those of charts so small that no edge can follow their borders.
+    """Derives groups from labels: charts too small for edges along their borders are merged.
 
-    Their triangles have one group for each material.
+    All triangles of such charts form one group per material.
     """
     if labels is None or not mesh.uvs:
         return labels
@@ -86,7 +87,7 @@ def find_groups(mesh: SolidMesh, labels: Labels | None, cell: float) -> Labels |
         a, b, c = np.moveaxis(mesh.positions[mesh.triangles[rows]].astype(np.float64), 1, 0)
         sizes = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2.0
         areas += np.bincount(labels[rows], sizes, len(areas))
-    small = (areas < _LEAST_CHART * cell**2)[labels]
+    small = (areas < _MIN_CHART_CELL_FACES * cell**2)[labels]
     if not small.any():
         return labels
     materials = mesh.materials if mesh.has_several_materials else np.zeros(1, np.int32)
@@ -94,7 +95,7 @@ def find_groups(mesh: SolidMesh, labels: Labels | None, cell: float) -> Labels |
 
 
 def groups_of(groups: Labels | None, origins: NDArray[np.int64] | None) -> Labels | None:
-    """Returns the groups of triangles that came from others; those that did not have their own."""
+    """Groups of voxelized triangles by their origins; triangles without origin get their own."""
     if groups is None or origins is None:
         return groups
     own = int(groups.max()) + 1
@@ -102,7 +103,7 @@ def groups_of(groups: Labels | None, origins: NDArray[np.int64] | None) -> Label
 
 
 class Transfer:
-    """The meshes that a surface was made of, and the surface."""
+    """Transfers materials and layers from sources to a surface."""
 
     def __init__(
         self,
@@ -113,9 +114,10 @@ class Transfer:
         cell: float,
         threads: int,
     ) -> None:
-        """Keeps the surface, of triangles or of quads.
+        """Keeps the sources and the surface, of triangles or quads.
 
-        `origins` are of all sources' triangles, or None where not known; `cell` is the side of one.
+        `origins` index the triangles of all sources together, None if not known; `cell` is the side
+        of a cell.
         """
         self._mesh = join([source.mesh for source in sources])
         self._sources = sources
@@ -126,11 +128,11 @@ class Transfer:
         self._threads = threads
 
     def run(
-        self, place: Place, progress: Progress
+        self, frame: TargetFrame, progress: Progress
     ) -> tuple[NDArray[np.int32] | None, list[NewLayer]]:
-        """Returns the materials of faces, or None where there is one, and all layers.
+        """Returns the materials of faces, None if all have the first, and the new layers.
 
-        Layers are those of the surface in the object's own space.
+        Layers are in the object's own space.
         """
         mesh = self._mesh
         if not mesh.has_several_materials and not mesh.layers:
@@ -140,14 +142,14 @@ class Transfer:
         materials = mesh.material_of(origins) if mesh.has_several_materials else None
         if not mesh.layers:
             return materials, []
-        found = self._points(self._positions, self._faces, origins, share(progress, 0.5, 0.9))
+        points = self._points(self._positions, self._faces, origins, share(progress, 0.5, 0.9))
         if any(layer.domain == "FACE" for layer in mesh.layers):
-            # An origin is of the same label, and need not be near.
-            middles = self._positions[self._faces].mean(axis=1)
-            each = np.repeat(np.arange(len(middles), dtype=np.int32)[:, None], 3, axis=1)
-            near = self._points(middles, each, origins, share(progress, 0.9, 1.0))
-            origins = near.triangles.astype(np.int32)
-        return materials, [self._carried(layer, found, origins, place) for layer in mesh.layers]
+            # Origins have the right label, but need not be near. Find the nearest triangles.
+            centers = self._positions[self._faces].mean(axis=1)
+            degenerate = np.repeat(np.arange(len(centers), dtype=np.int32)[:, None], 3, axis=1)
+            nearest = self._points(centers, degenerate, origins, share(progress, 0.9, 1.0))
+            origins = nearest.triangles.astype(np.int32)
+        return materials, [self._carried(layer, points, origins, frame) for layer in mesh.layers]
 
     def _points(
         self,
@@ -156,7 +158,7 @@ class Transfer:
         origins: NDArray[np.int32],
         progress: Progress,
     ) -> "prefilter.CornerPoints":
-        found = prefilter.corner_points(
+        points = prefilter.corner_points(
             positions,
             halves(faces),
             each_half(origins, faces),
@@ -166,27 +168,27 @@ class Transfer:
             progress=progress,
             threads=self._threads,
         )
-        return replace(found, corners=corners_of(found.corners, faces))
+        return replace(points, corners=corners_of(points.corners, faces))
 
     def _traced(self, progress: Progress) -> NDArray[np.int32]:
-        """Returns the triangle of the joined mesh that each face came from."""
+        """Triangle of the joined mesh that each face came from, or else the nearest one."""
         count = len(self._faces)
         origins = np.full(count, -1, np.int64)
         if self._origins is not None:
-            of_all, start = [], 0
+            numbered, start = [], 0
             for source in self._sources:
                 own = source.origins
                 if own is None:
                     own = np.arange(len(source.mesh.triangles))
-                of_all.append(np.where(own < 0, -1, own + start))
+                numbered.append(np.where(own < 0, -1, own + start))
                 start += len(source.mesh.triangles)
-            joined = np.concatenate(of_all)
+            joined = np.concatenate(numbered)
             origins = np.where(self._origins < 0, -1, joined[np.maximum(self._origins, 0)])
         lost = np.flatnonzero(origins < 0)
         if len(lost):
-            middles = self._positions[self._faces[lost]].mean(axis=1)
+            centers = self._positions[self._faces[lost]].mean(axis=1)
             origins[lost] = prefilter.nearest_points(
-                middles,
+                centers,
                 self._mesh.positions,
                 self._mesh.triangles,
                 progress=progress,
@@ -207,41 +209,41 @@ class Transfer:
     def _carried(
         self,
         layer: Layer,
-        found: "prefilter.CornerPoints",
+        points: "prefilter.CornerPoints",
         origins: NDArray[np.int32],
-        place: Place,
+        frame: TargetFrame,
     ) -> NewLayer:
         if layer.domain == "FACE":
-            return _new_layer(layer, "FACE", self._of_faces(layer, origins))
-        values = _blended(layer, found)
+            return _new_layer(layer, "FACE", self._face_values(layer, origins))
+        values = _blended(layer, points)
         has_rims = len(values) > len(self._positions)
-        if _is_of_vertices(layer, has_rims=has_rims):
+        if _goes_to_vertices(layer, has_rims=has_rims):
             return _new_layer(layer, "POINT", values[: len(self._positions)])
-        corners = place.localize_corners(found.corners)
+        corners = frame.localize_corners(points.corners)
         values = values[corners.ravel()]
         if layer.kind == NORMALS:
-            values = place.localize_normals(self._facing(values))
+            values = frame.localize_normals(self._outward(values))
         return _new_layer(layer, "CORNER", values)
 
-    def _of_faces(self, layer: Layer, origins: NDArray[np.int32]) -> NDArray[Any]:
-        of_source = layer.values[layer.corners[:, 0]]
-        values = of_source[origins]
+    def _face_values(self, layer: Layer, origins: NDArray[np.int32]) -> NDArray[Any]:
+        source_values = layer.values[layer.corners[:, 0]]
+        values = source_values[origins]
         if layer.values.dtype.kind == "f" or layer.values.shape[1] > 1:
             return values
-        source = NumberedFaces(self._mesh.positions, self._mesh.triangles, of_source[:, 0])
+        source = NumberedFaces(self._mesh.positions, self._mesh.triangles, source_values[:, 0])
         surface = NumberedFaces(self._positions, self._faces, values[:, 0])
         return with_small_sets(source, surface, self._cell, self._threads)[:, None]
 
-    def _facing(self, normals: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Returns normals of corners toward the outside: subtracted objects are inside out."""
+    def _outward(self, normals: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Flips corner normals that point inward, as on subtracted objects."""
         a, b, c = np.moveaxis(self._positions[self._faces[:, :3]], 1, 0)
         outside = np.repeat(np.cross(b - a, c - a), self._faces.shape[1], axis=0)
-        is_turned = np.einsum("ij,ij->i", outside, normals) < 0.0
-        return np.where(is_turned[:, None], -normals, normals)
+        is_inward = np.einsum("ij,ij->i", outside, normals) < 0.0
+        return np.where(is_inward[:, None], -normals, normals)
 
 
-def _is_of_vertices(layer: Layer, *, has_rims: bool) -> bool:
-    """Returns whether a layer's values go to vertices, and not to the corners of triangles."""
+def _goes_to_vertices(layer: Layer, *, has_rims: bool) -> bool:
+    """Whether a layer's values go to vertices, and not to corners."""
     if layer.kind in {UV_MAP, NORMALS}:
         return False
     if layer.kind == VERTEX_GROUP:
@@ -251,14 +253,14 @@ def _is_of_vertices(layer: Layer, *, has_rims: bool) -> bool:
     return layer.domain == "POINT"
 
 
-def _blended(layer: Layer, found: "prefilter.CornerPoints") -> NDArray[Any]:
-    """Returns a layer's values at points: numbers are interpolated, others the nearest corner's."""
-    count = len(found.triangles)
+def _blended(layer: Layer, points: "prefilter.CornerPoints") -> NDArray[Any]:
+    """Interpolates a layer at points; values that cannot be blended are the nearest corner's."""
+    count = len(points.triangles)
     values = np.empty((count, layer.values.shape[1]), layer.values.dtype)
     for start in range(0, count, _ROWS):
         rows = slice(start, start + _ROWS)
-        corners = layer.corners[found.triangles[rows]]
-        weights = found.weights[rows]
+        corners = layer.corners[points.triangles[rows]]
+        weights = points.weights[rows]
         if layer.is_blended:
             values[rows] = np.einsum("ij,ijk->ik", weights, layer.values[corners])
         elif layer.data_type == "QUATERNION":
@@ -272,7 +274,7 @@ def _blended(layer: Layer, found: "prefilter.CornerPoints") -> NDArray[Any]:
 def _blended_rotations(
     rotations: NDArray[np.float32], weights: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Returns unit quaternions between three each; two of opposite sign are one rotation."""
+    """Weighted means of three unit quaternions each; opposite signs are the same rotation."""
     cosines = np.einsum("ijk,ik->ij", rotations, rotations[:, 0])
     sums = np.einsum("ij,ijk->ik", np.where(cosines < 0.0, -weights, weights), rotations)
     lengths = np.linalg.norm(sums, axis=1, keepdims=True)
@@ -283,8 +285,8 @@ def _new_layer(layer: Layer, domain: str, values: NDArray[Any]) -> NewLayer:
     return NewLayer(layer.kind, layer.name, layer.data_type, domain, values)
 
 
-def renumbered(meshes: list[SolidMesh], numbers: list[Labels]) -> list[SolidMesh]:
-    """Returns meshes with other numbers for their materials: what each was is the index."""
+def renumber_materials(meshes: list[SolidMesh], numbers: list[Labels]) -> list[SolidMesh]:
+    """Replaces each material index `i` of a mesh by `numbers[mesh][i]`."""
     return [
         replace(mesh, materials=new[mesh.materials])
         for mesh, new in zip(meshes, numbers, strict=True)

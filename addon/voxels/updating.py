@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Results made again: one after another, where one was made of another."""
+"""Updates of results from their sources, including the results that they were made of."""
 
 from typing import TYPE_CHECKING
 
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
 
 
 class Update:
-    """A result, and before it those that it was made of.
+    """Update of a result, after the results that it was made of.
 
-    Nothing that is there changes before the last is computed: until then the surfaces of those
-    before are shown by objects that stand in for them.
+    No object changes before the last result is computed: until then temporary stand-in objects
+    show the surfaces of the earlier ones.
     """
 
     def __init__(self, result: bpy.types.Object) -> None:
-        """Takes the object that is made again."""
+        """Collects the results to update, up to the given one."""
         chain = memory.chain(result)
         kept_sources.put_in_place(chain)
         self._names = [obj.name for obj in reversed(chain)]
@@ -33,56 +33,56 @@ class Update:
 
     @property
     def is_last(self) -> bool:
-        """Whether what was read last is the result itself."""
+        """Whether the object read last is the result itself."""
         return len(self._stand_ins) == len(self._names) - 1
 
     def read(self, context: bpy.types.Context) -> tuple[Voxelization | Boolean, list[str]]:
-        """Copies what the next object was made of; returns what is to do, and warnings.
+        """Copies the sources of the next object; returns the work on them, and warnings.
 
         Raises:
-            ValueError: Something is gone.
+            ValueError: An object is gone.
         """
         name = self._names[len(self._stand_ins)]
-        result = _found(name)
-        request = memory.recall(result)
-        source, operands, settings = request.source, request.operands, request.settings
+        result = _find(name)
+        recipe = memory.recall(result)
+        source, operands, settings = recipe.source, recipe.operands, recipe.settings
         if source.name in self._stand_ins:
-            source = _found(self._stand_ins[source.name])
+            source = _find(self._stand_ins[source.name])
         with kept_sources.evaluated([source, *operands], context) as depsgraph:
             if isinstance(settings, BooleanSettings):
                 work = Boolean.read(source, operands, settings, depsgraph, name)
-                return work, request.warnings
-            return Voxelization.read([source], settings, depsgraph, name), request.warnings
+                return work, recipe.warnings
+            return Voxelization.read([source], settings, depsgraph, name), recipe.warnings
 
     def put_aside(self, result: "Result") -> None:
-        """Has an object show what was computed that stands in for the one it was made for."""
+        """Shows a computed result by a stand-in for its object."""
         assert result.contour is not None
-        obj = _found(self._names[len(self._stand_ins)])
-        made = obj.copy()
-        new_meshes.show_again(made, result.contour)
-        self._stand_ins[obj.name] = made.name
+        obj = _find(self._names[len(self._stand_ins)])
+        stand_in = obj.copy()
+        new_meshes.show_again(stand_in, result.contour)
+        self._stand_ins[obj.name] = stand_in.name
 
     def commit(self) -> None:
-        """Gives what stands in to those before the result, once that is written."""
-        for name, stand_in in self._stand_ins.items():
-            obj, made = _found(name), _found(stand_in)
-            new_meshes.replace_data(obj, made.data)
-            bpy.data.objects.remove(made)
+        """Moves the meshes of stand-ins to their objects, once the last result is written."""
+        for name, stand_in_name in self._stand_ins.items():
+            obj, stand_in = _find(name), _find(stand_in_name)
+            new_meshes.replace_data(obj, stand_in.data)
+            bpy.data.objects.remove(stand_in)
             memory.remember_mesh(obj)
         self._stand_ins.clear()
 
     def discard(self) -> None:
-        """Removes what stands in."""
-        for stand_in in self._stand_ins.values():
-            made = bpy.data.objects.get(stand_in)
-            if made is not None:
-                mesh = made.data
-                bpy.data.objects.remove(made)
+        """Removes the stand-ins."""
+        for name in self._stand_ins.values():
+            stand_in = bpy.data.objects.get(name)
+            if stand_in is not None:
+                mesh = stand_in.data
+                bpy.data.objects.remove(stand_in)
                 bpy.data.meshes.remove(mesh)
         self._stand_ins.clear()
 
 
-def _found(name: str) -> bpy.types.Object:
+def _find(name: str) -> bpy.types.Object:
     obj = bpy.data.objects.get(name)
     if obj is None:
         raise ValueError(Sentence("object '{}' is gone", name))

@@ -17,7 +17,7 @@ from prefilter.workflows.voxels.empty_results import EmptyResults, NothingLeftEr
 from ..bridge import new_meshes, solids
 from ..bridge.armatures import at_rest
 from ..bridge.files import staging, volumes
-from ..bridge.place import Place, naming, still_there
+from ..bridge.target_frame import TargetFrame, find_object, prefix_errors
 from ..core.file_names import clean_names
 from ..core.jobs import Progress, go_on, parts, share
 from ..core.options import check
@@ -26,38 +26,38 @@ from ..core.wording import Sentence, counted, listed
 from .choices import VoxelizeSettings
 from .findings import Report
 from .grid import check_dense_memory, check_memory, choose_grid
-from .showing import Way, show
+from .placement import Placement, show
 from .steps import (
     VOXELIZED,
     Load,
+    Messages,
     Operand,
     Result,
-    Told,
-    contoured,
+    contour_tree,
     faces_of,
-    told,
-    voxelized,
-    wanted,
+    layers_to_read,
+    summarize,
+    voxelize,
 )
 
 
 class Voxelization:
-    """Objects voxelized one by one.
+    """Voxelizes objects one by one.
 
-    `read` and `write` belong on the main thread; `compute` touches no Blender data and runs on any
+    `read` and `write` run on the main thread; `compute` uses no Blender data and runs on any
     thread. Nothing is written before everything is computed.
     """
 
     def __init__(
         self,
-        read: list[tuple[Place, solids.Solid]],
+        read: list[tuple[TargetFrame, solids.Solid]],
         settings: VoxelizeSettings,
         targets: list[Path],
     ) -> None:
-        """Keeps copies of what was read; use `Voxelization.read`."""
-        self._told = Told()
+        """Keeps copied solids; use `Voxelization.read`."""
+        self._messages = Messages()
         self.loads: list[Load] = []
-        self.way = Way.ALONE
+        self.placement = Placement.ALONE
         self._read = read
         self._settings = settings
         self._targets = targets
@@ -71,16 +71,16 @@ class Voxelization:
         depsgraph: bpy.types.Depsgraph,
         into: str = "",
     ) -> "Voxelization":
-        """Copies everything that the work needs out of Blender.
+        """Copies the objects' solids out of Blender.
 
         Args:
-            objects: What to voxelize, each by itself.
-            settings: How.
+            objects: Objects to voxelize, each by itself.
+            settings: The settings.
             depsgraph: The evaluated dependency graph.
-            into: The name of the object that gets the result of one; each gets its own if empty.
+            into: Name of the object that gets the result; empty: each object gets its own.
 
         Raises:
-            ValueError: There is no object, or one is unfit.
+            ValueError: There is no object, or one cannot be voxelized.
             OSError: The file of a volume cannot be written.
         """
         check(settings)
@@ -92,29 +92,29 @@ class Voxelization:
         if not is_volume:
             for obj in objects:
                 new_meshes.check_editable(obj)
-        # They deform the result as long as that has weights.
+        # Armatures keep deforming the result, if it has weights.
         rigged = objects if settings.use_attributes and not is_volume else []
         with at_rest(rigged, depsgraph):
-            places = [Place.of(obj, depsgraph, into) for obj in objects]
-            found = solids.read_solids(
-                objects, depsgraph, [place.origin for place in places], wanted(settings)
+            frames = [TargetFrame.of(obj, depsgraph, into) for obj in objects]
+            read = solids.read_solids(
+                objects, depsgraph, [frame.origin for frame in frames], layers_to_read(settings)
             )
-        read = cls(list(zip(places, found, strict=True)), settings, [])
-        read._leave_out_empty()
+        work = cls(list(zip(frames, read, strict=True)), settings, [])
+        work._leave_out_empty()
         if is_volume:
-            read._targets = _volume_files([place.name for place, _ in read._read], settings)
-        return read
+            work._targets = _volume_files([frame.name for frame, _ in work._read], settings)
+        return work
 
     @property
     def result(self) -> Result:
-        """What was computed of the only object."""
+        """The result of the only object."""
         return self._results[0]
 
     def inputs(self, files: Sequence[str]) -> str:
-        """Returns a number of what was read, of how it is used, and of some files.
+        """Fingerprint of the copied solids, the settings and some files.
 
         Args:
-            files: What is not read here, but decides what is written, such as materials.
+            files: Files that are not read here but affect the output, such as materials.
 
         Raises:
             OSError: A file cannot be read.
@@ -126,30 +126,30 @@ class Voxelization:
         return fingerprint(files, {"read": read, "blender": bpy.app.version_string})
 
     def compute(self, progress: Progress) -> None:
-        """Voxelizes and contours.
+        """Computes the results.
 
         Raises:
             ValueError: The cells of an object are too small, or nothing is left of any.
             MemoryError: A result does not fit into memory.
-            prefilter.Cancelled: `progress` has said so.
+            prefilter.Cancelled: `progress` returned False.
         """
         steps, left_out = parts(progress, len(self._read)), EmptyResults()
-        for i, ((place, solid), part) in enumerate(zip(self._read, steps, strict=True)):
-            found = Told()
-            with naming(place.name):
+        for i, ((frame, solid), part) in enumerate(zip(self._read, steps, strict=True)):
+            messages = Messages()
+            with prefix_errors(frame.name):
                 try:
-                    result = self._compute_one(i, place, solid, found, part)
+                    result = self._compute_one(i, frame, solid, messages, part)
                 except NothingLeftError as error:
-                    left_out.add(place.name, error)
+                    left_out.add(frame.name, error)
                     continue
             self._results.append(result)
-            self._told.add(found)
-        self._told.warnings += left_out.warnings_for(self._results)
+            self._messages.extend(messages)
+        self._messages.warnings += left_out.warnings_for(self._results)
         go_on(progress, 1.0)
         self._read.clear()
 
-    def build_steps(self) -> Generator[None, None, None]:
-        """Makes the meshes that `write` shows, in steps."""
+    def making(self) -> Generator[None, None, None]:
+        """Makes the results' meshes in steps, before `write` shows them."""
         for result in self._results:
             if result.contour is not None:
                 yield from new_meshes.making_mesh(result.contour)
@@ -159,26 +159,27 @@ class Voxelization:
 
         Raises:
             ValueError: An object is gone.
-            OSError: A file cannot be put into place; then none is.
+            OSError: A file cannot be written; then no file is.
         """
-        targets = [still_there(result.place.name) for result in self._results]
+        targets = [find_object(result.frame.name) for result in self._results]
         staging.commit_all([result.staged for result in self._results if result.staged is not None])
         made = []
-        for obj, result, found in zip(targets, self._results, self._told.findings, strict=True):
-            report = self._told.sum_up(result, [found], self._settings)
+        findings = self._messages.findings
+        for obj, result, each in zip(targets, self._results, findings, strict=True):
+            report = self._messages.add_summary(result, [each], self._settings)
             made.append(self._show(obj, result, report).name)
-        lines = [told(result, self._settings) for result in self._results]
-        notes = self._told.notes
+        lines = [summarize(result, self._settings) for result in self._results]
+        notes = self._messages.notes
         if len(lines) == 1:
             summary = Sentence("Voxelized {}", lines[0])
         else:
             faces = faces_of(self._settings, sum(result.faces for result in self._results))
             summary = Sentence("Voxelized {}: {}", counted(lines, "object"), faces)
             notes = [*lines, *notes]
-        return Outcome(summary, objects=made, warnings=self._told.warnings, notes=notes)
+        return Outcome(summary, objects=made, warnings=self._messages.warnings, notes=notes)
 
     def discard(self) -> None:
-        """Removes what was staged."""
+        """Removes staged files and unused meshes."""
         for result in self._results:
             if result.staged is not None:
                 result.staged.discard()
@@ -186,20 +187,25 @@ class Voxelization:
                 new_meshes.forget_mesh(result.contour)
 
     def _leave_out_empty(self) -> None:
-        empty = [place.name for place, solid in self._read if not solid.parts]
-        self._read = [(place, solid) for place, solid in self._read if solid.parts]
+        empty = [frame.name for frame, solid in self._read if not solid.parts]
+        self._read = [(frame, solid) for frame, solid in self._read if solid.parts]
         if not self._read:
             raise ValueError(_no_faces(empty))
         if empty:
             text = "left out, as they have no faces: {}"
-            self._told.warnings.append(Sentence(text, listed(empty)))
+            self._messages.warnings.append(Sentence(text, listed(empty)))
 
     def _compute_one(
-        self, index: int, place: Place, solid: solids.Solid, found: Told, progress: Progress
+        self,
+        index: int,
+        frame: TargetFrame,
+        solid: solids.Solid,
+        messages: Messages,
+        progress: Progress,
     ) -> Result:
         operand = Operand.of(solid, self._settings)
         check_area(operand.measures.area)
-        # Memory counts: what was read is the operand's, and goes with it.
+        # Saves memory: only the operand refers to the arrays now.
         solid.parts.clear()
         box, area = operand.measures.box, operand.measures.area
         self.loads.append(Load.of(box, [operand]))
@@ -208,7 +214,7 @@ class Voxelization:
         if self._targets:
             check_dense_memory(grid)
         steps = share(progress, 0.0, VOXELIZED)
-        tree, source = voxelized(operand, grid, self._settings, found, steps)
+        tree, source = voxelize(operand, grid, self._settings, messages, steps)
         del operand
         if self._targets:
             staged = staging.stage_with(
@@ -217,23 +223,23 @@ class Voxelization:
                     path, tree.dense(threads=self._settings.threads), grid.low, grid.spacing
                 ),
             )
-            return Result(place, grid, tree.volume, 0, staged=staged)
-        return contoured(
-            tree, grid, [source], solid, place, self._settings, share(progress, VOXELIZED, 1.0)
+            return Result(frame, grid, tree.volume, 0, staged=staged)
+        return contour_tree(
+            tree, grid, [source], solid, frame, self._settings, share(progress, VOXELIZED, 1.0)
         )
 
     def _show(self, obj: bpy.types.Object, result: Result, report: Report) -> bpy.types.Object:
         if result.contour is not None:
-            return show(obj, result, self._settings, (), report, self.way)
+            return show(obj, result, self._settings, (), report, self.placement)
         assert result.staged is not None
         volume = volumes.new_volume(obj.name, result.staged.target)
         made = new_meshes.new_object_beside(obj, volume, ".volume")
-        made.matrix_world = Matrix.Translation(result.place.origin)
+        made.matrix_world = Matrix.Translation(result.frame.origin)
         return made
 
 
 def _volume_files(names: list[str], settings: VoxelizeSettings) -> list[Path]:
-    """Returns the file of each volume; of several, each is named after its object too."""
+    """Files of the volumes; several are named after their objects, too."""
     if settings.filepath:
         path = Path(bpy.path.abspath(settings.filepath))
         paths = [path]

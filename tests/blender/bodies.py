@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Small solids made in code, and measurements of meshes."""
+"""Small solids made in code, and measures of meshes."""
 
 from collections.abc import Sequence
 

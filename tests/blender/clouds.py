@@ -54,8 +54,8 @@ def scan(
     Args:
         positions: (n, 3).
         normals: (n, 3).
-        name: The name of the object.
-        attributes: Pairs of type and values, by name.
+        name: Name of the object.
+        attributes: Type and values, by name.
         placed: Properties such as `location`.
     """
     mesh = bpy.data.meshes.new(name)

@@ -18,7 +18,7 @@ def las(points, point_format, *, extra=(), padding=0, records=(), mark=0):
         point_format: 0 to 10.
         extra: (name, kind, code of struct, scale, offset) of extra dimensions.
         padding: Bytes behind each point that nothing describes.
-        records: (user, number, contents) before that of the extra dimensions.
+        records: (user, number, contents) before the record of extra dimensions.
         mark: Bits that are added to the format.
     """
     described = b"".join(

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Writers of scan files that share nothing with the library, and what they write."""
+"""Writers of scan files, independent of the library, and the points that they write."""
 
 import struct
 from pathlib import Path

@@ -77,7 +77,7 @@ def test_borders_and_attributes_stay():
         np.testing.assert_array_equal(less[3][name], full[3][name][chosen])
 
 
-def test_what_fills_a_hole_can_be_cut_afterward():
+def test_filled_holes_can_be_cut_afterward():
     full, less, _ = both(wall(), adaptivity=0.1)
     is_far = [mesh[2]["distance"] > 1.5 for mesh in (full, less)]
     assert is_far[0].sum() == is_far[1].sum() > 0
@@ -104,7 +104,7 @@ def test_the_surface_does_not_depend_on_threads_or_memory(tmp_path):
     assert less.triangles == len(expected[1]) < full.triangles
 
 
-def test_nothing_changes_without():
+def test_no_adaptivity_changes_nothing():
     full, same, _ = both(RING.both, adaptivity=0.0)
     np.testing.assert_array_equal(full[0], same[0])
     np.testing.assert_array_equal(full[1], same[1])

@@ -462,6 +462,7 @@ def test_every_function_is_there():
         "PickedTexels",
         "PixelFilter",
         "QuadContour",
+        "Reconstruction",
         "ReconstructionReport",
         "SamplingTable",
         "ScanAlignment",

@@ -162,7 +162,7 @@ def test_walls_of_houses_point_away_from_them():
     found = prefilter.estimate_normals(points, direction="up")
     agree = np.einsum("ij,ij->i", found, normals)
     is_wall = normals[:, 2] == 0
-    # At edges the planes are those of both sides.
+    # At edges the planes are fitted to both sides.
     assert (agree[~is_wall] > 0).all()
     assert (agree[is_wall] > 0).mean() > 0.99
 
@@ -261,7 +261,7 @@ def test_given_normals_are_turned(tmp_path, direction, cloud, viewpoint):
 
 
 def test_a_viewpoint_for_each_point():
-    """Of more points than are read at once."""
+    """More points than are read at once."""
     points, normals = box(count=140_000)
     mixed = signs(len(points)) * normals
     expected = rebuilt(points, normals)

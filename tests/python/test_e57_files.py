@@ -111,7 +111,7 @@ GRID = {
         (GRID, pose_xml((1, 0, 0, 0), (0, 0, 0)), (0, 0, 0)),
     ],
 )
-def test_where_the_scanner_stood(tmp_path, more, text, viewpoint):
+def test_viewpoints(tmp_path, more, text, viewpoint):
     points = read(tmp_path, ({**floating(), **more}, text))
     found = points.viewpoint
     assert found is None if viewpoint is None else tuple(found) == viewpoint
@@ -193,7 +193,7 @@ def test_garbled_files_are_read_or_refused(tmp_path):
         garbled = bytearray(pages)
         for at in random.integers(0, len(pages), 3):
             garbled[at] = random.integers(0, 256)
-        # Checksums that agree, so that what is read goes on.
+        # Correct checksums, so that reading goes on.
         path = write(tmp_path, "scan.e57", paged(bytes(garbled)))
         try:
             points = prefilter.read_points(path)

@@ -30,7 +30,7 @@ def test_the_step_is_that_of_single_precision():
     [
         clouds.sphere(2000).points + AWAY,
         (clouds.sphere(2000).points + AWAY).round(2),
-        # As far as single precision holds these, it has not rounded them.
+        # Numbers that single precision holds exactly do not count as rounded.
         np.random.default_rng(1).integers(0, 1000, (2000, 3)) * 1.0,
         np.random.default_rng(1).integers(0, 1000, (2000, 3)) * 0.25 + [5e5, 5e5, 0],
         np.random.default_rng(1).integers(0, 1000, (2000, 3)) * 0.25
@@ -42,7 +42,7 @@ def test_the_step_is_that_of_single_precision():
         np.full((9, 3), 1e300),
     ],
 )
-def test_coordinates_that_are_as_they_were(points):
+def test_coordinates_without_rounding(points):
     assert prefilter.float_step(points) == 0
 
 
@@ -53,8 +53,8 @@ def test_one_axis_is_enough():
     assert prefilter.float_step(points) == 0.5
 
 
-def test_reconstructions_tell(tmp_path):
-    """As far as the steps are larger than a quarter of a cell."""
+def test_reconstructions_report_the_step(tmp_path):
+    """Steps are reported if they are larger than a quarter of a cell."""
     ball = clouds.sphere(20_000, radius=40.0)
     columns = [(kind, name) for kind in ("float",) for name in (*"xyz", "nx", "ny", "nz")]
     rows = np.hstack([ball.points + AWAY, ball.normals])

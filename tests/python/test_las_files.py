@@ -52,7 +52,7 @@ def test_all_formats_of_points(tmp_path, point_format, padding):
 
 
 def test_extra_dimensions(tmp_path):
-    """Scaled ones, those of several numbers, and bytes without a meaning; a normal of three."""
+    """Scaled dimensions, dimensions of several numbers, undocumented bytes, a normal."""
     count = 10
     more = {
         "height": RANDOM.integers(-1000, 1000, count).tolist(),
@@ -108,7 +108,7 @@ def test_damaged_files(tmp_path, contents, message):
         prefilter.read_points(write(tmp_path, "cloud.las", contents))
 
 
-def test_what_laz_files_need_is_named(tmp_path, monkeypatch):
+def test_the_missing_package_for_laz_files_is_named(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "lazrs", None)
     path = write(tmp_path, "cloud.laz", las(random_points(5), 0, mark=0x80))
     with pytest.raises(

@@ -36,7 +36,7 @@ def degrees(found, wanted):
 
 
 def slow_normals(points, neighbours):
-    """By a search through all and numpy's eigenvectors, of either sign."""
+    """Normals by exhaustive search and numpy's eigenvectors, with arbitrary signs."""
     normals = []
     for point in points:
         squares = np.sum((points - point) ** 2, axis=1)
@@ -166,7 +166,7 @@ def test_points_on_a_line_have_normals_across_it():
     np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1)
 
 
-def test_what_is_not_finite_has_no_normal():
+def test_points_that_are_not_finite_have_no_normal():
     points, normals = sphere(2000).both
     bad = points.copy()
     bad[[3, 50, 700]] = [(np.nan, 0, 0), (0, np.inf, 0), (0, 0, -1e200)]
@@ -193,12 +193,12 @@ def test_too_few_points_have_none(points):
     assert not prefilter.estimate_normals(points).any()
 
 
-def test_three_points_have_that_of_their_plane():
+def test_three_points_have_the_normal_of_their_plane():
     found = prefilter.estimate_normals(np.array([[0.0, 0, 2], [1, 0, 2], [0, 1, 2]]))
     np.testing.assert_allclose(np.abs(found), np.broadcast_to([0, 0, 1.0], (3, 3)), atol=1e-9)
 
 
-def test_floats_do():
+def test_single_precision_input():
     points, normals = sphere(2000).both
     assert degrees(prefilter.estimate_normals(points.astype(np.float32)), normals).max() < 10
 

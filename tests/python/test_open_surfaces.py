@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Scans that are open: what no sample supports is cut, and nothing else."""
+"""Open scans: surface is cut where no sample supports it, and nowhere else."""
 
 import numpy as np
 import prefilter
@@ -147,7 +147,7 @@ def with_patch(count, size):
     return np.concatenate([points, beside]), np.concatenate([normals, up])
 
 
-def test_islands_go_and_are_told():
+def test_islands_are_removed_and_reported():
     positions, _, report = rebuilt(*with_patch(3, 0.004), depth=7)
     assert positions[:, 0].max() < 1.2
     # Points that are so few beside so dense ones bound no surface in the first place.
@@ -189,14 +189,14 @@ def test_threads_and_memory_do_not_count(wavelet, depth):
             np.testing.assert_array_equal(values, other[2][name])
 
 
-def test_what_supports_a_vertex_is_told():
+def test_support_of_vertices():
     positions, _, support, report = rebuilt(
         BALL.points[HALF], BALL.normals[HALF], depth=7, watertight=True, support=True
     )
     spacing = np.maximum(1 / np.sqrt(support["density"]), report.cell)
     tree = pytest.importorskip("scipy.spatial").cKDTree(BALL.points[HALF])
     distance = tree.query(positions)[0]
-    # By the means of samples in cells, or of those that face the same way: farther, if not nearer.
+    # Distances are to means of samples in cells, or of samples with one orientation: a bit farther.
     assert (support["distance"] * spacing > 0.7 * distance - report.cell).all()
     on_ball = positions[:, 2] > 0
     assert np.quantile(support["distance"][on_ball], 0.999) < 1.5
@@ -206,7 +206,7 @@ def test_what_supports_a_vertex_is_told():
     assert np.median(support["density"][above]) == pytest.approx(number, rel=0.1)
 
 
-def test_trimming_a_closed_surface_is_as_making_an_open_one():
+def test_trimming_a_closed_surface_gives_the_open_one():
     points, normals = BALL.points[HALF], BALL.normals[HALF]
     positions, triangles, support, report = rebuilt(points, normals, watertight=True, support=True)
     heights = positions[:, 2:].astype(np.float32)
@@ -259,7 +259,7 @@ def test_trimming_may_leave_nothing():
     assert (len(empty.triangles), empty.cut) == (0, 0)
 
 
-def test_a_file_tells_what_supports_its_vertices(tmp_path):
+def test_support_in_files(tmp_path):
     scan = prefilter.ScanPoints(BALL.points, BALL.normals, None, {})
     prefilter.reconstruct_file(scan, tmp_path / "a.ply", depth=5)
     read = prefilter.read_points(tmp_path / "a.ply")

@@ -20,7 +20,7 @@ def scattered(count, seed=0):
 
 
 def looked_up(image, uvs):
-    """By bilinear lookups, clamped, of numpy alone."""
+    """Clamped bilinear lookups in numpy alone."""
     height, width = image.shape[:2]
     x, y = uvs[:, 0] * width - 0.5, uvs[:, 1] * height - 0.5
     i, j = np.floor(x).astype(int), np.floor(y).astype(int)
@@ -41,7 +41,7 @@ def test_lookups_have_the_colors_of_other_points():
     np.testing.assert_allclose(looked_up(image, others[inside]), expected[inside], atol=5e-3)
 
 
-def test_it_fills_what_has_no_points_and_averages_noise():
+def test_it_fills_gaps_and_averages_noise():
     points, colors = scattered(40_000)
     noisy = colors + 0.2 * np.random.default_rng(2).normal(size=colors.shape)
     kept = np.hypot(points[:, 0] - 0.5, points[:, 1] - 0.5) > 0.2

@@ -114,7 +114,7 @@ def test_points_that_are_not_finite_are_in_no_box(tmp_path):
     )
 
 
-def test_few_are_kept_of_what_is_chosen(tmp_path):
+def test_chosen_points_are_thinned(tmp_path):
     points = scan()
     path = file_of(tmp_path, points)
     every = prefilter.read_points(path, classes=2)
@@ -159,8 +159,8 @@ def test_refusals(tmp_path):
         prefilter.reconstruct(points.positions, box=[(0, 0, 0), (1, 1, 1)])
 
 
-def test_surfaces_of_what_is_chosen(tmp_path):
-    """Of a plane and what stands on it the plane alone is left: no vertex is far from it."""
+def test_surfaces_of_chosen_points(tmp_path):
+    """Chooses a plane without the objects on it: no vertex is far from the plane."""
     random = np.random.default_rng(2)
     points = scan(count=60_000)
     plane = random.random(60_000) < 0.7

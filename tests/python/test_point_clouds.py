@@ -240,7 +240,7 @@ def test_normals_that_are_given_may_point_inward():
         assert farthest(scans, motions, found) < 5e-3
 
 
-def test_what_only_one_scan_has_and_outliers_do_not_move_it():
+def test_outliers_and_unshared_points_do_not_move_a_scan():
     scans, motions = body_scans(2)
     random = np.random.default_rng(9)
     junk = 0.5 * random.normal(size=(400, 3)) + (0, 0, 2)

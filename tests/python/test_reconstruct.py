@@ -86,7 +86,7 @@ def test_order_of_points_changes_rounding_alone() -> None:
     np.testing.assert_allclose(other[0], positions, atol=1e-5)
 
 
-def test_points_that_tell_nothing_are_counted() -> None:
+def test_unusable_points_are_counted() -> None:
     cloud = sphere(20_000)
     points, normals = cloud.points.copy(), cloud.normals.copy()
     points[0], points[1], points[2] = np.nan, np.inf, -np.inf
@@ -139,7 +139,7 @@ def test_strays_are_left_out() -> None:
 
 
 @pytest.mark.parametrize("wavelet", ["haar", "d4"])
-def test_depth_is_the_one_that_points_carry(wavelet: str, tmp_path: Path) -> None:
+def test_automatic_depth(wavelet: str, tmp_path: Path) -> None:
     cloud = CLOUDS["torus"]
     report = prefilter.ReconstructionReport()
     found = prefilter.reconstruct(cloud.points, cloud.normals, wavelet=wavelet, report=report)
@@ -158,7 +158,7 @@ def test_depth_is_the_one_that_points_carry(wavelet: str, tmp_path: Path) -> Non
         assert (streamed.depth, streamed.cell) == (report.depth, report.cell)
 
 
-def test_a_size_of_cells_says_the_depth() -> None:
+def test_depth_from_a_cell_size() -> None:
     cloud = CLOUDS["sphere"]
     report = prefilter.ReconstructionReport()
     prefilter.reconstruct(cloud.points, cloud.normals, cell_size=0.1, report=report)

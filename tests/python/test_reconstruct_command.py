@@ -20,7 +20,7 @@ def scan(tmp_path):
     return path
 
 
-def test_the_file_is_that_of_the_package(scan, tmp_path, capsys):
+def test_command_writes_the_same_file_as_the_package(scan, tmp_path, capsys):
     out, expected = tmp_path / "out.ply", tmp_path / "expected.ply"
     assert (
         run("reconstruct", scan, "-o", out, "--depth", "5", "--no-fit", "--isovalue", "half") == 0
@@ -50,7 +50,7 @@ def test_an_isovalue_of_ones_own(scan, tmp_path):
 
 
 def test_normals_face_a_viewpoint(tmp_path, capsys):
-    """Of each file, and from within: the balls are hollows."""
+    """Each file has its own viewpoint, inside: the balls are hollows."""
     scans = []
     for k, x in enumerate((0.0, 4.0)):
         scans.append(tmp_path / f"{k}.xyz")
@@ -115,7 +115,7 @@ def test_files_that_are_aligned(tmp_path, capsys):
     assert f"aligned the files: typically {after:.4g} apart, before {before:.4g}" in told
 
 
-def test_what_is_refused(scan, tmp_path, capsys):
+def test_refused_arguments(scan, tmp_path, capsys):
     out = tmp_path / "out.ply"
     for words, arguments in {
         "SOURCE: found 'scan.blend'": ("scan.blend", out),

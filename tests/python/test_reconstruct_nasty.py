@@ -20,7 +20,7 @@ def _rebuilt(points, normals=CLOUD.normals, **options):
 
 
 def _assert_same(found, expected):
-    """But for rounding, which may turn the diagonal of a quadrilateral in the D4 basis."""
+    """Compares up to rounding, which may flip the diagonal of a quadrilateral in the D4 basis."""
     assert len(found[0]) == len(expected[0])
     assert len(found[1]) == len(expected[1])
     volumes = [solids.mesh_volume(*mesh[:2]) for mesh in (found, expected)]
@@ -94,7 +94,7 @@ def test_two_scans_that_overlap(wavelet):
 
 @BASES
 @pytest.mark.parametrize("smooth", [True, False])
-def test_normals_that_mean_nothing_give_a_closed_surface(wavelet, smooth):
+def test_random_normals_give_a_closed_surface(wavelet, smooth):
     order = np.random.default_rng(1).permutation(len(CLOUD.points))
     positions, triangles, _ = _rebuilt(
         CLOUD.points, CLOUD.normals[order], wavelet=wavelet, smooth=smooth, watertight=True
@@ -115,7 +115,7 @@ FEW = {
 @BASES
 @pytest.mark.parametrize("name", FEW)
 @pytest.mark.parametrize("options", [{}, {"smooth": False}, {"fit": False}, {"depth": 9}])
-def test_clouds_that_bound_nothing_give_a_closed_surface(wavelet, name, options):
+def test_clouds_without_volume_give_a_closed_surface(wavelet, name, options):
     points = FEW[name]
     normals = np.tile([0.0, 0.0, 1.0], (len(points), 1))
     positions, triangles, _ = _rebuilt(points, normals, wavelet=wavelet, watertight=True, **options)
@@ -148,7 +148,7 @@ def test_only_the_ratios_of_weights_count(scale):
 
 @BASES
 def test_a_weight_of_two_is_a_second_copy(wavelet):
-    """With points as dense everywhere, which the mean weight of a point is for."""
+    """With equally dense points, as all weights are relative to their mean."""
     weights = np.full(len(CLOUD.points), 2.0)
     points = np.concatenate([CLOUD.points, CLOUD.points])
     normals = np.concatenate([CLOUD.normals, CLOUD.normals])
@@ -173,7 +173,7 @@ def test_colors_arrive_where_they_were(wavelet, depth):
     )
     assert found.shape == (len(positions), 3)
     assert found.dtype == np.float32
-    # Of samples up to a cell away; as many samples as cells make these four times as large.
+    # Colors mix over samples up to a cell away; weights may enlarge cells fourfold.
     reach = max(2.0 * report.cell, 0.1)
     for is_side, color in ((positions[:, 0] > reach, red), (positions[:, 0] < -reach, blue)):
         assert is_side.any()
@@ -195,7 +195,7 @@ def test_a_trimmed_surface_ends_where_the_points_do(wavelet, depth, trim):
     positions, triangles, report = _rebuilt(
         points, normals, depth=depth, wavelet=wavelet, trim=trim
     )
-    # Distances from the half sphere: from its border, for what is below.
+    # Distances from the half sphere; points below are nearest to its border.
     radius = np.hypot(positions[:, 0], positions[:, 1])
     distances = np.where(
         positions[:, 2] > 0,

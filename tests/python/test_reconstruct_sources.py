@@ -39,7 +39,7 @@ def _is_torus(positions: np.ndarray, triangles: np.ndarray, cells: float = 0.1) 
     return solids.surface_faults(positions, triangles).none and error < cells * 4 / 2**DEPTH
 
 
-def test_a_file_is_as_its_arrays(tmp_path: Path) -> None:
+def test_a_file_gives_the_same_surface_as_its_arrays(tmp_path: Path) -> None:
     path = _written(tmp_path, "torus.ply", TORUS)
     read = prefilter.read_points(path)
     expected = prefilter.reconstruct(read.positions, read.normals, depth=DEPTH)
@@ -50,7 +50,7 @@ def test_a_file_is_as_its_arrays(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("count", [2, 3])
-def test_parts_are_as_the_whole(tmp_path: Path, count: int) -> None:
+def test_parts_give_the_same_surface_as_the_whole(tmp_path: Path, count: int) -> None:
     """To rounding, wherever they come from."""
     expected = prefilter.reconstruct(TORUS.points, TORUS.normals, depth=DEPTH)
     parts = [slice(i, None, count) for i in range(count)]
@@ -85,7 +85,7 @@ def test_a_file_without_normals_keeps_its_doubles(tmp_path: Path) -> None:
 
 
 def test_normals_of_parts_are_estimated_together(tmp_path: Path) -> None:
-    """By itself no part of a torus of which each has every third point would be denser."""
+    """Each of three files has every third point of a torus; only one has normals."""
     parts = [slice(i, None, 3) for i in range(3)]
     paths = [
         _written(tmp_path, f"{i}.ply", TORUS, part, has_normals=i == 0)
@@ -128,7 +128,7 @@ def test_cell_size_is_the_greatest_side_of_a_cell() -> None:
 
 
 def test_attributes_of_several(tmp_path: Path) -> None:
-    """By name; white where there is no color, and 0 where there is nothing else."""
+    """Attributes are matched by name; a missing color is white, any other missing value 0."""
     left, right = TORUS.points[:, 0] < 0, TORUS.points[:, 0] >= 0
     heights = TORUS.points[:, 2]
     black = np.zeros(len(heights), int)

@@ -37,7 +37,7 @@ def write_ball(path, count, seed, height=0.0):
 @pytest.fixture(scope="module")
 def scans(tmp_path_factory):
     folder = tmp_path_factory.mktemp("scans")
-    # Some are read in several batches, whose sums are not to be mixed with those of other files.
+    # Some are read in several batches, whose sums must not mix with sums of other files.
     counts = (9_000, 290_000, 15_000, 140_000)
     return [
         write_ball(folder / f"{k}.ply", count, k, 0.1 * (k // 2)) for k, count in enumerate(counts)
@@ -69,7 +69,7 @@ def steps(scans, folder, *flags, parts=5):
 
 
 @pytest.mark.parametrize("parts", [1, 3, 40])
-def test_the_steps_make_what_one_process_makes(scans, expected, tmp_path, parts):
+def test_steps_give_the_same_file_as_one_process(scans, expected, tmp_path, parts):
     assert steps(scans, tmp_path, parts=parts) == expected()
 
 
@@ -215,7 +215,7 @@ def test_four_processes_at_once(scans, expected, tmp_path):
     assert target.read_bytes() == expected()
 
 
-def test_what_is_there_is_not_made_again(scans, expected, tmp_path, capsys):
+def test_finished_steps_are_not_repeated(scans, expected, tmp_path, capsys):
     first = steps(scans, tmp_path)
     times = {path: path.stat().st_mtime_ns for path in (tmp_path / "work").iterdir()}
     lost = tmp_path / "work" / "part.2-of-5.prefilter"
@@ -275,7 +275,7 @@ def test_files_that_are_missing_or_damaged(scans, tmp_path, capsys):
             assert run(*words, "--step", again) == 0
 
 
-def test_what_steps_do_not_have(scans, tmp_path, capsys):
+def test_options_not_available_in_steps(scans, tmp_path, capsys):
     words = ("reconstruct", *scans, "-o", tmp_path / "s.ply", "--work", tmp_path / "w")
     assert "Depth" in fails(capsys, 1, *words, "--step", "measure").title()
     assert "haar" in fails(capsys, 1, *words, *DEPTH, "--wavelet", "d4", "--step", "measure")

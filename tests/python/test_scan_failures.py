@@ -127,7 +127,7 @@ def test_names_in_any_language(tmp_path, sphere):
 
 
 @pytest.mark.skipif(os.name != "nt", reason="elsewhere files that are open can be replaced")
-def test_a_target_that_is_open_is_told(tmp_path, sphere):
+def test_an_open_target_is_reported(tmp_path, sphere):
     source = write(tmp_path, "cloud.ply", sphere)
     with (
         only_target_is_left(tmp_path) as target,

@@ -49,7 +49,7 @@ def test_points_at_one_place_are_left_out(place, count, has_normals) -> None:
 
 @pytest.mark.parametrize("memory_limit", [None, 0])
 @pytest.mark.parametrize("threads", [1, 3])
-def test_the_same_of_a_file(tmp_path, memory_limit, threads) -> None:
+def test_points_at_one_place_in_a_file(tmp_path, memory_limit, threads) -> None:
     """More points than are in a batch, so that each holds only some of those at one place."""
     cloud = sphere(400_000, center=(3.0, 0.0, 0.0))
     random = np.random.default_rng(3)
@@ -92,7 +92,7 @@ def test_copies_are_no_phantoms(points) -> None:
 
 
 @pytest.mark.parametrize("value", [1e30, -3.4e38, np.nan, np.inf])
-def test_numbers_that_stand_for_nothing(value) -> None:
+def test_placeholder_coordinates(value) -> None:
     random = np.random.default_rng(4)
     points = BALL.points.copy()
     unseen = random.choice(len(points), 4000, replace=False)
@@ -203,7 +203,7 @@ def facing_origin(points: np.ndarray, **options) -> tuple[float, prefilter.Recon
 
 
 def rays(count: int, width: float = 1.2, height: float = 0.9) -> np.ndarray:
-    """What a camera sees, which looks along z."""
+    """Points seen by a camera that looks along z."""
     random = np.random.default_rng(9)
     x, y = random.uniform(-0.5, 0.5, (2, count))
     return np.column_stack([width * x, height * y, np.ones(count)])
@@ -218,7 +218,7 @@ def facade() -> np.ndarray:
 
 
 def half_sphere() -> np.ndarray:
-    """What is seen of a sphere of radius 1 that is 3 away."""
+    """Visible points of a sphere of radius 1 at distance 3."""
     seen = rays(60_000)
     square = (seen**2).sum(axis=1)
     root = 9.0 - 8.0 * square
@@ -240,7 +240,7 @@ def turned(points: np.ndarray, axis: int) -> np.ndarray:
 @pytest.mark.parametrize("axis", range(3))
 @pytest.mark.parametrize("scale", [1.0, -1000.0])
 @pytest.mark.parametrize("points", [facade(), half_sphere(), room()], ids=["wall", "ball", "room"])
-def test_what_is_seen_from_the_origin_faces_it(points, scale, axis) -> None:
+def test_points_seen_from_the_origin_face_it(points, scale, axis) -> None:
     faces, report = facing_origin(scale * turned(points, axis))
     assert faces > 0.97
     assert report.origin == "scanner"

@@ -189,7 +189,7 @@ def test_rows_beyond_those_of_the_header_are_not_read(tmp_path, contents, count)
     assert points.warnings[0].startswith(text)
 
 
-def test_what_is_too_long_for_text(tmp_path):
+def test_text_lines_that_are_too_long(tmp_path):
     with pytest.raises(ValueError, match=r"line 131.*: the header is longer than 1 MiB"):
         read(tmp_path, b"ply\nformat ascii 1.0\n" + b"comment\n" * 200_000)
     with pytest.raises(ValueError, match="line 10 is longer than 16 MiB; this is not a text file"):
@@ -223,7 +223,7 @@ def test_damaged_binary_lists(tmp_path):
             read(tmp_path, damaged + contents[start + 4 :])
 
 
-def test_what_the_system_refuses(tmp_path):
+def test_errors_of_the_system(tmp_path):
     with pytest.raises(OSError, match=r"none.ply': cannot be opened: No such file or directory"):
         prefilter.read_points(tmp_path / "none.ply")
     (tmp_path / "folder.ply").mkdir()
@@ -445,12 +445,12 @@ def test_text_is_thinned_while_it_is_read(tmp_path):
 
 
 @pytest.mark.parametrize("most", [0, -1, 1.5, True])
-def test_how_many_are_kept_at_most(tmp_path, most):
+def test_limits_of_thinning(tmp_path, most):
     with pytest.raises(ValueError, match=r"most: .* a whole number above 0 is needed"):
         prefilter.read_points(tmp_path / "none.xyz", most=most)
 
 
-def test_what_goes_wrong_in_python_is_passed_on():
+def test_python_errors_are_passed_on():
     class Torn(Reader):
         def chunks(self):
             yield from super().chunks()

@@ -9,9 +9,13 @@ import numpy as np
 import prefilter
 import prefilter.points.scan_files
 import pytest
+from prefilter import _native
 from scan_writers import COLORS, INTENSITY, NORMALS, POINTS, lines, pcd, ply, whole, write
 
 SHARED = Path(__file__).resolve().parents[3] / "shared" / "data" / "points"
+
+
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "scans.md"
 
 
 def read(folder, text, name="cloud.xyz"):
@@ -106,11 +110,11 @@ def test_names_of_columns(tmp_path, header):
     np.testing.assert_array_equal(points.attributes["classification"], values[:, 0])
 
 
-def test_names_that_do_not_fit(tmp_path):
-    # Of columns that have no name, or one of others, there are numbers.
+def test_mismatched_column_names(tmp_path):
+    # Columns without a name, or with a repeated one, are numbered.
     points = read(tmp_path, "x,y,z,,x,a\n" + lines(POINTS, POINTS, separator=","), "a.csv")
     assert list(points.attributes) == ["value4", "value5", "a"]
-    # More names than numbers: those of values.
+    # More names than numbers: names are ignored.
     points = read(tmp_path, "x,y,z,nx,ny,nz,more\n" + lines(POINTS, COLORS), "a.csv")
     np.testing.assert_array_equal(points.colors, COLORS)
     assert len(read(tmp_path, "x y z\n").positions) == 0
@@ -329,3 +333,16 @@ def test_names_of_two_words(tmp_path):
     np.testing.assert_array_equal(points.positions, [(1, 2, 3)])
     found = {name: values[0] for name, values in points.attributes.items()}
     assert found == {"return_number": 1, "number_of_returns": 2, "classification": 6}
+
+
+def test_extensions_include_the_library_s():
+    assert prefilter.POINT_EXTENSIONS[: len(_native.POINT_EXTENSIONS)] == _native.POINT_EXTENSIONS
+    own = {".ply.gz", *prefilter.points.scan_files._READERS}
+    assert {*prefilter.POINT_EXTENSIONS} == {*_native.POINT_EXTENSIONS} | own
+
+
+def test_the_page_lists_all_extensions():
+    text = PAGE.read_text(encoding="utf-8")
+    rows = text.partition("| Files | Needs |")[2].partition("\n\n")[0].splitlines()[2:]
+    listed = [name for row in rows for name in re.findall(r"`(.+?)`", row.split(" | ")[0])]
+    assert sorted(listed) == sorted([*prefilter.POINT_EXTENSIONS, ".blend"])

@@ -97,7 +97,7 @@ def test_las_colors_of_eight_bits(laspy, tmp_path):
 
 
 @pytest.mark.filterwarnings("error")
-def test_scales_that_overflow_say_nothing_on_the_way(laspy, tmp_path):
+def test_overflowing_scales_give_no_numpy_warnings(laspy, tmp_path):
     path = tmp_path / "cloud.las"
     las_file(laspy, path, positions=random_points(count=50))
     contents = path.read_bytes()
@@ -137,7 +137,7 @@ def test_damaged_las_files(laspy, tmp_path):
             prefilter.read_points(path)
 
 
-# What a damaged file makes lazrs do may end the process, so another one reads.
+# lazrs may abort the process over a damaged file, so another process reads it.
 _READ_DAMAGED = """
 import resource, sys
 import prefilter

@@ -197,7 +197,7 @@ def test_packed_ply_files(tmp_path):
     assert told[-1] == 1.0
     with pytest.raises(prefilter.Cancelled):
         prefilter.read_points(path, progress=lambda done: False)
-    # As cat and pigz make them: several, one after the other.
+    # Several members, one after the other, as cat and pigz write them.
     halves = gzip.compress(plain[:1000]) + gzip.compress(plain[1000:])
     np.testing.assert_array_equal(
         prefilter.read_points(write(tmp_path, "b.ply.gz", halves)).positions, rows

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Whether files of meshes are whole, which Blender's exporters do not tell.
+"""Checks that exported mesh files are complete.
 
-They go on after a write that fails, as on a full disk, and report success.
+Blender's exporters ignore failed writes, as on a full disk, and report success.
 """
 
 import os
@@ -21,15 +21,16 @@ _STL_HEADER, _STL_TRIANGLE = 84, 50
 
 
 def check_whole(folder: Path, vertices: int, faces: int) -> None:
-    """Checks that files which Blender wrote are whole.
+    """Checks that files written by Blender are complete.
 
     Args:
-        folder: It holds nothing else. What is neither OBJ, PLY nor STL must only reach the disk.
-        vertices: How many an OBJ file has at least.
-        faces: The same.
+        folder: Folder with only these files. Formats other than OBJ, PLY and STL are only flushed
+            to the disk.
+        vertices: Least number of vertices of an OBJ file.
+        faces: Least number of faces of an OBJ file.
 
     Raises:
-        OSError: Something is missing at the end of a file, or amid it.
+        OSError: A file is truncated or lacks a part.
     """
     checks: dict[str, Callable[[BinaryIO], bool]] = {
         ".stl": _is_whole_stl,
@@ -39,7 +40,7 @@ def check_whole(folder: Path, vertices: int, faces: int) -> None:
     }
     for path in folder.iterdir():
         with path.open("rb+") as file:
-            # Some file systems tell only now that there is no room.
+            # Some file systems report a full disk only on fsync.
             os.fsync(file.fileno())
             check = checks.get(path.suffix.lower())
             if check is not None and not check(file):
@@ -55,9 +56,9 @@ def _is_whole_stl(file: BinaryIO) -> bool:
 
 
 def _is_whole_ply(file: BinaryIO) -> bool:
-    """Follows a binary file from element to element; lists have counts of a byte."""
-    header, found, contents = file.read().partition(b"end_header\n")
-    if not found:
+    """Walks through the elements of a binary file; lists have one-byte counts."""
+    header, separator, contents = file.read().partition(b"end_header\n")
+    if not separator:
         return False
     elements: list[tuple[int, list[list[str]]]] = []
     for line in header.decode("ascii", "replace").splitlines():
@@ -66,22 +67,22 @@ def _is_whole_ply(file: BinaryIO) -> bool:
             elements.append((int(words[2]), []))
         elif words[0] == "property":
             elements[-1][1].append(words[1:])
-    place = 0
+    position = 0
     for count, properties in elements:
         lists = [kind for kind in properties if kind[0] == "list"]
         fixed = sum(_PLY_SIZES[kind[0]] for kind in properties if kind[0] != "list")
         if not lists:
-            place += count * fixed
+            position += count * fixed
             continue
-        # Blender writes the corners of a face, and nothing beside them.
+        # The faces that Blender writes have only the list of corners.
         assert len(lists) == len(properties) == 1
         assert _PLY_SIZES[lists[0][1]] == 1
         size = _PLY_SIZES[lists[0][2]]
         for _ in range(count):
-            if place >= len(contents):
+            if position >= len(contents):
                 return False
-            place += 1 + size * contents[place]
-    return place == len(contents)
+            position += 1 + size * contents[position]
+    return position == len(contents)
 
 
 def _is_whole_obj(file: BinaryIO, vertices: int, faces: int) -> bool:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Files that Blender must not get, or cannot load, and why.
+"""Damaged files: checks before loading, and reasons after a failure.
 
-Blender ends as a whole where some of its importers find a file cut off.
+Some of Blender's importers crash the whole program on truncated files.
 """
 
 import os
@@ -16,7 +16,7 @@ _STL_HEADER, _STL_TRIANGLE = 84, 50
 
 
 def check(path: str) -> None:
-    """Raises OSError for a file that is empty, or of which Blender's importer would not return."""
+    """Raises OSError for a file that is empty, or would crash Blender's importer."""
     size = os.path.getsize(path)
     ending = Path(path).suffix.lower()
     if size == 0 or (ending == ".stl" and not _is_stl(path, size)):
@@ -29,7 +29,7 @@ def check(path: str) -> None:
 
 
 def why(path: str, error: BaseException) -> str:
-    """Returns why Blender could not load a file, in our own words."""
+    """Returns why Blender could not load a file, as a readable reason."""
     for other in referred_files(Path(path)):
         if not other.is_file():
             return f"the file '{other.name}' beside it is missing"
@@ -40,7 +40,7 @@ def why(path: str, error: BaseException) -> str:
 
 
 def _is_stl(path: str, size: int) -> bool:
-    """Tells whether an STL file is text, or has as many triangles as it says."""
+    """Whether an STL file is text, or a binary file of the right size for its triangles."""
     with open(path, "rb") as file:
         start = file.read(_MOST_HEADER)
     count = int.from_bytes(start[80:84], "little")

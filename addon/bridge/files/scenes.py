@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Files with objects, as Blender imports and exports them."""
+"""Import and export of objects by Blender's importers and exporters."""
 
 import os
 import re
@@ -26,8 +26,8 @@ class Exporter:
 
     Attributes:
         name: The operator.
-        selection: Its option to export what is selected, and nothing else.
-        options: More of its options.
+        selection: Name of its option to export only selected objects.
+        options: Other options.
     """
 
     name: str
@@ -41,7 +41,7 @@ class Exporter:
 
     @property
     def is_available(self) -> bool:
-        """Whether this Blender has the operator: its add-on may be disabled."""
+        """Whether the operator exists; its add-on may be disabled."""
         try:
             self._operator.get_rna_type()
         except KeyError:
@@ -49,7 +49,7 @@ class Exporter:
         return True
 
     def export(self, path: Path, *, is_selection: bool, **options: Any) -> None:
-        """Writes what is selected, or everything."""
+        """Writes the selected objects, or all."""
         self._operator(
             filepath=str(path), **{self.selection: is_selection}, **self.options, **options
         )
@@ -82,9 +82,9 @@ EXPORTERS: dict[str, Exporter] = {
     ".fbx": Exporter("export_scene.fbx", "use_selection"),
 }
 _POSED = (".glb", ".gltf", ".fbx")
-"""Files that keep what moves objects."""
+"""Formats that include the armatures and parents of objects."""
 _BASES = ("ARMATURE", "EMPTY")
-_OF_GLTF_SCENES = {
+_GLTF_SCENE_OPTIONS = {
     "export_cameras": True,
     "export_lights": True,
     "export_extras": True,
@@ -92,14 +92,14 @@ _OF_GLTF_SCENES = {
     "use_mesh_edges": True,
     "use_mesh_vertices": True,
 }
-"""What the exporter of glTF leaves out unless it is told."""
+"""Contents that the glTF exporter omits by default."""
 
 
 SOURCES = (".blend", *IMPORTERS)
 TARGETS = (".blend", *EXPORTERS)
 
 _LAYERED = (".usd", ".usda", ".usdc", ".usdz")
-"""Such files may refer to others, of which Blender keeps nothing."""
+"""Formats that may refer to other files, which Blender does not remember."""
 _MATERIAL_FILES = re.compile(rb"^\s*mtllib\s+(.+)$", re.MULTILINE)
 _PATTERN = re.compile("<(UDIM|UVTILE)>")
 
@@ -109,15 +109,16 @@ def load(
 ) -> list[list[bpy.types.Object]]:
     """Loads files into one scene.
 
-    A .blend file that comes first is opened; what the first scene of others shows is appended.
+    The first file is opened if it is a .blend file; of other .blend files the visible objects of
+    the first scene are appended.
 
     Args:
-        paths: Their endings are in `SOURCES`.
-        is_wanted: Tells which objects count.
-        wanted: What they are called.
+        paths: Files with extensions in `SOURCES`.
+        is_wanted: Whether to return an object.
+        wanted: Description of such objects, for messages.
 
     Returns:
-        The objects of each file that count.
+        The wanted objects of each file.
 
     Raises:
         OSError: A file is missing or cannot be read.
@@ -128,7 +129,7 @@ def load(
             raise OSError(f"FILE: there is no file '{path}'")
     if Path(paths[0]).suffix.lower() != ".blend":
         bpy.ops.wm.read_homefile(use_empty=True)
-    found = []
+    groups = []
     for i, path in enumerate(paths):
         before = set() if i == 0 else set(bpy.data.objects)
         damage.check(path)
@@ -141,26 +142,26 @@ def load(
         objects = [obj for obj in everything if obj not in before and is_wanted(obj)]
         if not objects:
             raise ValueError(f"FILE: found no {wanted} in '{path}'")
-        found.append(objects)
-    return found
+        groups.append(objects)
+    return groups
 
 
 def decisive_files(path: str) -> list[str] | None:
-    """Returns what a file that was loaded holds and refers to; None where that is not known.
+    """Returns a loaded file and the files that it refers to; None if they are not known.
 
-    Of paths with a pattern, such as those of UDIM tiles, all files that fit are among them.
+    Paths with a pattern, such as of UDIM tiles, include all matching files.
     """
     source = Path(path)
     if source.suffix.lower() in _LAYERED:
         return None
-    found = {source, *material_files(source)}
+    files = {source, *material_files(source)}
     for name in bpy.utils.blend_paths(absolute=True, packed=False, local=False):
-        found.update(map(Path, glob(_PATTERN.sub("*", escape(name)))))
-    return [str(one) for one in sorted(found) if one.is_file()]
+        files.update(map(Path, glob(_PATTERN.sub("*", escape(name)))))
+    return [str(file) for file in sorted(files) if file.is_file()]
 
 
 def material_files(path: Path) -> list[Path]:
-    """Returns the files of materials that an OBJ file names; of others there are none."""
+    """Returns the material files that an OBJ file names; none for other formats."""
     if path.suffix.lower() != ".obj":
         return []
     names = _MATERIAL_FILES.findall(path.read_bytes())
@@ -170,15 +171,15 @@ def material_files(path: Path) -> list[Path]:
 def chosen(
     objects: list[bpy.types.Object], names: Sequence[str], wanted: str
 ) -> list[bpy.types.Object]:
-    """Returns the objects with these names, in their order; without names, all of them.
+    """Returns the named objects, in the order of the names; all objects without names.
 
     Args:
-        objects: Those that count.
-        names: What a user gives.
-        wanted: What objects that count are called.
+        objects: Objects to choose from.
+        names: Names from the user.
+        wanted: Description of the objects, for messages.
 
     Raises:
-        ValueError: There is no such object.
+        ValueError: A name is unknown.
     """
     by_name = {obj.name: obj for obj in objects}
     for name in names:
@@ -190,20 +191,20 @@ def chosen(
 
 
 def as_one(name: str, objects: Sequence[bpy.types.Object]) -> bpy.types.Object:
-    """Returns the only object of several, or an instance of a collection of all of them."""
+    """Returns a single object, or makes an instance of a collection of several objects."""
     if len(objects) == 1:
         return objects[0]
     collection = bpy.data.collections.new(name)
     for obj in objects:
         collection.objects.link(obj)
-    made = bpy.data.objects.new(name, None)
-    made.instance_type, made.instance_collection = "COLLECTION", collection
-    bpy.context.scene.collection.objects.link(made)
-    return made
+    instance = bpy.data.objects.new(name, None)
+    instance.instance_type, instance.instance_collection = "COLLECTION", collection
+    bpy.context.scene.collection.objects.link(instance)
+    return instance
 
 
 def check_target(path: str) -> Path:
-    """Returns the absolute path of a file that objects can be written to.
+    """Returns the absolute path of an output file, after checking that it can be written.
 
     Raises:
         OSError: It cannot be written, or this Blender has no exporter for it.
@@ -219,12 +220,12 @@ def check_target(path: str) -> Path:
 
 
 def save(target: Path, names: Sequence[str], metadata: Mapping[str, str] | None = None) -> None:
-    """Writes objects, or for a .blend file all there is, beside the target, and renames it.
+    """Writes objects, or everything for a .blend file, to a staged file, and renames that.
 
     Args:
         target: The file.
-        names: Those of the objects.
-        metadata: What the file is to keep, by keys, of a format that `with_note` can give one.
+        names: Names of the objects.
+        metadata: Notes to store in the file, by key, for formats that `with_note` supports.
 
     Raises:
         OSError: The file cannot be written.
@@ -238,7 +239,7 @@ def save_gltf(target: Path, names: Sequence[str] = ()) -> None:
 
     Args:
         target: The file.
-        names: Those of the objects. Without names, everything is written.
+        names: Names of the objects; everything is written without names.
 
     Raises:
         OSError: The file cannot be written.
@@ -246,34 +247,34 @@ def save_gltf(target: Path, names: Sequence[str] = ()) -> None:
     _select(_with_bases(names))
 
     def export(path: Path) -> None:
-        EXPORTERS[path.suffix.lower()].export(path, is_selection=bool(names), **_OF_GLTF_SCENES)
+        EXPORTERS[path.suffix.lower()].export(path, is_selection=bool(names), **_GLTF_SCENE_OPTIONS)
         check_whole(path.parent, 0, 0)
 
     _save(target, export)
 
 
 def _with_bases(names: Sequence[str]) -> list[str]:
-    """Returns the names of objects with those of the armatures and empties that move them."""
-    found: dict[bpy.types.Object, None] = {}
+    """Adds the armatures and empties that move objects to the objects' names."""
+    included: dict[bpy.types.Object, None] = {}
     pending = [bpy.data.objects[name] for name in names]
     while pending:
         obj = pending.pop(0)
-        if obj in found:
+        if obj in included:
             continue
-        found[obj] = None
-        bases = [one.object for one in obj.modifiers if one.type == "ARMATURE"]
+        included[obj] = None
+        bases = [modifier.object for modifier in obj.modifiers if modifier.type == "ARMATURE"]
         bases += [obj.parent] if obj.parent and obj.parent.type in _BASES else []
-        pending += [base for base in bases if base is not None and base not in found]
-    return [obj.name for obj in found]
+        pending += [base for base in bases if base is not None and base not in included]
+    return [obj.name for obj in included]
 
 
 def _select(names: Sequence[str]) -> None:
-    """Selects objects, and nothing else, also those that users must not select."""
-    wanted = set(names)
+    """Selects only these objects, even if selecting them is disabled."""
+    selected = set(names)
     for obj in bpy.context.view_layer.objects:
-        if obj.name in wanted:
+        if obj.name in selected:
             obj.hide_select = False
-        obj.select_set(obj.name in wanted)
+        obj.select_set(obj.name in selected)
 
 
 def _save(target: Path, export: Callable[[Path], None]) -> None:
@@ -303,18 +304,18 @@ def _export(metadata: Mapping[str, str], path: Path) -> None:
 
 
 def _selected_counts() -> tuple[int, int]:
-    """Returns how many vertices and faces the selected meshes have, their instances too."""
+    """Number of vertices and faces of the selected meshes, including instances."""
     vertices = faces = 0
-    for one in bpy.context.evaluated_depsgraph_get().object_instances:
-        base = one.parent if one.is_instance else one.object
-        if one.object.type == "MESH" and base.original.select_get():
-            vertices += len(one.object.data.vertices)
-            faces += len(one.object.data.polygons)
+    for instance in bpy.context.evaluated_depsgraph_get().object_instances:
+        base = instance.parent if instance.is_instance else instance.object
+        if instance.object.type == "MESH" and base.original.select_get():
+            vertices += len(instance.object.data.vertices)
+            faces += len(instance.object.data.polygons)
     return vertices, faces
 
 
 def _last_line(error: RuntimeError | OSError) -> str:
-    """Returns what an operator says of its failure; of one in Python, its last line."""
+    """Last line of an operator's error message: the message of a Python traceback."""
     lines = [
         line for line in reason(error).splitlines() if line and not line.startswith("Location:")
     ]
@@ -322,7 +323,7 @@ def _last_line(error: RuntimeError | OSError) -> str:
 
 
 def save_open(path: str) -> None:
-    """Saves the .blend file that is open; its earlier versions are kept as Blender keeps them.
+    """Saves the open .blend file; keeps earlier versions as Blender does.
 
     Raises:
         OSError: It cannot be written.
@@ -345,12 +346,12 @@ def _write_blend(path: Path) -> None:
     try:
         bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True)
     except RuntimeError:
-        path.with_name(f"{path.name}@").unlink(missing_ok=True)  # As Blender calls it until then.
+        path.with_name(f"{path.name}@").unlink(missing_ok=True)  # Blender's temporary file.
         raise
 
 
 def _earlier_versions(target: Path, count: int) -> Iterator[staging.StagedFile]:
-    """Stages earlier files under the endings .blend1, .blend2 and so on, the oldest first."""
+    """Stages earlier files as .blend1, .blend2 and so on, the oldest first."""
     names = [Path(f"{target}{number or ''}") for number in range(count + 1)]
     for number in reversed(range(count)):
         if names[number].exists():
@@ -369,10 +370,10 @@ def _load_one(path: str, *, is_first: bool) -> None:
 
 
 def _append_visible(path: str) -> None:
-    """Adds what the first scene of a .blend file shows."""
-    with bpy.data.libraries.load(path, link=False) as (there, here):
-        here.scenes = there.scenes[:1]
-    for scene in here.scenes:
+    """Appends the visible objects of the first scene of a .blend file."""
+    with bpy.data.libraries.load(path, link=False) as (library, appended):
+        appended.scenes = library.scenes[:1]
+    for scene in appended.scenes:
         layer = scene.view_layers[0]
         for obj in layer.objects:
             if obj.visible_get(view_layer=layer):

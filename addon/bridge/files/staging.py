@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Where files go that the add-on writes; they are staged as the package does it."""
+"""Checks of output files, and the package's staging of files."""
 
 import os
 from pathlib import Path
@@ -33,10 +33,10 @@ __all__ = (
 
 
 def check_plain_target(path: str, ending: str) -> Path:
-    """Returns the absolute path of a file that can be written, and whose name ends as needed.
+    """Returns the absolute path of an output file, after checking its extension.
 
     Raises:
-        ValueError: The name does not end in `ending`.
+        ValueError: The extension is not `ending`.
         OSError: The folder is missing, or the file or its folder is read-only.
     """
     target = Path(os.path.realpath(path))
@@ -47,7 +47,7 @@ def check_plain_target(path: str, ending: str) -> Path:
 
 
 def check_output(path: str) -> Path:
-    """Returns the absolute path of a file of any kind that can be written.
+    """Returns the absolute path of an output file with any extension.
 
     Raises:
         OSError: The folder is missing, or the file or its folder is read-only.

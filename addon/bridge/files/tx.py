@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The files of Cycles' texture cache: made by Blender, their levels replaced here.
+"""Files of Cycles' texture cache: made by Blender, with levels replaced here.
 
-What a file holds (Blender 5.2): tiles of 64 x 64, 1 or 4 channels, every level down to 1 x 1, in a
-TIFF for integers and an OpenEXR for floats, in both cases named `<image file>.<version>-<MD5>.tx`.
-Colors are scene-linear, or sRGB-encoded where Cycles decodes them after its lookup, which it does
-for integers in a color space like sRGB; alpha is associated where it is coverage. An image of one
-color is one tile.
+Format in Blender 5.2: tiles of 64 x 64, 1 or 4 channels, all levels down to 1 x 1, in a TIFF for
+integers and an OpenEXR for floats, in both cases named `<image file>.<version>-<MD5>.tx`. Colors
+are scene-linear, or sRGB-encoded if Cycles decodes them after its lookup, as for integers in a
+color space like sRGB; alpha is associated if it is coverage. An image of one color has one tile.
 
-Cycles uses a file while its time of modification is that of the image file, in whole seconds.
+Cycles uses a file while its modification time equals the image file's, in whole seconds.
 """
 
 import glob
@@ -41,21 +40,21 @@ _SOURCE_SPACE = re.compile(r"\(colorspace: ([^,]*), ")
 _START_OF_FILE = 1 << 14  # Bytes; the description of level 0 is in them.
 _MAKER = b"Blender maketx"
 _LARGEST_HALF = 65504.0
-# What OpenImageIO reads from the description of a TIFF, and does not write back.
+# Attributes that OpenImageIO reads from the description of a TIFF, but does not write back.
 _DESCRIBED = ("oiio:ConstantColor", "oiio:AverageColor")
 
 
 @dataclass(frozen=True)
 class Source:
-    """An image file, and how an image datablock reads it: what a cache file is made from.
+    """Source of a cache file: an image file, and the settings of its image datablock.
 
     Attributes:
         path: The image file.
         colorspace: The datablock's color space.
-        is_data: Whether that space says that the values are no colors.
+        is_data: Whether the values are not colors in that space.
         alpha_mode: The datablock's alpha mode.
-        cache_folder: Where the user keeps cache files: empty for a folder beside the image, else
-            absolute, or relative to the image.
+        cache_folder: The user's folder of cache files: absolute, relative to the image, or empty
+            for a folder beside the image.
     """
 
     path: Path
@@ -66,7 +65,7 @@ class Source:
 
     @property
     def folder(self) -> Path:
-        """The folder that a new cache file goes to."""
+        """Folder of a new cache file."""
         return self.path.parent / (self.cache_folder or _DEFAULT_FOLDER)
 
     @property
@@ -81,11 +80,11 @@ class Texture:
 
     Attributes:
         path: The file.
-        stored: Level 0 as it is stored: (height, width, 1 or 4), row 0 at the bottom.
+        stored: Stored values of level 0: (height, width, 1 or 4), row 0 at the bottom.
         is_encoded: Whether colors are sRGB-encoded.
         is_float: Whether the file holds floats.
-        is_constant: Whether the image has one color only, and the file one tile of it.
-        made_of: What `stage` was told that its levels were made of; empty if they are Blender's.
+        is_constant: Whether the image has only one color, and the file one tile.
+        made_of: Fingerprint of the sources of its levels, from `stage`; empty for Blender's levels.
     """
 
     path: Path
@@ -97,13 +96,13 @@ class Texture:
 
 
 def is_available() -> bool:
-    """Returns whether this Blender's Cycles makes texture caches."""
+    """Whether this Blender's Cycles makes texture caches."""
     settings = bpy.types.RenderSettings.bl_rna.properties
     return "use_texture_cache" in settings and _maker() is not None
 
 
 def sources(image: bpy.types.Image) -> dict[int | None, Source]:
-    """Returns what the cache files of an image are made from, by tile; see `images.files_of`."""
+    """Returns the sources of an image's cache files, by tile; see `images.files_of`."""
     space = image.colorspace_settings
     folder = bpy.context.preferences.filepaths.texture_cache_directory
     return {
@@ -113,9 +112,9 @@ def sources(image: bpy.types.Image) -> dict[int | None, Source]:
 
 
 def state(source: Source) -> str:
-    """Returns "baked", "stale" or "missing": what is known of our levels without opening files.
+    """Returns the state of baked levels: "baked", "stale" or "missing".
 
-    Where datablocks read an image file in several ways, the cache files of all of them count.
+    If datablocks read an image file in several ways, the cache files of all of them count.
     """
     try:
         time = int(source.path.stat().st_mtime)
@@ -131,15 +130,15 @@ def remove_baked(source: Source) -> list[Path]:
     """Removes the cache files whose levels a bake has replaced, so that Blender makes its own.
 
     Returns:
-        What was removed.
+        The removed files.
 
     Raises:
         OSError: A file cannot be removed.
     """
-    found = [path for path in _cache_files(source) if _has_other_levels(path)]
-    for path in found:
+    baked = [path for path in _cache_files(source) if _has_other_levels(path)]
+    for path in baked:
         path.unlink()
-    return found
+    return baked
 
 
 def _cache_files(source: Source) -> list[Path]:
@@ -147,7 +146,7 @@ def _cache_files(source: Source) -> list[Path]:
 
 
 def _has_other_levels(path: Path) -> bool:
-    """Tells whether a file is of Blender's texture cache, but its levels are not Blender's."""
+    """Whether a file is of Blender's texture cache, but with replaced levels."""
     start = _start_of(path)
     described = (b"oiio:SHA-1", b"oiio:ConstantColor")
     return _MAKER in start and not any(words in start for words in described)
@@ -159,7 +158,7 @@ def _start_of(path: Path) -> bytes:
 
 
 def _is_baked(path: Path) -> bool:
-    """Tells whether a bake has replaced the levels of a file, or it has one color only."""
+    """Whether a bake has replaced the levels of a file, or it has only one color."""
     status = path.stat()
     return _reads_as_baked(path, status.st_mtime_ns, status.st_size, status.st_ino)
 
@@ -167,13 +166,13 @@ def _is_baked(path: Path) -> bool:
 @lru_cache(maxsize=4096)
 def _reads_as_baked(path: Path, *_: int) -> bool:
     start = _start_of(path)
-    # See `_first_spec`: Blender's files have a hash of the image, and those written here have not.
+    # Blender's files have a hash of the image; ours do not: see `_first_spec`.
     has_levels = b"oiio:SHA-1" not in start or b"oiio:ConstantColor" in start
     return has_levels and _MAKER in start
 
 
 def make(source: Source) -> Path:
-    """Lets Blender make the cache file, unless there is one that is up to date.
+    """Makes Blender write the cache file, unless it is up to date.
 
     Returns:
         The file that Cycles uses for the image.
@@ -201,16 +200,16 @@ def make(source: Source) -> Path:
 
 
 def check(source: Source, path: Path) -> None:
-    """Checks that Blender has written a cache file as a whole, which it does not tell.
+    """Checks that a cache file is complete, as Blender does not report failed writes.
 
-    A broken file is made again, as Blender would not. One that stays broken is removed: Cycles
-    would show it.
+    A broken file is made again, which Blender would not do. If it stays broken it is removed, as
+    Cycles would show it.
 
     Raises:
         OSError: The file is broken, or cannot be made again.
     """
     if _has_other_levels(path):
-        return  # Read when it was written.
+        return  # It was checked when it was written.
     try:
         _check_whole(path)
     except OSError:
@@ -231,10 +230,10 @@ def _check_whole(path: Path) -> None:
 
 
 def texel_count(path: Path) -> int:
-    """Returns how many texels level 0 of a cache file has.
+    """Returns the number of texels of level 0 of a cache file.
 
     Raises:
-        OSError: It cannot be read, or it is no file of Blender's texture cache.
+        OSError: It cannot be read, or it is not a file of Blender's texture cache.
     """
     reader, spec = _open(path)
     reader.close()
@@ -245,7 +244,7 @@ def read(path: Path) -> Texture:
     """Reads a cache file.
 
     Raises:
-        OSError: It cannot be read, or it is no file of Blender's texture cache.
+        OSError: It cannot be read, or it is not a file of Blender's texture cache.
     """
     reader, spec = _open(path)
     try:
@@ -268,15 +267,15 @@ def read(path: Path) -> Texture:
 def stage(
     texture: Texture, levels: Sequence[FloatArray], check: Check, *, made_of: str = ""
 ) -> staging.StagedFile:
-    """Writes a cache file with other levels beside the file that it is to replace.
+    """Stages a cache file with replaced levels.
 
-    Level 0, its metadata and the time of modification stay as they are.
+    Level 0, its metadata and the modification time are preserved.
 
     Args:
         texture: The file.
         levels: Levels 1, 2, ... in the encoding of `texture.stored`, row 0 at the bottom.
         check: Called before each level.
-        made_of: What the file is to keep for the next bake; see `up_to_date`.
+        made_of: Fingerprint to store in the file for the next bake; see `up_to_date`.
 
     Raises:
         OSError: The file cannot be written.
@@ -300,7 +299,7 @@ def stage(
             _write(writer, temporary, _level_spec(oiio, spec, pixels), mode, pixels)
         if not writer.close():
             raise OSError(f"cannot write '{temporary}': {openimageio.last_error(writer)}")
-        # An OpenEXR file is finished when its writer goes.
+        # An OpenEXR file is complete only once its writer is destroyed.
         del writer
         openimageio.check_whole(temporary, 1 + len(levels))
         os.utime(temporary, ns=(time, time))
@@ -312,7 +311,7 @@ def stage(
 
 
 def _maker() -> Any:
-    """Returns what `blender --command maketx` calls: for one file, and any thread; or None."""
+    """Returns the function behind `blender --command maketx`, or None; it runs on any thread."""
     try:
         import _cycles
     except ImportError:
@@ -336,19 +335,19 @@ def _open(path: Path) -> tuple[Any, Any]:
 
 
 def _source_space(path: Path, spec: Any) -> str:
-    found = _SOURCE_SPACE.search(spec.getattribute("DocumentName") or "")
-    if found is None:
+    match = _SOURCE_SPACE.search(spec.getattribute("DocumentName") or "")
+    if match is None:
         raise OSError(
             f"'{path}' does not name its color space, as files of Blender 5.2's texture cache do"
         )
-    return found[1]
+    return match[1]
 
 
 def _first_spec(spec: Any, is_float: bool, made_of: str) -> Any:
-    """Returns a spec that writes what was read.
+    """Returns a spec that writes the metadata that was read, except `oiio:SHA-1`.
 
-    But no `oiio:SHA-1`, which OpenImageIO leaves out when it reads: it is of level 0 alone, and
-    readers that go by it would take this file for Blender's.
+    OpenImageIO does not report this hash when reading. It covers level 0 alone, and readers that
+    rely on it would take the file for Blender's.
     """
     if is_float:
         spec.erase_attribute(KEY)
@@ -367,16 +366,16 @@ def _first_spec(spec: Any, is_float: bool, made_of: str) -> Any:
 
 
 def _made_of(spec: Any) -> str:
-    """Returns what `stage` has kept in a file; empty where nothing."""
-    found = IN_DESCRIPTION.search(spec.getattribute("ImageDescription") or "")
-    return found[1] if found else str(spec.getattribute(KEY) or "")
+    """Returns the fingerprint that `stage` stored in a file; empty for none."""
+    match = IN_DESCRIPTION.search(spec.getattribute("ImageDescription") or "")
+    return match[1] if match else str(spec.getattribute(KEY) or "")
 
 
 def _level_spec(oiio: Any, first: Any, pixels: FloatArray) -> Any:
     height, width, channels = pixels.shape
     spec = oiio.ImageSpec(width, height, channels, first.format)
     spec.tile_width, spec.tile_height = first.tile_width, first.tile_height
-    # Without a time of its own a level of a TIFF gets that of the writing, and files would differ.
+    # Without DateTime a TIFF level gets the present time, so that equal bakes would differ.
     for name in ("compression", "planarconfig", "DateTime"):
         value = first.getattribute(name)
         if value is not None:

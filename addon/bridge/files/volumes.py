@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""OpenVDB files and volume objects, where Blender's own Python module for them is there."""
+"""OpenVDB files and volume datablocks, by Blender's own Python module for OpenVDB."""
 
 from functools import cache
 from pathlib import Path
@@ -19,14 +19,14 @@ _GRID_NAME = "density"
 
 
 def is_available() -> bool:
-    """Returns whether this Blender can write OpenVDB files."""
+    """Whether this Blender can write OpenVDB files."""
     return _module() is not None
 
 
 def write_grid(
     path: Path, occupancy: NDArray[np.float32], low: NDArray[np.float64], spacing: float
 ) -> None:
-    """Writes a cube of cells as the density of a fog volume; empty cells take no room.
+    """Writes a cube of cells as the density of a fog volume; empty cells are not stored.
 
     Args:
         path: The file.

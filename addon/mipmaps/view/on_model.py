@@ -116,12 +116,12 @@ class _ModelPreview:
         return self.batches[obj.name]
 
     def texture(self, name: str) -> gpu.types.GPUTexture:
-        """Returns levels 1, 2, ... of a filter, stacked in one texture; level 0 for ""."""
-        from ...bridge.drawing import uploaded
+        """Returns all levels of a filter but the first, below each other; "" for the first."""
+        from ...bridge.drawing import upload
 
         if name not in self.textures:
             levels = self.preview.levels[name or next(iter(self.preview.levels))]
-            self.textures[name] = uploaded(_stacked(levels[1:] or levels) if name else levels[0])
+            self.textures[name] = upload(_stacked(levels[1:] or levels) if name else levels[0])
         return self.textures[name]
 
     def boxes(self) -> gpu.types.GPUTexture:

@@ -183,17 +183,17 @@ def _compiled() -> gpu.types.GPUShader:
     return _shader
 
 
-def _textures(shown: Preview, levels: list[tuple[str, int]]) -> list[gpu.types.GPUTexture]:
-    """Returns the textures of levels, given by filter and number, and frees all other textures."""
-    from ...bridge.drawing import uploaded
+def _textures(shown: Preview, wanted: list[tuple[str, int]]) -> list[gpu.types.GPUTexture]:
+    """Returns textures of levels; those that no drawing wants any longer are freed."""
+    from ...bridge.drawing import upload
 
-    keys = [("", 0) if level == 0 else (name, level) for name, level in levels]
-    textures = {key: shown.textures[key] for key in keys if key in shown.textures}
-    for key, (name, level) in zip(keys, levels, strict=True):
-        if key not in textures:
-            textures[key] = uploaded(shown.levels[name][level])
-    shown.textures = textures
-    return [textures[key] for key in keys]
+    keys = [("", 0) if level == 0 else (name, level) for name, level in wanted]
+    kept = {key: shown.textures[key] for key in keys if key in shown.textures}
+    for key, (name, level) in zip(keys, wanted, strict=True):
+        if key not in kept:
+            kept[key] = upload(shown.levels[name][level])
+    shown.textures = kept
+    return [kept[key] for key in keys]
 
 
 def _editor_preview() -> tuple[Preview, tuple[str, str], float] | None:

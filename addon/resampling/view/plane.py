@@ -54,12 +54,12 @@ class Plane:
         return False
 
     def texture(self) -> gpu.types.GPUTexture:
-        """Returns the levels as a texture, on the main thread only."""
-        from ...bridge.drawing import uploaded
+        """Returns the levels as a texture; main thread only."""
+        from ...bridge.drawing import upload
 
         if self._texture is None:
             assert self.atlas is not None
-            self._texture, self.atlas = uploaded(self.atlas), None
+            self._texture, self.atlas = upload(self.atlas), None
         return self._texture
 
 

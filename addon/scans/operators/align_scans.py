@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`prefilter.align_scans`: the selected scans moved onto each other."""
+"""`prefilter.align_scans`: aligns the selected scans with each other."""
 
 from typing import TYPE_CHECKING
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class PREFILTER_OT_align_scans(AlignProperties, SelectedScans, WorkOperator, bpy.types.Operator):
-    """Moves the selected scans onto each other."""
+    """Aligns the selected scans with each other."""
 
     bl_idname = "prefilter.align_scans"
     bl_label = "Align Scans"
@@ -34,7 +34,7 @@ class PREFILTER_OT_align_scans(AlignProperties, SelectedScans, WorkOperator, bpy
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether several scans are selected."""
+        """Whether several scans are selected."""
         if not super().poll(context):
             return False
         if not cls.may_be_redone(context) and len(selected_scans(context)) < 2:

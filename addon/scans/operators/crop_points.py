@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`prefilter.crop_points`: the selected scans within the box of the active object."""
+"""`prefilter.crop_points`: crops the selected scans to the box of the active object."""
 
 from typing import TYPE_CHECKING
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class PREFILTER_OT_crop_points(CropProperties, SelectedScans, WorkOperator, bpy.types.Operator):
-    """Keeps what the selected scans have in the box of the active object."""
+    """Keeps the points of the selected scans in the box of the active object."""
 
     bl_idname = "prefilter.crop_points"
     bl_label = "Crop Points"
@@ -32,7 +32,7 @@ class PREFILTER_OT_crop_points(CropProperties, SelectedScans, WorkOperator, bpy.
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether points are selected, and something else is active."""
+        """Whether points are selected, and another object is active."""
         if not super().poll(context):
             return False
         if not cls.may_be_redone(context) and _box(context) is None:
@@ -41,7 +41,7 @@ class PREFILTER_OT_crop_points(CropProperties, SelectedScans, WorkOperator, bpy.
         return True
 
     def read_work(self, context: bpy.types.Context) -> "Cleaning":
-        """Copies where the points are, and the box."""
+        """Copies the positions of the points, and the box."""
         from ..cleaning import cropping
 
         box = _box(context)

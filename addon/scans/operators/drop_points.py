@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`prefilter.drop_points`: asks what to make of files of points that are dropped."""
+"""`prefilter.drop_points`: asks whether to import or reconstruct dropped files of points."""
 
 import os
 
 import bpy
+from prefilter.points.extensions import POINT_EXTENSIONS
 
 from ...core.translations import marked, reported, tr
-from ..choices import EXTENSIONS
 from ..properties import FilesProperties
 from .import_points import PREFILTER_OT_import_points
 
@@ -16,11 +16,11 @@ _CHOICES = (
     (marked("Reconstruct Surface"), "POINTCLOUD_DATA", True),
 )
 _OTHERS = frozenset({".ply", ".txt", ".obj"})
-"""What Blender or other add-ons read, too."""
+"""Extensions of files that Blender or other add-ons read, too."""
 
 
 class PREFILTER_OT_drop_points(FilesProperties, bpy.types.Operator):
-    """Opens a menu of what can be done with files of points."""
+    """Opens a menu with the choices for files of points."""
 
     bl_idname = "prefilter.drop_points"
     bl_label = "Scan"
@@ -29,7 +29,7 @@ class PREFILTER_OT_drop_points(FilesProperties, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether objects can be added."""
+        """Whether objects can be added."""
         return PREFILTER_OT_import_points.poll(context)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -37,18 +37,19 @@ class PREFILTER_OT_drop_points(FilesProperties, bpy.types.Operator):
         del event
         if bpy.app.background:
             return self.execute(context)
-        wanted = self.named_files()
+        named = self.named_files()
 
         def draw(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
             del context
             menu.layout.operator_context = "INVOKE_DEFAULT"
             for text, icon, use_reconstruct in _CHOICES:
                 name = PREFILTER_OT_import_points.bl_idname
-                made = menu.layout.operator(name, text=text, icon=icon)
-                made.use_reconstruct = use_reconstruct
-                made.filepath, made.directory = wanted["filepath"], wanted["directory"]
-                for one in wanted["files"]:
-                    made.files.add().name = one["name"]
+                properties = menu.layout.operator(name, text=text, icon=icon)
+                properties.use_reconstruct = use_reconstruct
+                properties.filepath = named["filepath"]
+                properties.directory = named["directory"]
+                for file in named["files"]:
+                    properties.files.add().name = file["name"]
 
         context.window_manager.popup_menu(draw, title=tr(self.bl_label))
         return {"FINISHED"}
@@ -64,17 +65,17 @@ class PREFILTER_OT_drop_points(FilesProperties, bpy.types.Operator):
 
 
 class PREFILTER_FH_points(bpy.types.FileHandler):
-    """Files of points that are dropped onto the 3D view."""
+    """Handles files of points dropped onto the 3D view."""
 
     bl_idname = "PREFILTER_FH_points"
     bl_label = "Point Cloud"
     bl_import_operator = PREFILTER_OT_drop_points.bl_idname
     # Blender compares the last extension of a name: ".gz" of ".ply.gz".
     bl_file_extensions = ";".join(
-        os.path.splitext(f"a{ending}")[1] for ending in EXTENSIONS if ending not in _OTHERS
+        os.path.splitext(f"a{each}")[1] for each in POINT_EXTENSIONS if each not in _OTHERS
     )
 
     @classmethod
     def poll_drop(cls, context: bpy.types.Context) -> bool:
-        """Tells whether files are dropped where objects are seen."""
+        """Whether files are dropped onto a 3D view."""
         return context.area is not None and context.area.type == "VIEW_3D"

@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`prefilter.import_points`: files of points as objects."""
+"""`prefilter.import_points`: imports files of points as objects."""
 
 from typing import TYPE_CHECKING, Any
 
 import bpy
 from bpy.props import StringProperty
+from prefilter.points.extensions import POINT_EXTENSIONS
 
 from ...core.file_browser import FileBrowserOperator
 from ...core.operator import WorkOperator
 from ...core.translations import tr
-from ..choices import EXTENSIONS
 from ..properties import RECONSTRUCT, ImportProperties
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 class PREFILTER_OT_import_points(
     ImportProperties, FileBrowserOperator, WorkOperator, bpy.types.Operator
 ):
-    """Lets a user choose files of points, and makes an object of each."""
+    """Imports files of points that the user chooses, each as an object."""
 
     bl_idname = "prefilter.import_points"
     bl_label = "Import Point Cloud"
@@ -33,7 +33,7 @@ class PREFILTER_OT_import_points(
     queue_name = "files"
 
     filter_glob: StringProperty(
-        default=";".join(f"*{ending}" for ending in EXTENSIONS), options={"HIDDEN"}
+        default=";".join(f"*{ending}" for ending in POINT_EXTENSIONS), options={"HIDDEN"}
     )
 
     if TYPE_CHECKING:
@@ -41,18 +41,18 @@ class PREFILTER_OT_import_points(
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether objects can be added."""
+        """Whether objects can be added."""
         if context.mode != "OBJECT":
             cls.poll_message_set(tr("Switch to Object Mode first"))
             return False
         return True
 
-    def has_file(self) -> bool:
-        """Tells whether files are named."""
+    def is_named(self) -> bool:
+        """Whether files are named."""
         return bool(self.paths())
 
     def read_work(self, context: bpy.types.Context) -> "PointsImport":
-        """Looks which files to read."""
+        """Collects the files to read."""
         del context
         from ..importing import PointsImport
 
@@ -62,17 +62,17 @@ class PREFILTER_OT_import_points(
         return PointsImport(paths, self.to_settings())
 
     def finish(self, context: bpy.types.Context, result: None) -> str:
-        """Makes the objects, and a surface of them if that is wanted."""
+        """Makes the objects, and starts reconstructing their surface if chosen."""
         from ...bridge.color_materials import show_in_views
 
-        found = super().finish(context, result)
+        summary = super().finish(context, result)
         assert self.work is not None
         if self.use_show_colors and self.work.has_colors and not self.use_reconstruct:
             show_in_views(context, are_points=True)
         if self.use_reconstruct:
             bpy.ops.prefilter.reconstruct("INVOKE_DEFAULT", **RECONSTRUCT.of_scene(context))
-        return found
+        return summary
 
-    def restart_settings(self) -> dict[str, Any]:
-        """Returns the settings, and which files there are."""
-        return super().restart_settings() | self.named_files()
+    def handed_on(self) -> dict[str, Any]:
+        """Returns the settings and the files."""
+        return super().handed_on() | self.named_files()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`prefilter.paint_texture`: the colors of the selected scans on a texture of the active mesh."""
+"""`prefilter.paint_texture`: paints a texture of the active mesh from the selected scans."""
 
 from typing import TYPE_CHECKING
 
@@ -34,7 +34,7 @@ class PREFILTER_OT_paint_texture(PaintProperties, SelectedScans, WorkOperator, b
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether points are selected, and a mesh with faces is active."""
+        """Whether points are selected, and a mesh with faces is active."""
         if not super().poll(context):
             return False
         if not cls.may_be_redone(context) and not _is_surface(context):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`prefilter.reconstruct`: the surface of points, as a new object beside them."""
+"""`prefilter.reconstruct`: reconstructs the surface of points as a new object."""
 
 from typing import TYPE_CHECKING
 
@@ -14,7 +14,7 @@ from ..properties import RECONSTRUCT, ScanProperties
 from .selected import SelectedScans
 
 if TYPE_CHECKING:
-    from ..reconstruction import Load, Reconstruction
+    from ..reconstruction import Load, ObjectsReconstruction
 
 
 class PREFILTER_OT_reconstruct(
@@ -35,27 +35,27 @@ class PREFILTER_OT_reconstruct(
     presets = RECONSTRUCT
 
     if TYPE_CHECKING:
-        work: Reconstruction | None
+        work: ObjectsReconstruction | None
 
     @classmethod
     def chosen(cls, context: bpy.types.Context) -> list[bpy.types.Object]:
-        """Returns the selected points, also those that modifiers make."""
+        """Returns the selected points, including points from modifiers."""
         from ...bridge.points import may_be_points
 
         return [obj for obj in context.selected_objects if may_be_points(obj)]
 
     def complete_settings(self) -> None:
-        """Sets what the caller has left; who names a depth, or a size, means it."""
+        """Completes the settings; a given depth or voxel size also sets the kind of resolution."""
         named = self.properties.is_property_set
         if not named("resolution") and (named("depth") or named("voxel_size")):
             self.resolution = "depth" if named("depth") else "size"
         super().complete_settings()
 
-    def read_work(self, context: bpy.types.Context) -> "Reconstruction":
+    def read_work(self, context: bpy.types.Context) -> "ObjectsReconstruction":
         """Copies the selected points."""
-        from ..reconstruction import Reconstruction
+        from ..reconstruction import ObjectsReconstruction
 
-        return Reconstruction.read(
+        return ObjectsReconstruction.read(
             self.chosen(context),
             context.active_object,
             self.to_settings(),
@@ -63,22 +63,22 @@ class PREFILTER_OT_reconstruct(
         )
 
     def finish(self, context: bpy.types.Context, result: None) -> str:
-        """Makes the object, and has 3D views show its colors."""
+        """Makes the object, and makes 3D views show its colors."""
         from ...bridge.color_materials import show_in_views
 
-        found = super().finish(context, result)
+        summary = super().finish(context, result)
         assert self.work is not None
         if self.work.has_colors and show_in_views(context, are_points=False):
             self.report({"INFO"}, report("3D views in Solid mode show color attributes now"))
-        return found
+        return summary
 
     def load(self) -> "Load":
-        """Returns how much there was to do."""
+        """Returns the amount of work done."""
         assert self.work is not None
         return self.work.load
 
     def duration(self, load: "Load") -> float:
-        """Returns about how many seconds the points take with the present settings."""
+        """Estimates the duration with the present settings, in seconds."""
         return load.seconds(self.to_settings())
 
     def draw_settings(self, context: bpy.types.Context, layout: bpy.types.UILayout) -> None:

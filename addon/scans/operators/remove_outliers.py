@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`prefilter.remove_outliers`: remove outliers of the selected scans."""
+"""`prefilter.remove_outliers`: removes outliers from the selected scans."""
 
 from typing import TYPE_CHECKING
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 class PREFILTER_OT_remove_outliers(
     OutlierProperties, SelectedScans, WorkOperator, bpy.types.Operator
 ):
-    """Remove Outliers of the selected scans."""
+    """Removes outliers from the selected scans."""
 
     bl_idname = "prefilter.remove_outliers"
     bl_label = "Remove Outliers"
@@ -32,7 +32,7 @@ class PREFILTER_OT_remove_outliers(
         work: Cleaning | None
 
     def read_work(self, context: bpy.types.Context) -> "Cleaning":
-        """Copies where the points are."""
+        """Copies the positions of the points."""
         from ..cleaning import without_outliers
 
         return without_outliers(self.targets(context), self.to_settings())

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What operators of the selected scans share."""
+"""Base of the operators on the selected scans."""
 
 import bpy
 
@@ -9,11 +9,11 @@ from ...core.translations import tr
 
 
 class SelectedScans(OperatorHooks):
-    """A mixin: works on the selected objects that have points."""
+    """A mixin: works on the selected objects with points."""
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether points are selected."""
+        """Whether points are selected."""
         if context.mode != "OBJECT":
             cls.poll_message_set(tr("Switch to Object Mode first"))
             return False
@@ -26,11 +26,11 @@ class SelectedScans(OperatorHooks):
 
     @classmethod
     def chosen(cls, context: bpy.types.Context) -> list[bpy.types.Object]:
-        """Returns the selected points, those of the active object first."""
+        """Returns the selected objects with points, the active one first."""
         return selected_scans(context)
 
     def targets(self, context: bpy.types.Context) -> list[bpy.types.Object]:
-        """Returns the selected points."""
+        """Returns the selected objects with points."""
         return self.chosen(context)
 
 
@@ -38,5 +38,5 @@ def selected_scans(context: bpy.types.Context) -> list[bpy.types.Object]:
     """Returns the selected objects with points of their own, the active one first."""
     from ...bridge.kept_points import may_lose_points
 
-    found = [obj for obj in context.selected_objects if may_lose_points(obj)]
-    return sorted(found, key=lambda obj: obj != context.active_object)
+    scans = [obj for obj in context.selected_objects if may_lose_points(obj)]
+    return sorted(scans, key=lambda obj: obj != context.active_object)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`prefilter.subsample_points`: subsample points of the selected scans."""
+"""`prefilter.subsample_points`: subsamples the points of the selected scans."""
 
 from typing import TYPE_CHECKING
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 class PREFILTER_OT_subsample_points(
     SubsampleProperties, SelectedScans, WorkOperator, bpy.types.Operator
 ):
-    """Subsample Points of the selected scans."""
+    """Subsamples the points of the selected scans."""
 
     bl_idname = "prefilter.subsample_points"
     bl_label = "Subsample Points"
@@ -31,7 +31,7 @@ class PREFILTER_OT_subsample_points(
         work: Cleaning | None
 
     def read_work(self, context: bpy.types.Context) -> "Cleaning":
-        """Copies where the points are."""
+        """Copies the positions of the points."""
         from ..cleaning import subsampling
 
         return subsampling(self.targets(context), self.to_settings())

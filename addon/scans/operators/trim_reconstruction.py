@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`prefilter.trim_reconstruction`: a reconstructed surface cut where points are far."""
+"""`prefilter.trim_reconstruction`: trims a reconstructed surface where points are far away."""
 
 import bpy
 
@@ -11,7 +11,7 @@ from ..properties import TrimProperties
 
 
 class PREFILTER_OT_trim_reconstruction(TrimProperties, bpy.types.Operator):
-    """Cuts the active object's surface where points are far."""
+    """Trims the active object's surface where points are far away."""
 
     bl_idname = "prefilter.trim_reconstruction"
     bl_label = "Trim Reconstruction"
@@ -23,7 +23,7 @@ class PREFILTER_OT_trim_reconstruction(TrimProperties, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether the active object knows how far its points are."""
+        """Whether the active object has the attributes for trimming."""
         from ..trimming import may_be_trimmed
 
         if context.mode != "OBJECT":

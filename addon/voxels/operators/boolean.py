@@ -27,11 +27,11 @@ class PREFILTER_OT_boolean(BooleanProperties, VoxelOperator, bpy.types.Operator)
     bl_options = {"REGISTER", "UNDO"}
     activity = "Combining"
     presets = BOOLEAN
-    _is_resolution_said = False
+    _is_resolution_set = False
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether there are an active object to change and others."""
+        """Whether an editable object is active, and others are selected."""
         from ...bridge.new_meshes import is_editable
 
         if not super().poll(context):
@@ -54,33 +54,33 @@ class PREFILTER_OT_boolean(BooleanProperties, VoxelOperator, bpy.types.Operator)
         return True
 
     def follow_scene(self, context: bpy.types.Context) -> None:
-        """Sets the settings as the scene has them, but for cells that the active object has."""
-        self._is_resolution_said = self._says_resolution()
+        """Copies the scene's settings; notes first whether the caller sets the resolution."""
+        self._is_resolution_set = self._sets_resolution()
         super().follow_scene(context)
 
     def complete_settings(self) -> None:
-        """Sets what the caller has left."""
+        """Completes the settings that the caller left out."""
         if not self.options.is_invoke or self.options.is_repeat:
-            self._is_resolution_said = self._says_resolution()
+            self._is_resolution_set = self._sets_resolution()
         super().complete_settings()
 
-    def _says_resolution(self) -> bool:
-        """Returns whether the caller says how large cells are."""
+    def _sets_resolution(self) -> bool:
+        """Whether the caller sets the resolution."""
         is_set = self.properties.is_property_set
         return bool(self.preset) or any(map(is_set, ("resolution", "depth", "voxel_size")))
 
     def read_work(self, context: bpy.types.Context) -> "Boolean":
         """Copies the selected objects."""
         from ..boolean import Boolean
-        from ..memory import as_before
+        from ..memory import with_same_cells
 
         active = context.active_object
         others = [obj for obj in chosen_solids(context) if obj != active]
-        if self._is_resolution_said and not self.options.is_repeat:
+        if self._is_resolution_set and not self.options.is_repeat:
             self.use_keep_resolution = False
         settings = self.to_settings()
-        if not self._is_resolution_said:
-            settings = as_before(active, settings)
-            # For the redo panel, which then says it.
+        if not self._is_resolution_set:
+            settings = with_same_cells(active, settings)
+            # The redo panel shows these.
             self.resolution, self.voxel_size = settings.resolution, settings.voxel_size
         return Boolean.read(active, others, settings, context.evaluated_depsgraph_get())

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`prefilter.select_found`: places of a report, selected in what a result was made of."""
+"""`prefilter.select_found`: selects a report's faces or edges in the sources of a result."""
 
 import bpy
 from bpy.props import IntProperty
@@ -10,13 +10,13 @@ from ...core.wording import Sentence
 
 
 class PREFILTER_OT_select_found(bpy.types.Operator):
-    """Selects places of the report."""
+    """Selects faces or edges of the report."""
 
     bl_idname = "prefilter.select_found"
     bl_label = "Select Reported Places"
     bl_description = (
-        "Show what the object was made of in its place, and select these faces or edges there in "
-        "Edit Mode"
+        "Show the source of the object in its stead, and select these faces or edges there in Edit "
+        "Mode"
     )
     bl_options = {"REGISTER", "UNDO", "INTERNAL"}
 
@@ -26,10 +26,10 @@ class PREFILTER_OT_select_found(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether the active object has a report, or is what one is about."""
-        from ..memory import made_of
+        """Whether there is a report on the active object or on its result."""
+        from ..memory import updatable_result
 
-        result = made_of(context.active_object)
+        result = updatable_result(context.active_object)
         if context.mode not in {"OBJECT", "EDIT_MESH"}:
             cls.poll_message_set(tr("Switch to Object Mode first"))
             return False
@@ -40,10 +40,10 @@ class PREFILTER_OT_select_found(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Selects them."""
-        from ..memory import made_of
+        from ..memory import updatable_result
         from ..places import select
 
-        result = made_of(context.active_object)
+        result = updatable_result(context.active_object)
         assert result is not None
         if self.index >= len(result.prefilter_found.places):
             self.report({"ERROR"}, report("The report has no such row"))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`prefilter.update_voxels`: a result made again of what it was made of, in place."""
+"""`prefilter.update_voxels`: updates a result from its sources, in place."""
 
 from collections.abc import Callable, Generator
 from typing import TYPE_CHECKING
@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 
 
 class PREFILTER_OT_update_voxels(WorkOperator, bpy.types.Operator):
-    """Makes an object again, of what it was and what it was combined with are now."""
+    """Makes a result again from the present state of its source and operands."""
 
     bl_idname = "prefilter.update_voxels"
     bl_label = "Update Voxels"
     bl_description = (
-        "Run Voxelize or Voxel Boolean again on what the object was made of, as that is now, with "
-        "the settings of the object"
+        "Run Voxelize or Voxel Boolean again on the sources of the object in their present state, "
+        "with the settings of the object"
     )
     bl_options = {"REGISTER", "UNDO"}
     activity = "Updating"
@@ -39,33 +39,33 @@ class PREFILTER_OT_update_voxels(WorkOperator, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether the active object remembers how it was made, or was used for one."""
-        from ..memory import made_of
+        """Whether there is a result to update for the active object."""
+        from ..memory import updatable_result
 
         if context.mode != "OBJECT":
             cls.poll_message_set(tr("Switch to Object Mode first"))
             return False
-        if made_of(context.active_object) is None:
-            cls.poll_message_set(tr("The active object does not know what it was made of"))
+        if updatable_result(context.active_object) is None:
+            cls.poll_message_set(tr("The active object has no stored sources"))
             return False
         return True
 
     def targets(self, context: bpy.types.Context) -> list[bpy.types.Object]:
-        """Returns what is active: the result may be hidden."""
+        """Returns the active object, as the result may be hidden."""
         return [context.active_object]
 
     def draw_settings(self, context: bpy.types.Context, layout: bpy.types.UILayout) -> None:
-        """Draws nothing: the object has the settings."""
+        """Draws nothing; the settings belong to the object."""
 
     def read_work(self, context: bpy.types.Context) -> "Voxelization | Boolean":
-        """Copies what the first was made of that is made again."""
+        """Copies the sources of the first result to update."""
         from ...bridge.new_meshes import check_editable
-        from ..memory import is_changed, made_of
+        from ..memory import is_changed, updatable_result
         from ..updating import Update
 
-        result = made_of(context.active_object)
+        result = updatable_result(context.active_object)
         if result is None:
-            raise ValueError(tr("The active object does not know what it was made of"))
+            raise ValueError(tr("The active object has no stored sources"))
         check_editable(result)
         if is_changed(result):
             text = "the mesh of '{}' was changed by hand, which is lost; undo brings it back"
@@ -75,8 +75,8 @@ class PREFILTER_OT_update_voxels(WorkOperator, bpy.types.Operator):
         self.warn(warnings)
         return work
 
-    def read_next_part(self, context: bpy.types.Context) -> Generator[float, None, Compute] | None:
-        """Returns what reads the next that was made of the one before."""
+    def following(self, context: bpy.types.Context) -> Generator[float, None, Compute] | None:
+        """Returns a generator that reads the next result, if there is one."""
         assert self._update is not None
         return None if self._update.is_last else self._read_next(context)
 
@@ -91,17 +91,17 @@ class PREFILTER_OT_update_voxels(WorkOperator, bpy.types.Operator):
 
     def finish(self, context: bpy.types.Context, result: None) -> str:
         """Writes the results."""
-        from ..showing import Way
+        from ..placement import Placement
 
         assert self.work is not None
         assert self._update is not None
-        self.work.way = Way.AGAIN
-        said = super().finish(context, result)
+        self.work.placement = Placement.AGAIN
+        summary = super().finish(context, result)
         self._update.commit()
-        return said
+        return summary
 
-    def discarder(self) -> Callable[[], None]:
-        """Removes what stands in for results, and returns what removes the rest."""
+    def releaser(self) -> Callable[[], None]:
+        """Removes the stand-ins for results; returns a callable that releases the rest."""
         if self._update is not None:
             self._update.discard()
         return super().discarder()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What the operators share that work on voxels."""
+"""Base of the operators that make voxels."""
 
 from typing import TYPE_CHECKING
 
@@ -22,28 +22,28 @@ class VoxelOperator(PresetsOperator, WorkOperator):
 
     queue_name = LONG_WORK
     modes = frozenset({"OBJECT"})
-    """Those in which it runs."""
+    """Modes in which it runs."""
 
     if TYPE_CHECKING:
         work: Voxelization | Boolean | None
 
     def finish(self, context: bpy.types.Context, result: None) -> str:
-        """Writes the result, beside which what it was made of can be shown."""
-        from ..showing import Way
+        """Writes the result, and keeps its source if the settings say so."""
+        from ..placement import Placement
 
         assert self.work is not None
-        if self.work.way == Way.ALONE:
-            self.work.way = Way.KEEPING
+        if self.work.placement == Placement.ALONE:
+            self.work.placement = Placement.KEEPING
         return super().finish(context, result)
 
     def load(self) -> "list[Load]":
-        """Returns how much there was to do."""
+        """Returns the amount of work done."""
         assert self.work is not None
         return self.work.loads
 
     def duration(self, load: "list[Load]") -> float:
-        """Returns about how many seconds voxels take with the present settings."""
-        return sum((one.seconds(self.to_settings()) for one in load), 0.0)
+        """Estimates the duration with the present settings, in seconds."""
+        return sum((each.seconds(self.to_settings()) for each in load), 0.0)
 
     def targets(self, context: bpy.types.Context) -> list[bpy.types.Object]:
         """Returns the selected objects."""
@@ -56,7 +56,7 @@ class VoxelOperator(PresetsOperator, WorkOperator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether the operator may run now, whatever is selected."""
+        """Whether the operator runs in the present mode."""
         if context.mode not in cls.modes:
             cls.poll_message_set(tr("Switch to Object Mode first"))
             return False
@@ -64,7 +64,7 @@ class VoxelOperator(PresetsOperator, WorkOperator):
 
 
 def chosen_solids(context: bpy.types.Context) -> list[bpy.types.Object]:
-    """Returns the selected objects that may show something with an inside."""
+    """Returns the selected objects that may show a solid."""
     from ...bridge.new_meshes import is_solid
 
     return [obj for obj in context.selected_objects if is_solid(obj)]

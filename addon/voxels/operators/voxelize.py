@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`prefilter.voxelize`: a closed surface in place of any mesh, through voxels."""
+"""`prefilter.voxelize`: replaces any mesh by a closed surface, through voxels."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -35,7 +35,7 @@ class PREFILTER_OT_voxelize(VoxelizeProperties, VoxelOperator, bpy.types.Operato
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether an object is selected that can be voxelized."""
+        """Whether an object is selected that can be voxelized."""
         if not super().poll(context):
             return False
         if cls.may_be_redone(context):
@@ -51,17 +51,17 @@ class PREFILTER_OT_voxelize(VoxelizeProperties, VoxelOperator, bpy.types.Operato
     def _may_be_sculpted(cls, context: bpy.types.Context) -> bool:
         from ...bridge.sculpting import obstacle
 
-        found = obstacle(context.active_object)
-        if found:
-            cls.poll_message_set(found)
-        return not found
+        reason = obstacle(context.active_object)
+        if reason:
+            cls.poll_message_set(reason)
+        return not reason
 
     def targets(self, context: bpy.types.Context) -> list[bpy.types.Object]:
-        """Returns the selected objects; in Sculpt Mode the one that is sculpted."""
+        """Returns the selected objects; in Sculpt Mode the sculpted one."""
         return [context.active_object] if context.mode == "SCULPT" else chosen_solids(context)
 
-    def retarget(self, targets: Sequence[bpy.types.ID]) -> None:
-        """Takes what was selected, or sculpted, when the button was pressed."""
+    def aim(self, targets: Sequence[bpy.types.ID]) -> None:
+        """Keeps the objects that were selected or sculpted when the button was pressed."""
         self._chosen = list(targets)
 
     def read_work(self, context: bpy.types.Context) -> "Voxelization":
@@ -69,7 +69,7 @@ class PREFILTER_OT_voxelize(VoxelizeProperties, VoxelOperator, bpy.types.Operato
         from ..voxelization import Voxelization
 
         chosen = self.targets(context) if self._chosen is None else self._chosen
-        self._chosen = None  # A redo begins with an undo, which ends them.
+        self._chosen = None  # The undo before a redo invalidates these objects.
         self.is_alone = chosen == [context.active_object] and context.mode == "SCULPT"
         if self.is_alone:
             return self._read_sculpted(context)
@@ -87,17 +87,17 @@ class PREFILTER_OT_voxelize(VoxelizeProperties, VoxelOperator, bpy.types.Operato
             return super().finish(context, result)
 
     def _read_sculpted(self, context: bpy.types.Context) -> "Voxelization":
-        """Copies the object that is sculpted; brushes need small triangles, and a mesh."""
+        """Copies the sculpted object; brushes need small triangles, and a mesh."""
         from ...bridge import sculpting
-        from ..showing import Way
+        from ..placement import Placement
         from ..voxelization import Voxelization
 
         obj = context.active_object
-        found = sculpting.obstacle(obj)
-        if found:
-            raise ValueError(found)
+        reason = sculpting.obstacle(obj)
+        if reason:
+            raise ValueError(reason)
         settings = replace(self.to_settings(), adaptivity=0.0, output="mesh")
         with sculpting.left():
             work = Voxelization.read([obj], settings, context.evaluated_depsgraph_get())
-        work.way = Way.SCULPTED
+        work.placement = Placement.SCULPTED
         return work

@@ -43,15 +43,16 @@ from .points.choice import choose_points as choose_points
 from .points.clouds import align_scans as align_scans
 from .points.clouds import find_outliers as find_outliers
 from .points.clouds import subsample_points as subsample_points
+from .points.extensions import POINT_EXTENSIONS as POINT_EXTENSIONS
 from .points.normals import estimate_normals as estimate_normals
 from .points.normals import grid_normals as grid_normals
 from .points.normals import mesh_normals as mesh_normals
 from .points.painting import paint_texture as paint_texture
+from .points.reconstruction import Reconstruction as Reconstruction
 from .points.reconstruction import ReconstructionReport as ReconstructionReport
 from .points.reconstruction import reconstruct as reconstruct
 from .points.reconstruction import reconstruct_file as reconstruct_file
 from .points.scan import ScanPoints as ScanPoints
-from .points.scan_files import POINT_EXTENSIONS as POINT_EXTENSIONS
 from .points.scan_files import float_step as float_step
 from .points.scan_files import read_points as read_points
 from .points.sources import file_normals as file_normals

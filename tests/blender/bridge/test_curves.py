@@ -36,7 +36,7 @@ def evaluated_points(obj):
 
 
 @pytest.mark.parametrize("weighted", [False, True])
-def test_nurbs_is_what_blender_evaluates(read, weighted):
+def test_nurbs_match_blenders_evaluation(read, weighted):
     compared = 0
     for order, bezier, endpoint in itertools.product((2, 3, 4, 5, 6), (False, True), (False, True)):
         # Blender draws no Bezier knots of a higher order.
@@ -102,7 +102,7 @@ def test_fills_by_letter_and_by_material(read):
     assert [fill.color for fill in fills] == [(1, 0, 0, 1), (0, 1, 0, 0.5)]
 
 
-def test_what_fills_nothing(read):
+def test_splines_that_fill_nothing(read):
     obj = outlines.curve()
     assert read(obj).fills == []
     outlines.polygon(obj, [(0, 0), (1, 0), (1, 1)], closed=False)
@@ -130,7 +130,7 @@ def test_open_splines_are_left_out_as_blender_leaves_them_out():
     assert area() == pytest.approx(12)
 
 
-def test_modifiers_on_splines_count_and_others_are_told(read):
+def test_other_modifiers_than_those_on_splines_are_reported(read):
     obj = outlines.curve()
     outlines.bezier_circle(obj)
     cast = obj.modifiers.new("Bend", "SIMPLE_DEFORM")

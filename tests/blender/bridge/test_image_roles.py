@@ -80,7 +80,7 @@ def test_colors_mixed_by_a_mask(roles, tree, picture):
     }
 
 
-def test_a_channel_that_was_put_together_is_followed(roles, tree, picture):
+def test_combined_channels_are_followed(roles, tree, picture):
     other = scenes.image("Other", scenes.noise(4, 4))
     together = tree.nodes.new("ShaderNodeCombineColor")
     for image, name in ((picture, "Red"), (other, "Green")):
@@ -93,7 +93,7 @@ def test_a_channel_that_was_put_together_is_followed(roles, tree, picture):
 
 
 @pytest.mark.parametrize("muted", ["ShaderNodeGamma", "ShaderNodeTexImage"])
-def test_muted_nodes_hand_on_what_they_get(roles, tree, picture, muted):
+def test_muted_nodes_are_bypassed(roles, tree, picture, muted):
     texture = scenes.image_node(tree, picture)
     gamma = tree.nodes.new("ShaderNodeGamma")
     tree.links.new(texture.outputs["Color"], gamma.inputs["Color"])

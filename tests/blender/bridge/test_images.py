@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Images: what is read, what is refused, and what is written back."""
+"""Images: reading, refusals and writing."""
 
 import bpy
 import numpy as np
@@ -95,7 +95,7 @@ def test_float_values_are_taken_as_they_are(addon):
         (True, "STRAIGHT", "Non-Color", False, False),
     ],
 )
-def test_what_alpha_means(addon, is_float, alpha_mode, colorspace, coverage, straight):
+def test_alpha_modes(addon, is_float, alpha_mode, colorspace, coverage, straight):
     made = scenes.image(
         "Paint",
         scenes.noise(4, 4, alpha=True),
@@ -163,7 +163,7 @@ def test_render_result_is_refused(addon):
         read(addon, bpy.data.images["Render Result"])
 
 
-def test_unknown_name_lists_what_there_is(addon):
+def test_unknown_name_lists_known_images(addon):
     scenes.image("Paint", scenes.noise(4, 4))
     with pytest.raises(ValueError, match=r"'Pain'.*'Paint'"):
         addon("bridge.images").find("Pain")
@@ -234,7 +234,7 @@ def test_levels_sort_by_their_names(addon):
     assert names == sorted(names)
 
 
-def test_levels_of_earlier_bakes_leave_no_twins(addon):
+def test_levels_of_earlier_bakes_are_replaced(addon):
     made = scenes.image("Paint", scenes.noise(8, 8))
     for name in ("mip01", "mip02", "mip02.001", "mip03", "mip03.001", "mip10"):
         scenes.image(f"Paint.{name}", scenes.noise(2, 2))["prefilter_level_of"] = "Paint"

@@ -20,7 +20,7 @@ VERTICES = np.array([[0, 1, 2], [0, 2, 3]], np.int32)
         ([[0, 1, 2], [0, 2, 3]], [0, 0], "FACE", [[0], [0]]),
     ],
 )
-def test_where_triangles_have_their_values(addon, corners, faces, domain, expected):
+def test_indices_of_triangles_in_each_domain(addon, corners, faces, domain, expected):
     made = addon("bridge.layers").Triangles(
         VERTICES,
         None if corners is None else np.array(corners, np.int32),

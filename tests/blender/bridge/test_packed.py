@@ -38,7 +38,7 @@ def test_packed_bytes_are_written_beside_the_blend(addon, tmp_path):
 @pytest.mark.parametrize(
     ("ending", "kind"), [(".png", "uint8"), (".exr", "half"), (".tif", "uint8"), (".jpg", "uint8")]
 )
-def test_the_ending_says_what_was_packed(addon, tmp_path, ending, kind):
+def test_extensions_match_the_packed_data(addon, tmp_path, ending, kind):
     image = cycles.write_picture(tmp_path / f"paint{ending}", smooth(16, 16, 3), kind)
     image.pack()
     image.name, image.filepath = "A b.png", ""

@@ -245,7 +245,7 @@ def test_nodes(addon, chain, build):
     assert function.changing
 
 
-def test_what_is_no_function_of_the_texel(addon, chain):
+def test_nodes_that_are_not_functions_of_the_texel(addon, chain):
     functions, images = addon("bridge.texel_functions"), addon("bridge.images")
     other = scenes.image_node(chain.tree, scenes.image("Other", scenes.noise(SIDE, SIDE)))
     for node in (other, chain.add("TexNoise"), chain.add("Fresnel")):

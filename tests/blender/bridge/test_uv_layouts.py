@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The borders of what a UV map covers, by brute force."""
+"""Borders of the area covered by a UV map, against brute force."""
 
 import bpy
 import numpy as np
@@ -36,7 +36,7 @@ def covering(triangles, points):
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_they_wind_once_for_each_triangle(borders, seed):
+def test_borders_wind_once_for_each_triangle(borders, seed):
     rng = np.random.default_rng(seed)
     corners = rng.integers(0, 7, (40, 2)).astype(np.float32) / 6
     triangles = corners[rng.integers(0, len(corners), (30, 3))]

@@ -15,13 +15,13 @@ def here(found, request):
     return found[request.param]
 
 
-def test_it_follows_the_mouse(here):
+def test_line_follows_the_mouse(here):
     assert here["dragged"] == pytest.approx(60, abs=1.5)
     assert here["near"] == pytest.approx(-40, abs=1.5)
     assert here["slowly"] == pytest.approx(5, abs=1.5)
 
 
-def test_it_and_the_pointer_show_that_it_can_be_taken(here):
+def test_line_and_cursor_change_under_the_mouse(here):
     assert here["shows that it can be taken"]
 
 
@@ -29,17 +29,17 @@ def test_ctrl_snaps(here):
     assert here["share snapped"] == 0.625
 
 
-def test_beside_it_nothing_moves(here):
+def test_dragging_beside_the_line_moves_nothing(here):
     assert here["beside"] == 0
 
 
-def test_esc_puts_it_back(here):
+def test_esc_restores_the_position(here):
     assert here["taken back"] == pytest.approx(0, abs=1e-3)
 
 
-def test_it_stays_in_the_editor(here):
+def test_line_stays_inside_the_editor(here):
     assert here["share at the edge"] == 0
 
 
-def test_without_a_line_nothing_is_taken(found):
+def test_without_a_line_nothing_is_dragged(found):
     assert found["levels"]["without a line"] == 0

@@ -183,5 +183,5 @@ def test_deleted_sources():
     assert bpy.ops.prefilter.reconstruct(depth=5) == {"FINISHED"}
     bpy.data.objects.remove(scan)
     assert not bpy.ops.prefilter.switch_source.poll()
-    with pytest.raises(RuntimeError, match="does not know what it was made of"):
+    with pytest.raises(RuntimeError, match="has no stored sources"):
         bpy.ops.prefilter.switch_source()

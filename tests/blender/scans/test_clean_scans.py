@@ -50,7 +50,7 @@ def values(obj):
     return np.concatenate(parts, axis=1)
 
 
-def test_points_keep_what_they_have(scan):
+def test_points_keep_their_attributes(scan):
     before = values(scan)
     names = set(scan.data.attributes.keys())
     assert bpy.ops.prefilter.subsample_points(spacing=0.5) == {"FINISHED"}

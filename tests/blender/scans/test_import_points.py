@@ -3,6 +3,7 @@
 """`prefilter.import_points`: files of points as objects."""
 
 import os
+import re
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -132,7 +133,7 @@ def test_undo_takes_the_object_back(torus):
     assert not bpy.data.objects
 
 
-def test_a_surface_at_once(torus):
+def test_import_and_reconstruct_at_once(torus):
     bpy.context.scene.prefilter_reconstruct.depth = 5
     obj = read(torus.path, use_reconstruct=True)
     assert obj.name == "Torus.surface"
@@ -141,7 +142,7 @@ def test_a_surface_at_once(torus):
     assert bpy.data.objects["Torus"].hide_get()
 
 
-def test_imported_points_are_what_reconstruct_takes(torus):
+def test_imported_points_can_be_reconstructed(torus):
     read(torus.path)
     assert bpy.ops.prefilter.reconstruct(depth=5) == {"FINISHED"}
     assert bodies.is_closed(bpy.context.object)
@@ -185,7 +186,7 @@ def test_offsets_are_round(torus, tmp_path):
     assert "scan_offset" not in read(near)
 
 
-def test_merged_coordinates_are_told(torus, tmp_path, capfd):
+def test_merged_coordinates_are_reported(torus, tmp_path, capfd):
     merged = (torus.positions + PLACE).astype(np.float32)
     read(clouds.file(tmp_path / "Merged.xyz", merged.astype(np.float64)))
     assert "Warning: coordinates were rounded to 50 cm" in capfd.readouterr().out
@@ -219,7 +220,7 @@ PTX = """2
 """
 
 
-def test_where_the_scanner_stood(tmp_path):
+def test_viewpoints(tmp_path):
     """One place is a property of the object, several are an attribute of the points."""
     one, several = tmp_path / "one.ptx", tmp_path / "several.ptx"
     one.write_text(PTX.format(5) * 2)
@@ -243,7 +244,7 @@ def test_thinned(torus, capfd):
     assert "one of 4 points was kept, as Most Points is 666" in capfd.readouterr().out
 
 
-def test_what_is_not_finite_is_left_out(torus, tmp_path, capfd):
+def test_points_that_are_not_finite_are_left_out(torus, tmp_path, capfd):
     torus.positions[3] = np.nan
     obj = read(clouds.file(tmp_path / "Holes.xyz", torus.positions))
     assert len(clouds.points(obj)) == COUNT - 1
@@ -260,7 +261,7 @@ def test_what_is_not_finite_is_left_out(torus, tmp_path, capfd):
         ("scan.stl", "solid", "unsupported extension '.stl'"),
     ],
 )
-def test_what_cannot_be_read(tmp_path, name, text, message):
+def test_unreadable_files(tmp_path, name, text, message):
     if text is not None:
         (tmp_path / name).write_text(text)
     with pytest.raises(RuntimeError, match=message):
@@ -291,15 +292,23 @@ def test_real_scans(name):
     assert np.isfinite(found).all()
 
 
-def test_every_kind_of_file_is_offered(addon):
-    choices = addon("scans.choices")
-    assert sorted(choices.EXTENSIONS) == sorted(prefilter.POINT_EXTENSIONS)
+def test_all_extensions_are_offered(addon):
+    extensions = prefilter.POINT_EXTENSIONS
     pattern = bpy.ops.prefilter.import_points.get_rna_type().properties["filter_glob"].default
-    assert pattern.split(";") == [f"*{ending}" for ending in choices.EXTENSIONS]
+    assert pattern.split(";") == [f"*{ending}" for ending in extensions]
     dropped = set(
         addon("scans.operators.drop_points").PREFILTER_FH_points.bl_file_extensions.split(";")
     )
     # Blender compares the last extension of a name alone.
-    last = {os.path.splitext(f"a{extension}")[1] for extension in choices.EXTENSIONS}
+    last = {os.path.splitext(f"a{extension}")[1] for extension in extensions}
     assert last - dropped == {".ply", ".txt", ".obj"}
     assert ".gz" in dropped
+
+
+def test_extensions_in_the_menu_are_read(addon):
+    texts = []
+    layout = SimpleNamespace(operator=lambda name, text: texts.append(text))
+    addon("scans.menus")._draw_import(SimpleNamespace(layout=layout), None)
+    named = re.findall(r"\.\w+", texts[0])
+    assert len(named) == 7
+    assert {*named} <= {*prefilter.POINT_EXTENSIONS}

@@ -13,7 +13,7 @@ def test_a_file_of_the_browser(found):
     assert found["undone"] == {}
 
 
-def test_a_surface_at_once(found):
+def test_import_and_reconstruct_at_once(found):
     assert found["surface"] == {"Torus": True, "Torus.surface": False}
     assert found["adjusted"] == "PREFILTER_OT_reconstruct"
 
@@ -30,7 +30,7 @@ def test_esc(found):
     assert found["cancelled"] == found["dropped_R"]
 
 
-def test_colors_are_seen(found):
+def test_colors_are_shown(found):
     """Views change only for points that have colors, and if that is wanted."""
     assert found["plain"] == found["colored_False"] == ["SOLID", "MATERIAL"]
     assert found["colored_True"] == ["MATERIAL", "MATERIAL"]

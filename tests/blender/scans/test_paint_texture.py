@@ -51,7 +51,7 @@ def test_a_reconstructed_surface_gets_the_colors_of_its_scan():
 
 
 def test_charts_lie_beside_each_other():
-    """With the angle that Blender has at first, parts of the rims of Suzanne's ears overlap."""
+    """Blender's default angle makes charts of the rims of Suzanne's ears overlap."""
     colored()
     bpy.ops.mesh.primitive_monkey_add()
     monkey = bpy.context.object

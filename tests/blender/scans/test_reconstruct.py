@@ -49,7 +49,7 @@ def test_closed_and_near_the_points(options):
     assert_torus(surface(), CELL)
 
 
-def test_what_it_says(capfd):
+def test_messages(capfd):
     clouds.scan(*clouds.torus(5_000))
     reconstruct()
     out = capfd.readouterr().out
@@ -92,7 +92,7 @@ def test_the_new_object_is_active_and_shaded_smooth():
 
 
 @pytest.mark.parametrize("points", ["keep", "hide", "delete"])
-def test_what_becomes_of_the_points(points):
+def test_points_are_kept_hidden_or_deleted(points):
     clouds.scan(*clouds.torus(5_000))
     reconstruct(points=points)
     scan = bpy.data.objects.get("Scan")
@@ -122,7 +122,7 @@ def test_in_the_space_of_its_object():
     assert_torus(made, 2 * CELL)
 
 
-def test_scans_are_put_together():
+def test_scans_are_joined():
     """Parts of one torus, each in an object that is placed otherwise."""
     points, normals = clouds.torus(30_000)
     for i, placed in enumerate([{}, PLACED, {"rotation_euler": (1, 2, 3)}]):

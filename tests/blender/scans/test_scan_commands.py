@@ -87,7 +87,7 @@ def test_other_targets(scan, tmp_path, ending):
 
 
 def test_colors(scan, tmp_path):
-    """As the file has them, both from file to file and in memory."""
+    """Colors are the file's, both from file to file and in memory."""
     for name, options in (("stream.ply", DEPTH), ("memory.ply", ("--voxel-size", 0.1))):
         result = run("reconstruct", scan, "-o", tmp_path / name, *options)
         assert result.returncode == 0, result.stderr
@@ -233,7 +233,7 @@ def test_failures_leave_nothing(scan, tmp_path):
 
 @pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
 def test_ctrl_c_leaves_nothing(scan, tmp_path, addon, monkeypatch, number, status):
-    """As a user presses it who sees the first line of progress."""
+    """Interrupts after the first line of progress, as a user would."""
 
     class Interrupted(reporters.PlainReporter):
         _is_sent = False

@@ -35,5 +35,5 @@ def test_esc(found):
     assert found["cancelled"] == {"Scan": False}
 
 
-def test_an_object_that_goes_meanwhile(found):
+def test_an_object_deleted_meanwhile(found):
     assert found["gone"] == {}

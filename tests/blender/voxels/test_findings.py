@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What the report says of meshes: each number against what the mesh was built with."""
+"""Reports on meshes: each number against the construction of the mesh."""
 
 import importlib
 import math
@@ -39,7 +39,7 @@ def torus():
     return bpy.context.active_object
 
 
-def test_parts_and_genus_of_what_is_whole():
+def test_parts_and_genus_of_intact_meshes():
     assert the_line(outcome(bodies.sphere())) == [
         "parts: 1 before, 1 after",
         "genus: 0 before, 0 after",
@@ -91,7 +91,7 @@ def test_a_thin_plate(thickness, depth):
     assert len(the_line(outcome(plate(thickness), depth=depth))) == 2
 
 
-def test_which_voxel_size_keeps_them():
+def test_advice_of_a_voxel_size():
     obj = plate(1.0)
     line = the_line(outcome(obj, resolution="size", voxel_size=0.16))
     assert line[3].startswith("walls of 1.0 cells: voxel size 8 cm keeps")
@@ -107,7 +107,7 @@ def test_sheets():
 
 
 def test_walls_beside_sheets():
-    """The depth is that of the walls, though there is more of sheets."""
+    """The advised depth preserves the walls, though sheets have a greater area."""
     obj = plate(0.5)
 
     def change(bm):
@@ -157,7 +157,7 @@ def test_parts_are_lost_without_a_thickness():
     assert line[-1].startswith("walls of 0.3 cells: depth ")
 
 
-def test_what_falls_apart():
+def test_objects_that_fall_apart():
     obj = plate(0.9)
     obj.rotation_euler = (0.02, 0.03, 0.4)
     bpy.context.view_layer.update()
@@ -221,7 +221,7 @@ def test_a_monkey_loses_no_eyes(faces):
         assert (place - point).length < 0.1 * cell
 
 
-def test_sheets_that_cross_what_is_around_them():
+def test_sheets_that_cross_their_surroundings():
     """There are walls of any thickness where they do, and few of them."""
     assert bpy.ops.mesh.primitive_uv_sphere_add() == DONE
     ball = bpy.context.active_object

@@ -24,7 +24,7 @@ def test_panels_and_modal_operators(found):
 
 
 def test_booleans_have_the_settings_of_voxelizing():
-    """One set in the scene: either group shows what the other one got."""
+    """The scene stores shared settings once: a change in one group shows in the other."""
     scene = bpy.context.scene
     scene.prefilter_voxelize.depth = 5
     scene.prefilter_voxelize.interpolant = "linear"

@@ -144,7 +144,7 @@ def loops_of(mesh, faces):
 
 
 def genus_of(mesh, faces):
-    """Returns that of a part, with each of its holes closed by a face."""
+    """Genus of a part, with each of its holes closed by a face."""
     edges = {key for face in faces for key in mesh.polygons[face].edge_keys}
     corners = {vertex for key in edges for vertex in key}
     return 1 - (len(corners) - len(edges) + len(faces) + loops_of(mesh, faces)) // 2
@@ -227,7 +227,7 @@ def without_advice(line):
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_what_is_thickened_and_closed(seed):
+def test_thickened_faces_and_closed_holes(seed):
     obj = many_parts(seed)
     before = obj.data.copy()
     line = the_line(outcome(obj))
@@ -250,7 +250,7 @@ def test_what_is_thickened_and_closed(seed):
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_what_is_lost_without_a_thickness(seed):
+def test_lost_faces_without_a_thickness(seed):
     obj = many_parts(seed)
     before = obj.data.copy()
     found = outcome(obj, thickness=0.0)

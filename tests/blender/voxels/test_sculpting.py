@@ -33,7 +33,7 @@ def test_adjust_last_operation(found):
     assert undone[1] < after[1]
 
 
-def test_nothing_is_sculpted_meanwhile(found):
+def test_strokes_are_blocked_while_voxelizing(found):
     """Strokes would be lost."""
     before, during, after = found["alone"]
     assert before == during == after

@@ -68,7 +68,7 @@ def test_large_triangles_shade_as_small_ones():
 
 
 def test_normals_are_weighted_by_areas(addon):
-    """As summed face by face around each vertex, by the faces that no sharp edge parts."""
+    """Compare with sums over the faces around each vertex that no sharp edge separates."""
     box = rounded(2)
     bpy.ops.prefilter.voxelize(depth=5, adaptivity=0.1)
     positions, triangles = arrays(box.data)
@@ -98,7 +98,7 @@ def test_normals_are_weighted_by_areas(addon):
 
 @pytest.mark.parametrize("faces", ["triangles", "quads"])
 def test_creases_of_just_the_angle_are_sharp_all_along(faces):
-    """The sides of a prism of twelve meet at 30 degrees, but for rounding."""
+    """The sides of a prism with twelve sides meet at 30 degrees, up to rounding."""
     for angle, is_sharp in ((30.0, True), (30.2, False)):
         bpy.ops.mesh.primitive_cylinder_add(vertices=12, depth=3, rotation=(0.3, 0.2, 0.1))
         prism = bpy.context.object
@@ -110,7 +110,7 @@ def test_creases_of_just_the_angle_are_sharp_all_along(faces):
 
 
 def test_normals_are_made_anew():
-    """Those that follow from triangles are not carried to others, as those of users are."""
+    """Computed normals are not transferred to other meshes; custom normals of users are."""
     box = rounded()
     bpy.ops.prefilter.voxelize(depth=5)
     assert box.data.has_custom_normals

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Sets of few faces on other faces: what they cover is known by place."""
+"""Small face sets on a surface: the covered faces are known from positions."""
 
 import numpy as np
 import pytest
@@ -57,7 +57,7 @@ def test_a_strip_keeps_its_area(small_sets):
     assert np.abs(middles(*coarse)[found == 9][:, 0] - 5.0).max() < 0.6
 
 
-def test_what_is_gone_or_tiny_stays_away(small_sets):
+def test_removed_and_tiny_sets_are_not_restored(small_sets):
     positions, faces = grid(40, 10.0, 3)
     at = middles(positions, faces)
     numbers = np.full(len(faces), 4)

@@ -140,7 +140,7 @@ def is_left_alone(*words):
     return "Up to date" in result.stdout
 
 
-def test_what_is_up_to_date_is_left_alone(blend, tmp_path):
+def test_up_to_date_files_are_skipped(blend, tmp_path):
     words = ("voxelize", blend, "-o", tmp_path / "out.glb")
     assert [is_left_alone(*words) for _ in range(2)] == [False, True]
     assert is_left_alone(*words, "--threads", 1)
@@ -177,7 +177,7 @@ def test_materials_and_textures_decide(blend, tmp_path):
 
 
 @pytest.mark.parametrize("extension", [".obj", ".ply", ".stl", ".glb"])
-def test_files_tell_what_they_were_made_of(blend, tmp_path, extension):
+def test_files_store_the_fingerprint_of_their_sources(blend, tmp_path, extension):
     run("voxelize", blend, "-o", tmp_path / "made.obj", "--depth", 3)
     words = ("voxelize", tmp_path / "made.obj", "-o", tmp_path / f"out{extension}")
     assert [is_left_alone(*words) for _ in range(2)] == [False, True]

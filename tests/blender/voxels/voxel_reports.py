@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What the report says of objects that are voxelized."""
+"""Reports on voxelized objects."""
 
 import importlib
 

@@ -12,7 +12,7 @@ from typing import Any
 from ..files.staging import check_target
 from ..options.flags import add_flags, given, tables
 from ..options.scans import ScanSettings
-from ..points.scan_files import POINT_EXTENSIONS
+from ..points.extensions import POINT_EXTENSIONS
 from ..points.steps import STEPS, Steps
 from ..workflows.outcome import up_to_date
 from ..workflows.scans import STREAMED_TARGET, StepWork, Streaming

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Scans moved onto a surface of all of them."""
+"""Alignment of scans to a surface of all of them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,19 +18,19 @@ Prepared: TypeAlias = tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]
 """Positions and normals."""
 
 _ROUNDS = 2
-"""So many surfaces are made."""
+"""Number of surfaces that are reconstructed and aligned to."""
 
 
 @dataclass(frozen=True, eq=False)
 class ScanAlignment:
-    """How scans are moved onto each other.
+    """Motions that align scans.
 
     Attributes:
-        matrices: (scans, 4, 4): `ScanPoints.moved` takes one. The first scan stays.
-        before: The median distance of points from the planes of those nearest to them in other
-            scans, within four times as far as points are apart.
-        after: The same with all scans moved.
-        pairs: How many points of each scan, of those looked at, have such a one afterward. A scan
+        matrices: (scans, 4, 4), one for `ScanPoints.moved` of each scan. The first scan stays.
+        before: Median distance of points from the plane of the nearest point in another scan,
+            over points with one within four point spacings.
+        after: The same once all scans are moved.
+        pairs: Number of sampled points of each scan that then have such a nearest point. A scan
             with 0 overlaps no other.
     """
 
@@ -41,23 +41,23 @@ class ScanAlignment:
 
     @classmethod
     def of(
-        cls, found: tuple[npt.NDArray[np.float64], float, float, Sequence[int]]
+        cls, result: tuple[npt.NDArray[np.float64], float, float, Sequence[int]]
     ) -> "ScanAlignment":
-        """What the native module has found."""
-        matrices, before, after, pairs = found
+        """Wraps a result of the native module."""
+        matrices, before, after, pairs = result
         return cls(matrices, before, after, tuple(pairs))
 
 
 @dataclass(frozen=True, eq=False)
 class SurfaceRounds:
-    """Scans that are in place, but for what noise does to pairs of them.
+    """Refinement of scans that are already aligned in pairs, so that noise averages out.
 
     Attributes:
-        scans: As they came.
-        prepared: Their points, with normals that may point to either side.
+        scans: The scans before any motion.
+        prepared: Their points, with normals whose side is arbitrary.
         reach: See `align_scans`.
-        iterations: See there.
-        threads: See there.
+        iterations: See `align_scans`.
+        threads: See `align_scans`.
     """
 
     scans: Sequence[ScanPoints]
@@ -66,25 +66,25 @@ class SurfaceRounds:
     iterations: int
     threads: int
 
-    def run(self, found: ScanAlignment, progress: ProgressCallback | None) -> ScanAlignment:
-        """Moves on the scans that overlap others.
+    def run(self, alignment: ScanAlignment, progress: ProgressCallback | None) -> ScanAlignment:
+        """Refines the motions of the scans that overlap others.
 
         Raises:
             Cancelled: `progress` returned False.
         """
-        chosen = [k for k, pairs in enumerate(found.pairs) if pairs > 0]
+        chosen = [k for k, pairs in enumerate(alignment.pairs) if pairs > 0]
         if len(chosen) < 2:
-            return found
-        matrices = found.matrices.copy()
+            return alignment
+        matrices = alignment.matrices.copy()
         sides = self._sides(chosen, matrices, progress_part(progress, 0.0, 0.2))
         for k in range(_ROUNDS):
             part = progress_part(progress, 0.2 + 0.35 * k, 0.55 + 0.35 * k)
             matrices[chosen] = self._round(sides, matrices[chosen], part)
-        moved = [_moved(one, matrix) for one, matrix in zip(self.prepared, matrices, strict=True)]
+        moved = [_moved(scan, matrix) for scan, matrix in zip(self.prepared, matrices, strict=True)]
         last = _native.align_scans(
             moved, self.reach, 1, progress_part(progress, 0.9, 1.0), self.threads
         )
-        return ScanAlignment(matrices, found.before, last[1], tuple(last[3]))
+        return ScanAlignment(matrices, alignment.before, last[1], tuple(last[3]))
 
     def _sides(
         self,
@@ -92,7 +92,7 @@ class SurfaceRounds:
         matrices: npt.NDArray[np.float64],
         progress: ProgressCallback | None,
     ) -> list[tuple[Prepared, bool]]:
-        """The points with normals that agree, and whether the side they point to is known."""
+        """Points with consistently oriented normals, and whether their side is known."""
         moved = {k: _moved(self.prepared[k], matrices[k]) for k in chosen}
         toward: dict[int, npt.NDArray[np.float64]] = {}
         apart: list[int] = []
@@ -104,14 +104,14 @@ class SurfaceRounds:
                 apart.append(k)
         if apart:
             rows = np.concatenate([moved[k][0] for k in apart])
-            together = estimate_normals(rows, progress=progress, threads=self.threads)
+            estimates = estimate_normals(rows, progress=progress, threads=self.threads)
             ends = np.cumsum([len(moved[k][0]) for k in apart])[:-1]
-            toward |= dict(zip(apart, np.split(together, ends), strict=True))
+            toward |= dict(zip(apart, np.split(estimates, ends), strict=True))
         sides = []
         for k in chosen:
             positions, normals = self.prepared[k]
-            turned = _turned(normals, moved[k][1], toward.get(k))
-            sides.append(((positions, turned), k not in apart))
+            oriented = _oriented(normals, moved[k][1], toward.get(k))
+            sides.append(((positions, oriented), k not in apart))
         return sides
 
     def _round(
@@ -120,21 +120,21 @@ class SurfaceRounds:
         matrices: npt.NDArray[np.float64],
         progress: ProgressCallback | None,
     ) -> npt.NDArray[np.float64]:
-        """The motions of scans onto a surface of all, from those that they have."""
+        """Reconstructs a surface of all scans and aligns each to it; returns the new motions."""
         options = _native.ReconstructOptions()
         options.threads = self.threads
         options.are_sides_known = any(is_known for _, is_known in scans)
         points = tuple(
-            _native.MovedPoints(_native.ArrayPoints(*one, None, None, [], True), matrix)
-            for (one, _), matrix in zip(scans, matrices, strict=True)
+            _native.MovedPoints(_native.ArrayPoints(*scan, None, None, [], True), matrix)
+            for (scan, _), matrix in zip(scans, matrices, strict=True)
         )
-        positions, triangles, _, told = _native.reconstruct(
+        positions, triangles, _, findings = _native.reconstruct(
             _native.JoinedPoints(points), options, as_progress(progress_part(progress, 0.0, 0.5))
         )
-        if told["is_flipped"]:
+        if findings["is_flipped"]:
             triangles = np.ascontiguousarray(triangles[:, ::-1])
         return _native.align_to_surface(
-            [one for one, _ in scans],
+            [scan for scan, _ in scans],
             list(matrices),
             positions,
             triangles,
@@ -151,12 +151,12 @@ def _moved(scan: Prepared, matrix: npt.NDArray[np.float64]) -> Prepared:
     return moved.positions, np.asarray(moved.normals, np.float64)
 
 
-def _turned(
+def _oriented(
     normals: npt.NDArray[np.float64],
     moved: npt.NDArray[np.float64],
     toward: npt.NDArray[np.float64] | None,
 ) -> npt.NDArray[np.float64]:
-    """Normals of which those are reversed that, moved, do not point toward a direction."""
+    """Reverses the normals that, once moved, point away from the directions `toward`."""
     if toward is None:
         return normals
     is_away = (moved * toward).sum(axis=1) < 0.0

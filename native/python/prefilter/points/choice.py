@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Which points of files and scans are used: those of a box, of some classes, of some returns."""
+"""Selection of points by a box, by class and by return."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,17 +17,17 @@ from .scan import ScanPoints
 Classes: TypeAlias = int | Sequence[int] | npt.NDArray[np.integer]
 
 RETURNS = _native.RETURNS
-_MOST = 255
+_HIGHEST_CLASS = 255
 _CLASS = "classification"
-_NUMBER, _OF = "return_number", "number_of_returns"
+_NUMBER, _COUNT = "return_number", "number_of_returns"
 
 
 @dataclass(frozen=True, eq=False)
 class Choice:
-    """What points have to be.
+    """Conditions that chosen points meet.
 
     Attributes:
-        box: (2, 3), its lowest corner and its highest; None for no box.
+        box: (2, 3), lowest and highest corner; None for no box.
         classes: Whole numbers from 0 to 255; None for all.
         returns: One of RETURNS.
     """
@@ -37,12 +37,12 @@ class Choice:
     returns: str
 
     def of_file(self, points: _native.PointSource, path: str) -> _native.PointSource:
-        """The points of a file that it has. Raises ValueError where the file does not say."""
+        """Chosen points of a file. Raises ValueError where it lacks the classes or returns."""
         box = None if self.box is None else (self.box[0].tolist(), self.box[1].tolist())
         return _native.ChosenPoints(points, box, self.classes, self.returns, f"'{path}'")
 
     def of_scan(self, points: ScanPoints) -> ScanPoints:
-        """The same of points in memory."""
+        """Chosen points of a scan in memory."""
         positions = np.asarray(points.positions)
         chosen = np.ones(len(positions), bool)
         if self.box is not None:
@@ -50,23 +50,23 @@ class Choice:
                 axis=1
             )
         if self.classes is not None:
-            found = np.trunc(_attribute(points, _CLASS, "classes"))
-            chosen &= np.isin(found, np.asarray(self.classes, np.float32))
+            point_classes = np.trunc(_attribute(points, _CLASS, "classes"))
+            chosen &= np.isin(point_classes, np.asarray(self.classes, np.float32))
         if self.returns in ("first", "last"):
             number = np.maximum(_attribute(points, _NUMBER, "returns"), 1)
         if self.returns in ("last", "only"):
-            of = np.maximum(_attribute(points, _OF, "returns"), 1)
+            count = np.maximum(_attribute(points, _COUNT, "returns"), 1)
         if self.returns == "first":
             chosen &= number == 1
         elif self.returns == "last":
-            chosen &= number >= of
+            chosen &= number >= count
         elif self.returns == "only":
-            chosen &= of == 1
+            chosen &= count == 1
         return points.take(chosen)
 
 
 def as_choice(classes: Classes | None, returns: str, box: npt.ArrayLike | None) -> Choice | None:
-    """What is chosen; None for everything. Raises ValueError for what cannot be."""
+    """The choice; None if it includes every point. Raises ValueError for a wrong value."""
     as_one_of("returns", returns, RETURNS)
     if classes is None and returns == "all" and box is None:
         return None
@@ -80,18 +80,18 @@ def choose_points(
     returns: str = "all",
     box: npt.ArrayLike | None = None,
 ) -> ScanPoints:
-    """Some of the points of a scan, as `read_points` chooses them from files.
+    """Chooses points of a scan, as `read_points` does for files.
 
     Args:
-        points: Of a scan.
+        points: The scan.
         classes: One class or several, 0 to 255, of the attribute "classification": 2 is ground in
             LAS files. None: all.
-        returns: Of the echoes of a scanner's pulse "all", the "first", the "last", or the "only"
-            ones, by the attributes "return_number" and "number_of_returns", where 0 counts as 1.
-        box: Its lowest and its highest corner, (2, 3), which belong to it. None: everywhere.
+        returns: Echoes of a scanner's pulse: "all", the "first", the "last", or the "only" ones, by
+            the attributes "return_number" and "number_of_returns", where 0 counts as 1.
+        box: Lowest and highest corner, (2, 3), both included. None: no box.
 
     Raises:
-        ValueError: A value is not allowed, or the points do not have such an attribute.
+        ValueError: A value is not allowed, or the points lack the attribute.
     """
     choice = as_choice(classes, returns, box)
     return points if choice is None else choice.of_scan(points)
@@ -112,11 +112,13 @@ def _as_box(box: npt.ArrayLike | None) -> npt.NDArray[np.float64] | None:
 def _as_classes(classes: Classes | None) -> list[int] | None:
     if classes is None:
         return None
-    found = np.atleast_1d(as_array("classes", classes))
-    is_whole = found.dtype.kind in "iu" and found.ndim == 1 and len(found) > 0
-    if not is_whole or found.min() < 0 or found.max() > _MOST:
-        raise ValueError(f"classes: {classes!r}; whole numbers from 0 to {_MOST} are needed")
-    return [int(one) for one in found]
+    array = np.atleast_1d(as_array("classes", classes))
+    is_whole = array.dtype.kind in "iu" and array.ndim == 1 and len(array) > 0
+    if not is_whole or array.min() < 0 or array.max() > _HIGHEST_CLASS:
+        raise ValueError(
+            f"classes: {classes!r}; whole numbers from 0 to {_HIGHEST_CLASS} are needed"
+        )
+    return [int(number) for number in array]
 
 
 def _attribute(points: ScanPoints, name: str, option: str) -> npt.NDArray[np.float32]:

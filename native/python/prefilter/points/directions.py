@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Which way the normals of points point: as users ask for, and where they leave it open."""
+"""Directions of normals: the user's choice, and the automatic one."""
 
 from dataclasses import dataclass
 from typing import Any, TypeAlias, cast
@@ -11,7 +11,7 @@ import numpy.typing as npt
 from .. import _native
 from .._border.arguments import ProgressCallback, as_one_of, progress_part
 from .._border.arrays import as_threads
-from .normals import as_viewpoints, estimate_normals, seen_points, side_of
+from .normals import as_viewpoints, estimate_normals, guess_direction, mask_unseen
 
 Viewpoints: TypeAlias = npt.NDArray[np.float64]
 
@@ -20,27 +20,26 @@ DIRECTIONS = (AUTO, UP, VIEWPOINT, OUTWARD, GIVEN)
 
 
 @dataclass(frozen=True, eq=False)
-class Wanted:
-    """What a user asks for.
+class Orientation:
+    """The user's choice of where normals point.
 
     Attributes:
         direction: One of DIRECTIONS.
-        viewpoints: Where scanners stood, (n, 3): one for all or several; (0, 3) where the user does
-            not say.
+        viewpoints: Positions of scanners, (n, 3): one for all, or several; (0, 3) if not given.
     """
 
     direction: str
     viewpoints: Viewpoints
 
-    def of_given(self) -> str:
-        """The direction of normals that points have: as they are, unless the user asks for one."""
+    def for_given_normals(self) -> str:
+        """Direction for normals that points have: kept unless the user chose a direction."""
         return GIVEN if self.direction == AUTO else self.direction
 
-    def told(self, usual: str) -> str:
-        """The direction of normals that a scanner's grid or faces tell, which usually is known."""
+    def for_file_normals(self, usual: str) -> str:
+        """Direction for normals from a scanner's grid or faces; `usual` if the user chose none."""
         return usual if self.direction in (AUTO, GIVEN) else self.direction
 
-    def of_missing(
+    def for_missing_normals(
         self,
         rows: npt.NDArray[np.floating],
         has_viewpoint: bool,
@@ -48,10 +47,10 @@ class Wanted:
         progress: ProgressCallback | None,
         threads: int,
     ) -> tuple[str, str]:
-        """The direction of normals that are to be estimated, and what the origin is; see `side_of`.
+        """Direction for normals to be estimated, and role of the origin; see `guess_direction`.
 
         Raises:
-            ValueError: The user asks for them as given.
+            ValueError: The user chose given normals.
             Cancelled: `progress` returned False.
         """
         if self.direction == GIVEN:
@@ -66,16 +65,16 @@ class Wanted:
         if is_from_above:
             return UP, "none"
         used = as_threads(threads)
-        seen = seen_points(np.asarray(rows, np.float64), progress_part(progress, 0.0, 0.3), used)
-        return side_of(seen, progress_part(progress, 0.3, 1.0), used)
+        seen = mask_unseen(np.asarray(rows, np.float64), progress_part(progress, 0.0, 0.3), used)
+        return guess_direction(seen, progress_part(progress, 0.3, 1.0), used)
 
 
-def as_wanted(direction: str, viewpoint: npt.ArrayLike | None) -> Wanted:
-    """Checks what a user asks for.
+def as_orientation(direction: str, viewpoint: npt.ArrayLike | None) -> Orientation:
+    """Checks the user's choice.
 
     Raises:
-        ValueError: There is no such direction, or a viewpoint is of a wrong shape or type, or
-            beside a direction that has no use for one.
+        ValueError: The direction is unknown; the viewpoint has a wrong shape or type, or does not
+            go with the direction.
     """
     chosen = as_one_of("direction", direction, DIRECTIONS)
     viewpoints = as_viewpoints(viewpoint)
@@ -84,34 +83,29 @@ def as_wanted(direction: str, viewpoint: npt.ArrayLike | None) -> Wanted:
             f"viewpoint: given beside the direction '{chosen}'; 'viewpoint' is needed, or no "
             "viewpoint"
         )
-    return Wanted(VIEWPOINT if len(viewpoints) else chosen, viewpoints)
+    return Orientation(VIEWPOINT if len(viewpoints) else chosen, viewpoints)
 
 
-def turned(
+def orient_points(
     points: _native.PointSource, direction: str, viewpoints: Viewpoints
 ) -> _native.PointSource:
-    """Points whose own normals have a direction, as far as each can be turned by itself."""
+    """Points whose normals are oriented where each normal can be oriented by itself."""
     if direction in (UP, VIEWPOINT):
         return _native.TurnedPoints(points, direction == UP, viewpoints)
     return points
 
 
-def estimated(
+def estimate_directed(
     rows: npt.NDArray[np.floating],
     direction: str,
     viewpoints: Viewpoints,
     progress: ProgressCallback | None,
     threads: int,
 ) -> npt.NDArray[np.float64]:
-    """Normals that have a direction; toward the origin where no viewpoint is known."""
+    """Estimates normals with a direction; "viewpoint" without viewpoints means the origin."""
     if direction == VIEWPOINT:
         seen_from = viewpoints if len(viewpoints) else np.zeros((1, 3))
         return estimate_normals(rows, viewpoint=seen_from, progress=progress, threads=threads)
     return estimate_normals(
         rows, direction=cast("Any", direction), progress=progress, threads=threads
     )
-
-
-def parts(progress: ProgressCallback | None) -> tuple[ProgressCallback | None, ...]:
-    """Those of finding a direction, and of estimating normals."""
-    return progress_part(progress, 0.0, 0.05), progress_part(progress, 0.05, 1.0)

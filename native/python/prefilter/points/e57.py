@@ -16,20 +16,20 @@ _CARTESIAN = ("cartesianX", "cartesianY", "cartesianZ")
 _SPHERICAL = ("sphericalRange", "sphericalAzimuth", "sphericalElevation")
 _COLORS = ("colorRed", "colorGreen", "colorBlue")
 _NORMALS = ("normalX", "normalY", "normalZ")
-# From 0 on, which LAS files and others count from 1.
+# Counted from 0, unlike in LAS files and others.
 _RETURN, _RETURNS = "returnIndex", "returnCount"
 _INVALID = ("cartesianInvalidState", "sphericalInvalidState")
 _GRID = frozenset({"rowIndex", "columnIndex"})
 
 
 class E57Reader:
-    """Reads all scans of an E57 file, one after the other, piece by piece.
+    """Reads all scans of an E57 file, one after the other, in chunks.
 
-    Points are carried to the file's coordinates by the pose of their scan; those that a scan marks
-    as invalid are left out. Intensity, colors, as bytes, and the numbers of returns are attributes
-    where all scans have them, and normals likewise. Where scans have a pose, the scanner stood at
-    its translation, and else at the origin where they are a scanner's grid or directions; the
-    origin tells nothing where there is only one scan that is neither.
+    Points are transformed to the file's coordinates by the pose of their scan; points marked as
+    invalid are left out. Intensity, colors (as bytes), numbers of returns and normals are read if
+    all scans have them. The viewpoint of a scan is the translation of its pose, or the origin for a
+    scanner's grid or spherical coordinates without a pose. A single scan at the origin that is
+    neither has no viewpoint.
     """
 
     can_seek = False
@@ -54,17 +54,16 @@ class E57Reader:
         self._has_returns = {_RETURN, _RETURNS} <= common
         if self._has_returns:
             self.attributes += [("return_number", True), ("number_of_returns", True)]
-        # One for all points, or one for each.
-        self._has_viewpoints = bool(scans) and all(map(_is_place_known, scans))
-        # A cloud put together from several scans has the origin for a pose, too.
+        self._has_viewpoints = bool(scans) and all(map(_has_viewpoint, scans))
+        # A cloud merged from several scans has the origin for a pose, too.
         if len(scans) == 1 and not scans[0].translation.any() and not _is_as_scanned(scans[0]):
             self._has_viewpoints = False
         self.viewpoint: tuple[float, float, float] | None = None
-        places = [scan.translation for scan in scans]
-        if self._has_viewpoints and all(np.array_equal(place, places[0]) for place in places):
-            x, y, z = places[0]
+        positions = [scan.translation for scan in scans]
+        if self._has_viewpoints and all(np.array_equal(each, positions[0]) for each in positions):
+            x, y, z = positions[0]
             self.viewpoint = (float(x), float(y), float(z))
-            self._has_viewpoints = False
+            self._has_viewpoints = False  # One for all points, instead of one for each.
 
     def chunks(self, begin: int = 0, end: int | None = None) -> Iterator[PointChunk]:
         assert begin == 0
@@ -91,7 +90,7 @@ class E57Reader:
             if values is None:
                 return
             if invalid in values:
-                # 1 says that only the direction is known.
+                # 1: only the direction of the point is known.
                 valid = values.pop(invalid) == 0
                 values = {name: each[valid] for name, each in values.items()}
             local = np.stack([values[name] for name in coordinates], axis=1)
@@ -117,24 +116,24 @@ class E57Reader:
         columns.append(np.empty((len(positions), 0)))
         with np.errstate(all="ignore"):
             attributes = np.ascontiguousarray(np.concatenate(columns, axis=1), np.float32)
-        places = None
+        viewpoints = None
         if self._has_viewpoints:
-            places = np.tile(scan.translation, (len(positions), 1))
-        return np.ascontiguousarray(positions), normals, None, places, attributes
+            viewpoints = np.tile(scan.translation, (len(positions), 1))
+        return np.ascontiguousarray(positions), normals, None, viewpoints, attributes
 
 
 def _is_as_scanned(scan: Scan) -> bool:
-    """Whether points are still a scanner's grid or directions."""
+    """Whether the points are still in the grid or spherical coordinates of a scanner."""
     return scan.names >= _GRID or scan.names >= set(_SPHERICAL)
 
 
-def _is_place_known(scan: Scan) -> bool:
+def _has_viewpoint(scan: Scan) -> bool:
     return scan.has_pose or _is_as_scanned(scan)
 
 
 def _check_counts(path: str, counts: list[int]) -> None:
-    """Refuses counts that the file has no room for, before memory is taken for them."""
-    # What says where a point is takes a bit at least.
+    """Refuses counts that exceed the size of the file, before memory is allocated for them."""
+    # The coordinates of a point take at least one bit.
     bits = 8 * os.path.getsize(path)
     for count in counts:
         if not 0 <= count <= bits:
@@ -145,6 +144,6 @@ def _check_counts(path: str, counts: list[int]) -> None:
 
 
 def _rotated(vectors: Floats, rotation: Floats) -> Floats:
-    # Products of matrices are added up in another order on another processor.
+    # A matrix product would sum in an order that depends on the processor.
     x, y, z = vectors.T[:, :, None]
     return np.asarray(x * rotation[:, 0] + y * rotation[:, 1] + z * rotation[:, 2])

@@ -21,10 +21,10 @@ _SIGNATURE = b"ASTM-E57"
 _HEADER_SIZE = 48
 _PAGE = 1024
 _CONTENTS = _PAGE - 4
-"""Bytes of a page before its checksum."""
+"""Size of a page without its checksum, in bytes."""
 _PAGES_AT_ONCE = 1024
 _POLYNOMIAL = 0x82F63B78
-"""That of CRC-32C, its bits reversed."""
+"""Polynomial of CRC-32C, bits reversed."""
 
 _DATA_PACKET = 1
 _KNOWN_PACKETS = frozenset({0, _DATA_PACKET, 2})
@@ -35,10 +35,10 @@ Floats = npt.NDArray[np.float64]
 
 
 class PagedFile:
-    """The contents of a file without the checksums at the end of each page."""
+    """Contents of a file without the checksums at the end of each page."""
 
     def __init__(self, file: BinaryIO) -> None:
-        """Takes a file that is open. Raises ValueError where it is no E57 file."""
+        """Reads the header of an open file. Raises ValueError where it is no E57 file."""
         self._file = file
         size = file.seek(0, os.SEEK_END)
         file.seek(0)
@@ -60,18 +60,18 @@ class PagedFile:
         return self.read(self._text_begin, self._text_length)
 
     def read(self, begin: int, count: int) -> bytes:
-        """Reads some bytes of the contents. Raises ValueError where these end, or are damaged."""
+        """Reads `count` bytes of the contents. Raises ValueError at their end or for damage."""
         if begin < 0 or begin + count > self._pages * _CONTENTS:
             raise ValueError(f"it ends before byte {begin + count} of its contents")
-        found = []
+        pieces = []
         while count > 0:
             per_block = _PAGES_AT_ONCE * _CONTENTS
             self._load(begin // per_block)
-            some = self._contents[begin % per_block :][:count]
-            found.append(some)
-            begin += len(some)
-            count -= len(some)
-        return b"".join(found)
+            piece = self._contents[begin % per_block :][:count]
+            pieces.append(piece)
+            begin += len(piece)
+            count -= len(piece)
+        return b"".join(pieces)
 
     def _load(self, block: int) -> None:
         if block == self._block:
@@ -90,22 +90,22 @@ class PagedFile:
 
 
 def logical(physical: int) -> int:
-    """Where in the contents of pages a place of the file is."""
-    page, place = divmod(physical, _PAGE)
-    return page * _CONTENTS + min(place, _CONTENTS)
+    """Converts an offset in the file to one in the contents of its pages."""
+    page, offset = divmod(physical, _PAGE)
+    return page * _CONTENTS + min(offset, _CONTENTS)
 
 
 @functools.cache
 def _checksum_parts() -> tuple[npt.NDArray[np.uint32], np.uint32]:
-    """What each byte of a page adds to its checksum, (place, byte); and that of a page of zeros."""
+    """Contribution of each byte to a page's checksum, [offset, byte]; checksum of a zero page."""
     table = np.arange(256, dtype=np.uint32)
     for _ in range(8):
         table = np.where(table & 1, (table >> 1) ^ np.uint32(_POLYNOMIAL), table >> 1)
     parts = np.empty((_CONTENTS, 256), np.uint32)
     parts[-1] = table
-    for place in range(_CONTENTS - 2, -1, -1):
-        later = parts[place + 1]
-        parts[place] = table[later & 255] ^ (later >> 8)
+    for offset in range(_CONTENTS - 2, -1, -1):
+        later = parts[offset + 1]
+        parts[offset] = table[later & 255] ^ (later >> 8)
     zeros = np.uint32(0xFFFFFFFF)
     for _ in range(_CONTENTS):
         zeros = table[zeros & np.uint32(255)] ^ (zeros >> np.uint32(8))
@@ -113,26 +113,26 @@ def _checksum_parts() -> tuple[npt.NDArray[np.uint32], np.uint32]:
 
 
 def _checksums(pages: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint32]:
-    """CRC-32C of each row. It is linear: bytes add to it what they would add alone."""
+    """CRC-32C of each row, as the sum of its bytes' contributions: the checksum is linear."""
     parts, zeros = _checksum_parts()
-    found = np.empty(len(pages), np.uint32)
-    places = np.arange(_CONTENTS)
-    for k in range(0, len(pages), 64):  # As many as a cache holds.
-        found[k : k + 64] = np.bitwise_xor.reduce(parts[places, pages[k : k + 64]], axis=1)
-    return found ^ zeros
+    sums = np.empty(len(pages), np.uint32)
+    offsets = np.arange(_CONTENTS)
+    for k in range(0, len(pages), 64):  # 64 pages fit into a cache.
+        sums[k : k + 64] = np.bitwise_xor.reduce(parts[offsets, pages[k : k + 64]], axis=1)
+    return sums ^ zeros
 
 
 @dataclass(frozen=True)
 class Field:
-    """A value that each point has.
+    """Format of one value per point.
 
     Attributes:
-        name: Of the element, without its namespace.
-        bits: How many a value takes.
-        code: Type of numpy, for floating-point numbers and text; "" for packed whole numbers.
-        low: What is added to a packed number.
-        scale: What the sum is multiplied by.
-        offset: What is added then.
+        name: Name of the element, without its namespace.
+        bits: Number of bits per value.
+        code: numpy's type code, for floating-point numbers and text; "" for packed integers.
+        low: Added to a packed integer.
+        scale: Multiplies that sum.
+        offset: Added to that product.
     """
 
     name: str
@@ -143,7 +143,7 @@ class Field:
     offset: float = 0.0
 
     def values(self, data: bytes, count: int) -> Floats:
-        """Unpacks so many values, from the first bit on."""
+        """Unpacks `count` values, from the first bit on."""
         if self.code:
             return np.frombuffer(data, self.code, count).astype(np.float64)
         if self.bits == 0:
@@ -155,23 +155,23 @@ class Field:
             wide = np.zeros((count, 64), np.uint8)
             wide[:, : self.bits] = bits.reshape(count, self.bits)
             raw = np.packbits(wide, axis=1, bitorder="little").view("<u8")[:, 0]
-        # Sums of integers stay exact where they exceed what a double holds.
+        # Integer sums stay exact beyond the 53 bits of a double.
         whole = (raw + np.uint64(self.low % 2**64)).view(np.int64)
         return whole.astype(np.float64) * self.scale + self.offset
 
 
 @dataclass(frozen=True, eq=False)
 class Scan:
-    """The points of one scan.
+    """Points of one scan.
 
     Attributes:
-        fields: What points have.
-        count: How many points there are.
-        begin: Where in the file their section is.
-        has_pose: The file says where the scanner stood.
+        fields: Fields of the points.
+        count: Number of points.
+        begin: Offset of their section in the file.
+        has_pose: Whether the file has the scanner's pose.
         rotation: (3, 3), from the scanner's coordinates to the file's.
-        translation: (3,), what is added then.
-        highest_colors: (3,), those of red, green and blue.
+        translation: (3,), added after the rotation.
+        highest_colors: (3,), largest values of red, green and blue.
     """
 
     fields: list[Field]
@@ -187,76 +187,76 @@ class Scan:
         return {field.name for field in self.fields}
 
     def values(self, file: PagedFile, names: list[str], most: int) -> Iterator[dict[str, Floats]]:
-        """Yields values of points by the names of fields, `most` points at a time.
+        """Yields values of points by field name, for `most` points at a time, a multiple of 8.
 
-        `most` is a multiple of 8. Raises ValueError where the file is damaged.
+        Raises ValueError where the file is damaged.
         """
-        wanted = [k for k, field in enumerate(self.fields) if field.name in names]
-        streams = {k: bytearray() for k in wanted}
+        used = [k for k, field in enumerate(self.fields) if field.name in names]
+        streams = {k: bytearray() for k in used}
         left = self.count
         packets = self._packets(file)
         while left > 0:
-            some = min(most, left)
-            sizes = {k: (some * self.fields[k].bits + 7) // 8 for k in wanted}
-            while any(len(streams[k]) < sizes[k] for k in wanted):
+            count = min(most, left)
+            sizes = {k: (count * self.fields[k].bits + 7) // 8 for k in used}
+            while any(len(streams[k]) < sizes[k] for k in used):
                 parts = next(packets, None)
                 if parts is None:
-                    there = min(
-                        len(streams[k]) * 8 // self.fields[k].bits for k in wanted if sizes[k]
+                    complete = min(
+                        len(streams[k]) * 8 // self.fields[k].bits for k in used if sizes[k]
                     )
                     raise ValueError(
-                        f"a scan ends after {self.count - left + min(there, some)} of the "
+                        f"a scan ends after {self.count - left + min(complete, count)} of the "
                         f"{self.count} points in its header"
                     )
-                for k in wanted:
+                for k in used:
                     streams[k] += parts[k]
-            found = {}
-            for k in wanted:
-                found[self.fields[k].name] = self.fields[k].values(
-                    bytes(streams[k][: sizes[k]]), some
+            columns = {}
+            for k in used:
+                columns[self.fields[k].name] = self.fields[k].values(
+                    bytes(streams[k][: sizes[k]]), count
                 )
                 del streams[k][: sizes[k]]
-            left -= some
-            yield found
+            left -= count
+            yield columns
 
     def _packets(self, file: PagedFile) -> Iterator[list[bytes]]:
-        """Yields what each packet holds of each field."""
+        """Yields the bytes of each field, packet by packet."""
         begin = logical(self.begin)
         head = file.read(begin, _VECTOR_HEAD)
         length, data = struct.unpack_from("<8xQQ", head)
         if head[0] != 1:
             raise ValueError(f"its section at byte {self.begin} is none of points")
-        place, end = logical(data), begin + length
-        while place < end:
-            head = file.read(place, 6)
+        offset, end = logical(data), begin + length
+        while offset < end:
+            head = file.read(offset, 6)
             kind, size, count = struct.unpack("<BxHH", head)
             if kind not in _KNOWN_PACKETS:
                 raise ValueError(f"a packet of kind {kind}; 0, 1 or 2 is needed")
             if kind == _DATA_PACKET:
-                packet = file.read(place, size + 1)
+                packet = file.read(offset, size + 1)
                 if count != len(self.fields):
                     raise ValueError(f"a packet of {count} fields; {len(self.fields)} are needed")
                 yield _parts(packet, count)
-            place += size + 1
+            offset += size + 1
 
 
 def _parts(packet: bytes, count: int) -> list[bytes]:
     if len(packet) < 6 + 2 * count:
         raise ValueError("a packet is too short for its fields")
-    found, place = [], 6 + 2 * count
+    parts, offset = [], 6 + 2 * count
     for size in struct.unpack_from(f"<{count}H", packet, 6):
-        found.append(packet[place : place + size])
-        place += size
-    if place > len(packet):
+        parts.append(packet[offset : offset + size])
+        offset += size
+    if offset > len(packet):
         raise ValueError("a packet is too short for its fields")
-    return found
+    return parts
 
 
 def read_scans(file: PagedFile) -> list[Scan]:
-    """Reads what the file says of its scans. Raises ValueError where it is damaged."""
+    """Reads the descriptions of all scans. Raises ValueError where the file is damaged."""
     root = ET.fromstring(file.text())
-    found = _child(root, "data3D")
-    return [_scan(each) for each in found] if found is not None else []
+    scans = _child(root, "data3D")
+    return [_scan(each) for each in scans] if scans is not None else []
 
 
 def _scan(element: ET.Element) -> Scan:
@@ -265,8 +265,8 @@ def _scan(element: ET.Element) -> Scan:
     if points is None or prototype is None:
         raise ValueError("a scan has no points")
     pose = _child(element, "pose")
-    turn = None if pose is None else _child(pose, "rotation")
-    place = None if pose is None else _child(pose, "translation")
+    rotation = None if pose is None else _child(pose, "rotation")
+    translation = None if pose is None else _child(pose, "translation")
     colors = _child(element, "colorLimits")
     names = ("colorRedMaximum", "colorGreenMaximum", "colorBlueMaximum")
     return Scan(
@@ -274,8 +274,8 @@ def _scan(element: ET.Element) -> Scan:
         int(points.get("recordCount", "0")),
         int(points.get("fileOffset", "0")),
         pose is not None,
-        _rotation([_number(turn, name, float(name == "w")) for name in "wxyz"]),
-        np.array([_number(place, name, 0.0) for name in "xyz"]),
+        _rotation([_number(rotation, name, float(name == "w")) for name in "wxyz"]),
+        np.array([_number(translation, name, 0.0) for name in "xyz"]),
         np.array([_number(colors, name, 255.0) for name in names]),
     )
 
@@ -291,7 +291,7 @@ def _field(element: ET.Element) -> Field:
             raise ValueError(f"'{name}' has values from {low} to {high}")
         scale, offset = float(element.get("scale", 1.0)), float(element.get("offset", 0.0))
         return Field(name, (high - low).bit_length(), "", low, scale, offset)
-    # Text and structures, of which nothing is used, have streams of their own.
+    # Text and structures are not used, but have streams of their own.
     return Field("", 8, "u1")
 
 
@@ -317,10 +317,10 @@ def _child(element: ET.Element, name: str) -> ET.Element | None:
     return next((each for each in element if _name(each) == name), None)
 
 
-def _number(element: ET.Element | None, name: str, usual: float) -> float:
-    found = None if element is None else _child(element, name)
-    if found is None:
-        return usual
-    # A number that is 0 may have no text; one that is scaled says by how much.
-    value = float((found.text or "0").strip() or 0.0)
-    return value * float(found.get("scale", 1.0)) + float(found.get("offset", 0.0))
+def _number(element: ET.Element | None, name: str, default: float) -> float:
+    child = None if element is None else _child(element, name)
+    if child is None:
+        return default
+    # The text of a zero may be missing. Scaled numbers have attributes for scale and offset.
+    value = float((child.text or "0").strip() or 0.0)
+    return value * float(child.get("scale", 1.0)) + float(child.get("offset", 0.0))

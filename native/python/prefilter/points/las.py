@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Points of LAS files, and of LAZ files, whose chunks lazrs unpacks.
+"""Points of LAS files, and of LAZ files, which the package lazrs decompresses.
 
 See the LAS specification 1.4, R15, by the American Society for Photogrammetry and Remote Sensing.
 """
@@ -20,22 +20,21 @@ from .las_header import read_header
 from .laz_chunks import check_chunks
 from .reader import POINTS_AT_ONCE, PointChunk, damage_of, find_module
 
-_COLORS_LOOKED_AT = 1_000_000
+_MAX_COLORS_SAMPLED = 1_000_000
 _COLORS = ("red", "green", "blue")
 _BYTES = ("classification", "return_number", "number_of_returns")
 _FIRST_LONG_FORMAT = 6
-"""From this format of points on, returns have four bits, and classes eight."""
+"""Point format from which on returns have four bits, and classes eight."""
 
 _Records = npt.NDArray[np.void]
 _Floats = npt.NDArray[np.float32]
 
 
 class LasReader:
-    """Reads a LAS file, or with lazrs a LAZ file, piece by piece.
+    """Reads a LAS file, or with lazrs a LAZ file, in chunks.
 
-    Attributes are intensity, classification, the numbers of returns, colors as bytes, and what
-    extra dimensions there are; three of these named like normals (nx, NormalX, normal_x) are the
-    normals.
+    Attributes are intensity, classification, numbers of returns, colors (as bytes) and extra
+    dimensions. Three extra dimensions named nx, NormalX, normal_x or similarly are the normals.
     """
 
     viewpoint = None
@@ -77,30 +76,31 @@ class LasReader:
 
     @functools.cached_property
     def _color_scale(self) -> np.float32:
-        # Colors have 16 bits, of which some programs fill only the lower 8. Many that are not black
-        # tell which. Of thousands of files, a task on a farm reads but one.
+        # Colors have 16 bits, but some programs fill only the lower 8. Reading many colors that are
+        # not black shows which. Cached and lazy: a render farm task may open thousands of files,
+        # and read only one of them.
         colored = 0
         for points in self._pieces(0, self._header.count):
             colors = self._columns(points, _COLORS)
             if colors.max(initial=0) > 255:
                 return np.float32(255 / 65535)
             colored += int(np.count_nonzero(colors.any(axis=1)))
-            if colored > _COLORS_LOOKED_AT:
+            if colored > _MAX_COLORS_SAMPLED:
                 break
         return np.float32(1)
 
     def _pieces(self, begin: int, end: int) -> Iterator[_Records]:
-        """Yields the records of points from one to another."""
+        """Yields the records of points [begin, end), in chunks."""
         layout = self._header.layout
         with open_file(self._path) as file:
-            packed = None
+            decompressor = None
             if self._lazrs is not None:
-                packed = self._unpacking(self._lazrs, file, begin)
+                decompressor = self._decompressor(self._lazrs, file, begin)
             else:
                 file.seek(self._header.begin + begin * layout.itemsize)
             for first in range(begin, end, POINTS_AT_ONCE):
                 data = bytearray(min(POINTS_AT_ONCE, end - first) * layout.itemsize)
-                if packed is None:
+                if decompressor is None:
                     read = file.readinto(data)  # type: ignore[attr-defined]
                     if read != len(data):
                         raise ValueError(
@@ -109,20 +109,20 @@ class LasReader:
                         )
                 else:
                     with damage_of(self._path, "a LAZ file"):
-                        packed.decompress_many(data)
+                        decompressor.decompress_many(data)
                 yield np.frombuffer(data, layout)
 
-    def _unpacking(self, lazrs: ModuleType, file: BinaryIO, begin: int) -> Any:
-        """What unpacks points from one on."""
+    def _decompressor(self, lazrs: ModuleType, file: BinaryIO, begin: int) -> Any:
+        """Decompressor of the points from `begin` on."""
         with damage_of(self._path, "a LAZ file"):
             file.seek(self._header.begin)
-            packed = lazrs.LasZipDecompressor(file, self._header.packing)
+            decompressor = lazrs.LasZipDecompressor(file, self._header.packing)
             if begin > 0:
-                packed.seek(begin)
-            return packed
+                decompressor.seek(begin)
+            return decompressor
 
     def _positions(self, points: _Records) -> npt.NDArray[np.float64]:
-        # Scales of a damaged header make what is not finite, which readers of positions find.
+        # Scales of a damaged header give positions that are not finite; callers count these.
         with np.errstate(all="ignore"):
             steps = np.stack([points[axis] for axis in "xyz"], axis=1)
             return steps * self._header.scales + self._header.offsets
@@ -148,7 +148,7 @@ class LasReader:
 
 
 def _normals_among(names: list[str]) -> list[str]:
-    """The names of three dimensions that hold normals; none where one is missing."""
+    """Names of the three dimensions of normals; empty where one is missing."""
     short = {re.sub("[^a-z]", "", name.lower()).replace("normal", "n"): name for name in names}
     axes = [short.get(axis) for axis in ("nx", "ny", "nz")]
     return [name for name in axes if name is not None] if all(axes) else []

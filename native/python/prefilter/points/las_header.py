@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a LAS file says of its points: their number, and where each value is."""
+"""Headers of LAS files: number of points, and layout of their records."""
 
 import os
 import struct
@@ -26,23 +26,23 @@ _START: list[tuple[str, str, int]] = [
     ("intensity", "<u2", 12),
     ("returns", "u1", 14),
 ]
-_CLASS_PLACES = (15,) * 6 + (16,) * 5
-_COLOR_PLACES = (None, None, 20, 28, None, 28, None, 30, 30, None, 30)
+_CLASS_OFFSETS = (15,) * 6 + (16,) * 5
+_COLOR_OFFSETS = (None, None, 20, 28, None, 28, None, 30, 30, None, 30)
 _SIZES = (20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67)
-"""By the format of points: where its class and its colors are, and how many bytes a point has."""
+"""Offset of the class, offset of the colors and size of a record, in bytes, per point format."""
 
 _EXTRA_TYPES = ("u1", "i1", "<u2", "<i2", "<u4", "<i4", "<u8", "<i8", "<f4", "<f8")
 
 
 @dataclass(frozen=True)
 class ExtraDimension:
-    """A value of points that the format does not name.
+    """A value of the points beyond the standard ones.
 
     Attributes:
-        name: Its name in the file.
-        field: That of the layout, which may differ.
-        scale: What a value is multiplied by.
-        offset: What is added then.
+        name: Name in the file.
+        field: Name in the layout, which may differ.
+        scale: Multiplies a value.
+        offset: Added to that product.
     """
 
     name: str
@@ -53,19 +53,19 @@ class ExtraDimension:
 
 @dataclass(frozen=True, eq=False)
 class LasHeader:
-    """What a LAS file says of its points.
+    """Header of a LAS file.
 
     Attributes:
         point_format: 0 to 10.
-        layout: Of a point's record: x, y, z, intensity, returns, classification, perhaps red, green
-            and blue, and the fields of extra dimensions.
-        begin: Where the first record is, in bytes, or what is compressed.
-        count: How many points there are.
-        scales: What x, y and z are multiplied by.
-        offsets: What is added then.
-        extra: The dimensions that the format does not name.
-        packing: The record of LASzip; None where there is none.
-        is_compressed: The file is a LAZ file.
+        layout: Layout of a point's record: x, y, z, intensity, returns, classification, perhaps
+            red, green and blue, and the fields of extra dimensions.
+        begin: Offset of the first record, or of the compressed data, in bytes.
+        count: Number of points.
+        scales: Factors of x, y and z.
+        offsets: Added to the scaled x, y and z.
+        extra: Extra dimensions.
+        packing: LASzip's record; None where there is none.
+        is_compressed: Whether the file is a LAZ file.
     """
 
     point_format: int
@@ -110,19 +110,19 @@ def read_header(path: str) -> LasHeader:
         )
     if head[25] >= 4 and len(head) == _LONG_HEADER:
         (count,) = struct.unpack_from("<Q", head, 247)
-    fields = [*_START, ("classification", "u1", _CLASS_PLACES[point_format])]
-    colors = _COLOR_PLACES[point_format]
+    fields = [*_START, ("classification", "u1", _CLASS_OFFSETS[point_format])]
+    colors = _COLOR_OFFSETS[point_format]
     if colors is not None:
         names = ("red", "green", "blue")
         fields += [(name, "<u2", colors + 2 * k) for k, name in enumerate(names)]
     extra, more = _extra_dimensions(extra_bytes, _SIZES[point_format], length)
     fields += more
-    names_of, formats, places = zip(*fields, strict=True)
+    field_names, formats, offsets = zip(*fields, strict=True)
     layout = np.dtype(
         {
-            "names": list(names_of),
+            "names": list(field_names),
             "formats": list(formats),
-            "offsets": list(places),
+            "offsets": list(offsets),
             "itemsize": length,
         }
     )
@@ -143,21 +143,21 @@ def read_header(path: str) -> LasHeader:
 def _records(
     path: str, file: BinaryIO, begin: int, count: int, end: int
 ) -> Iterator[tuple[bytes, int, bytes]]:
-    """Yields the owner, the number and the contents of the records between header and points."""
+    """Yields owner, number and contents of each record between header and points."""
     file.seek(begin)
     for _ in range(count):
         head = file.read(_RECORD_HEAD)
         if len(head) < _RECORD_HEAD:
             raise ValueError(f"'{path}': too short for the records that its header announces")
         user, number, size = struct.unpack_from("<2x16sHH", head)
-        # Some programs announce records that they have not written.
+        # Some programs announce more records than they write.
         if file.tell() + size > end:
             return
         yield user.split(b"\0")[0], number, file.read(size)
 
 
 def _end_of_records(file: BinaryIO, head: bytes, size: int) -> int:
-    """Where the extended records of LAS 1.4 end, or the first of them that the file cuts off."""
+    """End of the extended records of LAS 1.4, or of the first one that is cut off."""
     if len(head) < 247 or head[25] < 4:
         return 0
     begin, count = struct.unpack_from("<QI", head, 235)
@@ -173,31 +173,31 @@ def _end_of_records(file: BinaryIO, head: bytes, size: int) -> int:
 def _extra_dimensions(
     data: bytes, begin: int, end: int
 ) -> tuple[list[ExtraDimension], list[tuple[str, str, int]]]:
-    """Values of points that a record of extra bytes names, and their fields, up to the end.
+    """Extra dimensions in a record of extra bytes, and their fields within [begin, end).
 
-    Those of several numbers are passed over, as are bytes that nothing describes.
+    Dimensions of several numbers, and bytes without a description, are skipped.
     """
-    found: list[ExtraDimension] = []
+    dimensions: list[ExtraDimension] = []
     fields: list[tuple[str, str, int]] = []
-    place = begin
+    position = begin
     for at in range(0, len(data) - _EXTRA_BYTES + 1, _EXTRA_BYTES):
         kind, options = data[at + 2], data[at + 3]
         if kind == 0:
-            place += options
+            position += options
             continue
         if kind > 3 * len(_EXTRA_TYPES):
-            break  # Where the next one is is not known.
+            break  # The size of an unknown type is unknown, and so is the next position.
         number, repeats = (kind - 1) % len(_EXTRA_TYPES), (kind - 1) // len(_EXTRA_TYPES) + 1
         code = _EXTRA_TYPES[number]
         width = np.dtype(code).itemsize * repeats
-        if place + width > end:
+        if position + width > end:
             break
         if repeats == 1:
             name = data[at + 4 : at + 36].split(b"\0")[0].decode("utf-8", "backslashreplace")
             scale = struct.unpack_from("<d", data, at + 112)[0] if options & 8 else 1.0
             offset = struct.unpack_from("<d", data, at + 136)[0] if options & 16 else 0.0
-            field = f"extra {len(found)}"
-            found.append(ExtraDimension(name, field, scale, offset))
-            fields.append((field, code, place))
-        place += width
-    return found, fields
+            field = f"extra {len(dimensions)}"
+            dimensions.append(ExtraDimension(name, field, scale, offset))
+            fields.append((field, code, position))
+        position += width
+    return dimensions, fields

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The chunks of a LAZ file, checked before its backend is asked for points.
+"""Checks of a LAZ file's chunks before lazrs decompresses them.
 
-A backend reserves what these sizes announce; where a damaged file announces more than there is, the
-backend ends the whole process rather than raise an error. Sizes are those of the LAZ specification:
-the record "laszip encoded", the chunk table, and the heads of layered chunks.
+lazrs allocates as much memory as the file announces, and aborts the process if a damaged file
+announces too much. The checks follow the LAZ specification: the record "laszip encoded", the chunk
+table, and the heads of layered chunks.
 """
 
 import os
@@ -16,15 +16,15 @@ from .._border.input import open_file
 from .las_header import LasHeader
 
 _VARIABLE_SIZE = 0xFFFFFFFF
-_MOST_POINTS = 1 << 22
-"""Of a chunk, for which a backend takes memory whole; writers put 50,000 there."""
+_MAX_CHUNK_POINTS = 1 << 22
+"""Largest chunk that is read, in points, as lazrs holds a chunk in memory; writers use 50,000."""
 _POINTWISE_CHUNKED, _LAYERED_CHUNKED = 2, 3
 _LAYERS = {10: 9, 11: 1, 12: 2, 13: 1}
-"""Of an item of a point, by its type; one of type 14 has a layer for each byte."""
+"""Number of layers of an item of a point, by type; an item of type 14 has one per byte."""
 
 
 class _Record(NamedTuple):
-    """What the record of LASzip says: how points are packed."""
+    """LASzip's record: how points are compressed."""
 
     compressor: int
     chunk_size: int
@@ -33,15 +33,15 @@ class _Record(NamedTuple):
 
 
 def check_chunks(path: str, header: LasHeader, backend: Any) -> None:
-    """Refuses a LAZ file whose chunks cannot be what its header and its tables say.
+    """Checks the chunks of a LAZ file against its header and tables.
 
     Args:
-        path: The file.
-        header: What it says of its points.
+        path: Path of the file.
+        header: Header of the file.
         backend: The module lazrs.
 
     Raises:
-        ValueError: It says what does not agree.
+        ValueError: They do not agree.
     """
     data = header.packing
     if data is None:
@@ -82,11 +82,11 @@ def _record(path: str, data: bytes) -> _Record:
 
 
 def _table_offset(path: str, file: BinaryIO, begin: int) -> int:
-    """Where the table of chunks is: said before the points, or by what could not go back, last."""
+    """Offset of the chunk table, stored before the points or, by streaming writers, at the end."""
     end = file.seek(0, os.SEEK_END)
-    for place in (begin, end - 8):
-        if begin + 8 <= place + 8 <= end:
-            file.seek(place)
+    for position in (begin, end - 8):
+        if begin + 8 <= position + 8 <= end:
+            file.seek(position)
             offset: int = struct.unpack("<q", file.read(8))[0]
             if begin < offset:
                 break
@@ -113,11 +113,11 @@ def _chunk_count(path: str, file: BinaryIO, table: int, begin: int, point_size: 
 def _check_counts(
     path: str, chunks: Sequence[tuple[int, int]], record: _Record, points: int
 ) -> None:
-    """Checks how many points there are in each chunk, and in all."""
+    """Checks the number of points of each chunk, and of all chunks."""
     counts = [count for count, _ in chunks]
-    if max(counts, default=0) > _MOST_POINTS:
+    if max(counts, default=0) > _MAX_CHUNK_POINTS:
         raise ValueError(
-            f"'{path}': a chunk of {max(counts)} points; at most {_MOST_POINTS} are read"
+            f"'{path}': a chunk of {max(counts)} points; at most {_MAX_CHUNK_POINTS} are read"
         )
     total = sum(counts)
     spare = 0 if record.chunk_size == _VARIABLE_SIZE else record.chunk_size - 1
@@ -133,7 +133,7 @@ def _check_sizes(
     begin: int,
     end: int,
 ) -> None:
-    """Checks that the bytes of each chunk, and of each of its layers, are there."""
+    """Checks that no chunk, and no layer of a chunk, exceeds the bytes available."""
     head = struct.Struct(f"<{record.point_size}xI{record.layers}I")
     least = head.size if record.compressor == _LAYERED_CHUNKED else record.point_size
     for number, (_, size) in enumerate(chunks):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What the native module needs of Python code that reads points."""
+"""Protocol of Python readers that feed points to the native module, and their error handling."""
 
 import contextlib
 import importlib
@@ -15,8 +15,7 @@ from .._border.input import open_file
 
 POINTS_AT_ONCE = 1 << 16
 
-# Of some points: positions (n, 3), normals (n, 3), weights (n,), viewpoints (n, 3), and attributes
-# (n, attributes).
+# Positions (n, 3), normals (n, 3), weights (n,), viewpoints (n, 3), attributes (n, attributes).
 PointChunk: TypeAlias = tuple[
     npt.NDArray[np.float64],
     npt.NDArray[np.float32] | None,
@@ -27,46 +26,46 @@ PointChunk: TypeAlias = tuple[
 
 
 class PointReader(Protocol):
-    """Reads a file of points from its first to its last, as often as is needed."""
+    """Reads a file of points in chunks, any number of times."""
 
     @property
     def count(self) -> int | None:
-        """How many points there are, where that is known."""
+        """Number of points; None where it is not known before reading."""
 
     @property
     def has_normals(self) -> bool: ...
 
     @property
     def attributes(self) -> list[tuple[str, bool]]:
-        """The names of the columns, and whether these hold bytes."""
+        """Names of the attribute columns, and whether they hold bytes."""
 
     @property
     def viewpoint(self) -> tuple[float, float, float] | None:
-        """Where the scanner stood, in the coordinates of the points; None where
-        that differs among them, or is not known."""
+        """Position of the scanner, in the coordinates of the points; None if it is not the
+        same for all points, or not known."""
 
     @property
     def can_seek(self) -> bool:
-        """Whether points can be read without those before them."""
+        """Whether reading may begin at any point."""
 
     def chunks(self, begin: int = 0, end: int | None = None) -> Iterator[PointChunk]:
-        """Yields points, some at a time: all anew, or where it can seek, from one to another."""
+        """Yields all points in chunks or, for a reader that can seek, points [begin, end)."""
 
 
 def find_module(name: str, path: str, files: str, package: str, other: str) -> ModuleType:
-    """Imports the module that reads some files.
+    """Imports the module that reads a file format.
 
     Args:
-        name: Of the module.
-        path: Of the file to read.
-        files: What files of its kind are called.
-        package: What pip installs it by.
-        other: A kind of files that needs no module.
+        name: Name of the module.
+        path: Path of the file to read.
+        files: Name of the format, for messages.
+        package: Name of the package to install with pip.
+        other: A format that needs no module, for messages.
 
     Raises:
-        ValueError: It cannot be imported.
+        ValueError: The module cannot be imported.
     """
-    # What cannot be opened is no fault of the module.
+    # Report a file that cannot be opened before a missing module.
     with open_file(path):
         pass
     try:
@@ -80,9 +79,9 @@ def find_module(name: str, path: str, files: str, package: str, other: str) -> M
 
 @contextlib.contextmanager
 def damage_of(path: str, kind: str) -> Iterator[None]:
-    """Makes a ValueError that names the file of whatever a module makes of its damage.
+    """Turns any exception over a damaged file into a ValueError that names the file.
 
-    Modules written in Rust raise a BaseException of their own where they panic.
+    A panic in a module written in Rust arrives as a direct subclass of BaseException.
     """
     try:
         yield
@@ -95,6 +94,6 @@ def damage_of(path: str, kind: str) -> Iterator[None]:
 
 
 def _first_line(error: BaseException) -> str:
-    """What an error says, without the dump that libE57 puts behind it."""
+    """First nonblank line of an error's message, or the name of its type."""
     lines = [line.strip() for line in str(error).splitlines()]
     return next((line for line in lines if line), type(error).__name__)

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Scans: oriented points to surfaces."""
+"""Surfaces reconstructed from oriented points."""
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any, Literal, TypeAlias, TypedDict, Unpack, cast, overload
+from typing import Any, TypeAlias, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -29,8 +29,8 @@ from ..files.staging import as_target
 from .alignment import ScanAlignment
 from .choice import Classes, as_choice
 from .clouds import AGAINST, SCANS
-from .directions import AUTO, OUTWARD, Wanted, as_wanted
-from .repairs import CONTRADICTORY, run_until_sound
+from .directions import AUTO, OUTWARD, Orientation, as_orientation
+from .repairs import CONTRADICTORY, run_with_repairs
 from .scan import AttributeArray
 from .sources import Cloud, Source, array_cloud, joined_cloud, sources_in
 
@@ -39,12 +39,6 @@ _Triangles: TypeAlias = npt.NDArray[np.int32]
 _Values: TypeAlias = npt.NDArray[np.float32]
 _ByName: TypeAlias = dict[str, AttributeArray]
 Support: TypeAlias = dict[str, npt.NDArray[np.float32]]
-Mesh: TypeAlias = tuple[_Positions, _Triangles]
-MeshWithAttributes: TypeAlias = tuple[_Positions, _Triangles, _Values | _ByName]
-MeshWithSupport: TypeAlias = (
-    tuple[_Positions, _Triangles, Support]
-    | tuple[_Positions, _Triangles, _Values | _ByName, Support]
-)
 
 _MIB = 1 << 20
 _MOST_MIB = 1 << 40
@@ -53,53 +47,51 @@ _NO_LIMIT = 2**64 - 1
 
 @dataclass
 class ReconstructionReport:
-    """What a reconstruction found.
+    """Findings of a reconstruction, for users.
 
     Attributes:
-        points: That there were.
-        dropped: Of these, how many were left out, as they tell nothing.
-        causes: The same by the first cause that holds: "not_finite", coordinates that are no
-            numbers or beyond 1e300; "huge", coordinates from 1e30 on where those of most are not;
-            "weightless", of no weight; "normalless", without a normal, where it was not estimated.
-        phantoms: Positions, each with the number of its points, that were left out too: many more
-            points are at exactly one position than at those around it, as where a scanner writes
-            0, 0, 0 for no return.
-        strays: How many of the others were left out, because they are at least about twice as far
-            from the middle as the rest, and more than six standard deviations: one point in 100 000
-            at most, and of 1000 or more up to 3.
-        outliers: The share of the others, by weight, that was left out because it lies much thinner
-            than most: from 0 to 1.
-        vertices: Of the mesh.
-        triangles: Of the mesh.
-        estimated: How many given normals have no direction, and were estimated.
-        contradiction: Of pairs of near points with given normals, the share whose normals are
-            opposed without being on the two sides of a thin part: 0 to 1, about 1/2 where normals
-            are reversed by chance.
-        is_contradictory: That is over a fifth.
-        is_reoriented: Given normals were turned for that: as those that are estimated point, along
-            the given ones' lines where these agree with the points.
-        origin: What the origin is to the points, where normals were estimated and nothing else said
-            where they point: "scanner": they were seen from there, and normals point there;
-            "either": a scanner in a room or the middle of an object, of which the latter was taken;
-            "none".
-        warnings: What is odd about the files; each names one.
-        directions: Where normals point, each once, in the order of the sources: "given": as points
-            have them; "up", "viewpoint", "outward": see `reconstruct`.
-        is_flipped: Most normals pointed inward, and were to point outward; the opposite ones were
-            used.
-        is_room: Most normals point inward, and were kept: as where a scanner stood in a room.
-        residual: The mean distance of the samples from the local surface, in finest cells.
-        depth: Of the octree: the one that was given, or that the points carry.
-        cell: The side of a finest cell, in the points' units.
-        float_step: What single precision has rounded the coordinates to before they came here, far
-            from the origin, in the points' units: points are merged, and surfaces get stairs. 0
-            where that is less than a quarter of a cell.
-        is_spilled: Temporary files were needed.
-        cut: The share of the surface, by area, that was cut because no points support it: from 0
-            to 1.
-        islands: How many small parts were then left out.
-        island_share: Their share of the surface.
-        alignment: How scans were moved onto each other; None where they were not.
+        points: Number of points read.
+        dropped: Number of unusable points that were left out.
+        causes: `dropped` by the first cause that applies: "not_finite", coordinates that are not
+            numbers or exceed 1e300; "huge", coordinates from 1e30 on where most points have smaller
+            ones; "weightless", zero weight; "normalless", no normal although none were estimated.
+        phantoms: Positions that were left out because far more points share them exactly than lie
+            around them, each with its number of points. Some scanners write 0, 0, 0 where nothing
+            was returned.
+        strays: Number of remaining points left out because they are at least about twice as far
+            from the center as all others, and more than six standard deviations: at most one point
+            in 100 000, or up to 3 of 1000 or more points.
+        outliers: Share of the remaining points, by weight, left out because they lie in much
+            sparser neighborhoods than most: 0 to 1.
+        vertices: Number of vertices of the mesh.
+        triangles: Number of triangles of the mesh.
+        estimated: Number of given normals without a direction, which were estimated.
+        contradiction: Share of pairs of neighboring points with given normals whose normals are
+            opposed although the points are not on the two sides of a thin part: 0 to 1, about 1/2
+            where normals are reversed at random.
+        is_contradictory: Whether the contradiction exceeds a fifth.
+        is_reoriented: Whether given normals were reoriented to match estimated ones because of the
+            contradiction; they keep their axes where these agree with the points.
+        origin: Role of the origin, where normals were estimated and nothing else shows their side:
+            "scanner": the points were seen from there, and normals point there; "either": the
+            scanner of a room or the center of an object, taken for the latter; "none".
+        warnings: Oddities of the files; each warning names its file.
+        directions: Directions of normals, each once, in the order of the sources: "given" where
+            normals were kept; "up", "viewpoint", "outward": see `reconstruct`.
+        is_flipped: Whether all normals were reversed, because most pointed inward and outward was
+            asked for.
+        is_room: Whether most normals point inward and were kept, as for a scanner inside a room.
+        residual: Mean distance of the samples from the local surface, in finest cells.
+        depth: Depth of the octree, as given or as derived from the points.
+        cell: Side of a finest cell, in the points' units.
+        float_step: Rounding step of coordinates that passed through single precision far from the
+            origin before they came here, in the points' units. Such rounding merges points and
+            gives surfaces stairs. 0 where it is less than a quarter of a cell.
+        is_spilled: Whether temporary files were needed.
+        cut: Share of the surface, by area, that was cut because no points support it: 0 to 1.
+        islands: Number of small parts removed after the cut.
+        island_share: Share of the surface, by area, in these parts.
+        alignment: Motions that aligned the scans; None where they were not aligned.
     """
 
     points: int = 0
@@ -130,94 +122,50 @@ class ReconstructionReport:
     alignment: ScanAlignment | None = None
 
 
-class _Choices(TypedDict, total=False):
-    """What `reconstruct` takes by name, beside what its result's type depends on."""
+class Reconstruction(tuple[Any, ...]):
+    """A reconstructed surface; unpacks as (positions, triangles).
 
-    depth: int | None
-    cell_size: float | None
-    wavelet: Wavelet
-    smooth: bool
-    isovalue: str | float
-    fit: bool
-    watertight: bool
-    trim: float | None
-    adaptivity: float
-    direction: Direction
-    viewpoint: npt.ArrayLike | None
-    weights: npt.ArrayLike | None
-    classes: Classes | None
-    returns: Returns
-    box: npt.ArrayLike | None
-    align: bool | str
-    memory_limit: int | None
-    report: ReconstructionReport | None
-    progress: ProgressCallback | None
-    threads: int
+    Where `reconstruct` was called with `attributes`, these follow when unpacking, and then with
+    `support=True` the support.
+
+    Attributes:
+        positions: (vertices, 3) float64.
+        triangles: (triangles, 3) int32, counter-clockwise seen from outside.
+        attributes: Attributes of the vertices: (vertices, n) float32 for an array of attributes;
+            for files and scans an array per name, as in `ScanPoints`; None where there are none.
+        support: Per-vertex support by the points; None unless asked for. "distance" (vertices,)
+            float32: distance from the nearest points, in spacings of the points there, or in cells
+            where these are larger. "density" (vertices,) float32: number of points per area.
+        report: Findings of the reconstruction.
+    """
+
+    attributes: Any
+    support: Support | None
+    report: ReconstructionReport
+
+    def __new__(
+        cls,
+        items: Iterable[Any],
+        attributes: _Values | _ByName | None = None,
+        support: Support | None = None,
+        report: ReconstructionReport | None = None,
+    ) -> "Reconstruction":
+        """Takes the items to unpack, positions and triangles first, and the named results."""
+        self = super().__new__(cls, items)
+        self.attributes = attributes
+        self.support = support
+        self.report = report or ReconstructionReport()
+        return self
+
+    @property
+    def positions(self) -> _Positions:
+        return cast("_Positions", self[0])
+
+    @property
+    def triangles(self) -> _Triangles:
+        return cast("_Triangles", self[1])
 
 
-@overload
-def reconstruct(
-    points: npt.ArrayLike | Source | Sequence[Source],
-    normals: npt.ArrayLike | None = None,
-    *,
-    attributes: Literal[False] | None = None,
-    support: Literal[False] = False,
-    **choices: Unpack[_Choices],
-) -> Mesh: ...
-@overload
-def reconstruct(
-    points: npt.ArrayLike | Source | Sequence[Source],
-    normals: npt.ArrayLike | None = None,
-    *,
-    attributes: Literal[False] | None = None,
-    support: Literal[True],
-    **choices: Unpack[_Choices],
-) -> tuple[_Positions, _Triangles, Support]: ...
-@overload
-def reconstruct(
-    points: npt.ArrayLike | Source | Sequence[Source],
-    normals: npt.ArrayLike | None = None,
-    *,
-    attributes: Literal[True],
-    support: Literal[False] = False,
-    **choices: Unpack[_Choices],
-) -> tuple[_Positions, _Triangles, _ByName]: ...
-@overload
-def reconstruct(
-    points: npt.ArrayLike | Source | Sequence[Source],
-    normals: npt.ArrayLike | None = None,
-    *,
-    attributes: Literal[True],
-    support: Literal[True],
-    **choices: Unpack[_Choices],
-) -> tuple[_Positions, _Triangles, _ByName, Support]: ...
-@overload
-def reconstruct(
-    points: npt.ArrayLike | Source | Sequence[Source],
-    normals: npt.ArrayLike | None = None,
-    *,
-    attributes: npt.NDArray[Any] | Sequence[Any],
-    support: Literal[False] = False,
-    **choices: Unpack[_Choices],
-) -> tuple[_Positions, _Triangles, _Values]: ...
-@overload
-def reconstruct(
-    points: npt.ArrayLike | Source | Sequence[Source],
-    normals: npt.ArrayLike | None = None,
-    *,
-    attributes: npt.NDArray[Any] | Sequence[Any],
-    support: Literal[True],
-    **choices: Unpack[_Choices],
-) -> tuple[_Positions, _Triangles, _Values, Support]: ...
-@overload
-def reconstruct(
-    points: npt.ArrayLike | Source | Sequence[Source],
-    normals: npt.ArrayLike | None = None,
-    *,
-    attributes: npt.ArrayLike | bool | None = None,
-    support: bool = False,
-    **choices: Unpack[_Choices],
-) -> Mesh | MeshWithAttributes | MeshWithSupport: ...
 def reconstruct(
     points: npt.ArrayLike | Source | Sequence[Source],
     normals: npt.ArrayLike | None = None,
@@ -244,78 +192,75 @@ def reconstruct(
     report: ReconstructionReport | None = None,
     progress: ProgressCallback | None = None,
     threads: int = 0,
-) -> Mesh | MeshWithAttributes | MeshWithSupport:
-    """The surface that points with normals were taken from (chapter 4).
+) -> Reconstruction:
+    """Reconstructs the surface from which points with normals were sampled (chapter 4).
 
-    The surface is where a function that is 1 inside and 0 outside takes an iso-value; its wavelet
-    coefficients are sums over the points (equation 4.2). Points that are not finite (or are beyond
-    1e300), or have no weight, are left out and counted, as are many at one position; see
-    `ReconstructionReport`. Points on a plane or a line bound nothing: a closed mesh may be a sheet
-    without volume, whose triangles may have no area.
+    The surface is an iso-surface of a function that is 1 inside and 0 outside; the function's
+    wavelet coefficients are sums over the points (equation 4.2). Points that are not finite (or
+    exceed 1e300) or have no weight are left out and counted, as are many points at one position;
+    see `ReconstructionReport`. Points on a plane or a line enclose nothing: a closed mesh may then
+    be a sheet without volume, with triangles without area.
 
     Args:
         points: (points, 3). Or a file that `read_points` reads, or `ScanPoints`, or a list of
-            these, which are put together as one cloud: see `reconstruct_file`.
-        normals: (points, 3), of any length: to where there is nothing. None: estimated, or those of
-            files and scans. Those that are zero or no numbers are estimated; where they contradict
-            each other over most of the surface, they are turned, unless `direction` says otherwise.
+            these, which are joined into one cloud: see `reconstruct_file`.
+        normals: (points, 3), of any length, pointing out of the solid. None: estimated, or taken
+            from the files and scans. Normals that are zero or not finite are estimated; normals
+            that contradict each other over most of the surface are reoriented, unless `direction`
+            says otherwise.
         depth: 1 to 12: the longest side of the cloud is 2^depth cells long, less a margin. None:
-            the greatest at which half of the surface has a point for each face of a cell, or more.
-        cell_size: In place of a depth: the least one at which cells have no longer sides.
+            the greatest depth at which half of the surface has a point per face of a cell.
+        cell_size: Instead of a depth: the least depth at which cells are no larger than this.
         wavelet: "haar", or "d4": more points count for each value, so the function is smoother; it
             takes about three times as long.
-        smooth: The function is smoothed over neighboring cells (section 4.3.1).
-        isovalue: "auto" and "mean": the function's mean at the points. "half": 1/2. Or a number.
-        fit: Vertices are moved onto the surface of the points around them.
-        watertight: The surface is closed. False: it is open where the points are: what is farther
-            from all of them than 1.5 times their spacing there, or 1.5 cells where that is more, is
-            cut, and then parts that are small beside the spacing go. Holes that are up to 8
-            spacings wide are closed all the same, and a cloud that has points all around has a
-            closed surface.
-        trim: In place of that, whatever `watertight` says: leaves out triangles with a vertex that
-            is farther from all points than so many finest cells, above 0 and up to 1e6, however far
-            points are from one another.
-        adaptivity: How far triangles that are made larger may leave the surface, in finest cells;
-            0: none is. Vertices that stay keep their places and attributes; what others had between
-            them, such as colors, is lost. Borders stay as they are; and, with `support`, so does
-            what is farther from all points than 1.5 times their spacing.
-        direction: Where normals point. "given": as points have them, whatever that encloses. "up":
-            to where z is larger. "viewpoint": to where the scanner stood, as `viewpoint` or the
-            file says, or else to the origin. "outward": as those of a closed surface: those that
-            are estimated agree with those around them, and all are reversed if most point inward.
-            "auto": as given where points have normals; else to the viewpoint where that is known,
-            or to the origin where that is what the points were seen from (see `estimate_normals`);
-            else up for .las and .laz files, and for height fields (see `estimate_normals`); else
-            outward. A scanner's grid in a PLY file faces the scanner.
-        viewpoint: Where the scanner stood, (3,); or one place for each point, (points, 3), or for
-            each of several sources, (sources, 3). Normals then point there.
-        weights: (points,), how much each counts; 0 to 1e30. None: all count the same, or as files
+        smooth: Whether the function is smoothed over neighboring cells (section 4.3.1).
+        isovalue: "auto" or "mean": the mean of the function at the points. "half": 1/2. Or a
+            number.
+        fit: Whether vertices are moved onto the surface of the points around them.
+        watertight: True: the surface is closed. False: the surface ends where the points do. It is
+            cut where the distance to the nearest point exceeds 1.5 times the spacing of the points
+            there (or 1.5 cells, if that is more); small separate parts are then removed. Holes up
+            to 8 spacings wide are closed, and a cloud with points on all sides gets a closed
+            surface.
+        trim: Instead of that cut, with any `watertight`: removes triangles with a vertex farther
+            than this from all points, in finest cells, above 0 and up to 1e6, whatever the spacing.
+        adaptivity: How far enlarged triangles may deviate from the surface, in finest cells; 0: no
+            triangle is enlarged. Remaining vertices keep their positions and attributes; detail of
+            attributes between them, such as colors, is lost. Borders are kept, and with `support`
+            also regions farther from all points than 1.5 times the spacing.
+        direction: Where normals point. "given": as the points have them, whatever that encloses.
+            "up": to larger z. "viewpoint": to the scanner, at `viewpoint` or where the file says,
+            else at the origin. "outward": out of a closed surface: estimated normals agree with
+            their neighbors, and all are reversed if most point inward. "auto": as given where
+            points have normals; else to the viewpoint where it is known, or to the origin where the
+            points were seen from there (see `estimate_normals`); else up for .las and .laz files
+            and for height fields; else outward. The grid of a scanner in a PLY file faces the
+            scanner.
+        viewpoint: Position of the scanner, (3,), for each point, (points, 3), or for each of
+            several sources, (sources, 3). Normals then point there.
+        weights: (points,), how much each point counts, 0 to 1e30. None: all the same, or as files
             and scans say.
-        attributes: (points, n), carried over to the vertices: colors, for example. Up to 1e30.
-            True: those of files and scans.
-        support: Tells of each vertex how far it is from the points, and how dense these are there,
-            so that `trim` can cut the mesh elsewhere.
-        classes: Which points of files and scans to use, as `choose_points` has it; also what
-            follows.
-        returns: See there.
-        box: See there.
-        align: Files and scans are moved onto the first of them, as by `align_scans`. "scans" and
-            "surface": against these; True is "scans".
-        memory_limit: In MiB, above what is passed in and returned, points without normals among
-            that; beyond it temporary files are used. It holds within a tenth and 8 MiB. What is
-            less than needed is refused, with the least that would do: the cells of a few layers of
-            the octree, with "d4" all cells of the surface. 0: that least. None: no limit.
-        report: Is filled in.
+        attributes: (points, n), up to 1e30, interpolated at the vertices: colors, for example.
+            True: those of files and scans, as the third item when the result is unpacked.
+        support: Whether to measure each vertex's distance from the points and their density there,
+            from which `trim` can cut the mesh later.
+        classes: Classes of the points to use, for files and scans: see `choose_points`.
+        returns: Returns of the points to use: see `choose_points`.
+        box: Box of the points to use: see `choose_points`.
+        align: Whether to move files and scans onto the first of them, as `align_scans` does.
+            "scans" or "surface": against these; True is "scans".
+        memory_limit: In MiB, beyond the arguments, the result and points without normals; above it
+            temporary files are used. It holds within a tenth and 8 MiB. A limit that is too low is
+            refused with the least possible one: the cells of a few layers of the octree, or with
+            "d4" all cells of the surface. 0: that least limit. None: no limit.
+        report: A report to fill in, which is then the result's `report`. None: a new one.
         progress: Called with the fraction done; returning False stops the work.
         threads: 0 means all processors. The result does not depend on it.
 
     Returns:
-        Positions (vertices, 3) float64 and triangles (triangles, 3) int32, counter-clockwise seen
-        from outside. With `attributes` also those of the vertices: (vertices, n) float32, or for
-        files and scans an array for each name, as `ScanPoints` has them. With `support` also a
-        dictionary: "distance" (vertices,) float32, from the nearest points in spacings of those
-        around, or in cells where these are larger; and "density" (vertices,) float32, the points to
-        an area. Unless `trim` was given, the mesh is two-manifold, and closed if it is watertight.
+        A `Reconstruction`, which unpacks as (positions, triangles), followed by the attributes and
+        the support if asked for. Unless `trim` was given, the mesh is two-manifold, and closed if
+        it is watertight.
 
     Raises:
         ValueError: A shape, type or value is wrong; fewer than 3 points count; all coincide; an
@@ -328,7 +273,7 @@ def reconstruct(
     options = set_options(_native.ReconstructOptions(), CHECKS, locals())
     options.support = bool(support)
     _check_report(report)
-    wanted = as_wanted(direction, viewpoint)
+    orientation = as_orientation(direction, viewpoint)
     choice = as_choice(classes, returns, box)
     against = _as_against(align)
     sources = sources_in(points)
@@ -340,27 +285,40 @@ def reconstruct(
     else:
         _check_sources(normals, weights, attributes)
 
-    def build(faults: frozenset[str], told: ProgressCallback | None) -> Cloud:
+    def build(faults: frozenset[str], progress: ProgressCallback | None) -> Cloud:
         if sources is not None:
-            return joined_cloud(sources, wanted, told, threads, choice, against, faults=faults)
+            return joined_cloud(
+                sources, orientation, progress, threads, choice, against, faults=faults
+            )
         rows = cast("npt.ArrayLike", points)
-        return array_cloud(rows, normals, weights, attributes, wanted, told, threads, faults)
+        return array_cloud(
+            rows, normals, weights, attributes, orientation, progress, threads, faults
+        )
 
-    def make(cloud: Cloud, told: ProgressCallback | None) -> tuple[Any, dict[str, Any]]:
-        *mesh, found = _native.reconstruct(cloud.points, options, as_progress(told))
-        return mesh, found
+    def extract(cloud: Cloud, progress: ProgressCallback | None) -> tuple[Any, dict[str, Any]]:
+        *mesh, findings = _native.reconstruct(cloud.points, options, as_progress(progress))
+        return mesh, findings
 
-    (positions, triangles, carried), found, cloud = _made(build, make, wanted, options, progress)
-    fill_in(report, found, cloud)
-    told: Support = {}
+    (positions, triangles, carried), findings, cloud = _run(
+        build, extract, orientation, options, progress
+    )
+    report = report or ReconstructionReport()
+    fill_in(report, findings, cloud)
+    items = [positions, triangles]
+    measures: Support | None = None
     if options.support:
-        told = {"distance": carried[:, -2].copy(), "density": carried[:, -1].copy()}
+        measures = {"distance": carried[:, -2].copy(), "density": carried[:, -1].copy()}
         carried = np.ascontiguousarray(carried[:, :-2])
-    if attributes is None or attributes is False:
-        return (positions, triangles, told) if support else (positions, triangles)
-    by_name = None if sources is None else _columns(carried, cloud.points.attributes)
-    kept = carried if by_name is None else by_name
-    return (positions, triangles, kept, told) if support else (positions, triangles, kept)
+    values: _Values | _ByName | None = None
+    if sources is not None and attributes is not False:
+        values = _columns(carried, cloud.points.attributes)
+    elif attributes is not None and attributes is not False:
+        values = carried
+    if attributes is not None and attributes is not False:
+        items.append(values)
+    if measures is not None:
+        items.append(measures)
+    return Reconstruction(items, values, measures, report)
 
 
 def reconstruct_file(
@@ -386,99 +344,97 @@ def reconstruct_file(
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> ReconstructionReport:
-    """`reconstruct` from files to a file, of clouds and meshes that may be larger than memory.
+    """Reconstructs from files to a file; neither points nor mesh have to fit into memory.
 
-    Attributes of the points become properties of the vertices; "distance" and "density" follow,
-    as `reconstruct` has them with `support`. Several sources make one cloud,
-    which has all attributes that one of them has, by name; points of the others have 0 for it, or
-    white for a color.
+    Attributes of the points become properties of the vertices, followed by "distance" and
+    "density", the support that `reconstruct` returns. Several sources make one cloud, with the
+    union of their attributes by name; a missing attribute is 0, or white for a color.
 
     Args:
-        source: A file that `read_points` reads, or `ScanPoints`, or a list of these. The points of
-            those that have no normals are read into memory, and all points where given normals are
-            missing in part or contradict each other; a scanner's grid or faces in a PLY file
-            tell the normals, or else they are estimated: of scans that were seen from a known place
-            each by itself, of all others together.
+        source: A file that `read_points` reads, or `ScanPoints`, or a list of these. Sources
+            without normals are read into memory, and so are all where given normals are incomplete
+            or contradict each other. Normals then come from the grid of a scanner or the faces in a
+            PLY file, or are estimated: for each scan with a known viewpoint separately, for all
+            others together.
         target: A .ply file: binary, in double precision where a source is. Temporary files are
             made in its folder.
-        depth: And all options that follow, but for `progress`: as `reconstruct` has them.
-        cell_size: See there.
-        wavelet: See there.
-        smooth: See there.
-        isovalue: See there.
-        fit: See there.
-        watertight: See there.
-        trim: See there.
-        adaptivity: See there.
-        direction: See there.
-        viewpoint: See there.
-        classes: See there.
-        returns: See there.
-        box: See there.
-        align: See there.
-        memory_limit: See there.
-        progress: Called with the fraction done; returning False stops the work, and leaves a file
-            that was there before as it was.
-        threads: See there.
+        depth: As for `reconstruct`, like all that follow.
+        cell_size: See `reconstruct`.
+        wavelet: See `reconstruct`.
+        smooth: See `reconstruct`.
+        isovalue: See `reconstruct`.
+        fit: See `reconstruct`.
+        watertight: See `reconstruct`.
+        trim: See `reconstruct`.
+        adaptivity: See `reconstruct`.
+        direction: See `reconstruct`.
+        viewpoint: See `reconstruct`.
+        classes: See `reconstruct`.
+        returns: See `reconstruct`.
+        box: See `reconstruct`.
+        align: See `reconstruct`.
+        memory_limit: See `reconstruct`.
+        progress: Called with the fraction done; returning False stops the work, and an existing
+            target is left unchanged.
+        threads: See `reconstruct`.
 
     Raises:
-        ValueError: As `reconstruct`; or a source is damaged, or the target's ending is another.
+        ValueError: As `reconstruct`; or a source is damaged, or the target is not a .ply file.
         OSError: A file cannot be read or written.
         MemoryError: Points have no normals, and would not fit into memory.
         Cancelled: `progress` returned False.
     """
     options = set_options(_native.ReconstructOptions(), CHECKS, locals())
-    place = as_target(target)
-    if place.suffix.lower() != ".ply":
+    output = as_target(target)
+    if output.suffix.lower() != ".ply":
         raise ValueError(f"target: '{os.fspath(target)}'; a name that ends in .ply is needed")
-    options.folder = os.fsencode(place.parent)
+    options.folder = os.fsencode(output.parent)
     options.support = True
-    # What is no list of sources is refused as a path.
-    wanted = as_wanted(direction, viewpoint)
+    orientation = as_orientation(direction, viewpoint)
+    # Opening refuses anything that is neither a path nor a source.
     sources = sources_in(source) or [cast("Source", source)]
     choice = as_choice(classes, returns, box)
     against = _as_against(align)
     report = ReconstructionReport()
-    recover(place.parent)
+    recover(output.parent)
 
-    def build(faults: frozenset[str], told: ProgressCallback | None) -> Cloud:
-        return joined_cloud(sources, wanted, told, threads, choice, against, faults=faults)
+    def build(faults: frozenset[str], progress: ProgressCallback | None) -> Cloud:
+        return joined_cloud(sources, orientation, progress, threads, choice, against, faults=faults)
 
-    def make(cloud: Cloud, told: ProgressCallback | None) -> tuple[None, dict[str, Any]]:
-        target_name = os.fsencode(place)
-        found = _native.reconstruct_file(cloud.points, target_name, options, as_progress(told))
-        return None, found
+    def write(cloud: Cloud, progress: ProgressCallback | None) -> tuple[None, dict[str, Any]]:
+        path = os.fsencode(output)
+        return None, _native.reconstruct_file(cloud.points, path, options, as_progress(progress))
 
-    _, found, cloud = _made(build, make, wanted, options, progress)
-    fill_in(report, found, cloud)
+    _, findings, cloud = _run(build, write, orientation, options, progress)
+    fill_in(report, findings, cloud)
     return report
 
 
-def _made(
+def _run(
     build: Callable[[frozenset[str], ProgressCallback | None], Cloud],
-    make: Callable[[Cloud, ProgressCallback | None], tuple[Any, dict[str, Any]]],
-    wanted: Wanted,
+    extract: Callable[[Cloud, ProgressCallback | None], tuple[Any, dict[str, Any]]],
+    orientation: Orientation,
     options: _native.ReconstructOptions,
     progress: ProgressCallback | None,
 ) -> tuple[Any, dict[str, Any], Cloud]:
-    """Builds a cloud and makes its surface; both again where given normals have faults."""
+    """Builds a cloud and extracts its surface, again after a repair if given normals are faulty."""
 
     contradiction = 0.0
 
     def run(
-        faults: frozenset[str], is_checked: bool, told: ProgressCallback | None
+        faults: frozenset[str], is_checked: bool, progress: ProgressCallback | None
     ) -> tuple[tuple[Any, dict[str, Any], Cloud], dict[str, Any]]:
-        is_kept = wanted.direction not in (AUTO, OUTWARD)
-        cloud = build(faults - {CONTRADICTORY} if is_kept else faults, told)
+        keeps_sides = orientation.direction not in (AUTO, OUTWARD)
+        cloud = build(faults - {CONTRADICTORY} if keeps_sides else faults, progress)
         options.are_sides_known = cloud.are_sides_known
         options.check_normals = is_checked and cloud.has_given
-        mesh, found = make(cloud, cloud.rest(told))
+        mesh, findings = extract(cloud, cloud.remaining_progress(progress))
         nonlocal contradiction
-        found["contradiction"] = contradiction = max(contradiction, found["contradiction"])
-        found["is_contradictory"] = CONTRADICTORY in faults
-        return (mesh, found, cloud), found
+        findings["contradiction"] = contradiction = max(contradiction, findings["contradiction"])
+        findings["is_contradictory"] = CONTRADICTORY in faults
+        return (mesh, findings, cloud), findings
 
-    return run_until_sound(run, progress)
+    return run_with_repairs(run, progress)
 
 
 def _as_against(align: bool | str) -> str | None:
@@ -530,7 +486,7 @@ CHECKS: dict[str, Check] = {
 
 
 def _check_sources(normals: object, weights: object, attributes: object) -> None:
-    """Refuses arrays beside files and scans, which have their own."""
+    """Raises ValueError for arrays beside files and scans, which have their own."""
     for name, value in (("normals", normals), ("weights", weights)):
         if value is not None:
             raise ValueError(
@@ -545,7 +501,7 @@ def _check_sources(normals: object, weights: object, attributes: object) -> None
 def _columns(
     carried: npt.NDArray[np.float32], names: Sequence[tuple[str, bool]]
 ) -> dict[str, AttributeArray]:
-    """The attributes of vertices by name: rounded to bytes where the points have bytes."""
+    """Vertex attributes by name, rounded to bytes where the points have bytes."""
     return {
         name: np.clip(np.rint(column), 0, 255).astype(np.uint8) if is_byte else column.copy()
         for (name, is_byte), column in zip(names, carried.T, strict=True)
@@ -557,15 +513,14 @@ def _check_report(report: ReconstructionReport | None) -> None:
         raise ValueError(f"report: {report!r}; a ReconstructionReport is needed, or None")
 
 
-def fill_in(report: ReconstructionReport | None, found: Mapping[str, object], cloud: Cloud) -> None:
-    if report is None:
-        return
+def fill_in(report: ReconstructionReport, findings: Mapping[str, object], cloud: Cloud) -> None:
+    """Copies the findings of the native module and of the cloud into a report."""
     report.directions = cloud.directions
     report.alignment = cloud.alignment
     report.origin = cloud.origin
     report.estimated = cloud.estimated
     report.is_reoriented = cloud.is_reoriented
-    for name, value in found.items():
+    for name, value in findings.items():
         if name != "normal_fault":
             setattr(report, name, value)
     report.phantoms = tuple(report.phantoms)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Given normals that are missing or contradict each other, and work that is done again then."""
+"""Repair of given normals that are missing or contradict each other."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
@@ -13,27 +13,29 @@ from .._border.arguments import ProgressCallback, as_progress, progress_part
 from .._border.arrays import as_threads
 
 MISSING, CONTRADICTORY = "missing", "contradictory"
-"""What may be wrong with given normals."""
+"""Faults of given normals."""
 
 _NEIGHBORS = 16
-_LEAST_GIVEN = 0.01
-"""The share of points whose normals say where those of the others point."""
-_SAME_AXIS = 0.5
-"""Cosine between a given normal and an estimated one, from which on the given one is used."""
+_MIN_GIVEN_SHARE = 0.01
+"""Share of points with normals above which the others' normals are derived from them."""
+_SAME_AXIS_MIN_COSINE = 0.5
+"""Cosine between a given and an estimated normal above which the given axis is kept."""
 
 Normals = npt.NDArray[np.float64]
-Made = TypeVar("Made")
+Result = TypeVar("Result")
 
 
-def run_until_sound(
-    run: Callable[[frozenset[str], bool, ProgressCallback | None], tuple[Made, Mapping[str, Any]]],
+def run_with_repairs(
+    run: Callable[
+        [frozenset[str], bool, ProgressCallback | None], tuple[Result, Mapping[str, Any]]
+    ],
     progress: ProgressCallback | None,
-) -> Made:
-    """Does work, and again where the library finds a fault in the normals.
+) -> Result:
+    """Runs a reconstruction, again with repaired normals for each fault that is found in them.
 
     Args:
-        run: Takes the faults that are known, whether to look for more, and what to tell of the
-            progress; returns its result, and what the library has found.
+        run: Takes the faults known so far, whether to look for others, and a progress callback;
+            returns its result and the findings of the native module.
         progress: Called with the fraction done.
     """
     faults: frozenset[str] = frozenset()
@@ -42,39 +44,39 @@ def run_until_sound(
     while True:
         last = done
 
-        def tell(share: float, last: float = last) -> bool | None:
+        def report(share: float, last: float = last) -> bool | None:
             nonlocal done
             done = last + (1.0 - last) * share
             return None if progress is None else progress(done)
 
         # One fault may hide the other, and each is repaired once.
-        made, found = run(faults, len(faults) < 2, None if progress is None else tell)
-        fault = found["normal_fault"]
+        result, findings = run(faults, len(faults) < 2, None if progress is None else report)
+        fault = findings["normal_fault"]
         if not fault:
-            return made
+            return result
         if fault in faults:
             return run(faults, False, progress_part(progress, done, 1.0))[0]
         faults |= {fault}
 
 
-def lacking(normals: npt.NDArray[np.floating]) -> npt.NDArray[np.bool_]:
-    """Which normals have no direction."""
+def without_direction(normals: npt.NDArray[np.floating]) -> npt.NDArray[np.bool_]:
+    """Mask of the normals that are zero or not finite."""
     largest = np.abs(normals).max(axis=1, initial=0.0)
     return np.asarray(~(np.isfinite(largest) & (largest > 0.0)))
 
 
-def has_enough(normals: npt.NDArray[np.floating]) -> bool:
-    """Whether enough points have a normal, so that those of the others follow from them."""
-    return bool(np.count_nonzero(~lacking(normals)) > _LEAST_GIVEN * len(normals))
+def has_enough_normals(normals: npt.NDArray[np.floating]) -> bool:
+    """Whether enough points have a normal to derive those of the others from."""
+    return bool(np.count_nonzero(~without_direction(normals)) > _MIN_GIVEN_SHARE * len(normals))
 
 
-def completed(
+def complete_normals(
     points: npt.NDArray[np.floating],
     normals: npt.NDArray[np.floating],
     progress: ProgressCallback | None,
     threads: int,
 ) -> Normals:
-    """The normals, and where they have no direction those that the points around say."""
+    """Replaces normals without a direction by those that follow from neighboring points."""
     return _native.completed_normals(
         np.ascontiguousarray(points, np.float64),
         np.ascontiguousarray(normals, np.float64),
@@ -84,11 +86,11 @@ def completed(
     )
 
 
-def reoriented(given: npt.NDArray[np.floating], estimated: Normals) -> Normals:
-    """Given normals as estimated ones point; and these, where the given ones are others."""
+def reorient_normals(given: npt.NDArray[np.floating], estimated: Normals) -> Normals:
+    """Given normals on the side of the estimated ones; estimated ones where the axes disagree."""
     with np.errstate(all="ignore"):
         wide = given.astype(np.float64)
         axes = wide / np.abs(wide).max(axis=1, keepdims=True)
         axes /= np.sqrt(np.square(axes).sum(axis=1, keepdims=True))
         cosines = (axes * estimated).sum(axis=1, keepdims=True)
-    return np.where(np.abs(cosines) > _SAME_AXIS, np.sign(cosines) * axes, estimated)
+    return np.where(np.abs(cosines) > _SAME_AXIS_MIN_COSINE, np.sign(cosines) * axes, estimated)

@@ -16,20 +16,19 @@ AttributeArray: TypeAlias = npt.NDArray[np.uint8 | np.float32]
 
 @dataclass(frozen=True, eq=False)
 class ScanPoints:
-    """Points of a scan, with what is known of them.
+    """Points of a scan, with normals and other values.
 
     Attributes:
-        positions: (n, 3). A value that is not finite in the file is not finite here.
+        positions: (n, 3). Values that are not finite in the file are not finite here.
         normals: (n, 3), of any length; None where the file has none.
         weights: (n,), how much each point counts (a scanner's confidence); None: all the same.
-        attributes: An (n,) array for each other value that the points have, by its name in the
-            file: uint8 where the file has bytes, else float32.
-        viewpoint: Where the scanner stood, (3,), in the coordinates of the points; or for each
-            point, (n, 3), where these were seen from several places; None where the file does not
-            say.
-        stride: Of how many points of the file, in their order, one is here.
-        is_from_above: A scanner looked down at them, as at those of .las and .laz files.
-        warnings: What is odd about the file; each names it.
+        attributes: Other values of the points, (n,) each, by their names in the file: uint8 where
+            the file has bytes, else float32.
+        viewpoint: Position of the scanner in the coordinates of the points, (3,), or one per point,
+            (n, 3), if there are several; None where the file does not say.
+        stride: Every how many points of the file one was read.
+        is_from_above: Whether the scanner looked down, as for .las and .laz files.
+        warnings: Oddities of the file; each warning names it.
     """
 
     positions: npt.NDArray[np.float64]
@@ -50,10 +49,10 @@ class ScanPoints:
         return np.stack([self.attributes[name] for name in names], axis=1)
 
     def take(self, which: npt.NDArray[np.bool_ | np.integer]) -> "ScanPoints":
-        """Some of the points, with all that is known of them.
+        """Selects points, with their normals and other values.
 
         Args:
-            which: (n,) bool, or indices: what indexes an array of numpy.
+            which: A mask, (n,) bool, or indices.
         """
         viewpoint = self.viewpoint
         return replace(
@@ -66,19 +65,19 @@ class ScanPoints:
         )
 
     def moved(self, matrix: npt.ArrayLike) -> "ScanPoints":
-        """The points after a motion, with normals and viewpoints.
+        """Applies a rigid motion to the points, normals and viewpoints.
 
         Args:
-            matrix: (4, 4), as `align_scans` returns them: a turn and a shift.
+            matrix: (4, 4), as `align_scans` returns them: a rotation and a translation.
         """
         motion = as_floats("matrix", matrix, (4, 4), np.float64)
-        still = np.array(motion)
-        still[:3, 3] = 0.0
+        rotation = np.array(motion)
+        rotation[:3, 3] = 0.0
         viewpoint = self.viewpoint
         return replace(
             self,
             positions=_native.moved(_rows(self.positions), motion),
-            normals=None if self.normals is None else _native.moved(_rows(self.normals), still),
+            normals=None if self.normals is None else _native.moved(_rows(self.normals), rotation),
             viewpoint=None
             if viewpoint is None
             else _native.moved(_rows(np.atleast_2d(viewpoint)), motion).reshape(viewpoint.shape),

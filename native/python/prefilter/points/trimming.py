@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Surfaces of scans that end where the points do."""
+"""Trimming of reconstructed surfaces where no points support them."""
 
 from typing import NamedTuple
 
@@ -15,17 +15,17 @@ _MOST_VERTICES = 2**31 - 1
 
 
 class TrimmedSurface(NamedTuple):
-    """What is left of a surface.
+    """A trimmed surface.
 
     Attributes:
         positions: (vertices, 3) float64.
         triangles: (triangles, 3) int32.
-        distance: (vertices,) float32, as it was; `limit` where the surface was cut.
+        distance: (vertices,) float32, as given; `limit` at the cut.
         density: (vertices,) float32.
         attributes: (vertices, n) float32; None if none were given.
-        cut: The share of the surface, by area, that was cut: from 0 to 1.
-        islands: How many small parts were then left out.
-        island_share: Their share of the surface.
+        cut: Share of the surface, by area, that was cut: 0 to 1.
+        islands: Number of small parts removed after the cut.
+        island_share: Share of the surface, by area, in these parts.
     """
 
     positions: npt.NDArray[np.float64]
@@ -52,27 +52,27 @@ def trim(
 ) -> TrimmedSurface:
     """Cuts a reconstructed surface where no points support it, without another reconstruction.
 
-    The cut is the line at which the distance is `limit`, so triangles are cut, too, and borders are
-    smooth. `reconstruct` does the same unless it is told to make a closed surface, but also knows
-    where a large triangle spans a hole whose rim its corners lie on.
+    The cut follows the line at which the distance is `limit`, through triangles, so borders are
+    smooth. `reconstruct` does the same unless the surface is to be watertight, and also detects
+    large triangles that span a hole with all corners on its rim.
 
     Args:
         positions: (vertices, 3), in any unit of length.
         triangles: (triangles, 3) integer indices of vertices.
-        distance: (vertices,) from the nearest points, in spacings of the points there, as
-            `reconstruct` finds it with `support`, and `reconstruct_file` writes it.
-        density: (vertices,) the number of points to an area, in the unit of the positions.
-        attributes: (vertices, n), kept, and interpolated where triangles are cut.
-        limit: What is farther is cut. 0 to 1e30, as the two that follow.
-        hole: But not what fills a hole: regions in which nothing is farther than this, and that do
-            not reach an end of the surface.
-        island: Where anything was cut, parts go whose area is that of fewer points than this, but
-            for the largest part.
+        distance: (vertices,), from the nearest points, in spacings of the points there, as
+            `reconstruct` measures it with `support` and `reconstruct_file` writes it.
+        density: (vertices,), number of points per area, in the unit of the positions.
+        attributes: (vertices, n), preserved, and interpolated where triangles are cut.
+        limit: Greatest distance that is kept, 0 to 1e30.
+        hole: Holes stay filled, 0 to 1e30: regions farther than `limit` are kept if they nowhere
+            exceed this distance and do not reach a border of the surface.
+        island: If anything was cut, separate parts are removed whose area corresponds to fewer
+            points than this, 0 to 1e30, except the largest part.
         progress: Called with the fraction done; returning False stops the work.
 
     Returns:
-        What is left; it may be nothing. If nothing is cut, the mesh is as it was. Vertices that no
-        triangle has are left out.
+        The trimmed surface, which may be empty. If nothing is cut, the mesh is unchanged. Vertices
+        without triangles are removed.
 
     Raises:
         ValueError: A shape, type or value is wrong.
@@ -91,7 +91,7 @@ def trim(
         raise ValueError(f"triangles: index {outside[0]}; there are {count} vertices")
     if not np.isfinite(points).all():
         raise ValueError("positions: some are not finite; all must be")
-    found = _native.trim(
+    left, kept, values, report = _native.trim(
         np.ascontiguousarray(points, np.float64),
         np.ascontiguousarray(indices, np.int32),
         np.ascontiguousarray(np.concatenate(columns, axis=1)),
@@ -100,7 +100,6 @@ def trim(
         as_number("island", island),
         as_progress(progress),
     )
-    left, kept, values, report = found
     return TrimmedSurface(
         left,
         kept,

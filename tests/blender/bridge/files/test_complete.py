@@ -58,7 +58,7 @@ def test_whole_files_pass(check, tmp_path, ending):
 
 
 @pytest.mark.parametrize("ending", SIMPLE)
-def test_a_file_that_is_cut_anywhere_is_found(check, tmp_path, ending):
+def test_files_cut_anywhere_are_detected(check, tmp_path, ending):
     path = exported(tmp_path / f"out{ending}")
     contents = path.read_bytes()
     cuts = {0, 1, 80, 84, len(contents) - 1, *range(0, len(contents), len(contents) // 40)}
@@ -72,7 +72,7 @@ def test_a_file_that_is_cut_anywhere_is_found(check, tmp_path, ending):
 
 
 @pytest.mark.parametrize("ending", SIMPLE)
-def test_a_block_that_is_missing_amid_a_file_is_found(check, tmp_path, ending):
+def test_a_block_missing_inside_a_file_is_detected(check, tmp_path, ending):
     path = exported(tmp_path / f"out{ending}")
     contents = path.read_bytes()
     path.write_bytes(contents[:4096] + contents[8192:])

@@ -29,7 +29,7 @@ def files(tmp_path):
 
 
 def damages(data, ending):
-    """Yields what is left of a file; one of FBX may ask Blender for more memory than there is."""
+    """Yields truncated and wrong contents; a cut FBX file may make Blender run out of memory."""
     yield from (b"", bytes(100), b"hello\n", bytes(range(256)) * 2, b"{}", b"ply\n")
     yield from (data[:count] for count in (3, 40, 84, 200, len(data) // 2))
     generator = random.Random(1)

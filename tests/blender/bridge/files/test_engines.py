@@ -101,7 +101,7 @@ def test_float_image_is_scene_linear(bake, tmp_path, kind):
     np.testing.assert_allclose(file.levels[1], scenes.halved(values), rtol=1e-3)
 
 
-def test_float_image_in_bytes_is_clipped_and_told(bake, tmp_path, kind):
+def test_float_image_in_bytes_is_clipped_with_a_warning(bake, tmp_path, kind):
     values = 2 * scenes.noise(8, 8)
     values[..., 3] = 1
     image = scenes.image("Light", values, is_float=True)
@@ -168,7 +168,7 @@ def test_few_channels_of_srgb_are_refused(bake, tmp_path, kind, texture_format):
         ({}, {"content": "cutout", "threshold": 0.5}, None),
     ],
 )
-def test_bc1_tells_what_becomes_of_alpha(bake, tmp_path, options, settings, words):
+def test_bc1_warns_about_alpha(bake, tmp_path, options, settings, words):
     image = scenes.image("Paint", scenes.noise(8, 8, alpha=True), **options)
     outcome = bake(image, "out.dds", texture_format="bc1", **settings)
     assert outcome.warnings == ([] if words is None else [f"Texture Format: BC1 {words}"])
@@ -180,7 +180,7 @@ def test_bc1_tells_what_becomes_of_alpha(bake, tmp_path, options, settings, word
         np.testing.assert_array_equal(level[..., 3], np.where(alpha < 128, 0, 255))
 
 
-def test_blocks_of_odd_sides_are_told(bake, tmp_path, kind):
+def test_odd_sides_are_reported_for_blocks(bake, tmp_path, kind):
     image = scenes.image("Paint", scenes.noise(6, 9))
     outcome = bake(image, f"out.{kind}", texture_format="bc3", use_multiples_of_4=False)
     assert outcome.warnings == [
@@ -189,7 +189,7 @@ def test_blocks_of_odd_sides_are_told(bake, tmp_path, kind):
     assert len(READERS[kind](tmp_path / f"out.{kind}").levels) == 4
 
 
-def test_values_that_no_half_float_holds(bake, tmp_path, kind):
+def test_values_beyond_half_floats(bake, tmp_path, kind):
     image = scenes.image("Light", np.full((4, 4, 4), 1e6, np.float32), is_float=True)
     (tmp_path / f"out.{kind}").write_bytes(b"kept")
     with pytest.raises(ValueError, match="'rgba32f' is needed"):
@@ -317,7 +317,7 @@ def test_bc6h_is_scene_linear(bake, tmp_path, kind):
         np.testing.assert_allclose(level, values[: len(level), : len(level), :3], rtol=0.02)
 
 
-def test_bc6h_tells_what_it_cannot_hold(bake, tmp_path):
+def test_bc6h_warns_about_negative_values(bake, tmp_path):
     dark = np.full((4, 4, 4), (-0.5, 1, 1, 0.5), np.float32)
     outcome = bake(scenes.image("Dark", dark, is_float=True), "a.dds", texture_format="bc6h")
     assert outcome.warnings == [

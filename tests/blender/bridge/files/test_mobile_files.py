@@ -69,7 +69,7 @@ def test_values_of_high_dynamic_range(bake, tmp_path, texture_format):
     assert told == f"Texture Format: {label} is for float images; ASTC is closer to 'Paint'"
 
 
-def test_alpha_that_etc2_leaves_out_is_told(bake):
+def test_alpha_dropped_by_etc2_is_reported(bake):
     image = scenes.image("Paint", scenes.noise(8, 8, alpha=True))
     outcome = bake(image, "out.ktx2", texture_format="etc2-rgb")
     assert outcome.warnings == ["Texture Format: ETC2 RGB drops the fourth channel of 'Paint'"]

@@ -66,7 +66,7 @@ def test_versions_stay_where_the_file_cannot_be_replaced(addon, tmp_path, monkey
     assert {one.name: one.read_bytes() for one in tmp_path.iterdir()} == before
 
 
-def test_what_blender_cannot_rename_is_removed(addon, tmp_path, monkeypatch):
+def test_files_that_blender_cannot_rename_are_removed(addon, tmp_path, monkeypatch):
     def save(filepath, **_):
         Path(f"{filepath}@").write_bytes(b"whole")
         raise RuntimeError("Error: Cannot change old file (file saved with @)")

@@ -101,7 +101,7 @@ def test_a_baked_model_keeps_all_that_is_in_it(scene, tmp_path, ending):
 
 
 def test_a_model_that_was_baked_can_be_baked_again(scene, tmp_path):
-    """What a glTF file has of a scene comes through an import and an export."""
+    """The contents of a glTF scene survive an import and an export."""
     (tmp_path / "a").mkdir()
     (tmp_path / "b").mkdir()
     first, second = tmp_path / "a" / "model.glb", tmp_path / "b" / "model.glb"
@@ -114,7 +114,7 @@ def test_a_model_that_was_baked_can_be_baked_again(scene, tmp_path):
         assert len(before[key]) == len(after[key]), key
 
 
-def test_chosen_objects_bring_what_moves_them(scene, tmp_path):
+def test_chosen_objects_include_their_armatures_and_parents(scene, tmp_path):
     target = tmp_path / "model.glb"
     result = run(
         *("bake", scene, "--all", "--output", target),
@@ -144,7 +144,7 @@ def test_results_in_every_kind_of_file(scene, tmp_path, ending):
 
 
 @pytest.mark.parametrize("ending", [".obj", ".glb", ".fbx"])
-def test_what_is_combined_in_every_kind_of_file(scene, tmp_path, ending):
+def test_boolean_results_in_every_kind_of_file(scene, tmp_path, ending):
     target = tmp_path / f"out{ending}"
     words = ("--object", "Child", "--object", "Below", "--operation", "union", "--depth", 4)
     result = run("boolean", scene, *words, "--output", target)
@@ -152,7 +152,7 @@ def test_what_is_combined_in_every_kind_of_file(scene, tmp_path, ending):
     assert "Child" in loaded(target)
 
 
-def test_an_exporter_that_is_missing_is_told_first(scene, tmp_path, monkeypatch, addon):
+def test_a_missing_exporter_is_reported_first(scene, tmp_path, monkeypatch, addon):
     files = addon("bridge.files.scenes")
     absent = files.Exporter("export_scene.nothing", "use_selection")
     monkeypatch.setitem(files.EXPORTERS, ".fbx", absent)

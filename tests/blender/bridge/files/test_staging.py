@@ -16,7 +16,7 @@ def make_pipe(path):
 
 
 def make_device(path):
-    """A device that throws away what it is given; a node of its own, not that of the system."""
+    """A device node that discards all data; not the system's own node."""
     try:
         os.mknod(path, 0o600 | stat.S_IFCHR, os.makedev(1, 3))
     except PermissionError:
@@ -122,7 +122,7 @@ def test_no_file_of_a_set_where_one_fails(addon, tmp_path, monkeypatch, count, h
     assert texts(tmp_path) == {"1.txt": "old", "3.txt": "old"}
 
 
-def test_what_cannot_be_taken_back_is_named(addon, tmp_path, monkeypatch):
+def test_files_that_cannot_be_restored_are_named(addon, tmp_path, monkeypatch):
     staging, files = staged(addon, tmp_path, 5)
     fail_at(monkeypatch, staging, 5, for_good=True)
     with pytest.raises(OSError, match=r"no rename") as caught:

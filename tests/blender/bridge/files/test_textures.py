@@ -94,7 +94,7 @@ def test_float_image_as_tiff(bake, tmp_path):
 
 
 def use_for_temporary_files(folder, monkeypatch):
-    """Makes a folder and lets it be that of temporary files."""
+    """Makes a folder and uses it for temporary files."""
     folder.mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(folder))
 

@@ -38,7 +38,7 @@ def test_volumes(pair, operation, volume, box):
     assert len(other.data.vertices) == 8
 
 
-def test_says_what_it_did(pair, capfd):
+def test_reports_its_result(pair, capfd):
     boolean()
     assert "Difference with 'Other': 'First' in 64³ cells of" in capfd.readouterr().out
 

@@ -180,7 +180,7 @@ VALUES = {
     "QUATERNION": (0.5, -0.5, 0.5, 0.5),
     "FLOAT4X4": tuple(range(16)),
 }
-"""One value of each type that attributes may have, but for texts."""
+"""One value of each attribute type, except strings."""
 FIELDS = {"FLOAT2": "vector", "FLOAT_VECTOR": "vector", "FLOAT4": "vector"}
 
 
@@ -218,7 +218,7 @@ def fill(attribute, chosen, others=0):
     attribute.data.foreach_set(field_of(attribute.data_type), values.ravel())
 
 
-def test_there_are_values_of_all_types():
+def test_all_attribute_types_are_tested():
     assert set(types()) - set(VALUES) == {"STRING"}
 
 
@@ -279,7 +279,7 @@ def test_attributes_of_all_types_arrive(domain, capfd):
         np.testing.assert_allclose(values[is_sure], expected[is_sure], atol=3e-3, rtol=3e-3)
 
 
-def test_rotations_between_others():
+def test_rotations_are_interpolated():
     """Half of the way between no turn and one by 90 degrees is one by 45; signs are no matter."""
     box = bodies.cube()
     turns = box.data.attributes.new("Turn", "QUATERNION", "POINT")
@@ -347,14 +347,14 @@ def test_marks_of_operands():
     )
 
 
-def test_marks_stay_away_without_attributes():
+def test_marks_are_not_transferred_without_attributes():
     box = marked_box()
     voxelize(use_attributes=False)
     assert "crease_edge" not in box.data.attributes
     assert not any(edge.use_seam for edge in box.data.edges)
 
 
-def test_slots_of_one_material_stay_two():
+def test_two_slots_of_one_material_stay_separate():
     box = bodies.cube()
     red = bpy.data.materials.new("Red")
     box.data.materials.append(red)
@@ -375,7 +375,7 @@ def test_slots_of_one_material_stay_two():
 
 
 @pytest.mark.parametrize("domain", ["POINT", "CORNER"])
-def test_colors_stay_where_they_were(domain):
+def test_colors_keep_their_positions(domain):
     ball = bodies.sphere()
     colors = ball.data.color_attributes.new("Paint", "FLOAT_COLOR", domain)
     for entry in colors.data:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`prefilter.voxelize` and `prefilter.boolean` with quads: what they carry is known by place."""
+"""`prefilter.voxelize` and `prefilter.boolean` with quads: transferred values match positions."""
 
 import bodies
 import bpy
@@ -36,7 +36,7 @@ def colored(obj):
 
 
 @pytest.mark.parametrize("scale", [(1, 1, 1), (-1, 2, 1)])
-def test_quads_carry_what_is_at_their_corners(scale, capfd):
+def test_quads_get_values_at_their_corners(scale, capfd):
     box = bodies.cube(rotation_euler=(0.3, 0.7, 1.1), scale=scale)
     colored(box)
     assert voxelize() == {"FINISHED"}

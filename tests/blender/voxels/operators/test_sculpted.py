@@ -82,7 +82,7 @@ def test_the_sculpted_object_alone():
     assert bodies.is_closed(ball)
 
 
-def test_what_an_object_was_made_of_stays():
+def test_sources_are_preserved():
     ball = bodies.sphere()
     bpy.ops.prefilter.voxelize(depth=4)
     bpy.ops.object.mode_set(mode="SCULPT")
@@ -122,7 +122,7 @@ def test_face_sets_of_the_size_of_a_cell_survive(faces):
         assert np.linalg.norm(place - places[found[face] - 100]) < 1.1 * cell
 
 
-def test_in_object_mode_too():
+def test_face_sets_survive_in_object_mode():
     ball = sculpted()
     bpy.ops.object.mode_set(mode="OBJECT")
     bpy.ops.prefilter.voxelize(depth=5, adaptivity=0.0)
@@ -162,7 +162,7 @@ def test_dyntopo_is_refused():
     assert len(ball.data.vertices) == 42
 
 
-def test_what_fails_stays_in_sculpt_mode():
+def test_failures_stay_in_sculpt_mode():
     ball = sculpted(subdivisions=2)
     with pytest.raises(RuntimeError, match="Voxel Size"):
         bpy.ops.prefilter.voxelize(resolution="size", voxel_size=1e-5)

@@ -107,7 +107,7 @@ def test_operands_of_a_boolean():
     assert faces == wanted
 
 
-def test_what_is_whole_has_no_rows():
+def test_intact_meshes_have_no_rows():
     obj = bodies.sphere()
     assert not voxelize(obj).places
     assert not bpy.ops.prefilter.select_found.poll()
@@ -121,7 +121,7 @@ def test_rows_are_checked():
         bpy.ops.prefilter.select_found(index=7)
 
 
-def test_nothing_is_kept_without_the_original():
+def test_no_report_is_stored_without_the_original():
     obj = bodies.cube()
     with_plate(obj)
     assert not voxelize(obj, originals="replace").is_there

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""`prefilter.update_voxels`: results are made again of what they were made of, as that is now."""
+"""`prefilter.update_voxels`: results are updated from the present state of their sources."""
 
 import bodies
 import bpy
@@ -41,7 +41,7 @@ def boolean(**options):
     return cube, other
 
 
-def test_the_source_was_changed():
+def test_update_after_changing_the_source():
     result = voxelized()
     assert bodies.volume(result) == pytest.approx(8, rel=0.01)
     source = switch()
@@ -80,7 +80,7 @@ def test_settings_are_those_of_the_object():
     assert 3 < len(result.data.polygons) / count < 5
 
 
-def test_the_result_was_moved():
+def test_update_after_moving_the_result():
     result = voxelized()
     result.location, result.scale = (5, 5, 5), (1, 1, 2)
     update()
@@ -88,7 +88,7 @@ def test_the_result_was_moved():
     assert bodies.volume(result) == pytest.approx(16, rel=0.01)
 
 
-def test_an_operand_was_moved():
+def test_update_after_moving_an_operand():
     """Hidden or not, whichever of both is active."""
     for operands in ("hide", "keep"):
         cube, other = boolean(operands=operands)
@@ -151,8 +151,8 @@ def test_one_boolean_after_the_other(is_cutter_active):
     assert bodies.volume(switch()) == pytest.approx(6, rel=0.01)
 
 
-def test_where_both_are_now():
-    """The object was moved together with what is hidden."""
+def test_update_uses_present_positions():
+    """The object was moved together with its hidden source."""
     cube, first, second = cut_twice()
     for obj in (cube, first, second):
         obj.location.z = 10
@@ -160,7 +160,7 @@ def test_where_both_are_now():
     assert bodies.volume(cube) == pytest.approx(2, rel=0.01)
 
 
-def test_what_was_changed_by_hand_in_between_stays(capfd):
+def test_manually_edited_results_are_not_updated(capfd):
     cube, first, _ = cut_twice()
     source = switch()
     for vertex in source.data.vertices:
@@ -175,7 +175,7 @@ def test_what_was_changed_by_hand_in_between_stays(capfd):
     assert "Warning: the mesh of 'Cube' was changed by hand" in capfd.readouterr().out
 
 
-def test_a_failure_leaves_everything(addon, monkeypatch):
+def test_a_failed_update_changes_nothing(addon, monkeypatch):
     cube, first, _ = cut_twice()
     source = cube.prefilter_made_of.sources[0].obj
     before = {obj.name: obj.data for obj in bpy.data.objects}
@@ -247,7 +247,7 @@ def test_a_text_where_its_result_was_moved_to():
 
 
 def test_a_text_that_was_moved_while_it_was_shown():
-    """The result follows, and what is cut away with it."""
+    """The result follows the text, and the cut is updated."""
     result, text, width = cut_text()
     two_bars = bodies.volume(result)
     assert switch() == text
@@ -307,7 +307,7 @@ def test_undo():
 
 
 def test_replaced_originals():
-    """Nothing is kept, and what an earlier run has kept goes too."""
+    """No source is kept, and the source of an earlier run is removed."""
     result = voxelized()
     assert bpy.ops.prefilter.voxelize(depth=4, originals="replace") == DONE
     assert [obj.name for obj in bpy.data.objects] == ["Cube"]
@@ -316,10 +316,10 @@ def test_replaced_originals():
     assert bodies.is_closed(result)
 
 
-def test_what_was_not_made_is_refused():
+def test_objects_without_a_recipe_are_refused():
     bodies.cube()
     assert not bpy.ops.prefilter.update_voxels.poll()
-    with pytest.raises(RuntimeError, match="does not know what it was made of"):
+    with pytest.raises(RuntimeError, match="has no stored sources"):
         bpy.ops.prefilter.update_voxels()
 
 

@@ -217,7 +217,7 @@ def test_materials_and_uvs_end_at_edges():
     made = box.data.uv_layers["Map"]
     area = 0.0
     for face in box.data.polygons:
-        # Of the cube, as some corners of the surface are blunt.
+        # Compare with the cube, as some corners of the surface are blunt.
         axis = int(np.abs(face.center).argmax())
         side = sides[tuple(int(np.sign(face.center[axis])) * (axis == k) for k in range(3))]
         assert face.material_index == side
@@ -317,7 +317,7 @@ def test_flat_shading():
 
 @pytest.mark.parametrize("degrees", [20, 50, 120])
 def test_edges_are_sharp_above_the_angle(degrees):
-    """By the angles of the result's own faces; none is as sharp as 120 degrees."""
+    """The angles between the result's own faces count; all are below 120 degrees."""
     box = bodies.cube(rotation_euler=(0.2, 0.3, 0.1))
     voxelize(use_smooth_shading=True, smooth_angle=math.radians(degrees), interpolant="occupancy")
     assert all(face.use_smooth for face in box.data.polygons)
@@ -420,7 +420,7 @@ def test_volume_that_cannot_be_shown_leaves_no_file(tmp_path, addon, monkeypatch
         raise ValueError(f"object '{name}' is gone")
 
     bodies.cube()
-    monkeypatch.setattr(addon("voxels.voxelization"), "still_there", gone)
+    monkeypatch.setattr(addon("voxels.voxelization"), "find_object", gone)
     with pytest.raises(RuntimeError, match="object 'Cube' is gone"):
         voxelize(output="volume", filepath=str(tmp_path / "cube.vdb"))
     assert not list(tmp_path.iterdir())

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Results into Blender: in the place of what they were made of, which they remember."""
+"""Placement of results in Blender: they replace their sources, and remember them."""
 
 from collections.abc import Sequence
 from enum import Enum, auto
@@ -15,17 +15,17 @@ from .findings import Report
 from .steps import Result
 
 
-class Way(Enum):
-    """How a result takes its place."""
+class Placement(Enum):
+    """How a result replaces the object's mesh."""
 
     ALONE = auto()
-    """Nothing is kept of what was there."""
+    """The original is not kept."""
     KEEPING = auto()
-    """With what was there, if the settings say so."""
+    """The original is kept if the settings say so."""
     AGAIN = auto()
-    """In place of an earlier result, which keeps what it was made of."""
+    """The result replaces an earlier one, and keeps its sources."""
     SCULPTED = auto()
-    """In place of what is sculpted; how that was made stays as it was."""
+    """The result replaces the sculpted mesh; the object keeps its recipe."""
 
 
 def show(
@@ -34,22 +34,22 @@ def show(
     settings: VoxelSettings,
     operands: Sequence[bpy.types.Object],
     report: Report,
-    way: Way,
+    placement: Placement,
 ) -> bpy.types.Object:
-    """Has an object show a surface, and returns the object that does."""
+    """Makes an object show a surface, or a new object in its stead; returns that object."""
     assert result.contour is not None
     assert result.topology is not None
-    cell = result.grid.spacing * float(abs(np.linalg.det(result.place.to_local)) ** (1.0 / 3.0))
-    if way == Way.AGAIN:
+    cell = result.grid.spacing * float(abs(np.linalg.det(result.frame.to_local)) ** (1.0 / 3.0))
+    if placement == Placement.AGAIN:
         made = new_meshes.show_again(obj, result.contour)
         if made.prefilter_made_of.is_source_shown:
             kept_sources.show(made, bpy.context, source=False)
     else:
-        keeps = way == Way.KEEPING and settings.originals == "keep"
-        if way == Way.KEEPING and not keeps:
+        keeps = placement == Placement.KEEPING and settings.originals == "keep"
+        if placement == Placement.KEEPING and not keeps:
             kept_sources.forget(obj, bpy.context)
         made = new_meshes.show_contour(obj, result.contour, keeps_source=keeps)
-    if way == Way.SCULPTED:
+    if placement == Placement.SCULPTED:
         made.prefilter_voxels.cell = cell
         made.prefilter_found.is_there = False
     else:
