@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Boolean operations by traversing two octrees together (D. Meagher, Geometric modeling using
+// octree encoding, 1982).
 #include "prefilter/voxels/combine.h"
 
 #include <algorithm>
@@ -18,9 +20,9 @@ namespace prefilter {
 namespace {
 
 constexpr float kHalf = 0.5F;
-// Values this close to 1/2, where two surfaces share a cell, are moved as far from it.
-constexpr float kTie = 1e-4F;
-// Work is shared out by cells of this depth.
+// Values within this distance of 1/2, where two surfaces share a cell, are moved this far from it.
+constexpr float kTieDistance = 1e-4F;
+// Depth of the cells that are distributed among threads.
 constexpr int kTaskDepth = 2;
 
 class ValueRule {
@@ -32,7 +34,7 @@ class ValueRule {
     switch (operation_) {
       case SetOperation::kUnion: {
         const float value = std::max(a, b);
-        return is_shared && std::abs(value - kHalf) <= kTie ? kHalf + kTie : value;
+        return is_shared && std::abs(value - kHalf) <= kTieDistance ? kHalf + kTieDistance : value;
       }
       case SetOperation::kIntersection:
         return without_film(std::min(a, b), is_shared);
@@ -42,7 +44,7 @@ class ValueRule {
     return without_film(std::min(a, 1.0F - b), is_shared);
   }
 
-  /// Whether the result is the same whatever the other shape is there.
+  /// Whether the result does not depend on the other shape.
   bool is_settled_by_a(float a) const {
     return operation_ == SetOperation::kUnion ? a >= 1.0F : a <= 0.0F;
   }
@@ -52,12 +54,12 @@ class ValueRule {
 
  private:
   static float without_film(float value, bool is_shared) {
-    return is_shared && std::abs(value - kHalf) <= kTie ? kHalf - kTie : value;
+    return is_shared && std::abs(value - kHalf) <= kTieDistance ? kHalf - kTieDistance : value;
   }
   SetOperation operation_;
 };
 
-// A cell of a tree: a block of the level of its depth, or within a leaf a value.
+// A cell of a tree: split, with a block at the level of its depth, or uniform.
 struct Cell {
   const CellTree* tree;
   bool is_split;
@@ -73,26 +75,26 @@ struct Cell {
     return {tree, splits, splits ? level.child(block, o) : 0, level.blocks[block][o]};
   }
 
-  /// Whether its octants are the finest there are here: the surface passes through them.
+  /// Whether its octants are leaves: the surface passes through them.
   bool is_finest(int depth) const {
     return is_split && tree->levels[static_cast<std::size_t>(depth)].split[block] == 0U;
   }
 };
 
-// What became of a cell.
-struct Merged {
+// The result for a cell.
+struct MergedCell {
   float value = 0.0F;
-  bool is_split = false;  // its block is the last one that was appended to the level of its depth
+  bool is_split = false;  // its block was appended last to the level of its depth
 };
 
 using Levels = std::vector<TreeLevel>;
 
-// Visits both trees together, in the order in which their blocks are to lie.
+// Traverses both trees simultaneously, in the order of the result's blocks.
 class Merger {
  public:
   explicit Merger(SetOperation operation) : rule_(operation) {}
 
-  Merged merge(const Cell& a, const Cell& b, int depth, Levels* levels) const {
+  MergedCell merge(const Cell& a, const Cell& b, int depth, Levels* levels) const {
     return merge_with(a, b, depth, levels,
                       [&](const Cell& of_a, const Cell& of_b, int octant_depth) {
                         return merge(of_a, of_b, octant_depth, levels);
@@ -100,8 +102,8 @@ class Merger {
   }
 
   template <typename MergeOctant>
-  Merged merge_with(const Cell& a, const Cell& b, int depth, Levels* levels,
-                    const MergeOctant& merge_octant) const {
+  MergedCell merge_with(const Cell& a, const Cell& b, int depth, Levels* levels,
+                        const MergeOctant& merge_octant) const {
     if (!a.is_split && (!b.is_split || rule_.is_settled_by_a(a.value))) {
       return {rule_(a.value, b.value), false};
     }
@@ -111,13 +113,13 @@ class Merger {
     level.blocks.emplace_back();
     level.split.push_back(0);
     for (int o = 0; o < 8; ++o) {
-      const Merged octant = merge_octant(a.octant(depth, o), b.octant(depth, o), depth + 1);
+      const MergedCell octant = merge_octant(a.octant(depth, o), b.octant(depth, o), depth + 1);
       level.blocks[block][static_cast<std::size_t>(o)] = octant.value;
       if (octant.is_split) level.split[block] |= static_cast<std::uint8_t>(1U << o);
     }
     const OctantValues values = level.blocks[block];
-    // A surface along the borders of cells leaves them uniform, and they have to stay fine: between
-    // larger cells a contour would cut the corners off.
+    // A surface along cell borders leaves cells uniform, but they must stay fine, as a contour
+    // between larger cells would cut corners off.
     const bool is_uniform =
         !a.is_finest(depth) && !b.is_finest(depth) && level.split[block] == 0 &&
         !is_fraction(values[0]) &&
@@ -137,7 +139,7 @@ class Merger {
 struct Task {
   Cell a;
   Cell b;
-  Merged merged;
+  MergedCell merged;
   Levels levels;
 };
 
@@ -150,18 +152,19 @@ void append(Levels* levels, Levels* from) {
   }
 }
 
-// Trees of the same root, whose surfaces are in cells of one size.
+// Combines trees with the same root whose surfaces lie in cells of one size.
 CellTree merge_trees(const CellTree& a, const CellTree& b, SetOperation operation,
                      const Progress& progress, int threads) {
   const Merger merger(operation);
   const auto depth = static_cast<std::size_t>(std::max(a.depth(), b.depth()));
   Levels levels(depth);
 
-  // Twice over the cells above the tasks': first to find the tasks, then to put together what they
-  // made. The tasks are the cells of kTaskDepth that are reached, in order.
+  // Traverses the cells above the tasks' twice: first to find the tasks, then to collect their
+  // results. The tasks are the cells of depth kTaskDepth that are reached, in order.
   std::vector<Task> tasks;
   Levels above(depth);
-  const auto find = [&](const auto& self, const Cell& of_a, const Cell& of_b, int at) -> Merged {
+  const auto find = [&](const auto& self, const Cell& of_a, const Cell& of_b,
+                        int at) -> MergedCell {
     if (at == kTaskDepth) {
       tasks.push_back({of_a, of_b, {}, {}});
       return {kHalf, false};
@@ -183,7 +186,8 @@ CellTree merge_trees(const CellTree& a, const CellTree& b, SetOperation operatio
 
   const Progress gathering = progress.part(0.8, 0.9);
   std::size_t next_task = 0;
-  const auto gather = [&](const auto& self, const Cell& of_a, const Cell& of_b, int at) -> Merged {
+  const auto gather = [&](const auto& self, const Cell& of_a, const Cell& of_b,
+                          int at) -> MergedCell {
     if (at == kTaskDepth) {
       Task& task = tasks[next_task++];
       append(&levels, &task.levels);
@@ -200,12 +204,12 @@ CellTree merge_trees(const CellTree& a, const CellTree& b, SetOperation operatio
   tree.levels = std::move(levels);
   for (TreeLevel& level : tree.levels) link_blocks(&level);
   update_means(&tree, progress.part(0.9, 1.0), threads);
-  // All empty, or all full.
+  // All cells are empty, or all are full.
   if (!is_fraction(tree.root)) tree.levels.clear();
   return tree;
 }
 
-// Where surfaces in cells of different sizes meet, a contour would cross itself.
+// Refines both trees first: contours of surfaces in cells of different sizes could self-intersect.
 CellTree combine_trees(const CellTree& a, const CellTree& b, SetOperation operation,
                        const Progress& progress, int threads) {
   const int depth = std::max(a.depth(), b.depth());
@@ -232,14 +236,14 @@ bool same_box(const Box& a, const Box& b) {
   return true;
 }
 
-// Where either is.
-CellTree all_thickened(const Octree& a, const Octree& b, int threads) {
+// Union of the thickened cells.
+CellTree united_thickened(const Octree& a, const Octree& b, int threads) {
   if (a.thickened.levels.empty()) return b.thickened;
   if (b.thickened.levels.empty()) return a.thickened;
   return merge_trees(a.thickened, b.thickened, SetOperation::kUnion, Progress(), threads);
 }
 
-// The first depth at which the root's cells are no larger, along any axis, than the octree's
+// The first depth at which cells of the root are no larger, along any axis, than the octree's
 // finest.
 int matching_depth(const Box& root, const Octree& octree) {
   int depth = 0;
@@ -258,7 +262,7 @@ Octree combine(const Octree& a, const Octree& b, SetOperation operation, const P
     result.bounds = a.bounds;
     result.depth = std::max(a.depth, b.depth);
     result.cells = combine_trees(a.cells, b.cells, operation, progress, threads);
-    result.thickened = all_thickened(a, b, threads);
+    result.thickened = united_thickened(a, b, threads);
     progress.report(1.0);
     return result;
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Numbers of the cubes of a grid, for tables of those that hold something.
+// Keys of the cubes of a grid, for hash tables.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace prefilter {
 
-/// That of the cube of this side which holds a point; far away the last ones.
+/// Key of the cube with side `side` that contains a point; distant points are clamped.
 inline std::uint64_t cube_key(const Vector3& point, double side) {
   constexpr std::int64_t kBias = std::int64_t{1} << 20;
   std::uint64_t key = 0;

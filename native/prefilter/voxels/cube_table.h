@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What cubes of a grid hold.
+// A hash table over the cubes of a grid.
 #pragma once
 
 #include <array>
@@ -9,25 +9,24 @@
 
 namespace prefilter {
 
-/// A value of each cube that has one, by the cubes' keys (cube_keys.h). Those beside each other are
-/// found together.
+/// Maps the keys of cubes (cube_keys.h) to values. Adjacent cubes share blocks, for locality.
 template <typename Value>
 class CubeTable {
  public:
-  CubeTable() : slots_(kFewestSlots, Slot{kNone, 0}) {}
+  CubeTable() : slots_(kMinSlots, Slot{kNone, 0}) {}
 
   bool is_empty() const { return values_.empty(); }
   std::size_t size() const { return values_.size(); }
 
-  /// Nothing where there is none.
+  /// Null if there is no value.
   const Value* find(std::uint64_t key) const {
     const Slot& slot = slots_[slot_of(key & ~kWithin)];
     if (slot.key == kNone) return nullptr;
-    const std::uint32_t number = blocks_[slot.block][place_of(key)];
+    const std::uint32_t number = blocks_[slot.block][index_of(key)];
     return number == 0 ? nullptr : &values_[number - 1];
   }
 
-  /// The value, made if there is none.
+  /// The value of a cube, default-constructed if there is none.
   Value& operator[](std::uint64_t key) {
     std::size_t at = slot_of(key & ~kWithin);
     if (slots_[at].key == kNone) {
@@ -38,7 +37,7 @@ class CubeTable {
       slots_[at] = {key & ~kWithin, static_cast<std::uint32_t>(blocks_.size())};
       blocks_.emplace_back();
     }
-    std::uint32_t& number = blocks_[slots_[at].block][place_of(key)];
+    std::uint32_t& number = blocks_[slots_[at].block][index_of(key)];
     if (number == 0) {
       values_.emplace_back();
       number = static_cast<std::uint32_t>(values_.size());
@@ -47,22 +46,22 @@ class CubeTable {
   }
 
  private:
-  // A block has four cubes along an axis.
+  // A block has four cubes per axis.
   static constexpr std::uint64_t kWithin =
       3U | (std::uint64_t{3} << 21U) | (std::uint64_t{3} << 42U);
   static constexpr std::uint64_t kNone = ~std::uint64_t{0};
-  static constexpr std::size_t kFewestSlots = 64;
+  static constexpr std::size_t kMinSlots = 64;
 
   struct Slot {
     std::uint64_t key;
     std::uint32_t block;
   };
 
-  static std::size_t place_of(std::uint64_t key) {
+  static std::size_t index_of(std::uint64_t key) {
     return static_cast<std::size_t>((key & 3U) | ((key >> 19U) & 12U) | ((key >> 38U) & 48U));
   }
 
-  // That of a block, or the free one that it would get.
+  // Slot of a block, or the free slot that it would get.
   std::size_t slot_of(std::uint64_t key) const {
     std::uint64_t mixed = key * 0x9E3779B97F4A7C15U;
     mixed = (mixed ^ (mixed >> 29U)) * 0xBF58476D1CE4E5B9U;
@@ -80,7 +79,7 @@ class CubeTable {
   }
 
   std::vector<Slot> slots_;
-  std::vector<std::array<std::uint32_t, 64>> blocks_;  // numbers from 1 of values
+  std::vector<std::array<std::uint32_t, 64>> blocks_;  // 1 + index of the value; 0: none
   std::vector<Value> values_;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The cells of a tree's own depth.
+// Visits and changes the finest leaves of a tree.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,8 @@
 
 namespace prefilter {
 
-/// Calls visit(place, value) for those that are not empty, in the order of the blocks.
+/// Calls visit(position, value) for the nonempty leaves of the tree's depth, in order of their
+/// blocks.
 template <typename Visit>
 void for_finest(const CellTree& tree, const Visit& visit, int level = 0, std::size_t block = 0,
                 const LeafPlace& at = {0, 0, 0}) {
@@ -25,7 +26,7 @@ void for_finest(const CellTree& tree, const Visit& visit, int level = 0, std::si
   }
 }
 
-/// Sets the value of a leaf of the finest depth; what is not as fine stays.
+/// Sets the value of a leaf of the finest depth; does nothing if there is none at that position.
 inline void set_leaf(const LeafPlace& at, int depth, float value, CellTree* cells) {
   std::size_t block = 0;
   for (int k = 0; k < depth; ++k) {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Shrinking balls (J. Ma, S. W. Bae, S. Choi, 3D medial point approximation using nearest neighbors
+// and the normal field, 2012).
 #include "prefilter/voxels/inner_balls.h"
 
 #include <algorithm>
@@ -14,13 +16,14 @@ namespace prefilter {
 namespace {
 
 constexpr std::size_t kLeafItems = 4;
-constexpr std::size_t kMostAcross = 128;  // beyond which the tree is searched
-constexpr int kMostSteps = 12;
-constexpr double kSettled = 1e-3;  // of a radius
-constexpr double kAlike = 0.02;    // what radii differ by, in cells
-constexpr double kBelow = 0.9;     // the cosine between a normal and the way up from what is below
+constexpr std::size_t kMaxListedTriangles = 128;  // list length beyond which the tree is searched
+constexpr int kMaxShrinkSteps = 12;
+constexpr double kShrinkTolerance = 1e-3;  // relative change of the radius at which iteration ends
+constexpr double kSameRadiusTolerance = 0.02;  // in cells
+constexpr double kBelowMinCosine =
+    0.9;  // cosine between the normal and the direction from the other point
 
-// A point a little outside, so that the other face of a sheet is below it.
+// A point slightly outside, so that the opposite face of a sheet is below it.
 Vector3 just_outside(const Vector3& point, const Vector3& normal) {
   return point + kJustOutside * normal;
 }
@@ -79,7 +82,7 @@ void InnerBalls::find_across(const std::array<Vector3, 3>& piece, const Vector3&
       if (box.squared_distance(center) > reach * reach) continue;
       across->triangles.push_back({corners, box, normals_[t], facing});
     }
-    across->has_more = across->triangles.size() > kMostAcross;
+    across->has_more = across->triangles.size() > kMaxListedTriangles;
   });
 }
 
@@ -89,8 +92,8 @@ std::optional<InnerBalls::Touched> InnerBalls::nearest_across(const Vector3& poi
                                                               const Counts* counts) const {
   std::optional<Touched> touched;
   double best = reach * reach;
-  const auto look_at = [&](const std::array<Vector3, 3>& corners, const Vector3& its,
-                           double facing) {
+  const auto test_triangle = [&](const std::array<Vector3, 3>& corners, const Vector3& its,
+                                 double facing) {
     const auto& [a, b, c] = corners;
     const Vector3 w = nearest_weights(point, a, b, c);
     const Vector3 p = w[0] * a + w[1] * b + w[2] * c;
@@ -102,7 +105,8 @@ std::optional<InnerBalls::Touched> InnerBalls::nearest_across(const Vector3& poi
   };
   if (!across.has_more) {
     for (const Across::One& one : across.triangles) {
-      if (one.box.squared_distance(point) < best) look_at(one.corners, one.normal, one.facing);
+      if (one.box.squared_distance(point) < best)
+        test_triangle(one.corners, one.normal, one.facing);
     }
     return touched;
   }
@@ -115,7 +119,7 @@ std::optional<InnerBalls::Touched> InnerBalls::nearest_across(const Vector3& poi
     for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) {
       const std::uint32_t t = triangles_[i];
       const double facing = dot(normals_[t], normal);
-      if (facing <= kAcross) look_at(mesh_.corners(t), normals_[t], facing);
+      if (facing <= kAcross) test_triangle(mesh_.corners(t), normals_[t], facing);
     }
   });
   return touched;
@@ -125,8 +129,8 @@ InnerBalls::Shrunk InnerBalls::shrunk(const Vector3& start, const Vector3& norma
                                       const Across& across, const Counts* counts) const {
   Shrunk result = {{largest, 0.0, 0.0}, {}};
   InnerBall& ball = result.ball;
-  for (int step = 0; step < kMostSteps; ++step) {
-    const double reach = ball.radius * (1.0 - kSettled) - 0.1 * kJustOutside;
+  for (int step = 0; step < kMaxShrinkSteps; ++step) {
+    const double reach = ball.radius * (1.0 - kShrinkTolerance) - 0.1 * kJustOutside;
     if (!(reach > 0.0)) break;
     const std::optional<Touched> touched =
         nearest_across(start - ball.radius * normal, reach, normal, across, counts);
@@ -147,10 +151,10 @@ std::optional<InnerBall> InnerBalls::at(const Vector3& point, const Vector3& nor
   const Vector3 start = just_outside(point, normal);
   const auto counts = [&](const Vector3& p, const Vector3& its) {
     const Vector3 away = start - p;
-    return dot(away, normal) >= kBelow * length(away) || is_outer(p, its);
+    return dot(away, normal) >= kBelowMinCosine * length(away) || is_outer(p, its);
   };
   Shrunk found = shrunk(start, normal, largest, across, nullptr);
-  // Rarely, so that not all that is near is asked for.
+  // Filter only when needed, since is_outer is expensive.
   if (found.ball.radius < largest && !counts(found.touched.point, found.touched.normal)) {
     const Counts only_these = counts;
     found = shrunk(start, normal, largest, across, &only_these);
@@ -171,7 +175,7 @@ bool InnerBalls::are_alike(const std::array<Vector3, 3>& piece, const Vector3& n
   for (const Vector3& corner : piece) {
     for (const double share : {0.5, 0.95}) {
       const double radius = radius_at(middle + share * (corner - middle));
-      if (radius >= largest || std::abs(radius - first) > kAlike) return false;
+      if (radius >= largest || std::abs(radius - first) > kSameRadiusTolerance) return false;
     }
   }
   return true;

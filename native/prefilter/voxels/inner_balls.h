@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Balls inside of a solid that touch its surface on two sides.
+// Balls inside a solid that touch its surface on two sides.
 #pragma once
 
 #include <array>
@@ -16,24 +16,24 @@
 
 namespace prefilter {
 
-/// A distance from a surface at which a point is outside of it, in cells.
+/// Distance from a surface, in cells, at which a point counts as outside.
 inline constexpr double kJustOutside = 0.01;
 
-/// A ball inside of the solid that touches a point from within, and what is across.
+/// A ball inside the solid that touches a point from within, and another point opposite to it.
 struct InnerBall {
   double radius;
-  double facing;  // the least cosine between the normals of the point and of what is across
-  double across;  // that with what it touches
+  double facing;  // least cosine between the normals of the point and of opposite triangles met
+  double across;  // cosine for the triangle that the ball touches
 };
 
-/// Searches among the triangles of a mesh that are given; lengths are cells.
+/// Searches the given triangles of a mesh; lengths are in cells.
 class InnerBalls {
  public:
-  /// Holds no copy of the mesh. Throws Error(kCancelled).
+  /// Keeps a reference to the mesh. Throws Error(kCancelled).
   InnerBalls(const MeshView<std::int32_t>& mesh, std::span<const Vector3> normals,
              const std::vector<std::uint32_t>& triangles, const Progress& progress, int threads);
 
-  /// The triangles that are across from a piece of one, as near as a ball at it may reach.
+  /// The triangles opposite to a piece of a triangle, within reach of a ball at the piece.
   struct Across {
     struct One {
       std::array<Vector3, 3> corners;
@@ -42,24 +42,25 @@ class InnerBalls {
       double facing;
     };
     std::vector<One> triangles;
-    bool has_more = false;  // then all are searched
+    bool has_more = false;  // then the tree is searched instead
     bool is_empty() const { return triangles.empty(); }
   };
   void find_across(const std::array<Vector3, 3>& piece, const Vector3& normal, double largest,
                    Across* across) const;
 
-  /// Whether a point of the surface with this normal bounds the solid, on either side: of sheets
-  /// both may.
+  /// Whether a surface point with the given normal bounds the solid on either side; on sheets both
+  /// sides may.
   using IsOuter = std::function<bool(const Vector3& point, const Vector3& normal)>;
 
-  /// The largest ball at a point of a piece that holds nothing of what is across from it: it
-  /// shrinks until it touches that. None where a ball of the largest radius fits. What is within
-  /// another part counts below the point alone: a plate is as thin above a leg as beside it, but
-  /// not beside what is sunk into it.
+  /// The largest ball at a point of a piece that contains no opposite surface: starting at radius
+  /// `largest`, it shrinks until it touches one. None if a ball of the largest radius fits.
+  /// Surfaces inside other parts only count straight below the point: a plate is as thin above a
+  /// leg as beside it, but not beside a part that is sunk into it.
   std::optional<InnerBall> at(const Vector3& point, const Vector3& normal, double largest,
                               const Across& across, const IsOuter& is_outer) const;
 
-  /// Whether a piece of a triangle is as thin everywhere, by samples, within other parts or not.
+  /// Whether samples show a piece to be equally thin everywhere, including parts inside other
+  /// parts.
   bool are_alike(const std::array<Vector3, 3>& piece, const Vector3& normal, double largest,
                  const Across& across) const;
 
@@ -71,21 +72,21 @@ class InnerBalls {
   };
   using Counts = IsOuter;
   struct Shrunk {
-    InnerBall ball;
+    InnerBall ball;   // unset if the ball has the largest radius
     Touched touched;  // nothing where the ball is the largest
   };
-  // The ball that holds nothing of what is across, or of what of it counts.
+  // The ball that contains no opposite surface, or none that `counts`.
   Shrunk shrunk(const Vector3& start, const Vector3& normal, double largest, const Across& across,
                 const Counts* counts) const;
-  // What is nearest to a point, and nearer than this, of all that is across from a normal.
+  // The nearest point of the opposite surface within `reach` of a point.
   std::optional<Touched> nearest_across(const Vector3& point, double reach, const Vector3& normal,
                                         const Across& across, const Counts* counts) const;
 
   MeshView<std::int32_t> mesh_;
   std::span<const Vector3> normals_;
-  std::vector<std::uint32_t> triangles_;  // along the curve
+  std::vector<std::uint32_t> triangles_;  // along the Morton curve
   BoxTree tree_;
-  std::vector<std::uint64_t> directions_;  // of what is below each node, as bits
+  std::vector<std::uint64_t> directions_;  // bit mask of the directions below each node
 };
 
 }  // namespace prefilter

@@ -16,9 +16,9 @@ namespace prefilter {
 namespace {
 
 constexpr std::int64_t kRowsPerTask = 1 << 10;
-constexpr double kCrowded = 8.0;  // sheets through a brick
+constexpr double kCrowdedSheets = 8.0;  // number of sheets through a brick
 
-// Directions in bins: three by three on each side of a cube.
+// Directions are quantized to bins: three by three on each face of a cube.
 constexpr int kBins = 54;
 
 int bin_of(const Vector3& direction) {
@@ -35,9 +35,9 @@ int bin_of(const Vector3& direction) {
   return 9 * side + 3 * third((axis + 1) % 3) + third((axis + 2) % 3);
 }
 
-// Of each bin, those with directions that may be across.
+// For each bin, the bins with directions that may be opposed.
 std::array<std::uint64_t, kBins> bins_across() {
-  constexpr double kNearest = 0.1;  // the bins' own widths away from kAcross
+  constexpr double kMaxBinCosine = 0.1;  // kAcross plus the bins' own widths
   std::array<Vector3, kBins> middles;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (int k = 0; k < 18; ++k) {
@@ -51,7 +51,7 @@ std::array<std::uint64_t, kBins> bins_across() {
   std::array<std::uint64_t, kBins> across{};
   for (std::size_t i = 0; i < kBins; ++i) {
     for (std::size_t j = 0; j < kBins; ++j) {
-      if (dot(middles[i], middles[j]) < kNearest) across[i] |= std::uint64_t{1} << j;
+      if (dot(middles[i], middles[j]) < kMaxBinCosine) across[i] |= std::uint64_t{1} << j;
     }
   }
   return across;
@@ -62,7 +62,7 @@ const std::array<std::uint64_t, kBins>& across_table() {
   return table;
 }
 
-// A brick, the directions of triangles in it, and the area of those with their middle in it.
+// Directions of triangles in a brick, and the area of the triangles centered in it.
 struct Entry {
   std::uint64_t key;
   std::uint64_t bins;
@@ -73,7 +73,7 @@ struct Entry {
   }
 };
 
-// Entries, most of them once.
+// A list of entries that merges most duplicates.
 class Entries {
  public:
   void add(const Entry& entry) {
@@ -90,12 +90,12 @@ class Entries {
   std::vector<Entry>* all() { return &entries_; }
 
  private:
-  static constexpr unsigned kBits = 10;
+  static constexpr unsigned kBits = 10;  // binary logarithm of the entries compared
   std::vector<Entry> entries_;
   std::array<std::size_t, 1U << kBits> recent_{};
 };
 
-// Those of a piece of a triangle that is no larger than a brick.
+// Adds a piece of a triangle, no larger than a brick, to the bricks that it overlaps.
 void add_bricks(const std::array<Vector3, 3>& piece, double side, std::uint64_t bin,
                 Entries* entries) {
   const Box box = triangle_box(piece);
@@ -108,7 +108,7 @@ void add_bricks(const std::array<Vector3, 3>& piece, double side, std::uint64_t 
   }
   entries->add({cube_key(triangle_middle(piece), side), bin, area});
   entries->add({low, bin, 0.0});
-  // Of each coordinate, those of both corners of the box that differ.
+  // Differences between the coordinates of the box's corners.
   constexpr std::uint64_t kCoordinate = (std::uint64_t{1} << 21U) - 1;
   std::array<std::uint64_t, 3> steps{};
   for (unsigned a = 0; a < 3; ++a) {
@@ -127,7 +127,7 @@ void add_bricks(const std::array<Vector3, 3>& piece, double side, std::uint64_t 
   }
 }
 
-// One of each brick.
+// Merges entries of the same brick.
 void merge(std::vector<Entry>* entries) {
   std::sort(entries->begin(), entries->end());
   std::size_t kept = 0;
@@ -142,7 +142,7 @@ void merge(std::vector<Entry>* entries) {
   entries->resize(kept);
 }
 
-// In order.
+// Entries of all bricks, sorted.
 std::vector<Entry> directions_of(const MeshView<std::int32_t>& mesh,
                                  std::span<const Vector3> normals, double side, const Box& bounds,
                                  const Progress& progress, int threads) {
@@ -171,13 +171,13 @@ std::vector<Entry> directions_of(const MeshView<std::int32_t>& mesh,
   return directions;
 }
 
-// Of each brick, the directions in it and those around it.
+// For each brick, the directions in it and its neighbors.
 std::vector<std::uint64_t> directions_around(const std::vector<Entry>& directions) {
   std::vector<std::uint64_t> around(directions.size(), 0);
   for (int column = 0; column < 9; ++column) {
     const std::int64_t step =
         (column / 3 - 1) * (std::int64_t{1} << 42) + (column % 3 - 1) * (std::int64_t{1} << 21);
-    // Those of a column follow each other, as the bricks do.
+    // Columns are consecutive, like the bricks.
     std::size_t next = 0;
     for (std::size_t i = 0; i < directions.size(); ++i) {
       const std::uint64_t first = directions[i].key + static_cast<std::uint64_t>(step) - 1;
@@ -210,7 +210,7 @@ OpposedBricks::OpposedBricks(const MeshView<std::int32_t>& mesh, std::span<const
   for (std::size_t i = 0; i < directions.size(); ++i) {
     for (std::uint64_t rest = directions[i].bins; rest != 0; rest &= rest - 1) {
       if ((across[static_cast<std::size_t>(std::countr_zero(rest))] & around[i]) == 0) continue;
-      opposed_[directions[i].key].is_crowded = directions[i].area > kCrowded * side * side;
+      opposed_[directions[i].key].is_crowded = directions[i].area > kCrowdedSheets * side * side;
       break;
     }
   }
@@ -237,8 +237,8 @@ bool OpposedBricks::may_meet(const std::array<Vector3, 3>& corners) const {
     high[a] = static_cast<std::int64_t>(std::floor(box.high[a] / side_));
     count *= static_cast<double>(high[a] - low[a] + 1);
   }
-  constexpr double kMany = 27.0;
-  if (count > kMany) return true;
+  constexpr double kMaxBricks = 27.0;  // a triangle in more counts as overlapping
+  if (count > kMaxBricks) return true;
   const std::uint64_t first = cube_key(box.low, side_);
   for (std::int64_t x = low[0]; x <= high[0]; ++x) {
     for (std::int64_t y = low[1]; y <= high[1]; ++y) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Where a surface may have something across from it.
+// Finds where a surface may have another one opposite to it.
 #pragma once
 
 #include <array>
@@ -14,29 +14,29 @@
 
 namespace prefilter {
 
-/// The cosine between normals from which on triangles are across from each other: 134 degrees.
+/// Cosine between normals up to which triangles are opposed: 134 degrees.
 inline constexpr double kAcross = -0.7;
 
 /// The bin of a direction, as a bit.
 std::uint64_t direction_bit(const Vector3& direction);
 
-/// The bins with directions that may be across from one.
+/// The bins of directions that may be opposed to a direction, as bits.
 std::uint64_t bits_across(const Vector3& direction);
 
-/// The bricks of space that have, with those around them, triangles which are across.
+/// Cubes of space that contain opposed triangles, in the cube itself or in a neighbor.
 class OpposedBricks {
  public:
-  /// Of this side, where they reach into a box. Throws Error(kCancelled).
+  /// Bricks have side `side`; only those that overlap `bounds` are kept. Throws Error(kCancelled).
   OpposedBricks(const MeshView<std::int32_t>& mesh, std::span<const Vector3> normals, double side,
                 const Box& bounds, const Progress& progress, int threads);
 
   bool is_empty() const { return opposed_.is_empty(); }
   bool holds(const Vector3& point) const;
 
-  /// Whether so much passes the brick of a point that no shape is told apart.
+  /// Whether the brick of a point contains too many sheets to distinguish shapes.
   bool is_crowded(const Vector3& point) const;
 
-  /// Whether a triangle may reach into one, and into the box.
+  /// Whether a triangle may overlap one of the bricks and the bounds.
   bool may_meet(const std::array<Vector3, 3>& corners) const;
 
  private:

@@ -11,12 +11,14 @@
 namespace prefilter {
 namespace {
 
-constexpr double kClear = 1.2;  // from a surface, in cells: what is empty there is outside
-constexpr std::array<double, 3> kFarther = {2.1, 3.0, 3.9};  // likewise, where it is not
-constexpr double kFarRadii = 2.0;  // of winding numbers that are compared with a half
-constexpr double kLargestCube = 4.0;
+// distance from a surface, in cells, at which an empty cell proves that a point is outer
+constexpr double kClearCells = 1.2;
+// larger distances, tried if it is partly full
+constexpr std::array<double, 3> kFartherCells = {2.1, 3.0, 3.9};
+constexpr double kWindingRadii = 2.0;  // error radius of winding numbers compared with 1/2
+constexpr double kMaxCubeSide = 4.0;
 
-// A point near the middle of the cube that holds one: off planes that cells have.
+// A point near the center of the cube that contains `point`, offset to avoid axis-aligned planes.
 Vector3 middle_of_cube(const Vector3& point, double side) {
   constexpr Vector3 kOff = {0.5 + 0.0271828, 0.5 - 0.0314159, 0.5 + 0.0141421};
   Vector3 middle;
@@ -29,21 +31,21 @@ Vector3 middle_of_cube(const Vector3& point, double side) {
 }  // namespace
 
 bool OuterSides::may_be(const Vector3& point, const Vector3& normal) const {
-  return occupancy_(point + kClear * normal) < 1.0F;
+  return occupancy_(point + kClearCells * normal) < 1.0F;
 }
 
 bool OuterSides::is_outer(const Vector3& point, const Vector3& normal) const {
-  const float beyond = occupancy_(point + kClear * normal);
+  const float beyond = occupancy_(point + kClearCells * normal);
   if (beyond <= 0.0F || beyond >= 1.0F) return beyond <= 0.0F;
   const Vector3 start = point + kJustOutside * normal;
-  for (const double far : kFarther) {
+  for (const double far : kFartherCells) {
     const Vector3 end = point + far * normal;
     const float there = occupancy_(end);
     if (there > 0.0F && there < 1.0F) continue;
     const std::optional<double> excess = winding_.excess(start, end);
     if (!excess) continue;
     if (there <= 0.0F) return *excess <= 0.5;
-    // What is full is within one part, or several.
+    // A full cell may be inside several parts.
     if (*excess >= 0.0) return false;
   }
   return winding_at(start) <= 0.5;
@@ -51,7 +53,7 @@ bool OuterSides::is_outer(const Vector3& point, const Vector3& normal) const {
 
 double OuterSides::winding_at(const Vector3& point) const {
   const std::optional<double> excess = winding_.excess(point, middle_of_cube(point, 1.0));
-  return excess ? winding_near(point, 1.0) + *excess : winding_.at(point, kFarRadii);
+  return excess ? winding_near(point, 1.0) + *excess : winding_.at(point, kWindingRadii);
 }
 
 double OuterSides::winding_near(const Vector3& point, double side) const {
@@ -65,9 +67,9 @@ double OuterSides::winding_near(const Vector3& point, double side) const {
   }
   const Vector3 middle = middle_of_cube(point, side);
   std::optional<double> excess;
-  if (side < kLargestCube) excess = winding_.excess(middle, middle_of_cube(middle, 2.0 * side));
+  if (side < kMaxCubeSide) excess = winding_.excess(middle, middle_of_cube(middle, 2.0 * side));
   const double number =
-      excess ? winding_near(middle, 2.0 * side) + *excess : winding_.at(middle, kFarRadii);
+      excess ? winding_near(middle, 2.0 * side) + *excess : winding_.at(middle, kWindingRadii);
   const std::lock_guard lock(known.mutex);
   known.numbers.emplace(key, number);
   return number;

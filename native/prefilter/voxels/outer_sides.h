@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Which of a surface's points bound a solid.
+// Determines which points of a surface bound a solid.
 #pragma once
 
 #include <array>
@@ -14,24 +14,25 @@
 
 namespace prefilter {
 
-/// Whether points of the surface bound the solid, and are not within another part; lengths are
-/// cells. Threads may share one: what is known depends on the mesh alone.
+/// Tests whether surface points bound the solid rather than lie inside another part; lengths are in
+/// cells. Safe for concurrent use; cached values depend on the mesh alone.
 class OuterSides {
  public:
-  /// `occupancy(point)` is that of the cell that holds a point. Holds both.
+  /// `occupancy(point)` returns the occupancy of the cell that contains a point. Keeps references
+  /// to both.
   OuterSides(const std::function<float(const Vector3&)>& occupancy, const WindingNumbers& winding)
       : occupancy_(occupancy), winding_(winding) {}
 
-  /// Where a gap is narrower than this far it is filled, whichever of its sides is moved.
+  /// A cheap necessary condition: gaps narrower than the test distance count as filled.
   bool may_be(const Vector3& point, const Vector3& normal) const;
   bool is_outer(const Vector3& point, const Vector3& normal) const;
 
-  /// The winding number of a point, as good as its distance from a half is large: by that of a
-  /// point nearby, and what is between them.
+  /// Winding number of a point, accurate in proportion to its distance from 1/2: computed from the
+  /// number of a nearby point and the surface between.
   double winding_at(const Vector3& point) const;
 
  private:
-  // Of a point in a cube of this side, the same for all points of the cube.
+  // Winding number near a point, the same for all points of a cube of this side.
   double winding_near(const Vector3& point, double side) const;
 
   const std::function<float(const Vector3&)>& occupancy_;
@@ -41,7 +42,7 @@ class OuterSides {
     std::mutex mutex;
     std::unordered_map<std::uint64_t, double> numbers;
   };
-  // By the sides of cubes, in shares that threads rarely want at once.
+  // Caches by cube side, divided into shards to reduce lock contention.
   static constexpr std::size_t kShares = 64;
   mutable std::array<std::array<Known, kShares>, 3> known_;
 };

@@ -10,14 +10,14 @@
 namespace prefilter {
 namespace {
 
-constexpr float kNearly = 0.4F;
+constexpr float kPinholeMinOccupancy = 0.4F;  // emptier cells stay
 constexpr float kHalfFull = 0.5F;
-constexpr float kFilled = 0.505F;
-constexpr int kMostNeighbors = 4;
+constexpr float kFilledOccupancy = 0.505F;  // just full
+constexpr int kMinFullNeighbors = 4;
 
 bool is_pinhole(const CellTree& cells, int depth, const LeafPlace& at) {
   const float value = occupancy_at(cells, depth, at);
-  if (!(value >= kNearly && value <= kHalfFull)) return false;
+  if (!(value >= kPinholeMinOccupancy && value <= kHalfFull)) return false;
   int count = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (const int step : {-1, 1}) {
@@ -26,7 +26,7 @@ bool is_pinhole(const CellTree& cells, int depth, const LeafPlace& at) {
       if (occupancy_at(cells, depth, beside) > kHalfFull) ++count;
     }
   }
-  return count >= kMostNeighbors;
+  return count >= kMinFullNeighbors;
 }
 
 }  // namespace
@@ -38,7 +38,7 @@ void fill_pinholes(const CellTree& thickened, int depth, const Progress& progres
   for_finest(thickened, [&](const LeafPlace& at, float) {
     if (is_pinhole(*cells, depth, at)) holes.push_back(at);
   });
-  for (const LeafPlace& at : holes) set_leaf(at, depth, kFilled, cells);
+  for (const LeafPlace& at : holes) set_leaf(at, depth, kFilledOccupancy, cells);
   if (!holes.empty()) update_means(cells, progress, threads);
 }
 

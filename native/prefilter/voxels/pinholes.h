@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Holes that thickened places have for want of a little.
+// Fills pinholes in thickened regions.
 #pragma once
 
 #include "prefilter/base/progress.h"
@@ -8,9 +8,9 @@
 
 namespace prefilter {
 
-/// Fills cells that are thickened and nearly half full between neighbors that are more than half
-/// full: four of six, which beside an edge or in a corner are three at the most. Such a cell is a
-/// hole as wide as itself where a contour is cut at a half.
+/// Fills thickened cells that are nearly half full and have at least four of six face neighbors
+/// that are more than half full; beside an edge or in a corner there are at most three. In a
+/// contour at 1/2 such a cell would be a hole of one cell.
 void fill_pinholes(const CellTree& thickened, int depth, const Progress& progress, int threads,
                    CellTree* cells);
 

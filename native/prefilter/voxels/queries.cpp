@@ -17,7 +17,7 @@ constexpr std::int64_t kPointsPerTask = 1 << 14;
 // A box in coordinates in which the root is the unit cube.
 using UnitBox = std::array<std::array<double, 2>, 3>;
 
-// Overlap of the box with the cell of this low corner and side, by volume.
+// Volume of the intersection of the box and a cell.
 double overlap(const UnitBox& box, const Vector3& low, double side) {
   double volume = 1.0;
   for (int a = 0; a < 3; ++a) {
@@ -66,13 +66,13 @@ std::vector<T> for_points(std::span<const Vector3> points, int threads, const Va
   return values;
 }
 
-// Cells of the finest depth, where they are written.
+// Output array of cells at one depth.
 class DenseCells {
  public:
   DenseCells(const CellTree& tree, int depth, std::vector<float>* values)
       : tree_(tree), depth_(depth), side_(std::size_t{1} << depth), values_(*values) {}
 
-  // The cube of cells that the cell of a depth, with this value, covers.
+  // Fills the cells that cell `cell` of depth `at_depth` covers.
   void fill(const std::array<std::size_t, 3>& cell, int at_depth, float value) {
     const int shift = depth_ - at_depth;
     const std::size_t width = std::size_t{1} << shift;
@@ -85,7 +85,7 @@ class DenseCells {
     }
   }
 
-  // The octants of a cell.
+  // Fills the octants of a cell.
   void fill_block(std::size_t level, std::size_t block, const std::array<std::size_t, 3>& cell) {
     const TreeLevel& cells = tree_.levels[level];
     const int at_depth = static_cast<int>(level) + 1;
@@ -131,7 +131,7 @@ float value_at(const Octree& octree, const Vector3& point) {
 }
 
 double volume(const Octree& octree) {
-  // Summed in double: the root's mean is a float.
+  // Sum in double precision, since the root's mean is a float.
   const CellTree& tree = octree.cells;
   if (tree.levels.empty()) return static_cast<double>(tree.root) * octree.bounds.volume();
   double sum = 0.0;
@@ -196,7 +196,7 @@ std::vector<float> dense_values(const Octree& octree, int depth, const Progress&
     cells.fill({0, 0, 0}, 0, tree.root);
     return values;
   }
-  // A task a cell of the second level, or of the first where it is a leaf.
+  // One task per cell of the second level.
   const TreeLevel& top = tree.levels.front();
   parallel_for(64, threads, progress, [&](std::int64_t task) {
     const int o = static_cast<int>(task) / 8;

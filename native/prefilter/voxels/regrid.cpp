@@ -24,27 +24,27 @@ Box octant_of(const Box& box, int octant) {
   return half;
 }
 
-// Cells that overlap by less than this share of their size only touch: lattices that agree but for
-// rounding are the same.
-constexpr double kTouching = 1e-9;
+// Cells whose overlap is a smaller share of their size only touch, so that lattices that differ by
+// rounding count as equal.
+constexpr double kTouchingShare = 1e-9;
 
 bool overlaps(const Box& a, const Box& b) {
   for (int i = 0; i < 3; ++i) {
     const double common = std::min(a.high[i], b.high[i]) - std::max(a.low[i], b.low[i]);
-    if (common <= kTouching * std::min(a.size(i), b.size(i))) return false;
+    if (common <= kTouchingShare * std::min(a.size(i), b.size(i))) return false;
   }
   return true;
 }
 
 bool is_within(const Box& a, const Box& b) {
   for (int i = 0; i < 3; ++i) {
-    const double slack = kTouching * a.size(i);
+    const double slack = kTouchingShare * a.size(i);
     if (a.low[i] < b.low[i] - slack || a.high[i] > b.high[i] + slack) return false;
   }
   return true;
 }
 
-// The surfaces within the leaves of a tree.
+// The surfaces in the leaves of a tree.
 class LeafSurfaces {
  public:
   LeafSurfaces(const CellTree& tree, const Progress& progress, int threads)
@@ -89,7 +89,7 @@ class LeafSurfaces {
     }
   }
 
-  /// Of a leaf that is neither full nor empty.
+  /// Surface of a leaf that is neither full nor empty.
   const std::optional<LeafSurface>& of(const CellTree& tree, std::size_t level, std::size_t block,
                                        int octant) const {
     std::size_t index = firsts_[level][block];
@@ -101,11 +101,11 @@ class LeafSurfaces {
   }
 
  private:
-  std::vector<std::vector<std::size_t>> firsts_;  // of a block
+  std::vector<std::vector<std::size_t>> firsts_;  // index of each block's first surface
   std::vector<std::optional<LeafSurface>> surfaces_;
 };
 
-// A cell and the finest cells around it, which are 2^-shift as wide.
+// A cell enlarged by the finest cells around it, whose sides are 2^-shift times its own.
 Box widened(const Box& cell, int shift) {
   Box box = cell;
   for (int a = 0; a < 3; ++a) {
@@ -116,57 +116,59 @@ Box widened(const Box& cell, int shift) {
   return box;
 }
 
-// What the source holds in cells of other bounds.
+// Samples an octree in cells of another box.
 class RegridRule {
  public:
-  // A cell of the source.
-  struct Source {
+  // A cell of the source octree.
+  struct SourceCell {
     Box box;
     bool is_split;
-    std::size_t level;  // on which its octants are, where it is split
+    std::size_t level;  // level of its octants, if split
     std::size_t block;
     float value;
-    const LeafSurface* surface;  // null where there is none
+    const LeafSurface* surface;  // null if there is none
   };
-  struct Part {
+  struct TargetCell {
     Box box;
-    std::vector<Source> sources;  // that meet the cell, and the finest cells around it
+    std::vector<SourceCell> sources;  // overlap the cell or the finest cells around it
     bool is_uniform;
-    float value;  // where it is uniform
+    float value;  // if uniform
   };
 
   RegridRule(const Octree& source, int depth, const LeafSurfaces& surfaces)
       : source_(source), depth_(depth), surfaces_(surfaces) {}
 
-  Part root(const Box& bounds) const {
+  TargetCell root(const Box& bounds) const {
     const CellTree& tree = source_.cells;
     return part_of(bounds, 0, {{source_.bounds, !tree.levels.empty(), 0, 0, tree.root, nullptr}});
   }
 
-  bool is_split(const Part& part, int depth) const { return !part.is_uniform && depth < depth_; }
+  bool is_split(const TargetCell& part, int depth) const {
+    return !part.is_uniform && depth < depth_;
+  }
 
-  float value(const Part& part, int /*depth*/) const {
+  float value(const TargetCell& part, int /*depth*/) const {
     if (part.is_uniform) return part.value;
     double volume = 0.0;
-    for (const Source& source : part.sources) volume += volume_within(source, part.box);
+    for (const SourceCell& source : part.sources) volume += volume_within(source, part.box);
     return static_cast<float>(std::clamp(volume / part.box.volume(), 0.0, 1.0));
   }
 
-  Part octant(const Part& part, int depth, int o) const {
+  TargetCell octant(const TargetCell& part, int depth, int o) const {
     return part_of(octant_of(part.box, o), depth + 1, part.sources);
   }
 
  private:
-  Part part_of(const Box& box, int depth, const std::vector<Source>& candidates) const {
-    // A surface along the borders of cells leaves them uniform; they have to stay fine, as contours
+  TargetCell part_of(const Box& box, int depth, const std::vector<SourceCell>& candidates) const {
+    // A surface along cell borders leaves cells uniform, but they must stay fine, as contours
     // between larger cells cut corners off.
     const Box around = depth < depth_ ? widened(box, depth_ - depth) : box;
-    Part part{box, {}, true, 0.0F};
+    TargetCell part{box, {}, true, 0.0F};
     const double longest = 1.5 * std::max({box.size(0), box.size(1), box.size(2)});
-    for (const Source& source : candidates) add_sources(source, around, longest, &part.sources);
+    for (const SourceCell& source : candidates) add_sources(source, around, longest, &part.sources);
     std::optional<float> value;
     if (!is_within(around, source_.bounds)) value = 0.0F;
-    for (const Source& source : part.sources) {
+    for (const SourceCell& source : part.sources) {
       const std::optional<float> found = value_over(source, around);
       part.is_uniform = found && (!value || *value == *found);
       if (!part.is_uniform) return part;
@@ -176,9 +178,9 @@ class RegridRule {
     return part;
   }
 
-  // Of those larger than a cell the octants are taken.
-  void add_sources(const Source& source, const Box& around, double longest,
-                   std::vector<Source>* sources) const {
+  // Replaces sources larger than the cell by their octants.
+  void add_sources(const SourceCell& source, const Box& around, double longest,
+                   std::vector<SourceCell>* sources) const {
     if (!overlaps(source.box, around)) return;
     if (!source.is_split ||
         std::max({source.box.size(0), source.box.size(1), source.box.size(2)}) < longest) {
@@ -188,9 +190,9 @@ class RegridRule {
     for (int o = 0; o < 8; ++o) add_sources(octant_source(source, o), around, longest, sources);
   }
 
-  Source octant_source(const Source& source, int o) const {
+  SourceCell octant_source(const SourceCell& source, int o) const {
     const TreeLevel& level = source_.cells.levels[source.level];
-    Source result;
+    SourceCell result;
     result.box = octant_of(source.box, o);
     result.is_split = level.is_split(source.block, o);
     result.level = source.level + 1;
@@ -205,8 +207,8 @@ class RegridRule {
     return result;
   }
 
-  // The part of a box within a source, in coordinates in which that is the unit cube.
-  static Box within(const Source& source, const Box& box) {
+  // The part of a box inside a source, in coordinates in which the source is the unit cube.
+  static Box within(const SourceCell& source, const Box& box) {
     Box part;
     for (int a = 0; a < 3; ++a) {
       const double size = source.box.size(a);
@@ -216,15 +218,15 @@ class RegridRule {
     return part;
   }
 
-  // The value of a source all over a box; none where there are others.
-  std::optional<float> value_over(const Source& source, const Box& box) const {
+  // The source's value if it is uniform over a box, otherwise none.
+  std::optional<float> value_over(const SourceCell& source, const Box& box) const {
     if (!source.is_split) {
       if (source.surface == nullptr) return source.value;
       return source.surface->uniform_value(within(source, box));
     }
     std::optional<float> value;
     for (int o = 0; o < 8; ++o) {
-      const Source octant = octant_source(source, o);
+      const SourceCell octant = octant_source(source, o);
       if (!overlaps(octant.box, box)) continue;
       const std::optional<float> found = value_over(octant, box);
       if (!found || (value && *value != *found)) return std::nullopt;
@@ -233,7 +235,7 @@ class RegridRule {
     return value ? value : source.value;
   }
 
-  double volume_within(const Source& source, const Box& box) const {
+  double volume_within(const SourceCell& source, const Box& box) const {
     if (!overlaps(source.box, box)) return 0.0;
     if (is_within(source.box, box)) {
       return source.box.volume() * static_cast<double>(source.value);
@@ -291,7 +293,7 @@ Octree grown(Octree octree, const Box& box) {
           "than " +
           std::to_string(kMaxTreeDepth));
     }
-    // The old root becomes the octant that leaves room toward the box.
+    // The old root becomes the octant that leaves space toward the box.
     int place = 0;
     Box bounds = octree.bounds;
     for (int a = 0; a < 3; ++a) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Occupancy octrees on other cells.
+// Resamples occupancy octrees to other cells.
 #pragma once
 
 #include <optional>
@@ -10,21 +10,21 @@
 
 namespace prefilter {
 
-/// The same shape on the cells of another box, down to `depth`: exact where its cells are leaves or
-/// made up of them, and otherwise what of them is inside of the leaves' surfaces (LeafSurface).
+/// The same shape in the cells of another box, down to `depth`. Exact where its cells are leaves of
+/// the source or unions of them; otherwise computed from the leaves' surfaces (LeafSurface).
 /// Preconditions: bounds that check_box accepts, and a depth from 0 to kMaxTreeDepth. Throws
 /// Error(kCancelled).
 Octree regridded(const Octree& octree, const Box& bounds, int depth, const Progress& progress,
                  int threads);
 
-/// Whether a box lies within bounds, but for rounding.
+/// Whether a box lies within bounds, up to rounding.
 bool holds(const Box& bounds, const Box& box);
 
-/// An octree of a larger root, twice as wide each time, that has the same cells and holds `box` as
-/// well. Throws Error where its finest cells would be deeper than kMaxTreeDepth.
+/// Doubles the root, keeping the cells, until it contains `box`. Throws Error if the finest cells
+/// would be deeper than kMaxTreeDepth.
 Octree grown(Octree octree, const Box& box);
 
-/// The box of the leaves that are not empty; none where all are.
+/// Bounding box of the nonempty leaves; none if all are empty.
 std::optional<Box> occupied_box(const Octree& octree);
 
 }  // namespace prefilter

@@ -15,18 +15,18 @@
 namespace prefilter {
 namespace {
 
-constexpr double kSmall = 0.25;  // cells
-constexpr double kPiece = 1.0;   // the longest side of a piece of a narrow triangle
+constexpr double kSmallSide = 0.25;    // cells; the side below which triangles are merged
+constexpr double kMaxPieceSide = 1.0;  // cells; the longest side of a piece of a narrow triangle
 
-struct Place {
+struct RepresentativeKey {
   std::uint64_t cube;
   int direction;
 
-  bool operator==(const Place& other) const = default;
+  bool operator==(const RepresentativeKey& other) const = default;
 };
 
-struct PlaceHash {
-  std::size_t operator()(const Place& place) const {
+struct RepresentativeKeyHash {
+  std::size_t operator()(const RepresentativeKey& place) const {
     const std::uint64_t mixed =
         place.cube * 0x9E3779B97F4A7C15U + static_cast<std::uint64_t>(place.direction);
     return static_cast<std::size_t>((mixed ^ (mixed >> 29U)) * 0xBF58476D1CE4E5B9U);
@@ -42,15 +42,15 @@ Vector3 longest_side(const Piece& p) {
   });
 }
 
-bool is_small(const Piece& p) { return length(longest_side(p)) <= kSmall; }
+bool is_small(const Piece& p) { return length(longest_side(p)) <= kSmallSide; }
 
-// No higher than what is small, and longer than pieces are.
+// Whether a triangle is no wider than small ones, and longer than a piece.
 bool is_narrow(const Piece& p) {
   const double longest = length(longest_side(p));
-  return longest > kPiece && 2.0 * triangle_area(p) <= kSmall * longest;
+  return longest > kMaxPieceSide && 2.0 * triangle_area(p) <= kSmallSide * longest;
 }
 
-// As a number, whichever end is the first.
+// Bin of an undirected axis.
 int axis_of(Vector3 side) {
   for (const double x : side) {
     if (x == 0.0) continue;
@@ -60,7 +60,7 @@ int axis_of(Vector3 side) {
   return std::countr_zero(direction_bit(side));
 }
 
-// Pieces of narrow triangles that represent others.
+// Pieces of narrow triangles that represent other triangles.
 class NarrowPieces {
  public:
   NarrowPieces(const MeshView<std::int32_t>& mesh, std::span<const Vector3> normals,
@@ -72,8 +72,8 @@ class NarrowPieces {
     const int direction =
         std::countr_zero(direction_bit(normals_[t])) + kDirections * axis_of(longest_side(corners));
     const std::size_t before = found->others.size();
-    for_pieces(corners, kPiece, is_needed_, [&](const Piece& piece) {
-      const Place place = {cube_key(triangle_middle(piece), kSmall), direction};
+    for_pieces(corners, kMaxPieceSide, is_needed_, [&](const Piece& piece) {
+      const RepresentativeKey place = {cube_key(triangle_middle(piece), kSmallSide), direction};
       const auto [same, is_new] = known_.try_emplace(place, found->triangles.size());
       const double area = triangle_area(piece);
       if (is_new) {
@@ -91,9 +91,9 @@ class NarrowPieces {
   }
 
  private:
-  static constexpr int kDirections = 64;
+  static constexpr int kDirections = 64;  // upper limit of direction bins
 
-  // Of each representative one, of those behind the first so many.
+  // Keeps one entry per representative among entries [begin, end).
   static void merge(std::size_t begin, std::vector<Represented>* others) {
     const auto first = others->begin() + static_cast<std::ptrdiff_t>(begin);
     std::stable_sort(first, others->end(), [](const Represented& a, const Represented& b) {
@@ -114,7 +114,7 @@ class NarrowPieces {
   const MeshView<std::int32_t>& mesh_;
   std::span<const Vector3> normals_;
   const std::function<bool(const Piece&)>& is_needed_;
-  std::unordered_map<Place, std::size_t, PlaceHash> known_;
+  std::unordered_map<RepresentativeKey, std::size_t, RepresentativeKeyHash> known_;
 };
 
 struct CornersHash {
@@ -128,27 +128,27 @@ struct CornersHash {
   }
 };
 
-// Of triangles on the same corners, the first.
-struct Front {
+// The first of the triangles with the same corners.
+struct FirstTriangle {
   std::size_t row;
   bool is_even;
   bool is_sheet = false;
 };
 
-// The large triangles by their corners, which are in order.
-class Fronts {
+// The large triangles by their sorted corners.
+class FirstTriangles {
  public:
   void add(const std::array<std::int32_t, 3>& triangle, std::size_t row) {
-    const auto [corners, is_even] = in_order(triangle);
-    const auto [front, is_new] = fronts_.try_emplace(corners, Front{row, is_even});
+    const auto [corners, is_even] = sorted(triangle);
+    const auto [front, is_new] = fronts_.try_emplace(corners, FirstTriangle{row, is_even});
     if (!is_new && front->second.is_even != is_even) front->second.is_sheet = true;
   }
-  const Front& of(const std::array<std::int32_t, 3>& triangle) const {
-    return fronts_.at(in_order(triangle).first);
+  const FirstTriangle& of(const std::array<std::int32_t, 3>& triangle) const {
+    return fronts_.at(sorted(triangle).first);
   }
 
  private:
-  static std::pair<std::array<std::int32_t, 3>, bool> in_order(
+  static std::pair<std::array<std::int32_t, 3>, bool> sorted(
       const std::array<std::int32_t, 3>& triangle) {
     auto [a, b, c] = triangle;
     bool is_even = true;
@@ -163,7 +163,7 @@ class Fronts {
     return {{a, b, c}, is_even};
   }
 
-  std::unordered_map<std::array<std::int32_t, 3>, Front, CornersHash> fronts_;
+  std::unordered_map<std::array<std::int32_t, 3>, FirstTriangle, CornersHash> fronts_;
 };
 
 }  // namespace
@@ -173,13 +173,13 @@ Representatives find_representatives(const MeshView<std::int32_t>& mesh,
                                      std::span<const std::uint32_t> triangles,
                                      const std::function<bool(const Piece&)>& is_needed) {
   Representatives found;
-  std::unordered_map<Place, std::size_t, PlaceHash> known;
+  std::unordered_map<RepresentativeKey, std::size_t, RepresentativeKeyHash> known;
   std::vector<double> areas;
-  Fronts fronts;
+  FirstTriangles fronts;
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     if (!is_small(mesh.corners(triangles[i]))) fronts.add(mesh.triangles[triangles[i]], i);
   }
-  std::vector<std::size_t> places(triangles.size());
+  std::vector<std::size_t> rows(triangles.size());
   std::vector<std::uint32_t> narrow;
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     const std::uint32_t t = triangles[i];
@@ -187,8 +187,8 @@ Representatives find_representatives(const MeshView<std::int32_t>& mesh,
     const double area = triangle_area(corners);
     bool is_sheet = false;
     if (is_small(corners)) {
-      const Place place = {cube_key(triangle_middle(corners), kSmall),
-                           std::countr_zero(direction_bit(normals[t]))};
+      const RepresentativeKey place = {cube_key(triangle_middle(corners), kSmallSide),
+                                       std::countr_zero(direction_bit(normals[t]))};
       const auto [same, is_new] = known.try_emplace(place, found.triangles.size());
       if (!is_new) {
         found.others.push_back({t, found.triangles[same->second], area, false});
@@ -196,11 +196,11 @@ Representatives find_representatives(const MeshView<std::int32_t>& mesh,
         continue;
       }
     } else {
-      const Front& front = fronts.of(mesh.triangles[t]);
+      const FirstTriangle& front = fronts.of(mesh.triangles[t]);
       is_sheet = front.is_sheet;
       if (is_sheet && front.row != i) {
         found.others.push_back({t, triangles[front.row], area, true});
-        areas[places[front.row]] += area;
+        areas[rows[front.row]] += area;
         continue;
       }
       if (!is_sheet && is_narrow(corners)) {
@@ -208,7 +208,7 @@ Representatives find_representatives(const MeshView<std::int32_t>& mesh,
         continue;
       }
     }
-    places[i] = found.triangles.size();
+    rows[i] = found.triangles.size();
     found.triangles.push_back(t);
     found.are_sheets.push_back(is_sheet);
     areas.push_back(area);

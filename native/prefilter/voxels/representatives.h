@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Few triangles for many small ones.
+// Represents many small triangles by few.
 #pragma once
 
 #include <array>
@@ -14,21 +14,21 @@
 
 namespace prefilter {
 
-/// A triangle that another one stands for, or parts of it.
+/// A triangle, or part of it, that another one represents.
 struct Represented {
   std::uint32_t triangle;
   std::uint32_t representative;
   double area;
-  bool is_back;  // the other face of a sheet: what is thin of one is thin of both
+  bool is_back;  // the reverse face of a sheet, which is equally thin
 };
 
-/// Whole triangles, and then pieces of narrow ones.
+/// Representatives: whole triangles, followed by pieces of narrow ones.
 struct Representatives {
   std::vector<std::uint32_t> triangles;
   std::vector<std::array<Vector3, 3>> pieces;
-  std::vector<double> shares;       // of each: the area that it stands for, its own being 1
-  std::vector<bool> are_sheets;     // with another one as their back
-  std::vector<Represented> others;  // of a triangle and a representative, no more than one
+  std::vector<double> shares;       // represented area relative to each representative's own
+  std::vector<bool> are_sheets;     // whether there is a reverse face
+  std::vector<Represented> others;  // at most one entry per triangle and representative
 
   std::array<Vector3, 3> corners(const MeshView<std::int32_t>& mesh, std::size_t i) const {
     const std::size_t whole = triangles.size() - pieces.size();
@@ -36,12 +36,12 @@ struct Representatives {
   }
 };
 
-/// Of these triangles. What is smaller than a quarter of a cell has the first one that is in the
-/// same cube of that side and faces about the same way, so that there are no more than cells can
-/// tell apart, however fine a mesh is. So have the pieces of what is longer and as narrow, of those
-/// that run about the same way; pieces are no longer than a cell, and `is_needed(corners)` says
-/// which parts have any. What is larger stands for those on the same corners where some of these
-/// face the other way. Lengths are cells.
+/// Chooses representatives of the given triangles; lengths are in cells. Triangles smaller than a
+/// quarter of a cell are represented by the first one in the same cube of that side with about the
+/// same direction, which bounds their number by what cells can distinguish. The same applies to
+/// pieces of longer but equally narrow triangles with about the same axis; pieces are at most one
+/// cell long, and only made for parts for which `is_needed(corners)` holds. Larger triangles
+/// represent others with the same corners if some of these have the opposite orientation.
 Representatives find_representatives(
     const MeshView<std::int32_t>& mesh, std::span<const Vector3> normals,
     std::span<const std::uint32_t> triangles,

@@ -18,14 +18,15 @@ namespace prefilter {
 namespace {
 
 constexpr float kHalf = 0.5F;
-constexpr float kMostFull = 0.65F;
-constexpr float kOpened = 0.495F;
-constexpr int kSide = 3;  // cells along an axis of a block
+constexpr float kMaxSlitOccupancy = 0.65F;  // fuller cells stay
+constexpr float kOpenedOccupancy = 0.495F;  // just empty
+constexpr int kSide = 3;                    // cells per axis of a block
 constexpr int kBlock = kSide * kSide * kSide;
-constexpr int kMiddle = kBlock / 2;
-constexpr int kSamples = 4;  // along an axis of a cell
+constexpr int kCenterCell = kBlock / 2;
+constexpr int kSamples = 4;  // samples per axis of a cell
 constexpr int kRow = kSide * kSamples;
-constexpr Vector3 kOff = {0.0271828, -0.0314159, 0.0141421};  // off planes that cells have
+constexpr Vector3 kSampleOffset = {0.0271828, -0.0314159,
+                                   0.0141421};  // offset from axis-aligned planes
 constexpr std::int64_t kNecksPerTask = 4;
 
 using Block = std::array<float, kBlock>;
@@ -34,7 +35,7 @@ constexpr std::array<int, 3> place_in_block(int i) {
   return {i % kSide, i / kSide % kSide, i / kSide / kSide};
 }
 
-// How many axes two cells of a block differ along; 4 where they do not touch.
+// Number of axes along which two cells of a block differ; 4 if they do not touch.
 int steps_between(int i, int j) {
   const auto a = place_in_block(i);
   const auto b = place_in_block(j);
@@ -47,19 +48,19 @@ int steps_between(int i, int j) {
   return steps;
 }
 
-// Parts of the cells around a block's middle that have a flag: their numbers from 1, or 0.
-struct Parts {
+// Connected parts of flagged cells around a block's center: numbered from 1, or 0.
+struct CellParts {
   std::array<int, kBlock> of{};
   int count = 0;
 };
 
-// Those of a block that have at most so many steps between them and the middle, joined if there are
-// at most so many between two.
+// Connected parts of the cells within `most_from_middle` steps of the block's center; cells within
+// `most_between` steps are connected.
 template <typename Has>
-Parts parts_around(int most_from_middle, int most_between, const Has& has) {
-  Parts parts;
+CellParts parts_around(int most_from_middle, int most_between, const Has& has) {
+  CellParts parts;
   const auto counts = [&](int i) {
-    return i != kMiddle && has(i) && steps_between(i, kMiddle) <= most_from_middle;
+    return i != kCenterCell && has(i) && steps_between(i, kCenterCell) <= most_from_middle;
   };
   for (int first = 0; first < kBlock; ++first) {
     if (!counts(first) || parts.of[first] != 0) continue;
@@ -89,8 +90,8 @@ Block block_at(const CellTree& cells, int depth, const LeafPlace& at) {
   return block;
 }
 
-// Whether the full cells at the faces of one are in several parts but for it: those at its edges
-// join them.
+// Whether the full cells at the faces of a cell form several parts without it; full cells at its
+// edges connect them.
 bool parts_full_faces(const CellTree& cells, int depth, const LeafPlace& at) {
   const auto is_full = [&](std::size_t axis, int step, std::size_t other, int other_step) {
     LeafPlace place = at;
@@ -119,28 +120,28 @@ bool parts_full_faces(const CellTree& cells, int depth, const LeafPlace& at) {
   return parts > 1;
 }
 
-// The parts of full cells at the faces of a block's middle, by way of which alone they are joined
-// while the empty ones are one part; none otherwise. (Cells whose faces touch, and empty ones whose
-// corners do: G. Bertrand, Simple points, topological numbers and geodesic neighborhoods in cubic
-// grids, 1994.)
-std::optional<Parts> joined_by_middle(const Block& block) {
-  const Parts full = parts_around(2, 1, [&](int i) { return block[i] >= kHalf; });
+// The parts of full cells at the faces of a block's center if only the center connects them, and
+// the empty cells form one part; otherwise none. Full cells are connected by faces, empty ones by
+// corners (G. Bertrand, Simple points, topological numbers and geodesic neighborhoods in cubic
+// grids, 1994).
+std::optional<CellParts> joined_by_center(const Block& block) {
+  const CellParts full = parts_around(2, 1, [&](int i) { return block[i] >= kHalf; });
   std::uint32_t at_faces = 0;
   for (int i = 0; i < kBlock; ++i) {
-    if (full.of[i] != 0 && steps_between(i, kMiddle) == 1) at_faces |= 1U << full.of[i];
+    if (full.of[i] != 0 && steps_between(i, kCenterCell) == 1) at_faces |= 1U << full.of[i];
   }
   if ((at_faces & (at_faces - 1)) == 0) return {};
-  const Parts empty = parts_around(3, 3, [&](int i) { return block[i] < kHalf; });
+  const CellParts empty = parts_around(3, 3, [&](int i) { return block[i] < kHalf; });
   if (empty.count != 1) return {};
   return full;
 }
 
-// Whether the mesh has nothing around a cell that joins these parts of full cells.
+// Tests whether the mesh itself connects the parts of full cells around a cell.
 class Separation {
  public:
   Separation(const WindingNumbers& winding, double unit) : winding_(winding), unit_(unit) {}
 
-  bool is_apart(const LeafPlace& at, const Parts& full) const {
+  bool is_apart(const LeafPlace& at, const CellParts& full) const {
     std::vector<double> numbers(static_cast<std::size_t>(kRow) * kRow * kRow);
     const auto index = [](int x, int y, int z) {
       return (static_cast<std::size_t>(z) * kRow + y) * kRow + x;
@@ -169,18 +170,18 @@ class Separation {
   Vector3 sample(const LeafPlace& at, const std::array<int, 3>& k) const {
     Vector3 point;
     for (std::size_t a = 0; a < 3; ++a) {
-      point[a] = (at[a] - 1 + (k[a] + 0.5) / kSamples + kOff[a]) / unit_;
+      point[a] = (at[a] - 1 + (k[a] + 0.5) / kSamples + kSampleOffset[a]) / unit_;
     }
     return point;
   }
 
-  // Whether samples within the mesh lead from one of the parts to another.
-  static bool has_path(const std::vector<double>& numbers, const Parts& full) {
+  // Whether samples inside the mesh connect two of the parts.
+  static bool has_path(const std::vector<double>& numbers, const CellParts& full) {
     constexpr std::array<int, 3> kSteps = {1, kRow, kRow * kRow};
     std::vector<std::uint8_t> is_seen(numbers.size(), 0);
     for (std::size_t first = 0; first < numbers.size(); ++first) {
       if (is_seen[first] != 0 || numbers[first] < 0.5) continue;
-      std::uint32_t met = 0;
+      std::uint32_t touched_parts = 0;
       std::vector<int> stack = {static_cast<int>(first)};
       is_seen[first] = 1;
       while (!stack.empty()) {
@@ -188,7 +189,7 @@ class Separation {
         stack.pop_back();
         const std::array<int, 3> at = {i % kRow, i / kRow % kRow, i / kRow / kRow};
         const int cell = at[0] / kSamples + kSide * (at[1] / kSamples + kSide * (at[2] / kSamples));
-        met |= 1U << full.of[cell];
+        touched_parts |= 1U << full.of[cell];
         for (std::size_t a = 0; a < 3; ++a) {
           for (const int step : {-1, 1}) {
             if (at[a] + step < 0 || at[a] + step >= kRow) continue;
@@ -199,8 +200,8 @@ class Separation {
           }
         }
       }
-      met &= ~1U;
-      if ((met & (met - 1)) != 0) return true;
+      touched_parts &= ~1U;
+      if ((touched_parts & (touched_parts - 1)) != 0) return true;
     }
     return false;
   }
@@ -222,16 +223,16 @@ void open_slits(const WindingNumbers& winding, double unit, const CellTree& thic
   if (cells->depth() != depth || depth == 0) return;
   std::vector<Neck> necks;
   for_finest(*cells, [&](const LeafPlace& at, float value) {
-    if (value < kHalf || value > kMostFull || !parts_full_faces(*cells, depth, at)) return;
+    if (value < kHalf || value > kMaxSlitOccupancy || !parts_full_faces(*cells, depth, at)) return;
     if (!thickened.levels.empty() && occupancy_at(thickened, depth, at) > 0.0F) return;
-    if (joined_by_middle(block_at(*cells, depth, at))) necks.push_back({at, value});
+    if (joined_by_center(block_at(*cells, depth, at))) necks.push_back({at, value});
   });
   const Separation separation(winding, unit);
   parallel_ranges(static_cast<std::int64_t>(necks.size()), kNecksPerTask, threads,
                   progress.part(0.0, 0.9), [&](std::int64_t begin, std::int64_t end) {
                     for (auto i = static_cast<std::size_t>(begin);
                          i < static_cast<std::size_t>(end); ++i) {
-                      const auto full = joined_by_middle(block_at(*cells, depth, necks[i].at));
+                      const auto full = joined_by_center(block_at(*cells, depth, necks[i].at));
                       necks[i].is_apart = full && separation.is_apart(necks[i].at, *full);
                     }
                   });
@@ -239,8 +240,8 @@ void open_slits(const WindingNumbers& winding, double unit, const CellTree& thic
   std::stable_sort(necks.begin(), necks.end(),
                    [](const Neck& a, const Neck& b) { return a.value < b.value; });
   for (const Neck& neck : necks) {
-    if (joined_by_middle(block_at(*cells, depth, neck.at))) {
-      set_leaf(neck.at, depth, kOpened, cells);
+    if (joined_by_center(block_at(*cells, depth, neck.at))) {
+      set_leaf(neck.at, depth, kOpenedOccupancy, cells);
     }
   }
   if (!necks.empty()) update_means(cells, progress.part(0.9, 1.0), threads);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Slits of a solid that cells bridge.
+// Opens slits of a solid that cells bridge.
 #pragma once
 
 #include "prefilter/base/progress.h"
@@ -9,10 +9,10 @@
 
 namespace prefilter {
 
-/// Makes cells a little less than half full that are a little more, alone join full cells across
-/// empty ones, and in which the mesh does not: slits narrower than cells come out as holes where
-/// some are empty and others are not. `winding` is the mesh's, in units of so many cells. What is
-/// thickened stays. Throws Error(kCancelled).
+/// Lowers cells slightly above 1/2 to slightly below it if only they connect full cells across
+/// empty ones, while the mesh does not connect these: otherwise slits narrower than cells become
+/// rows of holes. `winding` holds the mesh's winding numbers, in units of `unit` cells. Thickened
+/// cells are kept. Throws Error(kCancelled).
 void open_slits(const WindingNumbers& winding, double unit, const CellTree& thickened, int depth,
                 const Progress& progress, int threads, CellTree* cells);
 

@@ -19,25 +19,27 @@
 namespace prefilter {
 namespace {
 
-constexpr int kPerAxis = 2;  // along an axis of a cell
+constexpr int kPerAxis = 2;  // samples along an axis of a cell
 constexpr int kAllSamples = kPerAxis * kPerAxis * kPerAxis;
 constexpr double kSampleSide = 1.0 / kPerAxis;
 constexpr double kHalfDiagonal = 0.8660254037844386;
 constexpr double kRounding = 1e-6;  // in cells
-// Of a gap at a sample: what is around the sample is within the piece, whichever way it faces.
+// Gap at a sample from which everything around the sample is inside the piece, whichever way it
+// faces.
 constexpr double kSettled = -kSampleSide * kHalfDiagonal - kRounding;
-// To a sample from the center of its cell, and from that of a cell of twice the side around it.
+// Distance of a sample from the center of its cell, and of a cell twice as large.
 constexpr double kToSample = (1.0 - kSampleSide) * kHalfDiagonal + kRounding;
 constexpr double kFromAbove = kToSample + kHalfDiagonal;
-constexpr double kLeastArea = 1e-3;  // of a piece whose plane is looked at, in cells
+// minimum area of a piece for its plane to be used, in squared cells
+constexpr double kLeastArea = 1e-3;
 constexpr float kLeastAdded = 0.02F;
 constexpr double kUsualThickness = 1.5;
-constexpr double kThinnestOfWalls = 0.1;  // of the area of each triangle: it does not count
-constexpr double kMargin = 4.0;           // around the root, of what may reach into it
+constexpr double kThinnestOfWalls = 0.1;  // ignored share of each triangle's area
+constexpr double kMargin = 4.0;           // around the root, for pieces that may reach into it
 
 struct PieceCell {
   struct Near {
-    double gap;  // to the middle of the cell of a side of two; 0 above
+    double gap;  // gap to the center of the second finest cell; 0 at smaller depths
     std::uint32_t piece;
     bool operator<(const Near& other) const {
       return gap != other.gap ? gap < other.gap : piece < other.piece;
@@ -47,7 +49,7 @@ struct PieceCell {
   std::vector<Near> pieces;
 };
 
-// The cells of the pieces, in cells of the finest depth.
+// Builds the tree of cells inside the pieces; coordinates are in finest cells.
 class PieceRule {
  public:
   PieceRule(const std::vector<ThickPiece>& pieces, const Octree& octree)
@@ -95,7 +97,7 @@ class PieceRule {
     const Vector3 center = 0.5 * (box.low + box.high);
     for (const PieceCell::Near& near : cell.pieces) {
       if (!boxes_[near.piece].overlaps(box)) continue;
-      // A piece that is large is far from most of its box.
+      // Large pieces are far from most of their box.
       if (least_gap(near.piece, center) > side * kHalfDiagonal) continue;
       result.pieces.push_back(near);
     }
@@ -103,7 +105,7 @@ class PieceRule {
     return result;
   }
 
-  // What of a cell is within the pieces, where that is more than there is.
+  // Occupancy of a cell by the pieces, if it exceeds the present one.
   float value(const PieceCell& cell, int depth) const {
     if (cell.pieces.empty()) return 0.0F;
     if (depth < octree_.depth) return 1.0F;
@@ -122,7 +124,7 @@ class PieceRule {
   }
 
  private:
-  // Whether a cell is within one of the pieces.
+  // Whether a cell is inside one of the pieces.
   bool is_full(const PieceCell& cell, int depth) const {
     const double side = std::ldexp(1.0, octree_.depth - depth);
     const Vector3 center = {(cell.at[0] + 0.5) * side, (cell.at[1] + 0.5) * side,
@@ -133,7 +135,7 @@ class PieceRule {
     });
   }
 
-  // The pieces that reach a cell of a side of two, by how near they are: few settle what is in it.
+  // Sorts the pieces that reach a second finest cell by distance, as the nearest few decide it.
   void put_near_first(PieceCell* cell) const {
     const Vector3 center = {2.0 * cell->at[0] + 1.0, 2.0 * cell->at[1] + 1.0,
                             2.0 * cell->at[2] + 1.0};
@@ -143,13 +145,13 @@ class PieceRule {
     std::sort(cell->pieces.begin(), cell->pieces.end());
   }
 
-  // At least that between a piece and a point, by the piece's plane.
+  // Lower bound on the gap between a piece and a point, from the piece's plane.
   double least_gap(std::uint32_t piece, const Vector3& point) const {
     const Plane& plane = planes_[piece];
     return std::abs(dot(plane.normal, point) - plane.offset) - plane.reach;
   }
 
-  // From a piece to a point: negative within.
+  // Signed distance from a piece to a point, negative inside.
   struct Gap {
     double size;
     Vector3 away;
@@ -164,8 +166,8 @@ class PieceRule {
     return {distance - piece.radius, (1.0 / distance) * d};
   }
 
-  // Of each sample of a cell, the least gap to a piece, or one that no other changes anything of;
-  // whether there are pieces that reach the cell.
+  // For each sample of a cell, finds the least gap to a piece, or one that suffices. Returns
+  // whether any piece reaches the cell.
   bool find_least(const PieceCell& cell, std::array<Gap, kAllSamples>* least) const {
     std::array<Vector3, kAllSamples> points;
     for (int i = 0; i < kAllSamples; ++i) {
@@ -177,7 +179,7 @@ class PieceRule {
     bool is_reached = false;
     double most = least->front().size;
     for (const PieceCell::Near& near : cell.pieces) {
-      // No gap changes by more than the way: of no piece that follows one is less.
+      // The gap changes by at most the distance moved, so no later piece has a smaller one.
       if (near.gap - kFromAbove >= most) break;
       if (least_gap(near.piece, center) - kToSample >= most) continue;
       const ThickPiece& piece = pieces_[near.piece];
@@ -202,16 +204,16 @@ class PieceRule {
   const Octree& octree_;
   std::vector<Box> boxes_;
   struct Plane {
-    Vector3 normal;  // nothing of what has no area
+    Vector3 normal;  // zero for pieces without area
     double offset;
     double reach;
   };
   std::vector<Plane> planes_;
 };
 
-// The mesh in units of which the root has so many along an axis, without what is very far away.
+// The mesh in units of 1 / count of the root's side, without triangles that are very far away.
 TriangleMesh in_units(const RootTriangles& mesh, double count) {
-  constexpr double kFarthest = 1e9;
+  constexpr double kFarthest = 1e9;  // units
   TriangleMesh result;
   result.positions.reserve(mesh.mesh.positions.size());
   std::vector<bool> is_far(mesh.mesh.positions.size(), false);
@@ -230,7 +232,7 @@ TriangleMesh in_units(const RootTriangles& mesh, double count) {
     const bool is_left_out = is_far[static_cast<std::size_t>(a)] ||
                              is_far[static_cast<std::size_t>(b)] ||
                              is_far[static_cast<std::size_t>(c)];
-    // One without an area keeps the numbers of the others.
+    // Degenerate triangles keep the indices of the others.
     result.triangles.push_back({static_cast<std::int32_t>(a),
                                 static_cast<std::int32_t>(is_left_out ? a : b),
                                 static_cast<std::int32_t>(is_left_out ? a : c)});
@@ -238,10 +240,11 @@ TriangleMesh in_units(const RootTriangles& mesh, double count) {
   return result;
 }
 
-// In cells: of these the thickness is no more than usual, so that there are not very many pieces.
+// Unit in cells, chosen so that the thickness is at most kUsualThickness, which limits the number
+// of pieces.
 double thickness_unit(double thickness) { return std::max(1.0, thickness / kUsualThickness); }
 
-// What is to be added to the octree, in cells of its depth.
+// Pieces to add to the octree, in cells of its depth.
 ThickPieces pieces_for(const RootTriangles& mesh, double thickness, const Octree& octree,
                        const Progress& progress, int threads) {
   const double unit = thickness_unit(thickness);
@@ -268,8 +271,8 @@ ThickPieces pieces_for(const RootTriangles& mesh, double thickness, const Octree
   return found;
 }
 
-// In order, and one of each triangle: where all but a share of its area is thicker, with the area
-// of all.
+// Sorts and merges entries per triangle: keeps the thickness that all but a share of its area
+// exceeds, and the total area.
 void merge(double share, std::vector<ThinTriangle>* all) {
   std::stable_sort(all->begin(), all->end(), [](const ThinTriangle& a, const ThinTriangle& b) {
     return a.triangle != b.triangle ? a.triangle < b.triangle : a.thickness < b.thickness;
@@ -294,7 +297,7 @@ void merge(double share, std::vector<ThinTriangle>* all) {
   all->resize(count);
 }
 
-// The triangles above the pieces, or above those of walls, where all but a share is thicker.
+// Thin triangles, or thin walls only, with the thickness that all but a share of the area exceeds.
 std::vector<ThinTriangle> thin_triangles(const ThickPieces& found, bool only_walls, double share) {
   std::vector<ThinTriangle> all;
   for (const ThickPiece& piece : found.pieces) {

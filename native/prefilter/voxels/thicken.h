@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Occupancies of what is added where a solid is thin.
+// Thickens thin parts of a solid.
 #pragma once
 
 #include "prefilter/base/progress.h"
@@ -9,9 +9,9 @@
 
 namespace prefilter {
 
-/// Makes a solid as thick as `thickness`, in cells of the octree's depth, wherever it is thinner.
-/// `mesh` is what the octree was made of. The finest cells that change are those of
-/// `octree->thickened`; where the mesh is thin, `octree->thin` says.
+/// Thickens a solid to `thickness`, in cells of the octree's depth, wherever it is thinner. `mesh`
+/// is the mesh from which the octree was made. Stores the changed finest cells in
+/// `octree->thickened` and the thin triangles in `octree->thin` and `octree->thin_walls`.
 void thicken(const RootTriangles& mesh, double thickness, const Progress& progress, int threads,
              Octree* octree);
 

@@ -19,19 +19,19 @@
 namespace prefilter {
 namespace {
 
-constexpr double kLongestPiece = 1.0;  // the longest side of a piece, in cells
-constexpr double kLargestPiece = 4.0;  // of one that is as thin everywhere
+constexpr double kLongestPiece = 1.0;  // longest side of a piece, in cells
+constexpr double kLargestPiece = 4.0;  // the same for a piece that is equally thin everywhere
 constexpr double kLeastBrick = 2.0;    // in cells
-// The cosines between normals of what is opposite, on a rod 148 degrees, and of what counts on a
-// plate and of what is opposite there, 150 and 160: what opens wider is a wedge, which its body
-// holds and whose edge contours place.
+// Cosines between normals: opposite on a rod (148 degrees), and the start and end of the range on a
+// plate (150 and 160 degrees). Wider openings are wedges, whose body holds them together and whose
+// edge contours can place.
 constexpr double kOpposite = -0.85;
 constexpr double kPlateAcross = -0.866;
 constexpr double kPlateOpposite = -0.94;
-constexpr double kParallel = -0.985;  // the cosine between normals of a wall: 170 degrees
-// How much thicker than a plate that cells hold together a rod and a speck have to be: the quarter
-// of a disc that cells have of a rod along their common edge, and the eighth of a ball at their
-// common corner, are half of a cell.
+constexpr double kParallel = -0.985;  // cosine between the normals of a wall: 170 degrees
+// Additional thickness of rods and specks relative to plates: cells show a quarter of a rod's disk
+// along a common edge, and an eighth of a speck's ball at a common corner, which must be half of a
+// cell.
 constexpr double kRod = 0.23;
 constexpr double kSpeck = 0.17;
 constexpr std::int64_t kTrianglesPerTask = 1 << 6;
@@ -51,8 +51,8 @@ std::vector<Vector3> normals_of(const MeshView<std::int32_t>& mesh) {
   return normals;
 }
 
-// Of the middles of a place: the products of two components of the normals above them, summed by
-// area, and their own mean.
+// Area-weighted sums over the medial points of a place: products of normal components, and the mean
+// point.
 struct PlaceSums {
   std::array<double, 6> sums{};  // xx, yy, zz, xy, yz, zx
   Vector3 middles{};
@@ -77,7 +77,7 @@ struct PlaceSums {
             zx * v[0] + yz * v[1] + zz * v[2]};
   }
 
-  /// In descending order (Smith 1961).
+  /// Eigenvalues in descending order (O. Smith, Eigenvalues of a symmetric 3 x 3 matrix, 1961).
   Vector3 eigenvalues() const {
     const auto [xx, yy, zz, xy, yz, zx] = sums;
     const double mean = (xx + yy + zz) / 3.0;
@@ -89,7 +89,7 @@ struct PlaceSums {
         (d[0] * (d[1] * d[2] - yz * yz) - xy * (xy * d[2] - yz * zx) + zx * (xy * yz - d[1] * zx)) /
         (p * p * p);
     const double angle = elementary::acos(std::clamp(det / 2.0, -1.0, 1.0)) / 3.0;
-    constexpr double kThird = 2.0943951023931953;  // of a turn
+    constexpr double kThird = 2.0943951023931953;  // of a full turn
     const double first = mean + 2.0 * p * elementary::cos(angle);
     const double last = mean + 2.0 * p * elementary::cos(angle + kThird);
     return {first, 3.0 * mean - first - last, last};
@@ -101,41 +101,41 @@ struct Candidate {
   Vector3 normal;
   InnerBall ball;
   std::uint32_t triangle;
-  double share;   // of the area that it stands for, its own being 1
-  bool is_plate;  // whatever is around it
+  double share;   // represented area relative to its own
+  bool is_plate;  // independent of its surroundings
 
   Vector3 middle() const { return triangle_middle(corners) - ball.radius * normal; }
 };
 
-// How much of a place is a rod, by the eigenvalues of its normals.
+// How rod-like a place is, from 0 to 1, by the eigenvalues of its normals.
 double rod_of(const Vector3& values) { return std::clamp(2.0 * values[1] / values[0], 0.0, 1.0); }
 
-// How much of what a place lacks it gets, by the cosine between its faces' normals.
+// Share of the missing thickness that is added, by the cosine between opposite normals.
 double thickened_share(double facing, double rod) {
-  // A wedge of which nothing counts has 0.14, a rod of five sides 1.
+  // A wedge below the limit has a value of 0.14, a rod with five sides 1.
   const double share = std::clamp((rod - 0.4) / 0.4, 0.0, 1.0);
   const double across = kPlateAcross + share * (kAcross - kPlateAcross);
   const double opposite = kPlateOpposite + share * (kOpposite - kPlateOpposite);
   const double counted = (across - facing) / (across - opposite);
-  // Cells that little is added to would lose their edges for nothing.
+  // Small additions would only destroy edges.
   return counted < 0.5 ? 0.0 : std::min(counted, 1.0);
 }
 
-// How much thicker than a plate it has to be.
+// Required additional thickness relative to a plate.
 double extra_of(const Vector3& values) {
   const double speck = std::clamp(2.0 * values[2] / values[0], 0.0, 1.0);
   return kRod * rod_of(values) + kSpeck * speck;
 }
 
-// What is thin of a triangle. It is cut only as far as its parts differ, as each piece is looked at
-// by every cell that it reaches.
+// Finds the thin pieces of triangles. Triangles are divided only where their parts differ, since
+// the cost grows with the number of pieces per cell.
 class CandidateFinder {
  public:
   CandidateFinder(const OpposedBricks& bricks, const InnerBalls& balls, const OuterSides& outer,
                   double largest, std::vector<Candidate>* found)
       : bricks_(bricks), balls_(balls), outer_(outer), largest_(largest), found_(found) {}
 
-  /// One of the `chosen`, by its number among these.
+  /// Adds triangle number `index` of `chosen`.
   void add(const std::array<Vector3, 3>& corners, const Vector3& normal,
            const Representatives& chosen, std::size_t index) {
     normal_ = normal;
@@ -150,8 +150,8 @@ class CandidateFinder {
   }
 
  private:
-  // Of a sheet. If all of it is a plate it says so and adds nothing: two halves that are can then
-  // be one plate, as large as the triangle if that is all in crowded bricks.
+  // For sheets: returns true, without adding anything, if all of the piece is a plate; two halves
+  // that are can then be one plate, as large as the triangle if all of it is in crowded bricks.
   bool add_plates(const std::array<Vector3, 3>& piece) {
     if (!bricks_.may_meet(piece)) return false;
     const auto halves = halves_of(piece, kLargestPiece);
@@ -176,7 +176,7 @@ class CandidateFinder {
     found_->push_back({piece, normal_, kSheet, triangle_, share_, true});
   }
 
-  // A sheet counts where one of its faces does.
+  // A sheet counts if one of its faces does.
   bool may_count(const Vector3& point) const {
     return bricks_.holds(point) &&
            (outer_.may_be(point, normal_) || (is_sheet_ && outer_.may_be(point, -1.0 * normal_)));
@@ -190,7 +190,7 @@ class CandidateFinder {
     found_->push_back({piece, normal_, ball, triangle_, share_, false});
   }
 
-  // A piece whose middle may count, if that is thin; whether it is.
+  // Adds a piece if its center is outer and thin; returns whether it did.
   bool push_outer(const std::array<Vector3, 3>& piece) {
     const Vector3 middle = triangle_middle(piece);
     if (!is_outer(middle)) return false;
@@ -204,7 +204,7 @@ class CandidateFinder {
     return ball.has_value();
   }
 
-  // One no larger than kLargestPiece.
+  // Adds a piece no larger than kLargestPiece.
   void add_piece(const std::array<Vector3, 3>& piece) {
     const Vector3 middle = triangle_middle(piece);
     const bool counts = may_count(middle);
@@ -214,7 +214,7 @@ class CandidateFinder {
       return;
     }
     if (is_short(piece)) {
-      // A list of what is across does not pay for a single ball.
+      // For a single ball, a list of opposite triangles is not worthwhile.
       across_.has_more = true;
       push_outer(piece);
       return;
@@ -223,7 +223,7 @@ class CandidateFinder {
       balls_.find_across(piece, normal_, largest_, &across_);
       if (across_.is_empty()) return;
     }
-    // Whole if it is as thin everywhere.
+    // Add the whole piece if it is equally thin everywhere.
     if (counts && (is_sheet_ || balls_.are_alike(piece, normal_, largest_, across_)) &&
         push_outer(piece)) {
       return;
@@ -233,7 +233,7 @@ class CandidateFinder {
     });
   }
 
-  // Whether the middle may not count, but others do.
+  // Whether any part of the piece may count, although its center does not.
   bool has_counting(const std::array<Vector3, 3>& piece) const {
     bool counts = false;
     for_pieces(piece, kLongestPiece, may_meet_,
@@ -241,7 +241,7 @@ class CandidateFinder {
     return counts;
   }
 
-  static constexpr InnerBall kSheet = {0.0, -1.0, -1.0};  // what has no inside
+  static constexpr InnerBall kSheet = {0.0, -1.0, -1.0};  // for surfaces without an inside
 
   struct MayMeet {
     const OpposedBricks& bricks;
@@ -260,7 +260,7 @@ class CandidateFinder {
   double largest_;
   std::vector<Candidate>* found_;
   InnerBalls::Across across_;
-  // Of the triangle that is looked at.
+  // State of the current triangle.
   Vector3 normal_{};
   bool is_sheet_ = false;
   std::uint32_t triangle_ = 0;
@@ -291,9 +291,9 @@ std::vector<Candidate> find_candidates(const MeshView<std::int32_t>& mesh,
   return all;
 }
 
-// What is within about a cell.
+// Weighted sums within about a cell.
 PlaceSums place_around(const CubeTable<PlaceSums>& places, const Vector3& middle) {
-  constexpr double kReach = 1.5;
+  constexpr double kReach = 1.5;  // cells: the weight falls to 0 there
   PlaceSums around;
   const Vector3 low = {std::floor(middle[0]), std::floor(middle[1]), std::floor(middle[2])};
   const std::uint64_t first = cube_key(low - Vector3{0.5, 0.5, 0.5}, 1.0);
@@ -330,7 +330,7 @@ ThickPieces thick_pieces(const MeshView<std::int32_t>& mesh, double thickness, c
   }
   Representatives chosen = find_representatives(
       mesh, normals, triangles, [&](const auto& corners) { return bricks.may_meet(corners); });
-  // What is across from others has its own direction: balls meet both faces of sheets.
+  // Balls touch both faces of sheets, so backs are included.
   std::vector<std::uint32_t> facing = chosen.triangles;
   facing.erase(std::unique(facing.begin(), facing.end()), facing.end());
   for (const Represented& other : chosen.others) {
@@ -365,7 +365,8 @@ ThickPieces thick_pieces(const MeshView<std::int32_t>& mesh, double thickness, c
     const double share = thickened_share(one.ball.facing, rod_of(values));
     const double radius = one.ball.radius + share * (wanted - one.ball.radius);
     if (!(radius > one.ball.radius)) continue;
-    // The middle of a plate is as wide as its faces, that of a rod a line, that of a speck a point.
+    // The medial surface of a plate is as wide as its faces, that of a rod a line, of a speck a
+    // point.
     const auto across = [&](const Vector3& v) { return (1.0 / values[0]) * around.times(v); };
     const Vector3 mean = (1.0 / around.area) * around.middles;
     const Vector3 moved = middle + rod_of(values) * across(mean - middle);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Section 3.2.3. The mesh is carried to the unit cube, which may stretch it: occupancies do not
-// change.
+// Implements section 3.2.3. The mesh is mapped to the unit cube; this may stretch it, which does
+// not change occupancies.
 #include "prefilter/voxels/voxelize.h"
 
 #include <algorithm>
@@ -20,11 +20,11 @@
 namespace prefilter {
 namespace {
 
-constexpr double kMarginCells = 2.0;
-constexpr double kMarginShare = 1.0 / 8.0;  // of the cells along an axis, at the most
+constexpr double kMarginCells = 2.0;        // around the mesh
+constexpr double kMarginShare = 1.0 / 8.0;  // upper limit, as a share of the cells along an axis
 constexpr std::int64_t kRowsPerTask = 1 << 14;
-// Of a cell that the surface passes through: blocks while they are moved together, and the bricks'
-// triangles. Measured on scans: 20 to 25.
+// Bytes per cell that the surface passes through, for blocks while they are merged and for the
+// bricks' triangles. Measured on scans: 20 to 25.
 constexpr double kBytesPerCell = 30.0;
 
 Box box_of(const InputMesh& mesh) {
@@ -35,15 +35,15 @@ Box box_of(const InputMesh& mesh) {
   return box;
 }
 
-// The area vector's absolute components, summed: the number of unit cells that a large plane figure
-// passes through.
-double cells_met(const std::array<Vector3, 3>& corners) {
+// Number of unit cells that a large planar figure crosses: the sum of its area vector's absolute
+// components.
+double cells_crossed(const std::array<Vector3, 3>& corners) {
   const Vector3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
   return (std::abs(normal[0]) + std::abs(normal[1]) + std::abs(normal[2])) / 2.0;
 }
 
-// Of some triangles: the cells of a tree that they meet, with the root for a unit, and whether any
-// has an area.
+// Number of cells that some triangles cross, in units of the root, and whether any of them has an
+// area.
 struct SurfaceExtent {
   double cells = 0.0;
   bool has_area = false;
@@ -58,15 +58,15 @@ SurfaceExtent extent_of(const RootTriangles& mesh, std::int64_t begin, std::int6
       meets_root = meets_root && std::min({corners[0][a], corners[1][a], corners[2][a]}) <= 1.0 &&
                    std::max({corners[0][a], corners[1][a], corners[2][a]}) >= 0.0;
     }
-    const double area = cells_met(corners);
+    const double area = cells_crossed(corners);
     extent.has_area = extent.has_area || area > 0.0;
-    // No plane meets more than about three layers of the root.
+    // A plane crosses at most about three layers of the root.
     if (meets_root) extent.cells += std::min(area, 3.0);
   }
   return extent;
 }
 
-// Throws where all triangles have zero area, or the tree would not fit.
+// Throws Error if all triangles have zero area, or the tree would not fit into memory.
 void check_surface(const RootTriangles& mesh, int depth, const Progress& progress, int threads) {
   const auto count = static_cast<std::int64_t>(mesh.mesh.triangles.size());
   std::vector<SurfaceExtent> parts(static_cast<std::size_t>(range_count(count, kRowsPerTask)));

@@ -12,8 +12,8 @@
 namespace prefilter {
 namespace {
 
-// What a map of the standard library holds, on both sides of the origin and so many that it grows.
-TEST(CubeTable, HoldsWhatAMapHolds) {
+// Contents equal a std::map's, on both sides of the origin and with enough entries to grow.
+TEST(CubeTable, MatchesAMap) {
   CubeTable<int> table;
   EXPECT_TRUE(table.is_empty());
   std::map<std::uint64_t, int> expected;
@@ -39,8 +39,8 @@ TEST(CubeTable, HoldsWhatAMapHolds) {
   }
 }
 
-// As far away as keys tell cubes apart.
-TEST(CubeTable, HoldsCubesFarAway) {
+// Cubes as far out as keys can represent.
+TEST(CubeTable, AcceptsDistantCubes) {
   CubeTable<int> table;
   int count = 0;
   for (const double x : {-1e9, -1e5, 0.0, 1e5, 1e9}) {

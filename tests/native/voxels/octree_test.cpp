@@ -60,7 +60,7 @@ TEST(Octree, VolumeAndBoxesAgreeWithTheDenseCells) {
   double sum = 0.0;
   for (const float value : cells) sum += value;
   EXPECT_NEAR(volume(octree), sum / 4096.0, 1e-9);
-  // Means of cells that are split are floats.
+  // Means of split cells are stored as floats.
   EXPECT_NEAR(box_occupancy(octree, kUnit), sum / 4096.0, 1e-7);
   EXPECT_NEAR(octree.cells.root, sum / 4096.0, 1e-6);
 
@@ -127,7 +127,7 @@ TEST(Octree, CoarserCellsAreMeans) {
   }
 }
 
-TEST(Octree, WhatIsNoTreeIsRefused) {
+TEST(Octree, InvalidTreesAreRefused) {
   const auto make = [](std::vector<TreeLevel> levels, int depth) {
     return message_of([&] { make_octree(levels, 0.0F, kUnit, depth); });
   };
@@ -146,12 +146,12 @@ TEST(Octree, WhatIsNoTreeIsRefused) {
   EXPECT_NE(make({leaf}, 3).find("values: found nan"), std::string::npos);
 }
 
-TEST(Combine, IsCellByCellForAnyDepths) {
+TEST(Combine, EqualsDenseOperationsForAnyDepths) {
   for (unsigned seed = 10; seed < 20; ++seed) {
     const Octree a = random_octree(seed, 3 + static_cast<int>(seed % 3));
     const Octree b = random_octree(seed + 100, 2 + static_cast<int>(seed % 4));
     const int depth = std::max(a.depth, b.depth);
-    // Leaves that are neither full nor empty are split first.
+    // Leaves that are neither full nor empty are split before the comparison.
     const auto dense_refined = [&](const Octree& octree) {
       Octree fine = octree;
       fine.cells = refined(octree.cells, std::max(a.cells.depth(), b.cells.depth()), Progress(), 1);
@@ -167,7 +167,7 @@ TEST(Combine, IsCellByCellForAnyDepths) {
         const float other = operation == SetOperation::kDifference ? 1.0F - of_b[i] : of_b[i];
         const float expected =
             operation == SetOperation::kUnion ? std::max(of_a[i], other) : std::min(of_a[i], other);
-        // Ties at 1/2 are moved by 1e-4.
+        // Values of exactly 1/2 are moved by 1e-4.
         ASSERT_NEAR(found[i], expected, std::abs(expected - 0.5F) < 1e-4F ? 2e-4 : 0.0);
       }
       EXPECT_EQ(found, dense_values(combine(a, b, operation, Progress(), 3), depth, Progress(), 1));
@@ -175,7 +175,7 @@ TEST(Combine, IsCellByCellForAnyDepths) {
   }
 }
 
-TEST(Combine, UniformBlocksAreOneCell) {
+TEST(Combine, UniformBlocksAreMerged) {
   const Octree box = voxelized(box_mesh({0.3, 0.3, 0.3}, {0.6, 0.6, 0.6}), 6);
   const Octree empty = combine(box, voxelized(box_mesh({0.1, 0.1, 0.1}, {0.9, 0.9, 0.9}), 6),
                                SetOperation::kDifference, Progress(), 1);
@@ -184,7 +184,7 @@ TEST(Combine, UniformBlocksAreOneCell) {
 }
 
 TEST(Combine, CoincidentFacesLeaveNoFilm) {
-  // The face x = 0.53125 lies in the middle of a cell of depth 4.
+  // The face x = 0.53125 passes through the middle of a cell of depth 4.
   const Octree box = voxelized(box_mesh({0.1, 0.1, 0.1}, {0.53125, 0.9, 0.9}), 4);
   const Octree beside = voxelized(box_mesh({0.53125, 0.1, 0.1}, {0.9, 0.9, 0.9}), 4);
   const auto at_face = [](const Octree& octree) {
@@ -196,11 +196,11 @@ TEST(Combine, CoincidentFacesLeaveNoFilm) {
   EXPECT_GT(at_face(combine(box, beside, SetOperation::kUnion, Progress(), 1)), 0.5F);
 }
 
-TEST(Combine, OtherBoundsAreCarriedOver) {
+TEST(Combine, ResamplesOtherBounds) {
   const Mesh left = box_mesh({0.1, 0.1, 0.1}, {0.8, 0.8, 0.8});
   const Mesh right = box_mesh({0.5, 0.5, 0.5}, {1.8, 1.2, 1.4});
   const Octree a = voxelized(left, 6);
-  // Twice as large, and shifted by whole cells: an exact copy on the cells of a.
+  // b has cells of the same size, shifted by whole cells, so that it is copied exactly.
   const Octree b = voxelized(right, 7, Box{{0.25, 0.0, 0.0}, {2.25, 2.0, 2.0}});
   const Octree both = combine(a, b, SetOperation::kIntersection, Progress(), 1);
   EXPECT_NEAR(volume(both), 0.3 * 0.3 * 0.3, 2e-3);
@@ -213,7 +213,7 @@ TEST(Combine, OtherBoundsAreCarriedOver) {
   EXPECT_NEAR(volume(cut), volume(a) - 0.027, 2e-3);
 }
 
-TEST(Combine, OctreesOfAnyCellsHaveContoursThatDoNotCrossThemselves) {
+TEST(Combine, ContoursDoNotIntersectThemselves) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   for (int trial = 0; trial < 12; ++trial) {
@@ -241,18 +241,17 @@ TEST(Combine, OctreesOfAnyCellsHaveContoursThatDoNotCrossThemselves) {
   }
 }
 
-TEST(Resample, KeepsTheVolumeOfWhatItCovers) {
+TEST(Resample, KeepsTheVolume) {
   const Box around = {{-0.31, -0.17, -0.4}, {1.2, 1.33, 1.11}};
   const Octree ball = voxelized(sphere_mesh({0.5, 0.5, 0.45}, 0.4, 20), 4);
   EXPECT_EQ(dense(regridded(ball, kUnit, 4, Progress(), 1)), dense(ball));
-  // Surfaces are taken for flat over each box.
+  // The surface is assumed to be flat within each cell.
   EXPECT_NEAR(volume(regridded(ball, around, 4, Progress(), 1)), volume(ball), 1e-5);
   const Octree noise = random_octree(30, 4);
   EXPECT_NEAR(volume(regridded(noise, around, 4, Progress(), 1)), volume(noise), 5e-5);
 }
 
-// Whether a leaf that is larger than the finest cells has another value beside it, by the dense
-// cells.
+// Whether a leaf above the finest depth has a neighbor with another value, by the dense cells.
 bool is_beside_a_border(const Octree& octree, const std::vector<float>& cells, int level,
                         std::array<int, 3> place) {
   const int n = 1 << octree.depth;
@@ -277,7 +276,7 @@ bool is_beside_a_border(const Octree& octree, const std::vector<float>& cells, i
 }
 
 TEST(Resample, CellsOnBothSidesOfABorderAreFine) {
-  // Faces on borders of cells, before and after: all cells are uniform.
+  // Faces lie on cell borders before and after, so that all cells are uniform.
   const Octree box = voxelized(box_mesh({0.25, 0.5, 0.125}, {0.75, 1.0, 0.5}), 5);
   const Octree made = regridded(box, {{-0.5, -0.5, -0.5}, {1.5, 1.5, 1.5}}, 6, Progress(), 1);
   const std::vector<float> cells = dense(made);
@@ -298,7 +297,7 @@ TEST(Resample, CellsOnBothSidesOfABorderAreFine) {
   visit(visit, 0, 0, {0, 0, 0});
 }
 
-TEST(Resample, LatticesThatAgreeButForRoundingHaveTheSameCells) {
+TEST(Resample, GridsEqualUpToRoundingHaveTheSameCells) {
   const Octree ball = voxelized(sphere_mesh({0.5, 0.5, 0.45}, 0.4, 20), 5);
   for (const double shift : {-1e-13, 1e-13}) {
     const Box nearly = {{shift, shift, shift}, {1.0 + shift, 1.0 + shift, 1.0 + shift}};
@@ -323,7 +322,7 @@ TEST(Resample, MovesPlanesExactly) {
       }
     }
   }
-  // One layer over the root of the source, and what its borders cut.
+  // One layer of cells over the source's root, and the cells its borders cut.
   EXPECT_LT(fractions, 32 * 32 + 6 * 32 * 32);
 }
 
@@ -338,7 +337,7 @@ TEST(Voxelize, LeavesAMarginAroundTheMesh) {
   }
 }
 
-TEST(Voxelize, NamesWhatIsWrong) {
+TEST(Voxelize, ReportsInvalidArguments) {
   const std::vector<Vector3> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}};
   using Triangles = std::vector<std::array<std::int64_t, 3>>;
   const auto message = [&](const std::vector<Vector3>& positions, const Triangles& triangles,
@@ -359,7 +358,7 @@ TEST(Voxelize, NamesWhatIsWrong) {
             std::string::npos);
 }
 
-TEST(Voxelize, RefusesWhatWouldNotFit) {
+TEST(Voxelize, RefusesTooManyCells) {
   Mesh sheets;
   for (int i = 0; i < 20000; ++i) {
     const double z = 0.1 + 4e-5 * i;

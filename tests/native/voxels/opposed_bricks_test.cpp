@@ -11,7 +11,7 @@ namespace {
 
 using Triangle = std::array<std::int32_t, 3>;
 
-// Of squares from 0 to 8 at these heights, every second one facing down.
+// Grids of 8 x 8 unit squares at these heights; every second one faces down.
 struct Sheets {
   std::vector<Vector3> positions;
   std::vector<Triangle> triangles;
@@ -39,18 +39,18 @@ struct Sheets {
   }
 };
 
-TEST(OpposedBricks, AreWhereFacesAreAcross) {
+TEST(OpposedBricks, AreFoundBetweenOpposedFaces) {
   const OpposedBricks thin = Sheets({0.5, 1.0}).bricks();
   EXPECT_TRUE(thin.holds({3.0, 3.0, 0.5}));
   EXPECT_FALSE(thin.holds({3.0, 3.0, 6.5}));
   EXPECT_TRUE(Sheets({0.5, 9.0}).bricks().is_empty());
-  // Bricks beside each other, in every direction.
+  // Neighboring bricks in every direction.
   const OpposedBricks beside = Sheets({1.9, 2.1}).bricks();
   EXPECT_TRUE(beside.holds({3.0, 3.0, 1.9}));
   EXPECT_TRUE(beside.holds({7.9, 0.1, 2.1}));
 }
 
-TEST(OpposedBricks, AreCrowdedWhereNothingIsToldApart) {
+TEST(OpposedBricks, AreCrowdedForCoincidentFaces) {
   std::vector<double> heights;
   for (int i = 0; i < 20; ++i) heights.push_back(0.05 + 0.095 * i);
   EXPECT_TRUE(Sheets(heights).bricks().is_crowded({3.0, 3.0, 1.0}));

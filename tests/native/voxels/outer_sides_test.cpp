@@ -11,8 +11,8 @@
 namespace prefilter {
 namespace {
 
-// Balls in each other, and what the distances from their middles say.
-TEST(OuterSides, NumbersAreThoseOfBalls) {
+// Nested balls, with winding numbers known from the distances to their centers.
+TEST(OuterSides, WindingNumbersMatchNestedBalls) {
   struct Ball {
     Vector3 middle;
     double radius;
@@ -45,7 +45,7 @@ TEST(OuterSides, NumbersAreThoseOfBalls) {
     }
     if (is_near) continue;
     EXPECT_NEAR(sides.winding_at(point), expected, 0.2);
-    // Where no cell tells, the number does.
+    // Where no cell decides, the winding number does.
     EXPECT_EQ(sides.is_outer(point, {0.0, 0.0, 1.0}), expected < 0.5);
   }
 }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kDepth = 2;
 
-// Of cells of one depth.
+// A tree with leaves at one depth, all of this value.
 CellTree uniform(float value) {
   CellTree tree;
   std::size_t blocks = 1;
@@ -39,7 +39,7 @@ void set(const LeafPlace& at, float value, CellTree* tree) {
 
 constexpr LeafPlace kCell = {1, 1, 1};
 
-// The cell, with so many of its neighbors full.
+// An otherwise empty tree with the cell kCell and this many full neighbors.
 CellTree around(float value, int full) {
   CellTree tree = uniform(0.0F);
   set(kCell, value, &tree);
@@ -65,14 +65,14 @@ TEST(Pinholes, AreFilledBetweenFourFullNeighbors) {
   EXPECT_EQ(filled(around(0.3F, 6), everywhere), 0.3F);
 }
 
-TEST(Pinholes, OnlyWhatIsThickenedIsFilled) {
+TEST(Pinholes, OnlyThickenedCellsAreFilled) {
   CellTree elsewhere = uniform(0.0F);
   set({3, 3, 3}, 0.7F, &elsewhere);
   EXPECT_EQ(filled(around(0.45F, 6), elsewhere), 0.45F);
   EXPECT_EQ(filled(around(0.45F, 6), CellTree()), 0.45F);
 }
 
-TEST(Pinholes, MeansAreThoseOfTheFilledCells) {
+TEST(Pinholes, MeansIncludeFilledCells) {
   CellTree tree = around(0.45F, 6);
   const float before = tree.root;
   fill_pinholes(uniform(0.1F), kDepth, Progress(), 1, &tree);

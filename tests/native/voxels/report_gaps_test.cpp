@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Work on shapes can be stopped at any time: how much of it is done between two reports. Counted in
-// seconds of the processor, which others on the machine do not change.
+// Operations on shapes can be canceled at any time: measures the longest time between two progress
+// reports, in seconds of processor time, which does not depend on the machine's load.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@
 namespace prefilter {
 namespace {
 
-// Of the 0.2 s that are promised.
+// Seconds; 0.2 are promised.
 constexpr double kLongest = 0.15;
 
 double processor_seconds() {
@@ -28,7 +28,7 @@ double processor_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-// The longest that `work` does not report.
+// Longest time without a report by `work`, in seconds.
 double longest_gap(const std::function<void(const Progress&)>& work) {
   double longest = 0.0;
   double last = processor_seconds();
@@ -126,7 +126,7 @@ TEST_F(ReportGaps, OfHoles) {
 }
 
 TEST_F(ReportGaps, OfALongHole) {
-  // A cone whose border waves, of as many edges as make the patch largest.
+  // A cone with a wavy border of so many edges that its patch is as large as patches get.
   constexpr int kCount = 400;
   std::vector<Vector3> positions;
   std::vector<std::array<std::int64_t, 3>> faces;

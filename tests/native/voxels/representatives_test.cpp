@@ -23,7 +23,7 @@ struct Sheet {
   MeshView<std::int32_t> view() const { return {positions, triangles}; }
 };
 
-// Two sheets of a side of 4 cells that face away from each other, in so many rows and columns each.
+// Two sheets 4 cells wide that face away from each other, each with this many rows and columns.
 Sheet sheets(int rows, int columns) {
   Sheet sheet;
   for (const double z : {0.0, 0.1}) {
@@ -55,11 +55,11 @@ Representatives representatives(const Sheet& sheet) {
                               [](const auto&) { return true; });
 }
 
-TEST(Representatives, OfSmallTrianglesThereAreNoMoreThanPlaces) {
+TEST(Representatives, SmallTrianglesHaveOnePerPosition) {
   for (const int rows : {40, 200}) {
     const Sheet sheet = sheets(rows);
     const Representatives found = representatives(sheet);
-    // A quarter of a cell is a place, and each sheet is one direction.
+    // Positions are a quarter of a cell apart, and each sheet has one direction.
     EXPECT_LE(found.triangles.size(), 2U * 16U * 16U);
     EXPECT_EQ(found.triangles.size() + found.others.size(), sheet.all.size());
     double area = 0.0;
@@ -78,7 +78,7 @@ TEST(Representatives, OfSmallTrianglesThereAreNoMoreThanPlaces) {
   }
 }
 
-TEST(Representatives, OfPiecesOfNarrowTrianglesThereAreNoMoreThanPlaces) {
+TEST(Representatives, PiecesOfNarrowTrianglesHaveOnePerPosition) {
   for (const int rows : {40, 400}) {
     const Sheet sheet = sheets(rows, 1);
     const Representatives found = representatives(sheet);
@@ -100,7 +100,7 @@ TEST(Representatives, OfPiecesOfNarrowTrianglesThereAreNoMoreThanPlaces) {
       EXPECT_TRUE(pairs.emplace(other.triangle, other.representative).second);
       areas[other.triangle] += other.area;
     }
-    // Every triangle has all of its own area, but for what another piece of it stands for.
+    // Each triangle keeps its own area, minus the share of pieces that another triangle represents.
     for (const std::uint32_t t : sheet.all) {
       EXPECT_LE(areas[t], triangle_area(sheet.view().corners(t)) + 1e-9);
       EXPECT_GE(areas[t], 0.5 * triangle_area(sheet.view().corners(t)));
@@ -108,7 +108,7 @@ TEST(Representatives, OfPiecesOfNarrowTrianglesThereAreNoMoreThanPlaces) {
   }
 }
 
-TEST(Representatives, PiecesOfNarrowTrianglesThatCrossAreTheirOwn) {
+TEST(Representatives, CrossingNarrowPiecesRepresentThemselves) {
   Sheet sheet = sheets(40, 1);
   const Representatives alone = representatives(sheet);
   const auto count = static_cast<std::int32_t>(sheet.positions.size());
@@ -126,7 +126,7 @@ TEST(Representatives, PiecesOfNarrowTrianglesThatCrossAreTheirOwn) {
   EXPECT_EQ(representatives(sheet).pieces.size(), 2 * alone.pieces.size());
 }
 
-TEST(Representatives, LargeTrianglesAreTheirOwn) {
+TEST(Representatives, LargeTrianglesRepresentThemselves) {
   const Sheet sheet = sheets(8);
   const Representatives found = representatives(sheet);
   EXPECT_EQ(found.triangles, sheet.all);
@@ -134,7 +134,7 @@ TEST(Representatives, LargeTrianglesAreTheirOwn) {
   EXPECT_TRUE(found.others.empty());
 }
 
-TEST(Representatives, OfBothFacesOfASheetThereIsOne) {
+TEST(Representatives, BothFacesOfASheetHaveOneEach) {
   Sheet sheet = sheets(8);
   const std::size_t count = sheet.triangles.size();
   for (std::size_t t = 0; t < count / 2; ++t) {
@@ -159,7 +159,7 @@ TEST(Representatives, OfBothFacesOfASheetThereIsOne) {
   }
 }
 
-TEST(Representatives, FacesThatAreThereTwiceAreNoSheets) {
+TEST(Representatives, DuplicateFacesAreNotSheets) {
   Sheet sheet = sheets(8);
   for (std::size_t t = 0; t < sheet.all.size(); ++t) {
     const auto [a, b, c] = sheet.triangles[t];

@@ -38,7 +38,7 @@ void set(const LeafPlace& at, float value, CellTree* tree) {
   last.blocks[tree->levels[0].child(0, outer)][static_cast<std::size_t>(inner)] = value;
 }
 
-// A cell between full ones on two sides of it.
+// A cell with full neighbors on two sides.
 CellTree with_neck(float value) {
   CellTree tree = empty_tree();
   set({0, 1, 1}, 1.0F, &tree);
@@ -48,7 +48,7 @@ CellTree with_neck(float value) {
   return tree;
 }
 
-// Boxes over the cells from 1 to 2 along y and z.
+// Boxes over these ranges of x, from 1 to 2 along y and z.
 TriangleMesh boxes(const std::vector<std::array<double, 2>>& ranges) {
   TriangleMesh mesh;
   for (const auto& [low, high] : ranges) {
@@ -86,20 +86,20 @@ TEST(Slits, AreOpenedWhereTheMeshIs) {
   EXPECT_EQ(neck_of(opened(with_neck(0.7F), boxes(kApart))), 0.7F);
 }
 
-TEST(Slits, WhatTheMeshJoinsStays) {
+TEST(Slits, CellsJoinedByTheMeshStay) {
   EXPECT_EQ(neck_of(opened(with_neck(0.6F), boxes({{0.0, 3.0}}))), 0.6F);
-  // A slit beside the cell's neighbors, that one of them bridges.
+  // A slit next to the neck's neighbors, which one of them bridges.
   EXPECT_EQ(neck_of(opened(with_neck(0.6F), boxes({{0.0, 1.3}, {1.2, 3.0}}))), 0.6F);
 }
 
-TEST(Slits, WhatIsThickenedStays) {
+TEST(Slits, ThickenedCellsStay) {
   CellTree thickened = empty_tree();
   set(kNeck, 0.6F, &thickened);
   EXPECT_EQ(neck_of(opened(with_neck(0.6F), boxes(kApart), thickened)), 0.6F);
   EXPECT_LT(neck_of(opened(with_neck(0.6F), boxes(kApart), empty_tree())), 0.5F);
 }
 
-TEST(Slits, OnlyWhatAloneJoinsIsOpened) {
+TEST(Slits, OnlySoleConnectionsAreOpened) {
   CellTree around = with_neck(0.6F);
   for (const int x : {0, 1, 2}) set({x, 2, 1}, 1.0F, &around);
   EXPECT_EQ(neck_of(opened(std::move(around), boxes(kApart))), 0.6F);

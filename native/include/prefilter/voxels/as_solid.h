@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Any mesh as one that has an inside: welded, turned, filled, thickened.
+// Turns any mesh into a solid: welded, oriented, filled, thickened.
 #pragma once
 
 #include <array>
@@ -14,53 +14,53 @@
 
 namespace prefilter {
 
-/// What becomes of parts that enclose nothing.
+/// Treatment of parts that enclose no volume.
 enum class SheetMethod {
   kShell,  // prisms on both sides of their faces
-  kFaces,  // their faces, from both sides: nothing until voxelize thickens it
+  kFaces,  // both sides of their faces, which voxelize must thicken
 };
 
 inline constexpr Named<SheetMethod> kSheetMethods[] = {{"shell", SheetMethod::kShell},
                                                        {"faces", SheetMethod::kFaces}};
 
 struct SolidOptions {
-  double cell = 0.0;   // the side of the cells that it is voxelized in, in the mesh's unit; above 0
-  double weld = 0.05;  // in cells: vertices along open edges count as one up to this distance
-  double gap = 2.0;    // in cells: gaps up to this width do not let the outside in
-  double thickness = 1.5;  // in cells: what sheets and parts without an inside get
+  double cell = 0.0;       // side of the cells for voxelization, in the mesh's unit; above 0
+  double weld = 0.05;      // in cells: maximum distance at which boundary vertices are welded
+  double gap = 2.0;        // in cells: gaps up to this width do not connect to the outside
+  double thickness = 1.5;  // in cells: thickness given to sheets and parts without an inside
   SheetMethod sheets = SheetMethod::kShell;
   int threads = 0;  // 0: all processors
   Progress progress;
 };
 
-/// What as_solid did.
+/// Statistics of as_solid.
 struct SolidReport {
-  std::size_t parts = 0;            // patches: faces that hang together by edges of two
-  std::size_t welded_vertices = 0;  // that count as another one
-  std::size_t duplicate_faces = 0;  // that were there before, and were dropped
-  std::size_t turned_faces = 0;     // against others of their part
-  std::size_t turned_parts = 0;     // as a whole
-  std::size_t thickened_parts = 0;  // that had no inside, or too little of it for any cell
-  std::size_t filled_parts = 0;     // whose inside is what the outside does not reach
+  std::size_t parts = 0;            // patches: faces connected by manifold edges
+  std::size_t welded_vertices = 0;  // vertices replaced by another one
+  std::size_t duplicate_faces = 0;  // duplicates that were dropped
+  std::size_t turned_faces = 0;     // faces turned to match others of their part
+  std::size_t turned_parts = 0;     // parts turned as a whole
+  std::size_t thickened_parts = 0;  // parts that enclosed too little for any cell
+  std::size_t filled_parts = 0;     // parts replaced by the region that the outside does not reach
 };
 
 struct Solid {
-  bool is_unchanged = false;  // the mesh is a solid as it is; what follows is empty then
+  bool is_unchanged = false;  // the mesh is a solid already; the fields below are empty then
   std::vector<Vector3> positions;
   std::vector<std::array<std::int64_t, 3>> triangles;
-  std::vector<std::int64_t> origins;  // of each triangle: that which it came from, or -1
+  std::vector<std::int64_t> origins;  // input triangle of each triangle, or -1
   SolidReport report;
 };
 
-/// A mesh that voxelize makes a good solid of, from any triangles.
+/// Repairs an arbitrary triangle mesh for voxelization.
 ///
-/// A mesh whose edges are all run through as often one way as the other, which holds no face twice
-/// and whose parts are right side out or cavities in others is unchanged. Others get, in this
-/// order: vertices that count as one, each face once, faces turned to go with their neighbors,
-/// closed parts turned right side out.
+/// A mesh is returned unchanged if its edges are balanced (traversed as often in one direction as
+/// in the other), it has no duplicate faces, and its parts are oriented outward or are cavities of
+/// others. Other meshes are repaired in this order: vertices are welded, duplicate faces dropped,
+/// faces oriented like their neighbors, and closed parts oriented outward.
 ///
-/// Throws Error as voxelize does for a mesh that is no mesh; for a cell that is not finite and
-/// above 0, and lengths that are negative or not finite; Error(kCancelled).
+/// Throws Error as voxelize does for invalid meshes, for a cell that is not positive and finite,
+/// and for lengths that are negative or not finite; Error(kCancelled).
 Solid as_solid(const InputMesh& mesh, const SolidOptions& options);
 
 }  // namespace prefilter

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Caps for the holes of a mesh.
+// Closes the holes of a mesh.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@
 namespace prefilter {
 
 enum class HoleMethod {
-  kSmooth,  // a patch that continues the surface, with triangles like those around
-  kFlat,    // the triangles of the smallest area between the vertices of the border
+  kSmooth,  // a patch that continues the surface, with triangles of similar size
+  kFlat,    // the triangulation of smallest area of the border's vertices
   kFan,     // triangles to the middle of the border
 };
 
@@ -24,41 +24,43 @@ inline constexpr Named<HoleMethod> kHoleMethods[] = {
 
 struct CloseHolesOptions {
   HoleMethod method = HoleMethod::kSmooth;
-  // Whether those loops stay open whose caps would cancel the surface.
+  // Whether loops stay open if their caps would cancel the surface.
   bool leaves_losses = true;
   int threads = 0;  // 0: all processors
   Progress progress;
 };
 
-/// Triangles that close a mesh, and the vertices that they need.
+/// Triangles that close a mesh, and the vertices that they add.
 struct Caps {
-  std::vector<Vector3> positions;  // numbered on from the mesh's own
+  std::vector<Vector3> positions;  // numbered after the mesh's own
   std::vector<std::array<std::int64_t, 3>> triangles;
   std::size_t open_edges = 0;  // unbalanced: traversed more often in one direction
-  std::size_t holes = 0;       // loops of such edges
-  std::size_t left_open = 0;   // of them, for their caps would cancel the surface
+  std::size_t holes = 0;       // loops of unbalanced edges
+  std::size_t left_open = 0;   // loops left open because their caps would cancel the surface
 };
 
-/// Caps for the loops of open edges, so that with them each edge is traversed as often one way as
-/// the other, and winding numbers are whole everywhere. Vertices at one place count as one.
+/// Caps the loops of unbalanced edges, so that each edge of the result is traversed as often in one
+/// direction as in the other, and winding numbers are integers. Vertices with equal positions count
+/// as one.
 ///
-/// kSmooth: the patch is divided until its triangles are as large as the edges of the border
-/// (larger further inside, where there would be more than about 20000 points). It leaves the border
-/// in the surface's plane, bent as little as possible: a hole in a sphere is closed by its missing
-/// part. Where surface and soap film meet at more than 75 degrees, as around a box without a lid,
-/// the border is a crease. Holes of up to 6 edges get a fan. So do those of kFlat and kSmooth whose
-/// loops are traversed twice, around faces that are turned against their neighbors.
+/// kSmooth: the patch is refined until its triangles are as large as the border's edges (or larger
+/// toward the middle, where there would be more than about 20000 points). It leaves the border
+/// tangentially to the surface and bends as little as possible, so a hole in a sphere is closed by
+/// the missing part. Where the surface and the area-minimizing patch meet at more than 75 degrees,
+/// as around a box without a lid, the border is a crease. Holes of up to 6 edges get a fan. In
+/// kFlat and kSmooth, so do loops that are traversed twice, around faces oriented against their
+/// neighbors.
 ///
-/// With `leaves_losses` some loops stay open:
-/// - that around a sheet, whose cap would be the sheet turned over: a part that, closed, would have
-/// on
-///   average no more than 3 % of its width as thickness. Its holes are closed, if they are smaller
-///   than a quarter of it;
-/// - one that others close already, as the borders of pieces that together are a surface: what is
-///   behind the cap is inside by the winding number of the mesh, and would be outside;
-/// - one whose cap is turned inside out, unless the whole mesh is.
+/// With `leaves_losses`, these loops stay open:
+/// - the loop around a sheet, whose cap would be the reversed sheet: the part, when closed, would
+/// be
+///   thinner on average than 3 % of its width. Holes in the sheet smaller than a quarter of it are
+///   closed;
+/// - loops that other parts close already, such as borders of pieces that form a surface together:
+///   the region behind the cap is inside by the mesh's winding number, and would become outside;
+/// - loops whose cap would be inside out, unless the whole mesh is.
 ///
-/// The same for any number of threads. Throws as voxelize does for a mesh that is no mesh;
+/// The result does not depend on the number of threads. Throws as voxelize does for invalid meshes;
 /// Error(kCancelled).
 Caps close_holes(const InputMesh& mesh, const CloseHolesOptions& options);
 

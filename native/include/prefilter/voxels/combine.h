@@ -20,20 +20,20 @@ inline constexpr Named<SetOperation> kSetOperations[] = {
     {"intersection", SetOperation::kIntersection},
     {"difference", SetOperation::kDifference}};
 
-/// The operation cell by cell, in memory proportional to the surfaces. Octrees may be of any depths
-/// and bounds.
+/// Combines two octrees cell by cell, in memory proportional to their surfaces. They may differ in
+/// depth and bounds.
 ///
-/// Where depths differ, surfaces in larger cells are refined first, down to the finest cells of
-/// both, in which the result has its surface: it takes the memory of octrees of that depth.
+/// If depths differ, cells with surface are refined to the finest depth of both, at which the
+/// result has its surface; its size is that of octrees of that depth.
 ///
-/// Where bounds differ, b is regridded on the cells of a, down to the first depth at which they are
-/// no larger than b's, or to a's if that is deeper; for a union the root of a is doubled until it
-/// holds all of b that is not empty. Throws Error where that would be deeper than kMaxTreeDepth;
+/// If bounds differ, b is resampled to the cells of a, refined to the first depth at which they are
+/// no larger than b's, or to a's depth if that is greater. For a union, the root of a is doubled
+/// until it contains all nonempty cells of b. Throws Error where that would exceed kMaxTreeDepth;
 /// Error(kCancelled).
 ///
-/// Where both surfaces run through a cell and the result would be 1/2, where contours are, it is
-/// rounded so that faces that coincide leave neither a film of matter (difference, intersection)
-/// nor a crack (union).
+/// Where both surfaces pass through a cell and the result would be 1/2, the contour's iso-value, it
+/// is rounded so that coincident faces leave neither a thin film (difference, intersection) nor a
+/// crack (union).
 Octree combine(const Octree& a, const Octree& b, SetOperation operation, const Progress& progress,
                int threads);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Options of contours: the interpolant, the iso-value, and what they keep the edges of.
+// Options of contours: the interpolant, the iso-value, and the source of edges.
 #pragma once
 
 #include <cstdint>
@@ -15,10 +15,10 @@
 namespace prefilter {
 
 enum class Interpolant {
-  kOccupancy,  // a line that leaves each of two cells its share: chapter 5
-  kPlane,      // the surface that preserves neighboring cells
-  kLinear,     // samples of a smooth function: marching cubes
-  kSharp,      // kPlane, with the edges and corners of the shape
+  kOccupancy,  // lines that preserve the occupancies of two cells: chapter 5
+  kPlane,      // a surface that preserves the occupancies of neighboring cells
+  kLinear,     // for samples of a smooth function: marching cubes
+  kSharp,      // kPlane, with the shape's edges and corners
 };
 
 inline constexpr Named<Interpolant> kInterpolants[] = {{"occupancy", Interpolant::kOccupancy},
@@ -26,25 +26,25 @@ inline constexpr Named<Interpolant> kInterpolants[] = {{"occupancy", Interpolant
                                                        {"linear", Interpolant::kLinear},
                                                        {"sharp", Interpolant::kSharp}};
 
-/// A mesh that a shape was made of.
+/// A mesh from which a shape was made.
 struct SourceMesh {
   InputMesh mesh;
-  // Of each triangle; those of different groups are kept apart. None: all are of one.
+  // Group of each triangle; regions of different groups are kept apart. Empty: one group.
   std::span<const std::int32_t> groups;
 };
 
 struct ContourOptions {
-  // None: kSharp of octrees, and kOccupancy of grids.
+  // None: kSharp for octrees, kOccupancy for grids.
   std::optional<Interpolant> interpolant;
   float isovalue = 0.5F;  // samples of at least this are inside
   bool clean_up = true;   // widen narrow triangles
-  // How far a surface may be from the full contour where it gets larger triangles, in cells of the
-  // finest depth, along their shortest side; 0: it is the full one.
+  // Tolerance within which larger triangles follow the full contour, in cells of the finest depth
+  // along their shortest side; 0: no simplification.
   double adaptivity = 0.0;
-  // What kSharp takes the edges and corners from; none: from the occupancies alone.
+  // Meshes from which kSharp takes edges and corners; empty: it uses the occupancies alone.
   std::span<const SourceMesh> sources;
-  // Above 0 in the cells of the finest depth where the surface is not that of the sources, as they
-  // are thin there: it is kPlane's.
+  // Nonzero in cells of the finest depth that were thickened, where the surface differs from the
+  // sources' and follows kPlane.
   const CellTree* thickened = nullptr;
   int threads = 0;  // 0: all processors
   Progress progress;

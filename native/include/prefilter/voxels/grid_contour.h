@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Grids of samples in space to closed meshes (chapter 5).
+// Contours grids of samples in space as closed meshes (chapter 5).
 #pragma once
 
 #include <array>
@@ -26,16 +26,16 @@ struct GridView {
   float at(int x, int y, int z) const { return values[index(x, y, z)]; }
 };
 
-/// Where cells are: cell (i, j, k) begins at origin + spacing * (i, j, k).
+/// Position of the cells: cell (i, j, k) begins at origin + spacing * (i, j, k).
 struct GridFrame {
   Vector3 origin{};
   Vector3 spacing{1.0, 1.0, 1.0};
 };
 
-/// Marching cubes on the samples. As contour_tree does: the octree is made of the grid, with blocks
-/// of equal samples away from the surface as leaves. What is outside of the grid is empty. Throws
-/// Error where a side is out of range, a sample is not a number, or the frame's cells have no
-/// volume, and what contour_tree throws.
+/// Contours the samples by marching cubes, like contour_tree, on an octree of the grid in which
+/// blocks of equal samples away from the surface are leaves. The outside of the grid is empty.
+/// Throws Error where a side is out of range, a sample is not a number, or the frame's cells have
+/// no volume; also the errors of contour_tree.
 TriangleMesh contour_grid(const GridView& grid, const GridFrame& frame,
                           const ContourOptions& options);
 

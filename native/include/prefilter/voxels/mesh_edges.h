@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The edges of a mesh, and which of them runs from each corner of a triangle.
+// The edges of a mesh, and the edge at each corner of a triangle.
 #pragma once
 
 #include <array>
@@ -13,14 +13,15 @@
 namespace prefilter {
 
 struct MeshEdges {
-  // Each edge once, from its vertex with the lower number to the other, in ascending order.
+  // Each edge once, the lower vertex index first, in ascending order.
   std::vector<std::array<std::int32_t, 2>> vertices;
-  // The edge from the corner 3 t + i to the next one of triangle t; -1 where both are one vertex.
+  // The edge from corner 3 t + i to the next corner of triangle t; -1 where both are the same
+  // vertex.
   std::vector<std::int32_t> of_corners;
 };
 
-/// The same for any number of threads. Throws Error for a mesh that is no mesh, or of more than
-/// 2^31 - 1 corners; Error(kCancelled).
+/// The result does not depend on the number of threads. Throws Error for an invalid mesh, or one of
+/// more than 2^31 - 1 corners; Error(kCancelled).
 MeshEdges find_mesh_edges(const InputMesh& mesh, const Progress& progress, int threads);
 
 }  // namespace prefilter

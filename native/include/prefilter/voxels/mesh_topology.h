@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// How many parts a mesh has, and how many cavities, handles and borders.
+// Counts the parts, cavities, handles and boundary loops of a mesh.
 #pragma once
 
 #include <array>
@@ -15,21 +15,22 @@
 namespace prefilter {
 
 struct MeshTopology {
-  std::size_t parts = 0;  // of triangles that hang together by edges
-  // Of these: closed, all faces agree on which side is out, and that is within.
+  std::size_t parts = 0;  // components of triangles connected by edges
+  // Parts that are closed, consistently oriented, and oriented inward.
   std::size_t cavities = 0;
-  std::size_t borders = 0;  // loops of edges with a single triangle
-  // Of all parts together: half of what 2 - borders of each is above its Euler characteristic. None
-  // where more than two triangles share an edge, or a surface has one side.
+  std::size_t borders = 0;  // boundary loops: edges with a single triangle
+  // Total genus: half the sum, over all parts, of 2 - borders - Euler characteristic. None where
+  // more than two triangles share an edge, or a surface is one-sided.
   std::optional<std::size_t> genus;
-  // Edges with a single triangle, each from its vertex with the lower number.
+  // Edges with a single triangle, the lower vertex index first.
   std::vector<std::array<std::int32_t, 2>> border_edges;
-  std::vector<std::int32_t> part_of;  // of each triangle; -1 where two corners are one vertex
+  // part of each triangle; -1 where two corners are the same vertex
+  std::vector<std::int32_t> part_of;
 };
 
-/// Parts that meet at a vertex alone are several. With `welds` vertices of borders that are at one
-/// place count as one. The same for any number of threads. Throws Error for a mesh that is no mesh,
-/// or of more than 2^31 - 1 corners; Error(kCancelled).
+/// Parts that share only a vertex are separate. With `welds`, boundary vertices with equal
+/// positions count as one. The result does not depend on the number of threads. Throws Error for an
+/// invalid mesh, or one of more than 2^31 - 1 corners; Error(kCancelled).
 MeshTopology mesh_topology(const InputMesh& mesh, bool welds, const Progress& progress,
                            int threads);
 

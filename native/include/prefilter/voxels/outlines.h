@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Grids of samples in the plane to closed outlines (section 5.2).
+// Contours grids of samples in the plane as closed outlines (section 5.2).
 #pragma once
 
 #include <array>
@@ -22,18 +22,18 @@ struct PlaneView {
   }
 };
 
-/// Where cells are: cell (i, j) begins at origin + spacing * (i, j).
+/// Position of the cells: cell (i, j) begins at origin + spacing * (i, j).
 struct PlaneFrame {
   std::array<double, 2> origin{};
   std::array<double, 2> spacing{1.0, 1.0};
 };
 
-/// The last point is joined to the first; the inside is to the left.
+/// A closed polygon without a repeated end point; the inside is on the left.
 using OutlinePoints = std::vector<std::array<double, 2>>;
 
-/// The outlines of what is inside. "occupancy" and "plane" are the same here: exact for straight
-/// edges. Of the options, `clean_up` and `threads` do nothing. Throws Error where a side is out of
-/// range, a sample is not a number, or the frame's cells have no area; Error(kCancelled).
+/// The outlines of the region inside. "occupancy" and "plane" are equivalent here: exact for
+/// straight edges. The options `clean_up` and `threads` have no effect. Throws Error where a side
+/// is out of range, a sample is not a number, or the frame's cells have no area; Error(kCancelled).
 std::vector<OutlinePoints> contour_outlines(const PlaneView& samples, const PlaneFrame& frame,
                                             const ContourOptions& options);
 

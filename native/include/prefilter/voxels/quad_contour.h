@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Occupancy octrees to closed meshes of quads.
+// Contours occupancy octrees as closed meshes of quads.
 #pragma once
 
 #include <array>
@@ -16,19 +16,19 @@ namespace prefilter {
 struct QuadMesh {
   std::vector<Vector3> positions;
   std::vector<std::array<std::int32_t, 4>> quads;
-  // For each quad a triangle of the sources, numbered through all of them, that belongs to the same
-  // source, group and smooth region; -1 where the surface is not that of the sources. Empty without
-  // sources, or of another interpolant than kSharp.
+  // For each quad a source triangle, numbered across all sources, of the same source, group and
+  // smooth region; -1 where the surface differs from the sources'. Empty without sources, or for
+  // interpolants other than kSharp.
   std::vector<std::int64_t> origins;
 };
 
-/// The contour of occupancies as quads alone, by dual contouring (Ju et al. 2002) on the uniform
-/// cells along the surface: a vertex for each part of the surface in a cell of the dual grid, and a
-/// quad for each edge between an inner and an outer sample. All that is said of contour_occupancies
-/// holds, but that nothing is cleaned up and there is no adaptivity; with kSharp, vertices are on
-/// the edges and corners of the sources.
+/// Contours occupancies with quads only, by dual contouring (T. Ju et al., Dual contouring of
+/// Hermite data, 2002) on the uniform cells along the surface: one vertex per part of the surface
+/// in a cell of the dual grid, one quad per edge between an inside and an outside sample. The
+/// description of contour_occupancies applies, except that there is neither clean-up nor
+/// adaptivity; with kSharp, vertices lie on the edges and corners of the sources.
 ///
-/// Throws Error, too, for another iso-value than 1/2.
+/// Also throws Error for iso-values other than 1/2.
 QuadMesh contour_quads(const CellTree& cells, const Box& root, const ContourOptions& options);
 
 }  // namespace prefilter

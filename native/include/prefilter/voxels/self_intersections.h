@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Where a mesh intersects itself.
+// Finds the self-intersections of a mesh.
 #pragma once
 
 #include <array>
@@ -12,12 +12,12 @@
 
 namespace prefilter {
 
-/// The pairs of triangles that have more points in common than the vertices and edges that they
-/// share by index: those that cross, overlap or touch. Each pair once, the lower index first, in
-/// order. Triangles without area are left out: they have no side that could cross another.
+/// Returns the pairs of triangles that intersect (cross, overlap or touch) beyond the vertices and
+/// edges that they share by index. Each pair appears once, the lower index first, in ascending
+/// order. Triangles of zero area are ignored, since they have no sides.
 ///
-/// Decided by exact predicates; the same for any number of threads. Throws Error for a mesh that is
-/// no mesh, or one of 2^31 vertices or more; Error(kCancelled).
+/// Decided by exact predicates; the result does not depend on the number of threads. Throws Error
+/// for an invalid mesh, or one of 2^31 vertices or more; Error(kCancelled).
 std::vector<std::array<std::uint32_t, 2>> self_intersections(const InputMesh& mesh,
                                                              const Progress& progress, int threads);
 

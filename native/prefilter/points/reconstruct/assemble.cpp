@@ -11,10 +11,11 @@
 namespace prefilter {
 namespace {
 
-// Which blocks of a tree a slab needs.
+// Selects the blocks of a tree that lie near a slab.
 class Window {
  public:
-  // In finest cells; `octants` wide around them, at least 2, but no more than `most` finest cells.
+  // `low` to `high` are the slab's heights in finest cells. Blocks within `octants` of their own
+  // octant sides are selected: at least two, but at most `most` finest cells away.
   Window(int low, int high, int depth, int octants, int most)
       : low_(low), high_(high), depth_(depth), octants_(octants), most_(most) {}
   bool holds(std::uint64_t place, int node_depth) const {
@@ -39,9 +40,9 @@ CellTree assemble_within(const Window& window, const CoarseTree& coarse, const S
   result.root = coarse.root;
   result.levels.resize(static_cast<std::size_t>(depth));
   const auto continued = [&](std::size_t number) {
-    const CoarseTree::Continuation& found = coarse.continuations[number];
-    const FluxTree* tree = trees[static_cast<std::size_t>(found.slab - slab + 1)];
-    return BlockSource{tree->levels.data(), found.block};
+    const CoarseTree::Continuation& continuation = coarse.continuations[number];
+    const FluxTree* tree = trees[static_cast<std::size_t>(continuation.slab - slab + 1)];
+    return BlockSource{tree->levels.data(), continuation.block};
   };
   std::vector<BlockSource> blocks;
   if (top > 0) {
@@ -54,11 +55,11 @@ CellTree assemble_within(const Window& window, const CoarseTree& coarse, const S
     level.blocks.reserve(blocks.size());
     level.split.reserve(blocks.size());
     std::vector<BlockSource> next;
-    for (const BlockSource& found : blocks) {
-      const TreeLevel& from = found.level->blocks;
-      const std::uint64_t place = found.level->places[found.block];
-      unsigned split = from.split[found.block];
-      std::size_t child = from.first[found.block];
+    for (const BlockSource& source : blocks) {
+      const TreeLevel& from = source.level->blocks;
+      const std::uint64_t place = source.level->places[source.block];
+      unsigned split = from.split[source.block];
+      std::size_t child = from.first[source.block];
       for (unsigned bits = split; bits != 0U; bits &= bits - 1U, ++child) {
         const int o = std::countr_zero(bits);
         if (!window.holds(place << 3U | static_cast<std::uint64_t>(o), k + 1)) {
@@ -66,12 +67,12 @@ CellTree assemble_within(const Window& window, const CoarseTree& coarse, const S
         } else if (k + 1 == top) {
           next.push_back(continued(child));
         } else {
-          next.push_back({found.level + 1, child});
+          next.push_back({source.level + 1, child});
         }
       }
-      const std::vector<OctantValues>& solved = found.level->solved;
-      level.blocks.push_back(is_solved && !solved.empty() ? solved[found.block]
-                                                          : from.blocks[found.block]);
+      const std::vector<OctantValues>& solved = source.level->solved;
+      level.blocks.push_back(is_solved && !solved.empty() ? solved[source.block]
+                                                          : from.blocks[source.block]);
       level.split.push_back(static_cast<std::uint8_t>(split));
     }
     link_blocks(&level);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The tree around a slab, put together from the parts that are kept.
+// Assembles the octree around one slab from the coarse tree and the trees of neighboring slabs.
 #pragma once
 
 #include <array>
@@ -13,37 +13,38 @@
 
 namespace prefilter {
 
-/// The coarse levels of a tree whose finer ones are in slabs, and where these go on.
+/// Coarse levels of an octree whose finer levels are stored per slab, with links into the slabs.
 struct CoarseTree {
-  FluxTree tree;  // values, from depth 0 to that of the slabs' first cells
+  FluxTree tree;  // values, from depth 0 to the depth of the slabs' first cells
   float root = 0.0F;
   bool has_surface = true;
-  // Of each cell of the slabs' first depth that is split, along the Morton curve: its slab, and its
-  // number among the slab's blocks.
+  // One entry per split cell of the slabs' first depth, along the Morton curve: its slab, and the
+  // index of its block in that slab.
   struct Continuation {
     int slab;
     std::uint32_t block;
   };
   std::vector<Continuation> continuations;
 
-  /// Whether not even the root is split.
+  /// Whether the root itself is not split.
   bool is_empty() const {
     if (!has_surface) return true;
     return tree.levels.empty() ? continuations.empty() : tree.levels.front().places.empty();
   }
 };
 
-/// The slabs below, at and above the one; null where there is none.
+/// Trees of the slabs below, at and above slab `slab`; null where there is none.
 using SlabTrees = std::array<const FluxTree*, 3>;
 
-/// The tree of `depth` as the slab needs it: all blocks that reach within `octants` of their
-/// octants of it, but no farther than the slabs next to it, and the values times `scale`: those
-/// solved for, where there are.
+/// The tree down to `depth` around a slab: all blocks within `octants` of their own octant sides of
+/// it, limited to the adjacent slabs. Values are multiplied by `scale`; solved values are used
+/// where available.
 CellTree assemble(const CoarseTree& coarse, const SlabTrees& trees, int slab, int depth,
                   int octants, float scale);
 
-/// The tree that a slab is solved in, of the values before: all blocks within some of their octants
-/// of it and no farther than the slabs next to it.
+/// The tree in which a slab is solved, with values from before the solve: all blocks within 8 of
+/// their own octant sides of it, limited to the adjacent slabs. `sources` receives the origin of
+/// each block.
 CellTree assemble_unsolved(const CoarseTree& coarse, const SlabTrees& trees, int slab, int depth,
                            BlockSources* sources);
 

@@ -27,14 +27,16 @@ SampleGrid grid_around(const Box& box, int depth) {
   return grid;
 }
 
-// Of cells that sizes in single precision, and those of messages, are rounded by.
+// Relative tolerance of a requested cell size, for sizes rounded to single precision or copied from
+// a message.
 constexpr double kSizeRounding = 1e-6;
 
-// How deep the tree is; `some` of the points tell it where nothing else does.
-int depth_for(const Box& box, const ThinnedPoints& some, const ReconstructOptions& options) {
+// Depth of the tree; it follows from the points' density where the options give neither depth nor
+// cell size.
+int depth_for(const Box& box, const ThinnedPoints& thinned, const ReconstructOptions& options) {
   if (!options.cell_size) {
     if (options.depth) return *options.depth;
-    return carried_depth(some, box, options.progress.part(0.1, 0.12), options.threads);
+    return automatic_depth(thinned, box, options.progress.part(0.1, 0.12), options.threads);
   }
   const auto cell_at = [&](int depth) {
     return cube_around(box, depth).size(0) / std::ldexp(1.0, depth);
@@ -47,12 +49,13 @@ int depth_for(const Box& box, const ThinnedPoints& some, const ReconstructOption
                 to_text(cell_at(kMaxTreeDepth) * (1.0 + 1e-5)) + " or more");  // not rounded down
 }
 
-// Of a cell: coordinates with larger steps leave stairs in the surface.
+// As a share of the cell: coordinates rounded to coarser steps cause visible stairs in the surface.
 constexpr double kCoarseStep = 0.25;
 }  // namespace
 
-SampleGrid grid_of(const Box& box, const ThinnedPoints& some, const ReconstructOptions& options) {
-  return grid_around(box, depth_for(box, some, options));
+SampleGrid grid_of(const Box& box, const ThinnedPoints& thinned,
+                   const ReconstructOptions& options) {
+  return grid_around(box, depth_for(box, thinned, options));
 }
 
 void describe_grid(const SampleGrid& grid, const CloudExtent& extent, ReconstructReport* report) {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// The levels of the tree that stay in memory (first pass of section 4.3.2): Equation 4.2 at the
+// depths above the slabs.
 #include "prefilter/points/reconstruct/coarse_tree.h"
 
 #include <algorithm>
@@ -30,11 +32,11 @@ CoarseTree make_coarse_tree(PooledFlux flux, int top, int slab_count) {
   RootMean mean;
   if (!coarse.tree.tops.empty()) mean.add_inside(coarse.tree.tops.front().flux);
   coarse.root = static_cast<float>(mean.median());
-  synthesise_part({coarse.root}, &coarse.tree);
+  synthesize_part({coarse.root}, &coarse.tree);
   return coarse;
 }
 
-void solve_coarse_tree(float middle, CoarseTree* coarse) {
+void solve_coarse_tree(float target, CoarseTree* coarse) {
   CellTree tree;
   tree.root = coarse->root;
   BlockSources sources;
@@ -43,11 +45,11 @@ void solve_coarse_tree(float middle, CoarseTree* coarse) {
     sources.emplace_back();
     for (std::size_t b = 0; b < level.blocks.size(); ++b) sources.back().push_back({&level, b});
   }
-  // Those of the last level go on in the slabs.
+  // Cells of the last level that are split continue in the slabs.
   if (!tree.levels.empty()) {
     std::fill(tree.levels.back().split.begin(), tree.levels.back().split.end(), std::uint8_t{0});
   }
-  solve_screened(sources, 0, middle, &tree);
+  solve_screened(sources, 0, target, &tree);
   for (std::size_t k = 0; k < tree.levels.size(); ++k) {
     coarse->tree.levels[k].blocks.blocks = std::move(tree.levels[k].blocks);
   }
@@ -55,7 +57,7 @@ void solve_coarse_tree(float middle, CoarseTree* coarse) {
 
 namespace {
 
-// Those above the slabs. Samples that count in the slabs' first cells have been added there.
+// Adds the leaves above the slabs. Samples in leaves of depth `top` were added by the slabs.
 void add_coarse_leaves(const SplitCells& splits, SampleSlab* whole, PooledFlux* flux) {
   find_split(whole);
   SampleLevel& last = whole->at(whole->depth());
@@ -70,7 +72,7 @@ void add_coarse_leaves(const SplitCells& splits, SampleSlab* whole, PooledFlux* 
 
 }  // namespace
 
-double find_coarse_tree(const Progress& progress, int threads, Slabs* slabs) {
+double build_coarse_tree(const Progress& progress, int threads, Slabs* slabs) {
   PooledFlux flux(static_cast<std::size_t>(slabs->top()) + 1);
   double left_out = 0.0;
   std::vector<std::uint8_t> is_split;

@@ -7,30 +7,9 @@
 #include <limits>
 #include <numeric>
 
+#include "prefilter/base/disjoint_sets.h"
+
 namespace prefilter {
-namespace {
-
-// Sets of the vertices of a part.
-class Sets {
- public:
-  explicit Sets(std::size_t count) : parents_(count) {
-    std::iota(parents_.begin(), parents_.end(), std::uint32_t{0});
-  }
-  std::uint32_t find(std::uint32_t v) {
-    while (parents_[v] != v) v = parents_[v] = parents_[parents_[v]];
-    return v;
-  }
-  void unite(std::uint32_t a, std::uint32_t b) {
-    a = find(a);
-    b = find(b);
-    parents_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parents_;
-};
-
-}  // namespace
 
 void CutBuilder::add_vertices(std::vector<Vector3> positions, std::vector<float> attributes) {
   if (part_.positions.empty()) {
@@ -50,8 +29,8 @@ void CutBuilder::add_triangles(std::vector<std::array<std::int64_t, 3>> triangle
   }
 }
 
-void CutBuilder::add_far_places(const std::vector<FarPlace<std::int64_t>>& places) {
-  for (const FarPlace<std::int64_t>& place : places) {
+void CutBuilder::add_far_midpoints(const std::vector<FarMidpoint<std::int64_t>>& places) {
+  for (const FarMidpoint<std::int64_t>& place : places) {
     if (place.b < 0) {
       far_triangles_.emplace(place.a, place);
     } else {
@@ -80,13 +59,13 @@ std::uint32_t CutBuilder::add_known(const Known& known) {
 
 std::uint32_t CutBuilder::local_of(std::int64_t number) {
   if (number >= first_number_) return static_cast<std::uint32_t>(number - first_number_);
-  const auto [found, is_new] = olds_.try_emplace(number, kNone);
-  if (is_new) found->second = add_known(known_.at(number));
-  return found->second;
+  const auto [it, is_new] = olds_.try_emplace(number, kNone);
+  if (is_new) it->second = add_known(known_.at(number));
+  return it->second;
 }
 
 std::uint32_t CutBuilder::add_middle(std::span<const std::uint32_t> corners,
-                                     const FarPlace<std::int64_t>& place) {
+                                     const FarMidpoint<std::int64_t>& place) {
   const double share = 1.0 / static_cast<double>(corners.size());
   Vector3 sum{};
   for (const std::uint32_t v : corners) sum = sum + part_.positions[v];
@@ -109,26 +88,27 @@ std::uint32_t CutBuilder::add_middle(std::span<const std::uint32_t> corners,
 std::uint32_t CutBuilder::far_middle(const Edge& edge) {
   const auto made = middles_.find(edge);
   if (made != middles_.end()) return made->second;
-  const auto found = far_edges_.find(edge);
-  if (found == far_edges_.end()) return kNone;
+  const auto it = far_edges_.find(edge);
+  if (it == far_edges_.end()) return kNone;
   const std::uint32_t ends[] = {local_of(edge.first), local_of(edge.second)};
-  const std::uint32_t middle = add_middle(ends, found->second);
+  const std::uint32_t middle = add_middle(ends, it->second);
   middles_.emplace(edge, middle);
   return middle;
 }
 
-// The same for both triangles of an edge, which may be of different parts: the first one decides.
+// Middle vertex of an edge, kNone if it has none. Both triangles of an edge must agree even if they
+// belong to different parts, so the first one decides.
 std::uint32_t CutBuilder::middle_of(std::int64_t a, std::int64_t b) {
   const Edge edge = std::minmax(a, b);
   if (!is_lasting(a) || !is_lasting(b)) return far_edges_.empty() ? kNone : far_middle(edge);
-  const auto found = open_edges_.find(edge);
-  if (found == open_edges_.end()) {
+  const auto it = open_edges_.find(edge);
+  if (it == open_edges_.end()) {
     OpenEdge open;
     open.local = far_middle(edge);
     return open_edges_.emplace(edge, std::move(open)).first->second.local;
   }
-  const OpenEdge open = std::move(found->second);
-  open_edges_.erase(found);
+  const OpenEdge open = std::move(it->second);
+  open_edges_.erase(it);
   return open.known ? add_known(*open.known) : open.local;
 }
 
@@ -141,26 +121,26 @@ void CutBuilder::divide_triangles() {
     for (std::size_t i = 0; i < 3; ++i) {
       middles[i] = middle_of(triangles_[t][i], triangles_[t][(i + 1) % 3]);
     }
-    const auto found = far_triangles_.find(static_cast<std::int64_t>(t));
+    const auto far_center = far_triangles_.find(static_cast<std::int64_t>(t));
     const bool is_whole =
         std::all_of(middles.begin(), middles.end(), [](std::uint32_t m) { return m == kNone; });
-    if (is_whole && found == far_triangles_.end()) {
+    if (is_whole && far_center == far_triangles_.end()) {
       part_.triangles.push_back(corners);
       continue;
     }
     std::vector<std::uint32_t> around;
-    FarPlace<std::int64_t> place{};
+    FarMidpoint<std::int64_t> place{};
     for (std::size_t i = 0; i < 3; ++i) {
       around.push_back(corners[i]);
       if (middles[i] == kNone) continue;
       around.push_back(middles[i]);
-      // As far as the farthest middle is, where the triangle's own was not looked at.
+      // Without a measurement at the triangle's own center, use that of its farthest edge midpoint.
       const float* const support = part_.attributes.data() +
                                    (middles[i] + std::size_t{1}) * measure_.width -
                                    kSupportAttributes;
       if (support[0] > place.distance) place = {0, 0, support[0], support[1]};
     }
-    if (found != far_triangles_.end()) place = found->second;
+    if (far_center != far_triangles_.end()) place = far_center->second;
     const std::uint32_t middle = add_middle(corners, place);
     part_.fans.push_back({static_cast<std::uint32_t>(part_.triangles.size()),
                           static_cast<std::uint32_t>(around.size()), corners});
@@ -171,28 +151,28 @@ void CutBuilder::divide_triangles() {
 }
 
 void CutBuilder::find_components() {
-  Sets sets(part_.size());
+  DisjointSets<std::uint32_t> sets(part_.size());
   for (const auto& triangle : part_.triangles) {
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint32_t a = triangle[i];
       const std::uint32_t b = triangle[(i + 1) % 3];
-      if (is_near(a) == is_near(b)) sets.unite(a, b);
+      if (is_near(a) == is_near(b)) sets.join(a, b);
     }
   }
-  std::vector<std::int32_t> found(part_.size(), -1);
+  std::vector<std::int32_t> component_of_root(part_.size(), -1);
   for (std::uint32_t v = 0; v < part_.size(); ++v) {
     const std::int32_t before = part_.components[v];
     if (before < 0) continue;
-    std::int32_t& component = found[sets.find(v)];
+    std::int32_t& component = component_of_root[sets.root(v)];
     component = component < 0 ? before : regions_.unite(component, before);
   }
   for (std::uint32_t v = 0; v < part_.size(); ++v) {
-    std::int32_t& component = found[sets.find(v)];
-    if (component < 0) component = regions_.make();
+    std::int32_t& component = component_of_root[sets.root(v)];
+    if (component < 0) component = regions_.add_piece();
     part_.components[v] = component;
     if (!is_near(v)) regions_.add_distance(component, distance(v));
   }
-  for (const std::int64_t number : cut_at_) {
+  for (const std::int64_t number : cut_vertices_) {
     const std::uint32_t v = local_of(number);
     if (is_near(v)) continue;
     regions_.add_distance(part_.components[v], std::numeric_limits<double>::infinity());
@@ -220,7 +200,7 @@ void CutBuilder::measure_areas() {
         least > 0.0 ? std::min(area * density / 3.0, area / least) : area * density / 3.0;
     double share = near < 0 ? 0.0 : 1.0;
     if (near >= 0 && far >= 0) {
-      // What is at the one corner of its kind.
+      // Share of the area around the corner that is alone on its side of the cut.
       const bool is_near_lone = near_count == 1;
       double corner = 1.0;
       for (std::size_t i = 0; i < 3; ++i) {
@@ -247,7 +227,7 @@ CutBuilder::Known CutBuilder::known_of(std::uint32_t local) const {
           {first, first + static_cast<std::ptrdiff_t>(measure_.width)}};
 }
 
-void CutBuilder::keep(std::span<const std::int64_t> shared) {
+void CutBuilder::retain_shared(std::span<const std::int64_t> shared) {
   std::unordered_map<std::int64_t, Known> known;
   for (const std::int64_t number : shared) {
     const auto old = known_.find(number);
@@ -256,7 +236,7 @@ void CutBuilder::keep(std::span<const std::int64_t> shared) {
                                                 ? std::move(old->second)
                                                 : known_of(local_of(number)))
                            .first->second;
-    part_.kept.push_back(one.id);
+    part_.shared_ids.push_back(one.id);
   }
   known_ = std::move(known);
   std::erase_if(open_edges_, [&](const auto& entry) {
@@ -264,9 +244,9 @@ void CutBuilder::keep(std::span<const std::int64_t> shared) {
   });
   for (auto& [edge, open] : open_edges_) {
     if (open.local != kNone) open.known = known_of(std::exchange(open.local, kNone));
-    if (open.known) part_.kept.push_back(open.known->id);
+    if (open.known) part_.shared_ids.push_back(open.known->id);
   }
-  std::sort(part_.kept.begin(), part_.kept.end());
+  std::sort(part_.shared_ids.begin(), part_.shared_ids.end());
 }
 
 CutPart CutBuilder::take_part(std::span<const std::int64_t> shared) {
@@ -280,11 +260,11 @@ CutPart CutBuilder::take_part(std::span<const std::int64_t> shared) {
   triangles_ = {};
   find_components();
   measure_areas();
-  keep(shared);
+  retain_shared(shared);
   first_number_ += static_cast<std::int64_t>(count);
   far_edges_.clear();
   far_triangles_.clear();
-  cut_at_.clear();
+  cut_vertices_.clear();
   shared_.clear();
   olds_.clear();
   middles_.clear();

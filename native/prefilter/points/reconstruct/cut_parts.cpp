@@ -18,7 +18,7 @@ void for_arrays(Part* part, const Visit& visit) {
   visit(&part->components, 3);
   visit(&part->triangles, 4);
   visit(&part->fans, 5);
-  visit(&part->kept, 6);
+  visit(&part->shared_ids, 6);
 }
 
 }  // namespace

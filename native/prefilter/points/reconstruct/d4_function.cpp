@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Equation 4.2 in the D4 basis (section 4.4): adds each sample to the wavelet differences of each
+// depth up to its leaf, and evaluates Equation 3.4 at the centers of the cells.
 #include "prefilter/points/reconstruct/d4_function.h"
 
 #include <algorithm>
@@ -25,7 +27,7 @@ struct CoarseSample {
   std::array<float, 3> area;
 };
 
-// Adds the samples of a batch.
+// Adds the samples of batches to the wavelet differences of each depth.
 class SampleAdder {
  public:
   SampleAdder(const SampleGrid& grid, const Slabs& slabs, const std::vector<SlabLeaves>& leaves,
@@ -45,7 +47,7 @@ class SampleAdder {
     }
     std::vector<std::vector<CoarseSample>> coarse(count);
     std::vector<double> volumes(count);
-    // A slab's samples reach into the one below: every other one at a time.
+    // A slab's samples also change the slab below, so even and odd slabs take turns.
     for (std::size_t parity = 0; parity < 2; ++parity) {
       parallel_for(static_cast<std::int64_t>((count + 1 - parity) / 2), threads, Progress(),
                    [&](std::int64_t i) {
@@ -115,7 +117,7 @@ BrickPosition brick_of(std::uint64_t place) {
   return {node[0] >> 1, node[1] >> 1, node[2] >> 1};
 }
 
-// The bricks of means that the values of a level's blocks depend on.
+// Collects the bricks of means on which the values of a level's blocks depend.
 void add_needed(const NodeLevel& level, std::vector<BrickPosition>* needed) {
   BrickPosition last = {-1, -1, -1};
   for (const std::uint64_t place : level.places) {
@@ -145,17 +147,17 @@ void fill_values(const d4::Means& means, NodeLevel* level) {
   }
 }
 
-// What the samples of all slabs add up to.
+// Sums over the samples of all slabs.
 struct SampleSums {
   std::vector<d4::Differences> differences;  // of each depth
-  double volume = 0.0;                       // below 0 where most normals point inward
+  double volume = 0.0;                       // signed; below 0 where most normals point inward
 };
 
 SampleSums add_samples(PointSource* source, const SampleGrid& grid, const Slabs& slabs,
                        const std::vector<SlabLeaves>& leaves, const Progress& progress,
                        int threads) {
   SampleSums sums;
-  // Shards as high as slabs: those that two slabs write to are theirs.
+  // Shards are as high as slabs, so each is written by two slabs at most.
   constexpr int kBrickBits = 2;
   const int shard_bits = std::max(slabs.depth() - slabs.top() - kBrickBits, 0);
   for (int k = 0; k <= slabs.depth(); ++k) sums.differences.emplace_back(k, shard_bits);
@@ -164,7 +166,7 @@ SampleSums add_samples(PointSource* source, const SampleGrid& grid, const Slabs&
   const auto count = static_cast<double>(source->count().value_or(0));
   std::size_t done = 0;
   source->rewind();
-  while (source->read(PointOrder::kMostPoints, &batch)) {
+  while (source->read(PointOrder::kMaxPoints, &batch)) {
     adder.add(batch, threads);
     done += batch.positions.size();
     if (count > 0.0) progress.report(std::min(1.0, static_cast<double>(done) / count));
@@ -173,7 +175,7 @@ SampleSums add_samples(PointSource* source, const SampleGrid& grid, const Slabs&
   return sums;
 }
 
-// Calls visit(level, k) for the levels of all trees; their blocks are split at depth k.
+// Calls visit(level, k) for every level of all trees; the blocks of `level` split cells of depth k.
 template <typename Visit>
 void for_levels(D4Function* function, int top, const Visit& visit) {
   std::vector<NodeLevel>& coarse = function->coarse.tree.levels;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The indicator function in the D4 basis, as trees of values.
+// The indicator function in the D4 basis, as octrees of values.
 #pragma once
 
 #include <vector>
@@ -14,17 +14,17 @@
 
 namespace prefilter {
 
-/// The trees of all slabs, the coarse one, and whether most normals point inward.
+/// The trees of all slabs, the coarse tree above them, and whether most normals point inward.
 struct D4Function {
   std::vector<FluxTree> trees;
   CoarseTree coarse;
   bool is_flipped = false;
-  double left_out = 0.0;  // the weight of what was
+  double left_out = 0.0;  // total weight of the outliers
 };
 
-/// Of slabs that are all at SlabStage::kLeaves. Reads the source once. Cells are split where they,
-/// or neighbors of theirs, hold leaves of samples smaller than themselves; values are the
-/// function's at the cells' centers.
+/// Evaluates the function for slabs that are all at SlabStage::kLeaves; reads the source once. A
+/// cell is split where it or a neighbor contains sample leaves smaller than itself. Values are
+/// those at cell centers.
 D4Function make_d4_function(PointSource* source, const SampleGrid& grid, const Slabs& slabs,
                             const Progress& progress, int threads);
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// The pruned leaves and sample areas of section 4.2, as sample_slab.h corrects them, for the
+// samples of the D4 basis.
 #include "prefilter/points/reconstruct/d4_leaves.h"
 
 #include <algorithm>
@@ -70,7 +72,7 @@ LeafFlags find_whole_flags(const Slabs& slabs, std::span<const SlabLeaves> leave
   std::vector<std::int8_t> leaf(counts.size(), static_cast<std::int8_t>(top));
   for (std::size_t i = 0; i < counts.size(); ++i) {
     if (counts[i] != 0) continue;
-    // Its samples count in larger cells, if at all.
+    // The cell's samples count in larger cells, or are outliers.
     leaf[i] = slabs.whole.at(top).leaf[i];
     counts[i] = leaf[i] >= 0 ? 1 : 0;
   }

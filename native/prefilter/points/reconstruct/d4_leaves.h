@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Where samples count in the D4 basis, and for how much.
+// Leaves and sample areas in the D4 basis.
 #pragma once
 
 #include <cstdint>
@@ -11,27 +11,28 @@
 
 namespace prefilter {
 
-/// Of each level of a slab, from its first to its finest, for each cell whether it holds leaves as
-/// deep as it is.
+/// For each level of a slab, from its first to its finest, and each cell: whether it contains
+/// leaves of its own depth or deeper.
 using LeafFlags = std::vector<std::vector<std::uint8_t>>;
 
-/// Of a slab's finest cells.
+/// Leaf data for a slab's finest cells.
 struct SlabLeaves {
-  std::vector<std::int8_t> leaf;  // the depth at which their samples count
-  // The area of a unit of their weight in sides of that leaf squared; 0 for those left out.
+  std::vector<std::int8_t> leaf;  // depth of the leaf in which their samples count; -1 for outliers
+  // Area per unit of sample weight, in squared sides of that leaf; 0 for outliers.
   std::vector<float> area;
-  double left_out = 0.0;  // the weight of these
+  double left_out = 0.0;  // total weight of the outliers
   LeafFlags flags;
 };
 
-/// The slab has got its leaves.
+/// Finds the leaf data of slab `s`, which must be at SlabStage::kLeaves.
 SlabLeaves find_slab_leaves(const Slabs& slabs, int s);
 
-/// `leaf` tells of the finest cells at which depth they count, and `counts` whether they do.
+/// `leaf` is the depth at which the samples of each finest cell count, and `counts` whether they
+/// do.
 LeafFlags find_leaf_flags(const SampleSlab& slab, const std::vector<std::uint8_t>& counts,
                           const std::vector<std::int8_t>& leaf);
 
-/// Those of the levels above the slabs', and of their first one.
+/// Flags of the levels above the slabs, and of the slabs' first level.
 LeafFlags find_whole_flags(const Slabs& slabs, std::span<const SlabLeaves> leaves);
 
 }  // namespace prefilter

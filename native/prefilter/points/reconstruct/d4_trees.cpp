@@ -28,7 +28,7 @@ NodeLevel node_level(std::vector<std::uint64_t> places) {
   return level;
 }
 
-// Sets `split` and `first`, where the next level's places are these; they may be of several parts.
+// Sets `split` and `first` from the places of the next level, which may span several parts.
 void link(const std::vector<std::uint64_t>& next, NodeLevel* level) {
   std::size_t child = 0;
   for (std::size_t b = 0; b < level->places.size(); ++b) {

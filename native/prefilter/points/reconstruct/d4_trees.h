@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Which cells the function is told in, in the D4 basis: those that hold leaves as deep as their
-// octants, or are next to such a leaf. The values of the trees are not set.
+// Structure of the octrees in the D4 basis: cells that contain, or are next to, leaves as deep as
+// their octants are split. The trees' values are not set.
 #pragma once
 
 #include <span>
@@ -18,7 +18,7 @@ namespace prefilter {
 /// The tree of slab `s`.
 FluxTree split_slab(const Slabs& slabs, std::span<const SlabLeaves> leaves, int s);
 
-/// The tree above those of all slabs.
+/// The coarse tree above the trees of all slabs.
 CoarseTree split_whole(const Slabs& slabs, const LeafFlags& flags, std::span<const FluxTree> trees);
 
 }  // namespace prefilter

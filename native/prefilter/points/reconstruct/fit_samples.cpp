@@ -13,24 +13,26 @@
 namespace prefilter {
 namespace {
 
-constexpr int kRounds = 2;
-// Of the surface's normal along the line that a vertex moves on; on others it hardly meets it.
-constexpr double kLeastSlope = 0.05;
-// Samples tell better than the function where their cells agree, to this share of a cell's side;
-// where they are off by twice that or more, they do not.
-constexpr double kAgreement = 0.06;
-// Normals that cancel each other to less than this share do not tell a side.
-constexpr double kLeastCoherence = 0.2;
-// Of two normals close together, the mean cosine: of noisy ones, and of such as curvature alone
-// makes differ.
+constexpr int kMoveRounds = 2;  // iterations of moving a vertex onto the surface around it
+// Smallest cosine between the surface normal and the line along which a vertex moves; at grazing
+// angles the intersection is ill-conditioned.
+constexpr double kMinLineSlope = 0.05;
+// Spread of the samples' planes, in cells, up to which samples are trusted over the function; at
+// twice this spread they are ignored.
+constexpr double kAgreementSpread = 0.06;
+// Where the mean normal is shorter than this, normals cancel each other and define no side.
+constexpr double kMinFitCoherence = 0.2;
+// Mean cosine between two normals of one cell: at or below the first they are noisy, at or above
+// the second only curvature makes them differ.
 constexpr double kNoisyCosine = 0.86;
 constexpr double kCleanCosine = 0.96;
-// On smooth surfaces 1/2 is exact; at creases the samples' own planes are the better of the two.
-constexpr double kOwnPlanes = 0.65;
-// How many depths up samples are looked for where there are none as near: to bring spikes back.
-constexpr int kFarthest = 4;
+// Weight of the samples' own planes against the plane through their mean: 1/2 is exact on smooth
+// surfaces, while at creases the own planes are more accurate.
+constexpr double kOwnPlaneWeight = 0.65;
+// How many coarser depths are searched where no samples are near, so that spikes are pulled back.
+constexpr int kMaxDepthsUp = 4;
 
-// Calls visit(cell, index, corner, mean, weight) for the cells of samples around a point.
+// Calls visit(cells, index, corner, mean, weight) for the cells with samples around a point.
 template <typename Visit>
 void for_weighted(const SampleIndex& index, const Vector3& point, const Visit& visit) {
   index.for_near(point, 1, [&](const SampleCells& cells, std::size_t i, const Vector3& corner) {
@@ -49,14 +51,14 @@ void for_weighted(const SampleIndex& index, const Vector3& point, const Visit& v
 
 // The samples of a cell near a point.
 struct Near {
-  double weight;   // of all together
+  double weight;   // total
   Vector3 offset;  // of their mean from the point
-  double planes;   // of their own planes from the point, mean
+  double planes;   // mean signed distance of the samples' own planes from the point
 };
 
-// The normal of the plane that fits the means best, or zero where they are on a line.
-Vector3 across_means(std::span<const Near> cells, double weight) {
-  constexpr double kLeastFlatness = 0.02;
+// Normal of the plane that best fits the means, or zero where they are nearly on a line.
+Vector3 normal_across_means(std::span<const Near> cells, double weight) {
+  constexpr double kMinFlatness = 0.02;  // below it the means are nearly on a line
   Vector3 mean{};
   for (const Near& near : cells) {
     for (std::size_t a = 0; a < 3; ++a) mean[a] += near.weight / weight * near.offset[a];
@@ -64,7 +66,7 @@ Vector3 across_means(std::span<const Near> cells, double weight) {
   SymmetricMatrix covariance;
   for (const Near& near : cells) covariance.add_square(near.weight / weight, near.offset - mean);
   const Vector3 normal = least_eigenvector(covariance);
-  return flatness(covariance, normal) > kLeastFlatness ? normal : Vector3{};
+  return flatness(covariance, normal) > kMinFlatness ? normal : Vector3{};
 }
 
 }  // namespace
@@ -94,11 +96,11 @@ std::optional<LocalSurface> local_surface(const SampleIndex& index, const Vector
                  squares += w * near.weight;
                });
   const double coherence = std::sqrt(dot(normal, normal)) / weight;
-  if (!(coherence > kLeastCoherence)) return std::nullopt;
+  if (!(coherence > kMinFitCoherence)) return std::nullopt;
   LocalSurface surface;
   for (std::size_t a = 0; a < 3; ++a) surface.normal[a] = normal[a] / (coherence * weight);
   if (normal_trust < 1.0) {
-    const Vector3 across = across_means(std::span(cells.data(), count), weight);
+    const Vector3 across = normal_across_means(std::span(cells.data(), count), weight);
     const double side = dot(across, surface.normal) < 0.0 ? -1.0 : 1.0;
     for (std::size_t a = 0; a < 3; ++a) {
       surface.normal[a] =
@@ -108,7 +110,7 @@ std::optional<LocalSurface> local_surface(const SampleIndex& index, const Vector
     if (!(size > 0.0)) return std::nullopt;
     for (double& x : surface.normal) x /= size;
   }
-  const double own_planes = kOwnPlanes * normal_trust;
+  const double own_planes = kOwnPlaneWeight * normal_trust;
   double sum = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
     Near& near = cells[i];
@@ -131,7 +133,7 @@ std::optional<LocalSurface> local_surface(const SampleIndex& index, const Vector
 
 SampleNoise measure_noise(std::span<const SampleCell> cells, const SampleIndex& coarser,
                           double mean_weight) {
-  constexpr double kMedianOfNormal = 0.6745;
+  constexpr double kMedianOfNormal = 0.6745;  // median of |x| for a standard normal x
   std::vector<double> distances;
   double cosines = 0.0;
   double pairs = 0.0;
@@ -143,7 +145,7 @@ SampleNoise measure_noise(std::span<const SampleCell> cells, const SampleIndex& 
     }
     const double samples = static_cast<double>(cell.weight) / mean_weight;
     if (samples > 1.5) {
-      // Of n normals the squared length of the mean is 1 / n plus the share of the pairs.
+      // E|mean of n normals|^2 = 1/n + (1 - 1/n) * mean cosine of a pair.
       double squared = 0.0;
       for (const float n : cell.normal) squared += static_cast<double>(n) * static_cast<double>(n);
       squared /= static_cast<double>(cell.weight) * static_cast<double>(cell.weight);
@@ -152,7 +154,7 @@ SampleNoise measure_noise(std::span<const SampleCell> cells, const SampleIndex& 
     }
     const std::optional<LocalSurface> surface = local_surface(coarser, point, 1.0);
     if (!surface) continue;
-    // The mean of a cell's samples has less noise than each.
+    // Averaging n samples divides the noise by sqrt(n).
     distances.push_back(2.0 * std::abs(surface->distance) * std::sqrt(samples));
   }
   if (distances.empty()) return {0.0, 1.0, mean_weight};
@@ -165,9 +167,9 @@ SampleNoise measure_noise(std::span<const SampleCell> cells, const SampleIndex& 
 }
 
 double trust_in(const LocalSurface& surface, double noise, double mean_weight) {
-  // The function's own error, in cells.
+  // Error of the function itself, in cells.
   constexpr double kFunctionError = 0.06;
-  // As many cells as the cloud's noise counts for: a few may agree by chance.
+  // Weight, in cells, of the cloud's overall noise: a few cells may agree by chance.
   constexpr double kPriorCells = 2.0;
   const double samples_of_cell = surface.weight / mean_weight / surface.cells;
   const double prior = noise * noise / std::max(1.0, samples_of_cell);
@@ -178,11 +180,11 @@ double trust_in(const LocalSurface& surface, double noise, double mean_weight) {
 
 void SampleFit::move(int depth, const FitLine* line, Vector3* point) const {
   int k = depth;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kMoveRounds; ++round) {
     std::optional<LocalSurface> surface;
     double cell = 1.0;
-    // Where there are no samples as near, larger cells may have some.
-    for (const int last = std::max(1, k - kFarthest);; --k) {
+    // Where no samples are near, search larger cells.
+    for (const int last = std::max(1, k - kMaxDepthsUp);; --k) {
       cell = std::ldexp(1.0, finest_ - k);
       const Vector3 p = {(*point)[0] / cell, (*point)[1] / cell, (*point)[2] / cell};
       surface = local_surface(index_of_(k), p, noise_.normal_trust);
@@ -196,8 +198,8 @@ void SampleFit::move(int depth, const FitLine* line, Vector3* point) const {
     }
     const double squared = dot(line->direction, line->direction);
     const double slope = dot(surface->normal, line->direction);
-    if (slope * slope < kLeastSlope * kLeastSlope * squared) return;
-    const double trust = std::clamp(2.0 - surface->spread / kAgreement, 0.0, 1.0);
+    if (slope * slope < kMinLineSlope * kMinLineSlope * squared) return;
+    const double trust = std::clamp(2.0 - surface->spread / kAgreementSpread, 0.0, 1.0);
     const double now = dot(*point - line->start, line->direction) / squared;
     const double t =
         std::clamp(now - trust * cell * surface->distance / slope, line->low, line->high);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Vertices moved onto the surface of the samples around them.
+// Moves vertices onto the surface defined by the samples around them.
 //
-// Beyond the text: the contour says where the surface is to a fraction of a cell, and how its parts
-// hang together; where it runs the samples know better.
+// Not in the dissertation: the contour locates the surface to a fraction of a cell and fixes its
+// topology, but the samples locate it more precisely.
 #pragma once
 
 #include <functional>
@@ -16,44 +16,46 @@
 
 namespace prefilter {
 
-/// The surface of the samples within a cell's side of a point, as seen from there; in cells.
+/// The surface defined by samples within one cell side of a point, relative to that point; lengths
+/// in cells.
 struct LocalSurface {
-  Vector3 normal{};       // of length 1
-  double distance = 0.0;  // of the point from the surface, along the normal
-  double spread = 0.0;    // of that distance by the samples of each cell: standard deviation
-  double weight = 0.0;    // of as many samples as would have the same noise, all weighted alike
-  double cells = 0.0;     // as many of these, likewise
-  double trust = 1.0;     // how much the distance counts beside the function's: trust_in
+  Vector3 normal{};       // unit length
+  double distance = 0.0;  // signed distance of the point from the surface, along the normal
+  double spread = 0.0;    // standard deviation of that distance over the cells' samples
+  // effective number of samples (Kish): as many equally weighted ones have the same noise
+  double weight = 0.0;
+  double cells = 0.0;  // effective number of cells
+  double trust = 1.0;  // weight of the distance against the function's: trust_in
 };
 
-/// None where there are no samples, or their normals cancel each other, or with a `normal_trust` of
-/// 0 the means of their cells are nearly on a line. With weights w = (1 - r^2)^2 for samples r
-/// cells away, the distance is the mean of that from the plane through the mean sample, across the
-/// mean normal, and that from the samples' own planes. Where the surface curves, the first is too
-/// large by as much as the second is too small. Less `normal_trust` than 1 takes the normal more
-/// and more from the plane that fits the samples' positions, and the distance from that plane
-/// alone.
+/// Returns none where there are no samples, where their normals cancel, or, for a `normal_trust` of
+/// 0, where the cells' means are nearly on a line. With weights w = (1 - r^2)^2 for samples r cells
+/// away, the distance is the average of two estimates: from the plane through the mean sample
+/// across the mean normal, and from the samples' own planes. On a curved surface the first is too
+/// large by as much as the second is too small. A `normal_trust` below 1 blends the normal toward
+/// that of the plane fitted to the samples' positions, and the distance toward that plane's.
 std::optional<LocalSurface> local_surface(const SampleIndex& index, const Vector3& point,
                                           double normal_trust);
 
-/// What a cloud's samples are like, in finest cells.
+/// Noise of a cloud's samples; lengths in finest cells.
 struct SampleNoise {
-  double distance = 0.0;      // of a sample from the surface: the standard deviation
-  double normal_trust = 1.0;  // 1 where normals of one cell agree, 0 where they hardly do
-  double mean_weight = 1.0;   // of a sample
+  double distance = 0.0;      // standard deviation of a sample's distance from the surface
+  double normal_trust = 1.0;  // 1 where normals within a cell agree, 0 where they hardly do
+  double mean_weight = 1.0;   // mean weight of a sample
 };
 
-/// How much the samples' distance counts beside the function's, from 0 to 1: by the variance of the
-/// one, from how much its cells differ and, where they are few, from the cloud's noise in cells of
-/// the surface's depth, and by that of the other.
+/// Weight of the samples' distance against the function's, from 0 to 1. It compares the variance of
+/// the samples' estimate with that of the function. The former follows from the spread of the cells
+/// and, where they are few, from the cloud's noise in cells of the surface's depth.
 double trust_in(const LocalSurface& surface, double noise, double mean_weight);
 
-/// Of some cells of one depth, from the surface of the samples within two of their sides;
-/// `coarser` has the samples of the depth above. `mean_weight` is that of a sample.
+/// Measures the noise of some cells of one depth against the surface of the samples within two of
+/// their sides. `coarser` holds the samples one depth up; `mean_weight` is the mean weight of a
+/// sample.
 SampleNoise measure_noise(std::span<const SampleCell> cells, const SampleIndex& coarser,
                           double mean_weight);
 
-/// Where a point may move: to start + t * direction, t from `low` up to `high`.
+/// Line on which a point may move: start + t * direction, with t from `low` to `high`.
 struct FitLine {
   Vector3 start{};
   Vector3 direction{};
@@ -61,21 +63,22 @@ struct FitLine {
   double high = 1.0;
 };
 
-/// Moves points onto the surface of the samples around them, where these agree on it: where noise
-/// or scans that are off part them, the function that was solved for tells better.
+/// Moves points onto the surface of the samples around them where these agree. Where noise or
+/// misaligned scans spread them, the solved function is more accurate.
 class SampleFit {
  public:
-  /// `index_of(k)` gives the samples of depth k; `finest` is the largest.
+  /// `index_of(k)` returns the samples of depth k; `finest` is the largest depth.
   using IndexOf = std::function<const SampleIndex&(int)>;
   SampleFit(IndexOf index_of, int finest, const SampleNoise& noise)
       : index_of_(std::move(index_of)), finest_(finest), noise_(noise) {}
 
-  /// Of a point in finest cells, next to leaves of this depth. A contour whose vertices stay on the
-  /// lines between the cells that they part does not fold. Without a line it moves along the
-  /// normal, up to a cell of the samples at a time, for a function that was not solved for.
+  /// Moves a point, in finest cells, next to leaves of depth `depth`. Vertices that stay on the
+  /// lines between the centers of adjacent cells keep the contour free of folds. Without a line the
+  /// point moves along the normal, by up to one sample cell per iteration; this is for functions
+  /// that were not solved for.
   void move(int depth, const FitLine* line, Vector3* point) const;
 
-  /// The surface as seen from such a point, in cells of that depth.
+  /// The surface relative to such a point, in cells of depth `depth`.
   std::optional<LocalSurface> surface_near(int depth, const Vector3& point) const;
 
   const SampleIndex& samples(int depth) const { return index_of_(depth); }
@@ -86,8 +89,8 @@ class SampleFit {
   SampleNoise noise_;
 };
 
-/// The attributes of the samples within a cell's side, weighted likewise; false where there are
-/// none.
+/// Averages the attributes of the samples within one cell side, with the same weights; returns
+/// false where there are none.
 bool blend_attributes(const SampleIndex& index, const Vector3& point, std::span<float> attributes);
 
 }  // namespace prefilter

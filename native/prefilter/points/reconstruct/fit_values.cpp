@@ -16,31 +16,33 @@
 namespace prefilter {
 namespace {
 
-// The derivative is not that of a linear function: what the first round leaves, the second finds.
+// The value's derivative is only approximately linear, so a second round corrects the first one's
+// residual.
 constexpr int kValueRounds = 2;
-// What counts for a leaf before the last round: neighbors of half its size, in sides of these.
-constexpr int kReach = 3;
+// Margin, in sides of a leaf, from which each later round reads values: neighbors of half the size
+// affect a leaf.
+constexpr int kRoundMargin = 3;
 
-// How much it counts that a value stays, beside a line straight across the surface: lines that
-// hardly cross it would move it without end.
-constexpr float kStill = 0.05F;
+// Regularization toward the present value, relative to a line that crosses the surface at a right
+// angle; lines that hardly cross it would change the value without bound.
+constexpr float kValueDamping = 0.05F;
 
-// A leaf, and how high it lies, in sides of it.
+// A leaf, and its height in units of its side.
 struct Leaf {
   TreeCell place;
   std::int32_t height;
 };
 
-// The leaf that is or holds a cell; none outside of the root.
+// The leaf that is or contains a cell; none outside the root.
 std::optional<Leaf> find_leaf(const CellTree& tree, int depth, const CellCoordinates& at) {
-  const std::optional<TreeCell> found = cell_at(tree, depth, at);
-  if (!found) return std::nullopt;
-  return Leaf{*found, at[2] >> (depth - found->depth)};
+  const std::optional<TreeCell> cell = cell_at(tree, depth, at);
+  if (!cell) return std::nullopt;
+  return Leaf{*cell, at[2] >> (depth - cell->depth)};
 }
 
-// How a leaf's value is to change, by the lines from its center to those of its neighbors: those
-// across the surface count most.
-struct Change {
+// Accumulated change of a leaf's value, from the lines between its center and those of its
+// neighbors, weighted by the squared slope of the surface along the line.
+struct ValueChange {
   float sum = 0.0F;
   float weight = 0.0F;
 };
@@ -52,10 +54,10 @@ class ValueFit {
     for (const TreeLevel& level : tree->levels) changes_.emplace_back(8 * level.size());
   }
 
-  // `later`: how many rounds follow.
-  void find_changes(float isovalue, int later) {
+  // `rounds_left` is the number of rounds after this one.
+  void find_changes(float isovalue, int rounds_left) {
     const ContourTree contour(*tree_, isovalue, Progress(), 1);
-    reach_ = kReach * later;
+    reach_ = kRoundMargin * rounds_left;
     const int margin = (reach_ + 1) * range_.largest;
     const SurfaceVertices vertices(contour, RootFrame({{0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}}),
                                    Interpolant::kLinear,
@@ -69,8 +71,8 @@ class ValueFit {
   void apply_changes() {
     for (std::size_t k = 0; k < changes_.size(); ++k) {
       for (std::size_t i = 0; i < changes_[k].size(); ++i) {
-        Change& change = changes_[k][i];
-        if (change.weight > 0.0F) value(k, i) += change.sum / (change.weight + kStill);
+        ValueChange& change = changes_[k][i];
+        if (change.weight > 0.0F) value(k, i) += change.sum / (change.weight + kValueDamping);
         change = {};
       }
     }
@@ -82,7 +84,7 @@ class ValueFit {
   }
   float value(const Leaf& leaf) const { return value_of(leaf.place, *tree_); }
 
-  // Whether the value of a leaf counts for the heights, now or in a later round.
+  // Whether the value of a leaf affects the heights, in this round or a later one.
   bool counts(const Leaf& leaf) const {
     const int size = 1 << (tree_->depth() - leaf.place.depth);
     const int low = leaf.height * size;
@@ -98,18 +100,18 @@ class ValueFit {
     const std::optional<Leaf> near = find_leaf(*tree_, place.depth, place.leaf);
     const std::optional<Leaf> far = find_leaf(*tree_, place.depth, beyond);
     if (!near || !far || !(counts(*near) || counts(*far))) return;
-    // Where holes are filled, much smaller leaves may be farther away than values are known.
+    // Where holes are filled, much smaller leaves may lie outside the known values.
     if (near->place.depth - far->place.depth > 1) return;
     const std::optional<LocalSurface> surface = fit_.surface_near(place.depth, vertex);
     if (!surface) return;
-    // The surface moves by -distance along its normal, which is -distance / slope along the line,
-    // if the value changes by as much times its derivative. Weights are the slope's square.
+    // To move by -distance along its normal, the surface must move by -distance / slope along the
+    // line, so the value must change by that times its derivative. Weights are squared slopes.
     const float derivative = is_high ? value(*far) - value(*near) : value(*near) - value(*far);
     const auto slope = static_cast<float>(surface->normal[axis]);
     const auto distance = static_cast<float>(surface->trust * surface->distance);
     for (const Leaf& leaf : {*near, *far}) {
       if (!counts(leaf)) continue;
-      Change& change = changes_[leaf.place.level()][leaf.place.cell];
+      ValueChange& change = changes_[leaf.place.level()][leaf.place.cell];
       change.sum += derivative * slope * distance;
       change.weight += slope * slope;
     }
@@ -119,15 +121,15 @@ class ValueFit {
   FitRange range_;
   int reach_ = 0;
   CellTree* tree_;
-  std::vector<std::vector<Change>> changes_;
+  std::vector<std::vector<ValueChange>> changes_;
 };
 
 }  // namespace
 
 void fit_values(const SampleFit& fit, float isovalue, const FitRange& range, CellTree* tree) {
   ValueFit values(fit, range, tree);
-  for (int later = kValueRounds - 1; later >= 0; --later) {
-    values.find_changes(isovalue, later);
+  for (int rounds_left = kValueRounds - 1; rounds_left >= 0; --rounds_left) {
+    values.find_changes(isovalue, rounds_left);
     values.apply_changes();
   }
 }

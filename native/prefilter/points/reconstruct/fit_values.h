@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A tree's values changed so that its contour follows the samples.
+// Adjusts the values of a tree so that its contour follows the samples.
 //
-// Beyond the text: the function that was solved for knows the surface to a twentieth of a cell or
-// so, samples that agree know it better. Vertices that are moved onto these one by one fold the
-// surface where they are close to each other. The contour of a function between the centers of
-// cells hardly folds, whatever its values are; so it is the values that are changed.
+// Not in the dissertation: the solved function locates the surface to about 1/20 of a cell, while
+// consistent samples locate it more precisely. Moving contour vertices onto them individually folds
+// the surface where vertices are close together. The contour of a function interpolated between
+// cell centers hardly folds, so the values are adjusted instead.
 #pragma once
 
 #include "prefilter/points/reconstruct/fit_samples.h"
@@ -14,18 +14,18 @@
 
 namespace prefilter {
 
-/// Where values are changed, in cells of the tree's depth.
+/// The range in which values are adjusted, in cells of the tree's depth.
 struct FitRange {
-  HeightRange heights;  // of the contour that is to follow the samples
-  int largest = 1;      // the side of a leaf: larger ones keep their values
+  HeightRange heights;  // heights of the contour that shall follow the samples
+  int largest = 1;      // side of the largest leaf that is adjusted
 };
 
-/// What a leaf's new value follows from, in octants of its depth.
+/// Radius, in octants of a leaf's depth, of the data on which its new value depends.
 inline constexpr int kFitOctants = 12;
 
-/// Changes the values of leaves that the contour at these heights is made of. Of a leaf that counts
-/// at other heights as well it makes the same there. The tree, and the samples of `fit`, are known
-/// as many octants above and below the heights as is said above.
+/// Adjusts the values of the leaves that affect the contour at the given heights. Leaves that also
+/// affect other heights get the same values when those are fitted. The tree and the samples of
+/// `fit` must be known for kFitOctants octants above and below the heights.
 void fit_values(const SampleFit& fit, float isovalue, const FitRange& range, CellTree* tree);
 
 }  // namespace prefilter

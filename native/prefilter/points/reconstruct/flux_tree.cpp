@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kPlaceBits = 3 * kMaxTreeDepth;
 
-bool is_any(const CellFlux& cell) {
+bool is_nonempty(const CellFlux& cell) {
   const Vector3& area = cell.flux.area;
   return area[0] != 0.0 || area[1] != 0.0 || area[2] != 0.0 || cell.sampled.area > 0.0F;
 }
@@ -31,8 +31,8 @@ OctantFlux octant_flux(const CellFlux& cell) {
   return result;
 }
 
-// The same in the coordinates of the cell that has it as octant `o`.
-SampledArea in_block(const SampledArea& octant, std::uint64_t o) {
+// The sampled area of octant `o` in the coordinates of its parent cell.
+SampledArea in_parent_block(const SampledArea& octant, std::uint64_t o) {
   SampledArea result;
   result.area = octant.area / 4.0F;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -42,11 +42,12 @@ SampledArea in_block(const SampledArea& octant, std::uint64_t o) {
   return result;
 }
 
-// Brings entries into the order that the lowest bits of `order` tell.
+// Permutes entries in place: entry i becomes the entry whose index is in the lowest bits of
+// order[i].
 void permute(std::uint64_t mask, std::vector<std::uint64_t>* order,
              std::vector<CellFlux>* entries) {
   for (std::size_t i = 0; i < order->size(); ++i) {
-    // Around a cycle: each place gets what belongs there, the last one what was at the first.
+    // Follow the cycle of the permutation that starts at i.
     const CellFlux first = (*entries)[i];
     for (std::size_t at = i;;) {
       const std::size_t from = (*order)[at] & mask;
@@ -61,7 +62,7 @@ void permute(std::uint64_t mask, std::vector<std::uint64_t>* order,
   }
 }
 
-// Sorts, and sums those of the same place. It is done in place, as they are many.
+// Sorts entries by place and sums those with equal places, in place because they are many.
 void join(std::vector<CellFlux>* entries) {
   constexpr std::uint64_t kMask = (std::uint64_t{1} << (64 - kPlaceBits)) - 1;
   std::vector<std::uint64_t> order;
@@ -89,7 +90,7 @@ void join(std::vector<CellFlux>* entries) {
   entries->resize(kept);
 }
 
-// Room for the blocks that octants need, and no more.
+// Reserves exactly the memory for the blocks of the given octants.
 void reserve_blocks(const std::vector<CellFlux>& octants, NodeLevel* level) {
   std::size_t blocks = 0;
   for (std::size_t i = 0; i < octants.size(); ++i) {
@@ -101,11 +102,10 @@ void reserve_blocks(const std::vector<CellFlux>& octants, NodeLevel* level) {
   level->has_flux.reserve(blocks);
   level->first_flux.reserve(blocks);
   level->fluxes.reserve(
-      static_cast<std::size_t>(std::count_if(octants.begin(), octants.end(), is_any)));
+      static_cast<std::size_t>(std::count_if(octants.begin(), octants.end(), is_nonempty)));
 }
 
-// Appends the blocks of the cells of which some of `cells` are octants, and puts these cells in
-// their place.
+// Appends the blocks of the parents of `cells`, and replaces the cells with these parents.
 void add_blocks(std::vector<CellFlux>* cells, NodeLevel* level) {
   const std::vector<CellFlux>& octants = *cells;
   reserve_blocks(octants, level);
@@ -121,8 +121,8 @@ void add_blocks(std::vector<CellFlux>* cells, NodeLevel* level) {
     for (; i < octants.size() && octants[i].place >> 3U == cell.place; ++i) {
       const std::uint64_t o = octants[i].place & 7U;
       fluxes[o] = octants[i].flux;
-      cell.sampled.add(in_block(octants[i].sampled, o));
-      if (is_any(octants[i])) {
+      cell.sampled.add(in_parent_block(octants[i].sampled, o));
+      if (is_nonempty(octants[i])) {
         has_flux |= static_cast<std::uint8_t>(1U << o);
         level->fluxes.push_back(octant_flux(octants[i]));
       }
@@ -161,7 +161,7 @@ FluxTree analyze_flux(PooledFlux pooled, int top, int depth) {
   return tree;
 }
 
-void synthesise_part(const std::vector<float>& tops, FluxTree* tree) {
+void synthesize_part(const std::vector<float>& tops, FluxTree* tree) {
   if (tree->levels.empty()) return;
   std::size_t next = 0;
   for (std::size_t i = 0; i < tree->tops.size(); ++i) {

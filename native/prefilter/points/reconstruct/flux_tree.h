@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Haar coefficients of sampled surfaces (section 4.2), for cells between two depths.
+// Haar coefficients of sampled surfaces (section 4.2), for the cells between two depths.
 #pragma once
 
 #include <array>
@@ -15,11 +15,11 @@
 
 namespace prefilter {
 
-/// How much of the surface the samples of a cell stand for, and where they are: in coordinates that
-/// make the cell the unit cube.
+/// Surface area that the samples of a cell represent, and its first moment, in coordinates in which
+/// the cell is the unit cube.
 struct SampledArea {
   float area = 0.0F;
-  std::array<float, 3> moment{};  // of the samples' positions
+  std::array<float, 3> moment{};  // area times mean sample position
 
   void add(const SampledArea& other) {
     area += other.area;
@@ -27,32 +27,32 @@ struct SampledArea {
   }
 };
 
-/// The sampled surface in a cell.
+/// The sampled surface in one cell.
 struct CellFlux {
-  std::uint64_t place = 0;  // along the Morton curve of the cell's depth
+  std::uint64_t place = 0;  // Morton index at the cell's depth
   BoundaryFlux flux;
   SampledArea sampled;
   bool is_split = false;
 };
 
-/// The same of an octant of a block.
+/// The sampled surface in one octant of a block, in single precision.
 struct OctantFlux {
   std::array<float, 3> area{};
   std::array<float, 3> moment{};
   SampledArea sampled;
 };
 
-/// Blocks of one depth of a part of a tree, along the Morton curve.
+/// Blocks of one depth in a part of a tree, along the Morton curve.
 struct NodeLevel {
-  std::vector<std::uint64_t> places;  // of the cells that they split
-  TreeLevel blocks;                   // `first` counts within the part
-  std::vector<OctantValues> solved;   // values after the solve; none before
-  // Of the octants that have some, block by block; a block's bits tell which.
+  std::vector<std::uint64_t> places;  // Morton indices of the cells that they split
+  TreeLevel blocks;                   // `first` indexes the next level of the same part
+  std::vector<OctantValues> solved;   // values after the solve; empty before
+  // Fluxes of the octants that have one, block by block; the bits of `has_flux` select the octants.
   std::vector<OctantFlux> fluxes;
   std::vector<std::uint8_t> has_flux;
   std::vector<std::uint32_t> first_flux;
 
-  /// Null where there is none.
+  /// Null where the octant has no flux.
   const OctantFlux* flux(std::size_t block, int octant) const {
     if (has_flux.empty() || ((has_flux[block] >> octant) & 1U) == 0U) return nullptr;
     const unsigned before = has_flux[block] & ((1U << octant) - 1U);
@@ -60,21 +60,23 @@ struct NodeLevel {
   }
 };
 
-/// Levels of a tree from depth `top` on: its coefficients, or its values.
+/// Levels of a tree from depth `top` down, holding coefficients or values.
 struct FluxTree {
   int top = 0;
   std::vector<NodeLevel> levels;
   std::vector<CellFlux> tops;  // the cells of depth `top`
 };
 
-/// What samples give the cells of their leaves: at [k] those of depth k, in no order.
+/// Contributions of the samples to the cells of their leaves: element k holds those of depth k,
+/// unsorted.
 using PooledFlux = std::vector<std::vector<CellFlux>>;
 
-/// The coefficients of all cells between two depths that hold leaves of samples smaller than
-/// themselves, as triangle_analysis.h has them; `split` tells the octants that have some, too.
+/// Computes the coefficients of all cells between two depths that contain sample leaves smaller
+/// than themselves (see triangle_analysis.h). Octants that have coefficients of their own are
+/// marked in `split`.
 FluxTree analyze_flux(PooledFlux pooled, int top, int depth);
 
-/// Coefficients to values, for parts whose first cells have these.
-void synthesise_part(const std::vector<float>& tops, FluxTree* tree);
+/// Converts coefficients to values in place, given the values of the part's first cells.
+void synthesize_part(const std::vector<float>& tops, FluxTree* tree);
 
 }  // namespace prefilter

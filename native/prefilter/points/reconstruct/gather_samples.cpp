@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Two passes over the points: their extent, which determines the grid, and their sums per cell,
+// from which Equation 4.2 is computed instead of from single points.
 #include "prefilter/points/reconstruct/gather_samples.h"
 
 #include <algorithm>
@@ -16,11 +18,11 @@
 namespace prefilter {
 namespace {
 
-// Of which sums are finite.
+// Weights up to this keep all sums finite.
 constexpr float kLargestWeight = 1e30F;
-// What scanners write for no return is about the largest number of single precision.
+// Scanners may write the largest single-precision number where they got no return.
 constexpr double kHugeCoordinate = 1e30;
-// Huge points count if others are fewer than one of so many.
+// Huge points are dropped only if at least 1 / 100 as many others are left.
 constexpr std::size_t kHugePerOther = 100;
 
 float float_weight(const PointBatch& batch, std::size_t i) {
@@ -37,7 +39,7 @@ bool has_weight(const PointBatch& batch, std::size_t i) {
   return weight > 0.0F && weight <= kLargestWeight;
 }
 
-// One over the length of the point's normal; 0 where the point does not count.
+// 1 / length of the point's normal; 0 for invalid points.
 float normal_scale(const PointBatch& batch, std::size_t i) {
   if (!has_position(batch, i) || !has_weight(batch, i)) return 0.0F;
   const auto& [x, y, z] = batch.normals[i];
@@ -127,7 +129,9 @@ void CloudExtent::settle_huge() {
   huge = CloudPart();
 }
 
-bool does_count(const PointBatch& batch, std::size_t i) { return normal_scale(batch, i) > 0.0F; }
+bool is_valid_point(const PointBatch& batch, std::size_t i) {
+  return normal_scale(batch, i) > 0.0F;
+}
 
 double weight_of(const PointBatch& batch, std::size_t i) {
   return static_cast<double>(float_weight(batch, i));
@@ -169,7 +173,7 @@ bool is_huge(const Vector3& p) {
   return std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])}) >= kHugeCoordinate;
 }
 
-// What is found of a batch.
+// Measurements of one batch.
 struct MeasuredBatch {
   CloudExtent extent;
   std::size_t cloud = 0;
@@ -177,15 +181,15 @@ struct MeasuredBatch {
   std::vector<ThinnedPoints::Entry> repeated;
 };
 
-void measure_point(const PointBatch& batch, std::size_t i, const ThinnedPoints* some,
-                   MeasuredBatch* found) {
+void measure_point(const PointBatch& batch, std::size_t i, const ThinnedPoints* thinned,
+                   MeasuredBatch* measured) {
   const Vector3& position = batch.positions[i];
-  CloudExtent& extent = found->extent;
-  if (some != nullptr && does_count(batch, i)) {
+  CloudExtent& extent = measured->extent;
+  if (thinned != nullptr && is_valid_point(batch, i)) {
     const ThinnedPoints::Entry entry = ThinnedPoints::entry_of(position);
-    if (some->keeps(entry)) found->entries.push_back(entry);
+    if (thinned->keeps(entry)) measured->entries.push_back(entry);
   }
-  if (!does_count(batch, i)) {
+  if (!is_valid_point(batch, i)) {
     DroppedPoints& dropped = extent.dropped;
     ++(!has_position(batch, i) ? dropped.not_finite
        : is_huge(position)     ? dropped.huge
@@ -204,7 +208,7 @@ void measure_point(const PointBatch& batch, std::size_t i, const ThinnedPoints* 
 }  // namespace
 
 CloudExtent measure_cloud(PointSource* source, const Progress& progress, int threads,
-                          ThinnedPoints* some, RepeatedPositions* repeated) {
+                          ThinnedPoints* thinned, RepeatedPositions* repeated) {
   CloudExtent extent;
   CloudExtent own;  // of the cloud that is read
   std::size_t cloud = 0;
@@ -214,28 +218,28 @@ CloudExtent measure_cloud(PointSource* source, const Progress& progress, int thr
   };
   for_batches<MeasuredBatch>(
       source, progress, threads,
-      [&](const PointBatch& batch, MeasuredBatch* found) {
-        *found = MeasuredBatch();
-        found->cloud = batch.cloud;
-        found->extent.points = batch.positions.size();
+      [&](const PointBatch& batch, MeasuredBatch* measured) {
+        *measured = MeasuredBatch();
+        measured->cloud = batch.cloud;
+        measured->extent.points = batch.positions.size();
         for (std::size_t i = 0; i < batch.positions.size(); ++i) {
-          measure_point(batch, i, some, found);
+          measure_point(batch, i, thinned, measured);
         }
-        if (repeated != nullptr) found->repeated = RepeatedPositions::of_batch(batch);
+        if (repeated != nullptr) measured->repeated = RepeatedPositions::of_batch(batch);
       },
-      [&](const MeasuredBatch& found) {
-        if (found.cloud != cloud) end_cloud();
-        cloud = found.cloud;
-        own.part.include(found.extent.part);
-        own.huge.include(found.extent.huge);
-        extent.steps.add(found.extent.steps);
-        extent.points += found.extent.points;
-        extent.dropped.add(found.extent.dropped);
-        if (some != nullptr) some->add(found.entries);
-        if (repeated != nullptr) repeated->add(found.repeated, found.extent.points);
+      [&](const MeasuredBatch& measured) {
+        if (measured.cloud != cloud) end_cloud();
+        cloud = measured.cloud;
+        own.part.include(measured.extent.part);
+        own.huge.include(measured.extent.huge);
+        extent.steps.add(measured.extent.steps);
+        extent.points += measured.extent.points;
+        extent.dropped.add(measured.extent.dropped);
+        if (thinned != nullptr) thinned->add(measured.entries);
+        if (repeated != nullptr) repeated->add(measured.repeated, measured.extent.points);
       });
   end_cloud();
-  if (some != nullptr) some->finish();
+  if (thinned != nullptr) thinned->finish();
   return extent;
 }
 
@@ -248,7 +252,7 @@ void gather_samples(PointSource* source, const SampleGrid& grid, const Progress&
       [&](const PointBatch& batch, Scratch* scratch) {
         make_run(batch, grid, attribute_count, scratch);
         scratch->cloud = batch.cloud;
-        if (probe != nullptr) scratch->near = probe->look_at(batch);
+        if (probe != nullptr) scratch->near = probe->find_near(batch);
       },
       [&](const Scratch& scratch) {
         if (scratch.cloud != cloud) store->end_cloud();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Points to sums of samples in cells.
+// Accumulates points into sums of samples per cell.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 #include "prefilter/points/float_steps.h"
 #include "prefilter/points/point_source.h"
 #include "prefilter/points/reconstruct.h"
-#include "prefilter/points/reconstruct/carried_depth.h"
+#include "prefilter/points/reconstruct/automatic_depth.h"
 #include "prefilter/points/reconstruct/sample_grid.h"
 #include "prefilter/points/reconstruct/sample_store.h"
 
@@ -22,55 +22,56 @@ namespace prefilter {
 class NormalProbe;
 class RepeatedPositions;
 
-/// Where points are.
+/// Extent and moments of a set of points.
 struct CloudPart {
   Box box = kEmptyBox;
   std::size_t points = 0;
   double weight = 0.0;
   Vector3 mean{};
-  Vector3 squares{};  // of the distances from the mean along each axis, summed
+  Vector3 squares{};  // sums of squared distances from the mean, per axis
 
   void include(const Vector3& point, double point_weight);
   void include(const CloudPart& other);
 };
 
-/// What a first look at a cloud finds.
+/// Extent of a cloud, measured in a first pass over its points.
 struct CloudExtent {
-  CloudPart part;          // of the points that count
-  CloudPart huge;          // of those that would count, but have huge coordinates
-  std::size_t points = 0;  // that there are
+  CloudPart part;          // valid points
+  CloudPart huge;          // points that are valid except for huge coordinates
+  std::size_t points = 0;  // all points, including invalid ones
   DroppedPoints dropped;
-  std::size_t strays = 0;  // that are far from all others
-  FloatSteps steps;        // of the points that count
+  std::size_t strays = 0;  // dropped as far outliers
+  FloatSteps steps;        // of the valid points
 
-  /// Decides whether points with huge coordinates count, once all points have been looked at.
+  /// Decides whether points with huge coordinates are valid; call after all points were measured.
   void settle_huge();
 };
 
-/// Reads the source once. Where `some` is not null, it gets some of the points that count; and
-/// `repeated` the positions at which there may be many. The extent is not settled yet.
+/// Reads the source once. If not null, `thinned` receives a subset of the valid points, and
+/// `repeated` the positions that may hold many points. settle_huge() has not been called on the
+/// result.
 CloudExtent measure_cloud(PointSource* source, const Progress& progress, int threads,
-                          ThinnedPoints* some = nullptr, RepeatedPositions* repeated = nullptr);
+                          ThinnedPoints* thinned = nullptr, RepeatedPositions* repeated = nullptr);
 
-/// Reads the source again, and puts all points that count into cells. The same to rounding for
-/// points in any order, and to the last bit for any number of threads. Clouds that are joined are
-/// summed up each by itself, so that machines may do that, and then one after the other. Where
-/// `probe` is not null, it looks at all points on the way.
+/// Reads the source again and accumulates all valid points into cells. The result does not depend
+/// on the number of threads; with another order of the points it differs by rounding only. Joined
+/// clouds are summed separately and then added in order, so that separate machines can do the
+/// former. If not null, `probe` examines all points in the same pass.
 void gather_samples(PointSource* source, const SampleGrid& grid, const Progress& progress,
                     int threads, SampleStore* store, NormalProbe* probe = nullptr);
 
-/// Of a batch, the points that count, in the order of their cells: keys and, in the lowest
-/// kBatchBits bits, indices.
+/// Sorts the valid points of a batch by cell: entries hold the cell key and, in the lowest
+/// kBatchBits bits, the point's index.
 class PointOrder {
  public:
-  static constexpr int kBatchBits = 17;
-  static constexpr std::size_t kMostPoints = std::size_t{1} << kBatchBits;
+  static constexpr int kBatchBits = 17;  // bits of a point's index
+  static constexpr std::size_t kMaxPoints = std::size_t{1} << kBatchBits;
 
   const std::vector<std::uint64_t>& sort(const PointBatch& batch, const SampleGrid& grid);
 
   static CellKey key(std::uint64_t entry) { return entry >> kBatchBits; }
   static std::size_t index(std::uint64_t entry) {
-    return static_cast<std::size_t>(entry & (kMostPoints - 1));
+    return static_cast<std::size_t>(entry & (kMaxPoints - 1));
   }
 
  private:
@@ -78,13 +79,13 @@ class PointOrder {
   std::vector<std::uint64_t> other_;
 };
 
-/// Whether a point of a batch counts.
-bool does_count(const PointBatch& batch, std::size_t i);
+/// Whether a point has a finite position, a positive weight and a normal.
+bool is_valid_point(const PointBatch& batch, std::size_t i);
 
-/// 1, where a batch has no weights.
+/// The point's weight; 1 where the batch has no weights.
 double weight_of(const PointBatch& batch, std::size_t i);
 
-/// A point's normal, 1 long and times its weight; zero for one that does not count.
+/// A point's unit normal times its weight; zero for an invalid point.
 std::array<float, 3> weighted_normal(const PointBatch& batch, std::size_t i);
 
 }  // namespace prefilter

@@ -10,20 +10,20 @@
 namespace prefilter {
 namespace {
 
-// To estimate normals, all points have to be in memory. Of so many points one in a thousand may
-// lack a normal, and is left out.
+// Estimating normals requires all points in memory. In clouds larger than this, up to one in a
+// thousand points may lack a normal and is dropped instead.
 constexpr std::size_t kManyPoints = 10'000'000;
 constexpr std::size_t kPointsPerMissing = 1000;
 
 }  // namespace
 
-MeasuredCloud::MeasuredCloud(PointSource* source, bool has_some, const Progress& progress,
+MeasuredCloud::MeasuredCloud(PointSource* source, bool collects_thinned, const Progress& progress,
                              int threads)
     : points_(source) {
   RepeatedPositions repeated;
   const auto measure = [&](const Progress& part, RepeatedPositions* all) {
-    some_ = ThinnedPoints();
-    extent_ = measure_cloud(points_, part, threads, has_some ? &some_ : nullptr, all);
+    thinned_ = ThinnedPoints();
+    extent_ = measure_cloud(points_, part, threads, collects_thinned ? &thinned_ : nullptr, all);
   };
   measure(progress.part(0.0, 0.8), &repeated);
   phantoms_ = find_phantoms(repeated, source, progress.part(0.8, 0.9), threads);
@@ -40,9 +40,9 @@ bool MeasuredCloud::lacks_normals() const {
          (extent_.points < kManyPoints || missing > extent_.points / kPointsPerMissing);
 }
 
-void MeasuredCloud::leave_out_rest(const Progress& progress, int threads) {
+void MeasuredCloud::exclude_outliers(const Progress& progress, int threads) {
   check_cloud(extent_);
-  leave_out_strays(points_, progress, threads, &extent_);
+  exclude_far_outliers(points_, progress, threads, &extent_);
   if (extent_.strays == 0 && extent_.dropped.huge == 0) return;
   points_ = &near_.emplace(points_, extent_.part.box);
 }

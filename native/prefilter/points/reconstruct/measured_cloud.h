@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A cloud without the points that stand for nothing, and where the others are.
+// A cloud without phantoms and far outliers, and its extent.
 #pragma once
 
 #include <cstddef>
@@ -10,39 +10,39 @@
 #include "prefilter/base/progress.h"
 #include "prefilter/points/point_source.h"
 #include "prefilter/points/reconstruct.h"
-#include "prefilter/points/reconstruct/carried_depth.h"
+#include "prefilter/points/reconstruct/automatic_depth.h"
+#include "prefilter/points/reconstruct/far_outliers.h"
 #include "prefilter/points/reconstruct/gather_samples.h"
 #include "prefilter/points/reconstruct/phantom_points.h"
-#include "prefilter/points/reconstruct/stray_points.h"
 
 namespace prefilter {
 
-/// Measures a source, and leaves out phantoms, huge coordinates and strays.
+/// Measures a source, and excludes phantoms, huge coordinates and far outliers.
 class MeasuredCloud {
  public:
-  /// Looks for phantoms. Where `has_some`, some of the points are chosen. Throws
-  /// Error(kCancelled).
-  MeasuredCloud(PointSource* source, bool has_some, const Progress& progress, int threads);
+  /// Measures the cloud and searches it for phantoms. Where `is_thinned`, a subset of the points is
+  /// collected as well. Throws Error(kCancelled).
+  MeasuredCloud(PointSource* source, bool collects_thinned, const Progress& progress, int threads);
 
-  /// Whether so many normals have no direction that they should be estimated.
+  /// Whether so many normals lack a direction that all should be estimated.
   bool lacks_normals() const;
-  /// Leaves out strays, too. Throws Error where too few points are left; Error(kCancelled).
-  void leave_out_rest(const Progress& progress, int threads);
+  /// Excludes far outliers. Throws Error where too few points remain; Error(kCancelled).
+  void exclude_outliers(const Progress& progress, int threads);
 
-  /// The points that count, and perhaps others.
+  /// The cloud without excluded points, which are left out or have weight 0.
   PointSource* points() { return points_; }
   const CloudExtent& extent() const { return extent_; }
   const std::vector<PhantomPlace>& phantoms() const { return phantoms_; }
-  /// Of the phantoms.
+  /// Number of points at phantom positions.
   std::size_t phantom_points() const;
-  ThinnedPoints& some() { return some_; }
+  ThinnedPoints& thinned() { return thinned_; }
 
  private:
   PointSource* points_;
   std::vector<PhantomPlace> phantoms_;
   std::optional<PointsWithout> real_;
   std::optional<PointsWithin> near_;
-  ThinnedPoints some_;
+  ThinnedPoints thinned_;
   CloudExtent extent_;
 };
 

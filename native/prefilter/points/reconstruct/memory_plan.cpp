@@ -17,36 +17,37 @@ namespace {
 constexpr double kMib = 1 << 20;
 constexpr auto kFloat = static_cast<double>(sizeof(float));
 
-// Of a point in a batch, with its place in the order of cells and its sums.
+// Bytes per point of a batch, including its entry in the sorted order and its sums.
 constexpr double kBytesPerPoint = 110.0;
-// Of a finest cell of the samples, with those above it, in all stages; attributes are in those of
-// all depths.
+// Bytes per finest sample cell, ancestors included, summed over all stages. Attributes are stored
+// at every depth and come on top.
 constexpr double kBytesPerCell = 190.0;
-// In the D4 basis, which has no solve; and the same for each cell that the surface meets.
+// The same in the D4 basis, which has no solve: per cell with samples, and per cell that the
+// surface crosses.
 constexpr double kD4BytesPerCell = 100.0;
-constexpr double kD4BytesPerMetCell = 180.0;
-constexpr double kDepths = 1.4;
-// Of a triangle of a slab that is made, with its leaves, edges and vertices.
+constexpr double kD4BytesPerCrossedCell = 180.0;
+constexpr double kCellsPerFinestCell = 1.4;
+// Bytes per triangle of a slab while it is contoured, including its leaves, edges and vertices.
 constexpr double kBytesPerTriangle = 330.0;
-// While a slab's part of the mesh is simplified, one at a time.
+// Additional bytes per triangle while a slab's part of the mesh is simplified, one slab at a time.
 constexpr double kSimplifiedBytesPerTriangle = 170.0;
 constexpr double kVerticesPerTriangle = 1.0;  // twice the half, as they are copied
-constexpr double kTrianglesPerMetCell = 2.1;
-// So many slabs to both sides of those at work are in memory, or as much as these take: see
-// Slabs::bring.
+constexpr double kTrianglesPerCrossedCell = 2.1;
+// Slabs kept on each side of those in work: see Slabs::advance_to.
 constexpr int kMargin = 2;
-// What does not depend on the cloud.
-constexpr double kAlways = 4.0 * kMib;
+// Bytes that do not depend on the cloud.
+constexpr double kFixedBytes = 4.0 * kMib;
 
-// How many cells the surface meets for each that has samples: more, where these are few. Of samples
-// at random, 1 / (1 - exp(-x)) where cells with samples have x / (1 - exp(-x)) in the mean, which
-// this exceeds; leaves are larger where there are still fewer.
-double met_cells_per_cell(double points_per_cell) {
-  constexpr double kMost = 2.0;
+// Cells that the surface crosses per cell with samples; more where samples are sparse. For randomly
+// placed samples with a mean of x per crossed cell it is 1 / (1 - exp(-x)), while occupied cells
+// hold x / (1 - exp(-x)) on average. The expression below is an upper bound; still sparser samples
+// get larger leaves.
+double crossed_cells_per_cell(double points_per_cell) {
+  constexpr double kMost = 2.0;  // sparser samples get larger leaves
   return std::min(kMost, 1.0 + 0.45 / std::max(points_per_cell - 1.0, 1e-3));
 }
 
-// Cells of so many neighboring slabs, at the most.
+// Largest number of cells in `count` consecutive slabs.
 double cells_of_slabs(const SampleStore& store, int count) {
   double most = 0.0;
   double sum = 0.0;
@@ -60,7 +61,7 @@ double cells_of_slabs(const SampleStore& store, int count) {
 
 double batch_bytes(const CloudLoad& load) {
   const auto attributes = static_cast<double>(load.attributes);
-  const double points = static_cast<double>(std::min(load.points, PointOrder::kMostPoints));
+  const double points = static_cast<double>(std::min(load.points, PointOrder::kMaxPoints));
   return points * (kBytesPerPoint + 2.0 * kFloat * attributes);
 }
 
@@ -88,17 +89,18 @@ double bytes_needed(const SampleStore& store, const CloudLoad& load, bool keeps_
   const auto attributes = static_cast<double>(load.attributes);
   const double cells = static_cast<double>(std::max<std::size_t>(store.size(), 1));
   const double kept = is_d4 || keeps_all ? cells : cells_of_slabs(store, threads + 2 * kMargin);
-  const double met = met_cells_per_cell(static_cast<double>(load.points) / cells);
-  const double per_cell = (is_d4 ? kD4BytesPerCell + met * kD4BytesPerMetCell : kBytesPerCell) +
-                          kDepths * kFloat * attributes;
-  const double triangles = kTrianglesPerMetCell * met * cells_of_slabs(store, threads);
+  const double crossed = crossed_cells_per_cell(static_cast<double>(load.points) / cells);
+  const double per_cell =
+      (is_d4 ? kD4BytesPerCell + crossed * kD4BytesPerCrossedCell : kBytesPerCell) +
+      kCellsPerFinestCell * kFloat * attributes;
+  const double triangles = kTrianglesPerCrossedCell * crossed * cells_of_slabs(store, threads);
   const double per_triangle = kBytesPerTriangle + kVerticesPerTriangle * kFloat * attributes;
   double bytes = kept * per_cell + triangles * per_triangle;
   if (load.is_simplified) {
-    const double most = kTrianglesPerMetCell * met * cells_of_slabs(store, 1);
+    const double most = kTrianglesPerCrossedCell * crossed * cells_of_slabs(store, 1);
     bytes += most * (kSimplifiedBytesPerTriangle + kVerticesPerTriangle * kFloat * attributes);
   }
-  return kAlways + std::max(batch_bytes(load), bytes);
+  return kFixedBytes + std::max(batch_bytes(load), bytes);
 }
 
 MemoryPlan plan_memory(const SampleStore& store, const CloudLoad& load,
@@ -109,11 +111,11 @@ MemoryPlan plan_memory(const SampleStore& store, const CloudLoad& load,
   const bool is_all = load.basis == WaveletBasis::kD4;
   const int most = resolve_threads(options.threads);
   for (const bool keeps_all : {true, false}) {
-    // What was written to a file is not kept.
+    // Cells in a file are not kept in memory.
     if (keeps_all && store.is_spilled() && !is_all) continue;
     for (int threads = most; threads > 0; --threads) {
       const double needed = bytes_needed(store, load, keeps_all || is_all, threads);
-      // Slabs that are kept take their cells out of the store.
+      // Slabs that are kept move their cells out of the store.
       const double stays = keeps_all ? 0.0 : held;
       const double left = limit - needed;
       if (stays <= left) return {threads, keeps_all || is_all, true, as_bytes(left - stays)};

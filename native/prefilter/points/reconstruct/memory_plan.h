@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// How a surface is made within a limit of memory, and what it takes at the least.
+// Plans a reconstruction within a memory limit, and computes the minimum.
 #pragma once
 
 #include <cstddef>
@@ -11,31 +11,31 @@
 
 namespace prefilter {
 
-/// What a cloud is like, as far as memory goes.
+/// Properties of a cloud that determine the memory use.
 struct CloudLoad {
   std::size_t points = 0;
   std::size_t attributes = 0;
   WaveletBasis basis = WaveletBasis::kHaar;
-  bool is_simplified = false;  // the mesh
+  bool is_simplified = false;  // whether the mesh is simplified
 };
 
 struct MemoryPlan {
-  int threads = 1;         // so many slabs at a time
-  bool keeps_all = false;  // slabs are made once, and kept until they are needed no more
-  bool is_held = true;     // the cells that a store holds may stay in memory
-  std::uint64_t left = 0;  // bytes for the mesh, where that has to be kept
+  int threads = 1;         // number of slabs processed at a time
+  bool keeps_all = false;  // each slab is processed once and kept until it is no longer needed
+  bool is_held = true;     // the cells of the store may stay in memory
+  std::uint64_t left = 0;  // bytes left for the mesh, where it has to be stored
 };
 
-/// How many batches of points may be in memory at a time.
+/// Number of batches of points that fit into memory at a time.
 int batches_at_once(const CloudLoad& load, const ReconstructOptions& options);
 
-/// The bytes that are needed once all samples are in a store, for so many slabs at a time, without
-/// what the store holds. Measured, see tests/python/test_memory_limit.py: neither less than what is
-/// taken nor a third more, but for some MiB.
+/// Bytes needed after all samples are in a store, for `threads` slabs at a time, excluding the
+/// store's own. Measured (tests/python/test_memory_limit.py): never below the actual use, and above
+/// it by at most a third plus some MiB.
 double bytes_needed(const SampleStore& store, const CloudLoad& load, bool keeps_all, int threads);
 
-/// The fastest way within the limit. A limit of 0 stands for as little as can be. Throws Error
-/// where the limit is less than that; the message says how much would do.
+/// Chooses the fastest plan within the limit. A limit of 0 requests the minimum. Throws Error where
+/// the limit is below the minimum; the message states the minimum.
 MemoryPlan plan_memory(const SampleStore& store, const CloudLoad& load,
                        const ReconstructOptions& options);
 

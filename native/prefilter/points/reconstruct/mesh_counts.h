@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// How much of a mesh came out.
+// Size of a mesh.
 #pragma once
 
 #include <cstddef>

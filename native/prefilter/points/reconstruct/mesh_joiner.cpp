@@ -32,8 +32,8 @@ void MeshJoiner::add(const SlabMesh& slab, int top) {
     const VertexPlace* place = v < slab.contour.places.size() ? &slab.contour.places[v] : nullptr;
     const bool is_shared = place != nullptr && place->high(grid_.depth) >= top;
     if (place != nullptr) {
-      const auto found = known_.find(packed(*place));
-      if (found != known_.end()) return numbers[v] = found->second.number;
+      const auto it = known_.find(packed(*place));
+      if (it != known_.end()) return numbers[v] = it->second.number;
     }
     numbers[v] = static_cast<std::int64_t>(vertices_++);
     positions.push_back(grid_.from_cells(mesh.positions[v]));
@@ -57,11 +57,12 @@ void MeshJoiner::add(const SlabMesh& slab, int top) {
   if (!positions.empty()) sink_->add_vertices(std::move(positions), std::move(attributes));
   if (!triangles.empty()) sink_->add_triangles(std::move(triangles));
   std::erase_if(known_, [&](const auto& entry) { return entry.second.high < top; });
-  far_places_.clear();
-  for (const auto& [a, b, distance, density] : slab.far_places) {
+  far_midpoints_.clear();
+  for (const auto& [a, b, distance, density] : slab.far_midpoints) {
     const bool is_edge = b >= 0;
-    far_places_.push_back({is_edge ? numbers[static_cast<std::size_t>(a)] : a,
-                           is_edge ? numbers[static_cast<std::size_t>(b)] : -1, distance, density});
+    far_midpoints_.push_back({is_edge ? numbers[static_cast<std::size_t>(a)] : a,
+                              is_edge ? numbers[static_cast<std::size_t>(b)] : -1, distance,
+                              density});
   }
 }
 

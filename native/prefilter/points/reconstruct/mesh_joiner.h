@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Parts of a mesh to one, as they come.
+// Joins the slabs' parts of a mesh as they arrive.
 #pragma once
 
 #include <cstddef>
@@ -15,15 +15,16 @@
 
 namespace prefilter {
 
-/// A slab's part of the mesh, ready to be joined.
+/// One slab's part of the mesh, ready to be joined.
 struct SlabMesh {
-  ContourSlab contour;                             // positions in cells
-  std::vector<float> attributes;                   // of each vertex
-  std::vector<std::uint8_t> is_trimmed;            // vertices too far from all samples; empty: none
-  std::vector<FarPlace<std::int32_t>> far_places;  // by vertices and triangles of the contour
+  ContourSlab contour;                   // positions in cells
+  std::vector<float> attributes;         // of each vertex
+  std::vector<std::uint8_t> is_trimmed;  // vertices too far from all samples; empty: none
+  std::vector<FarMidpoint<std::int32_t>> far_midpoints;  // indices into the contour
 };
 
-/// Numbers vertices as triangles first name them, and hands all on. Slabs come from below.
+/// Assigns vertex numbers in order of first use by a triangle, and forwards the mesh. Slabs arrive
+/// from bottom to top.
 class MeshJoiner {
  public:
   MeshJoiner(const SampleGrid& grid, std::size_t attribute_count, MeshSink* sink)
@@ -31,10 +32,10 @@ class MeshJoiner {
 
   /// `top` is the height at which the next slab begins.
   void add(const SlabMesh& slab, int top);
-  /// The far places of the slab that was added last, by the numbers of vertices. None of its
+  /// Far midpoints of the last slab, in terms of vertex numbers. Requires that none of its
   /// triangles was trimmed.
-  const std::vector<FarPlace<std::int64_t>>& far_places() const { return far_places_; }
-  /// The numbers of vertices that the next slabs may name.
+  const std::vector<FarMidpoint<std::int64_t>>& far_midpoints() const { return far_midpoints_; }
+  /// Numbers of the vertices that later slabs may refer to.
   std::vector<std::int64_t> shared() const;
 
   std::size_t vertices() const { return vertices_; }
@@ -43,7 +44,7 @@ class MeshJoiner {
  private:
   struct Known {
     std::int64_t number;
-    int high;  // that the vertex reaches
+    int high;  // greatest height of the cells around the vertex
   };
 
   SampleGrid grid_;
@@ -51,8 +52,8 @@ class MeshJoiner {
   MeshSink* sink_;
   std::size_t vertices_ = 0;
   std::size_t triangles_ = 0;
-  std::vector<FarPlace<std::int64_t>> far_places_;
-  std::unordered_map<std::uint64_t, Known> known_;  // that the next slabs may name
+  std::vector<FarMidpoint<std::int64_t>> far_midpoints_;
+  std::unordered_map<std::uint64_t, Known> known_;  // vertices that later slabs may refer to
 };
 
 }  // namespace prefilter

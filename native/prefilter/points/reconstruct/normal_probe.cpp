@@ -13,17 +13,17 @@
 namespace prefilter {
 namespace {
 
-constexpr std::size_t kMostProbed = 512;
-// Fewer tell nothing for sure.
-constexpr std::size_t kLeastPairs = 256;
-constexpr std::size_t kNeighbors = 8;
-// Copies of the neighbors among them.
-constexpr std::size_t kMostNear = 24;
+constexpr std::size_t kMaxProbes = 512;  // points whose neighbors are compared
+// With fewer pairs the share is not significant.
+constexpr std::size_t kMinPairs = 256;
+constexpr std::size_t kProbeNeighbors = 8;
+// Includes copies of the neighbors.
+constexpr std::size_t kMaxNearest = 24;
 constexpr int kCellsPerSide = 32;
 // Normals are opposed if the cosine between one and the mirror image of the other is below this.
-constexpr double kOpposed = 0.0;
-// How far apart the sides of a thin part are, as a share of the distance of two points on them.
-constexpr double kThickness = 0.2;
+constexpr double kMaxOpposedCosine = 0.0;
+// Largest thickness of a thin part, as a share of the distance between two points on its sides.
+constexpr double kMaxThicknessRatio = 0.2;
 
 bool is_nearer(const NormalProbe::NearPoint& a, const NormalProbe::NearPoint& b) {
   return std::tie(a.squared, a.position, a.normal) < std::tie(b.squared, b.position, b.normal);
@@ -42,19 +42,19 @@ int index_along(double scaled) {
 
 }  // namespace
 
-NormalProbe::NormalProbe(const ThinnedPoints& some, const Box& box, const Progress& progress,
+NormalProbe::NormalProbe(const ThinnedPoints& thinned, const Box& box, const Progress& progress,
                          int threads)
     : box_(box), longest_(std::max({box.size(0), box.size(1), box.size(2)})) {
   if (!(longest_ > 0.0)) return;
   std::vector<Vector3> positions;
-  for (const ThinnedPoints::Entry& entry : some.entries()) {
+  for (const ThinnedPoints::Entry& entry : thinned.entries()) {
     if (box.squared_distance(entry.position) == 0.0) positions.push_back(scaled(entry.position));
   }
   const NeighborSearch search(positions, progress, threads);
-  Neighbors found;
-  for (std::size_t i = 0; i < std::min(kMostProbed, positions.size()); ++i) {
-    search.find(search.places()[i], kNeighbors + 1, &found);
-    probed_.push_back({positions[i], found.squares().back(), {}});
+  Neighbors neighbors;
+  for (std::size_t i = 0; i < std::min(kMaxProbes, positions.size()); ++i) {
+    search.find(search.places()[i], kProbeNeighbors + 1, &neighbors);
+    probed_.push_back({positions[i], neighbors.squares().back(), {}});
   }
   cells_.resize(std::size_t{kCellsPerSide} * kCellsPerSide * kCellsPerSide);
   for (std::size_t k = 0; k < probed_.size(); ++k) {
@@ -89,28 +89,28 @@ std::size_t NormalProbe::cell_of(const Vector3& scaled) const {
   return static_cast<std::size_t>(cell);
 }
 
-std::vector<NormalProbe::NearPoint> NormalProbe::look_at(const PointBatch& batch) const {
-  std::vector<NearPoint> found;
-  if (probed_.empty()) return found;
+std::vector<NormalProbe::NearPoint> NormalProbe::find_near(const PointBatch& batch) const {
+  std::vector<NearPoint> near;
+  if (probed_.empty()) return near;
   for (std::size_t i = 0; i < batch.positions.size(); ++i) {
-    if (!does_count(batch, i) || box_.squared_distance(batch.positions[i]) > 0.0) continue;
+    if (!is_valid_point(batch, i) || box_.squared_distance(batch.positions[i]) > 0.0) continue;
     const Vector3 position = scaled(batch.positions[i]);
     for (const std::uint32_t k : cells_[cell_of(position)]) {
       const Vector3 offset = position - probed_[k].position;
       const double squared = dot(offset, offset);
       if (squared > probed_[k].squared) continue;
-      found.push_back({k, squared, position, batch.normals[i]});
+      near.push_back({k, squared, position, batch.normals[i]});
     }
   }
-  return found;
+  return near;
 }
 
 void NormalProbe::add(const std::vector<NearPoint>& near) {
   for (const NearPoint& point : near) {
     std::vector<NearPoint>& nearest = probed_[point.probed].nearest;
-    if (nearest.size() == kMostNear && !is_nearer(point, nearest.back())) continue;
+    if (nearest.size() == kMaxNearest && !is_nearer(point, nearest.back())) continue;
     nearest.insert(std::upper_bound(nearest.begin(), nearest.end(), point, is_nearer), point);
-    if (nearest.size() > kMostNear) nearest.pop_back();
+    if (nearest.size() > kMaxNearest) nearest.pop_back();
   }
 }
 
@@ -127,12 +127,12 @@ double NormalProbe::contradiction() const {
       const double along_own = dot(own, offset);
       const double along_other = dot(other, offset);
       ++pairs;
-      if (!(dot(own, other) - along_own * along_other / near.squared < kOpposed)) continue;
-      if (along_own - along_other > kThickness * std::sqrt(near.squared)) continue;
+      if (!(dot(own, other) - along_own * along_other / near.squared < kMaxOpposedCosine)) continue;
+      if (along_own - along_other > kMaxThicknessRatio * std::sqrt(near.squared)) continue;
       ++opposed;
     }
   }
-  if (pairs < kLeastPairs) return 0.0;
+  if (pairs < kMinPairs) return 0.0;
   return static_cast<double>(opposed) / static_cast<double>(pairs);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Whether given normals agree with those of the points around them, from some points of a cloud.
+// Checks on a subset of a cloud whether given normals agree with those of neighboring points.
 #pragma once
 
 #include <array>
@@ -11,40 +11,40 @@
 #include "prefilter/base/geometry.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/points/point_source.h"
-#include "prefilter/points/reconstruct/carried_depth.h"
+#include "prefilter/points/reconstruct/automatic_depth.h"
 
 namespace prefilter {
 
-/// Collects the points nearest to some points of a cloud while all are read.
+/// Collects the neighbors of some probe points while the cloud is read.
 class NormalProbe {
  public:
-  /// A point near the probed position of a number.
+  /// A point near one of the probes.
   struct NearPoint {
     std::uint32_t probed = 0;
-    double squared = 0.0;  // distance from it, where the longest side of the box is 1
+    double squared = 0.0;  // squared distance from the probe, in units of the box's longest side
     Vector3 position{};
     std::array<float, 3> normal{};
   };
 
-  /// `some` of the positions of a cloud in a box, which bound how far the nearest points are. A box
-  /// without an extent leaves nothing to probe. Throws Error(kCancelled).
-  NormalProbe(const ThinnedPoints& some, const Box& box, const Progress& progress, int threads);
+  /// `thinned` is a subset of the cloud's positions; it bounds how far each probe's neighbors are.
+  /// A box without extent yields no probes. Throws Error(kCancelled).
+  NormalProbe(const ThinnedPoints& thinned, const Box& box, const Progress& progress, int threads);
 
-  /// The points of a batch that may be among the nearest ones.
-  std::vector<NearPoint> look_at(const PointBatch& batch) const;
-  /// Adds what `look_at` returned, one batch after the other.
+  /// The points of a batch that may be among a probe's nearest.
+  std::vector<NearPoint> find_near(const PointBatch& batch) const;
+  /// Adds the result of find_near for a batch; call in order of the batches.
   void add(const std::vector<NearPoint>& near);
 
-  /// The share of neighbors whose normals are opposed to that of the point, and which are not on
-  /// the other side of a thin part, from 0 to 1; 0 where too few points were found. About 1/2 where
-  /// each normal is reversed by chance.
+  /// Share of neighbors, from 0 to 1, whose normals are opposed to the probe's although they are
+  /// not on the other side of a thin part; 0 where too few points were found. It is about 1/2 for
+  /// normals of random sign.
   double contradiction() const;
 
  private:
   struct Probed {
     Vector3 position{};  // scaled
     double squared = 0.0;
-    std::vector<NearPoint> nearest;  // sorted
+    std::vector<NearPoint> nearest;  // sorted by distance
   };
 
   Vector3 scaled(const Vector3& position) const;
@@ -53,7 +53,7 @@ class NormalProbe {
   Box box_;
   double longest_;
   std::vector<Probed> probed_;
-  std::vector<std::vector<std::uint32_t>> cells_;  // which probed positions are near each
+  std::vector<std::vector<std::uint32_t>> cells_;  // indices of the probes near each grid cell
 };
 
 }  // namespace prefilter

@@ -11,7 +11,7 @@
 namespace prefilter {
 namespace {
 
-// A place as whole numbers: the struct has gaps.
+// A VertexPlace as integers, because the struct has padding.
 using PlaceNumbers = std::array<std::int32_t, 5>;
 
 bool are_within(const SlabMesh& part) {
@@ -21,13 +21,13 @@ bool are_within(const SlabMesh& part) {
   const auto is_triangle = [&](const std::array<std::int32_t, 3>& corners) {
     return std::all_of(corners.begin(), corners.end(), is_vertex);
   };
-  const auto is_place = [&](const FarPlace<std::int32_t>& place) {
+  const auto is_place = [&](const FarMidpoint<std::int32_t>& place) {
     if (place.b >= 0) return is_vertex(place.a) && is_vertex(place.b);
     return place.a >= 0 && place.a < triangles;
   };
   return std::all_of(part.contour.mesh.triangles.begin(), part.contour.mesh.triangles.end(),
                      is_triangle) &&
-         std::all_of(part.far_places.begin(), part.far_places.end(), is_place);
+         std::all_of(part.far_midpoints.begin(), part.far_midpoints.end(), is_place);
 }
 
 }  // namespace
@@ -42,7 +42,7 @@ void write_part(const SlabMesh& part, ArchiveWriter* file) {
   file->put_structs(places);
   file->put_all(part.attributes);
   file->put_all(part.is_trimmed);
-  file->put_structs(part.far_places);
+  file->put_structs(part.far_midpoints);
 }
 
 SlabMesh read_part(std::size_t width, ArchiveReader* file) {
@@ -58,7 +58,7 @@ SlabMesh read_part(std::size_t width, ArchiveReader* file) {
   }
   part.attributes = file->get_all<float>();
   part.is_trimmed = file->get_all<std::uint8_t>();
-  part.far_places = file->get_all<FarPlace<std::int32_t>>();
+  part.far_midpoints = file->get_all<FarMidpoint<std::int32_t>>();
   const std::size_t vertices = part.contour.mesh.positions.size();
   const bool fits = part.contour.places.size() <= vertices &&
                     part.attributes.size() == vertices * width &&

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Parts of a surface in files.
+// Reads and writes the parts of a surface.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@ namespace prefilter {
 
 void write_part(const SlabMesh& part, ArchiveWriter* file);
 
-/// Its vertices have so many attributes. Throws Error(kFile) for what is no part.
+/// Reads a part whose vertices have `width` attributes. Throws Error(kFile) for invalid data.
 SlabMesh read_part(std::size_t width, ArchiveReader* file);
 
 }  // namespace prefilter

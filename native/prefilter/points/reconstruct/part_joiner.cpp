@@ -36,7 +36,7 @@ void PartJoiner::add(const SlabMesh& part) {
   const int side = 1 << grid_.depth;
   const int top = ++next_ * slab_height_;
   joiner_->add(part, top >= side ? side + 1 : top);
-  if (cutter_) cutter_->add_far_places(joiner_->far_places());
+  if (cutter_) cutter_->add_far_midpoints(joiner_->far_midpoints());
   MeshSink* const next = cutter_ ? &*cutter_ : sink_;
   next->end_part(joiner_->shared());
 }

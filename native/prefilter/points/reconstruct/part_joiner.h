@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The parts of slabs to a mesh, cut and simplified as options say.
+// Joins the parts of all slabs, and trims and simplifies the mesh as the options request.
 #pragma once
 
 #include <cstddef>
@@ -16,20 +16,20 @@
 
 namespace prefilter {
 
-/// How many attributes vertices of slabs have: those of points, and what tells how well points
-/// support them, where that is wanted or the surface is cut by it.
+/// Number of attributes per vertex of a part: those of the points, plus the support attributes
+/// where the caller wants them or the surface is trimmed by them.
 std::size_t part_width(std::size_t attribute_count, const ReconstructOptions& options);
 
 class PartJoiner {
  public:
-  /// The memory limit of the options is that of the mesh, as far as that has to be kept; their
-  /// progress is for cancels alone.
+  /// `options.memory_limit` applies to the parts of the mesh that must be stored;
+  /// `options.progress` is only used for canceling.
   PartJoiner(const SampleGrid& grid, int slab_height, std::size_t attribute_count,
              const ReconstructOptions& options, MeshSink* sink);
 
-  /// Slab by slab, from below.
+  /// Adds the next slab's part, from bottom to top.
   void add(const SlabMesh& part);
-  /// Hands on what is left, and says what the mesh is like.
+  /// Outputs the remaining mesh, and writes its size and trimming to the report.
   void finish(const Progress& progress, ReconstructReport* report);
 
  private:

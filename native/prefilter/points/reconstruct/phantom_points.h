@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// How phantoms are found while points are measured, and left out.
+// Finds phantoms while points are measured, and excludes them.
 #pragma once
 
 #include <cstddef>
@@ -12,23 +12,23 @@
 #include "prefilter/base/progress.h"
 #include "prefilter/points/phantoms.h"
 #include "prefilter/points/point_source.h"
-#include "prefilter/points/reconstruct/carried_depth.h"
+#include "prefilter/points/reconstruct/automatic_depth.h"
 
 namespace prefilter {
 
-/// Positions that may hold many points, collected batch by batch. A position is found for sure
-/// where it holds `least()` points, in whichever batches these are.
+/// Positions that may hold many points, collected batch by batch. Every position that holds at
+/// least `least()` points is included.
 class RepeatedPositions {
  public:
-  /// The positions of a batch that it holds most often. Points that are not finite do not count.
+  /// The most frequent positions of a batch. Points that are not finite are ignored.
   static std::vector<ThinnedPoints::Entry> of_batch(const PointBatch& batch);
 
-  /// Adds what `of_batch` returned of a batch of so many points.
+  /// Adds the result of of_batch for a batch of `points` points.
   void add(const std::vector<ThinnedPoints::Entry>& entries, std::size_t points);
 
   bool is_empty() const { return entries_.empty(); }
   std::size_t least() const { return least_; }
-  /// By their numbers.
+  /// Positions by their hashes.
   const std::unordered_map<std::uint64_t, Vector3>& entries() const { return entries_; }
 
  private:
@@ -36,12 +36,12 @@ class RepeatedPositions {
   std::size_t least_ = 0;
 };
 
-/// The phantoms among these positions of a source, which is read again where there may be some: see
-/// phantoms.h.
+/// The phantoms among the repeated positions of a source, which is read again if there are any;
+/// phantoms.h defines phantoms.
 std::vector<PhantomPlace> find_phantoms(const RepeatedPositions& repeated, PointSource* source,
                                         const Progress& progress, int threads);
 
-/// A source without the points at some positions.
+/// A source without the points at given positions.
 class PointsWithout final : public ChangedPoints {
  public:
   PointsWithout(PointSource* source, const std::vector<PhantomPlace>& places);

@@ -16,10 +16,10 @@
 namespace prefilter {
 namespace {
 
-constexpr double kHalfDiagonal = 0.8661;
-constexpr double kLeastCoherence = 0.2;
+constexpr double kHalfDiagonal = 0.8661;    // sqrt(3) / 2, rounded up
+constexpr double kMinPlaneCoherence = 0.2;  // least length of the mean normal
 
-// A plane in the coordinates of a unit cell.
+// A plane in coordinates in which the cell is the unit cube.
 struct Plane {
   Vector3 normal;  // of length 1
   Vector3 point;
@@ -27,7 +27,7 @@ struct Plane {
 
 std::optional<Plane> plane_of(const Vector3& normal, const Vector3& position, double weight) {
   const double length = std::sqrt(dot(normal, normal));
-  if (!(length > kLeastCoherence * weight)) return std::nullopt;
+  if (!(length > kMinPlaneCoherence * weight)) return std::nullopt;
   Plane plane;
   for (std::size_t a = 0; a < 3; ++a) {
     plane.normal[a] = normal[a] / length;
@@ -44,7 +44,7 @@ std::optional<Plane> plane_of(const SampleCell& cell) {
   return plane_of(doubles(cell.normal), doubles(cell.position), static_cast<double>(cell.weight));
 }
 
-// The part of a plane in the unit cell; its corners run around the normal.
+// Clips a plane to the unit cell; corners run counterclockwise around the normal.
 CellPolygon cut_to_cell(const Plane& plane) {
   const Vector3& n = plane.normal;
   const Vector3 middle = {0.5, 0.5, 0.5};
@@ -69,13 +69,13 @@ CellPolygon cut_to_cell(const Plane& plane) {
   return polygon;
 }
 
-// Where pieces of planes go.
-struct Pieces {
+// Adds patches of planes to the flux of the cells that contain them.
+struct PatchSink {
   const SplitCells& splits;
   PooledFlux* flux;
 
-  // That of a plane in a cell of depth `k`, or in its octants where it is split. Only those with
-  // samples tell where the function is.
+  // Adds a plane's patch in a cell of depth `k`, or in its octants where it is split. Only patches
+  // of cells with samples constrain the function's value.
   void add(std::uint64_t place, int k, const Plane& plane, bool is_sampled) const {
     const CellPolygon polygon = cut_to_cell(plane);
     if (polygon.count >= 3) add_cut(place, k, plane, polygon, is_sampled);
@@ -101,7 +101,7 @@ struct Pieces {
   }
 
  private:
-  // At the mean of the corners, which is within the piece.
+  // Uses the mean of the corners as the position, which lies within the patch.
   static SampledArea sampled_area(const CellPolygon& polygon, const BoundaryFlux& flux) {
     SampledArea result;
     const double area = std::sqrt(dot(flux.area, flux.area));
@@ -115,22 +115,22 @@ struct Pieces {
   }
 };
 
-// That a plane leaves its cell through a face, and goes on in a cell without samples.
-struct Leaving {
-  CellKey key;  // of that cell
+// A plane that leaves its cell through a face into a cell without samples.
+struct PlaneExit {
+  CellKey key;  // of the cell entered
   const SampleCell* from;
   int face;
 };
 
-// Sums for a cell without samples, from the planes next to it.
-struct Guess {
+// Sums for a cell without samples, extrapolated from the planes that enter it.
+struct ExtrapolatedPlane {
   CellKey key = 0;
   Vector3 normal{};
   Vector3 position{};
   double weight = 0.0;
 };
 
-// Whether there are samples in the neighbors of cells that are asked for in row-major order.
+// Finds the neighbors of cells; queries must come in row-major order.
 class CellNeighbors {
  public:
   explicit CellNeighbors(const std::vector<CellKey>& keys) : keys_(keys) {}
@@ -146,20 +146,20 @@ class CellNeighbors {
   std::array<std::size_t, 6> cursors_{};
 };
 
-// The cells that planes may be guessed for.
+// The cells into which planes may be extrapolated.
 struct CellRange {
   int side;  // of the root, in cells
-  int low;   // heights
-  int high;
+  int low;   // lowest height
+  int high;  // end of the heights
 
   bool holds(const CellPosition& at, int axis) const {
     return at[axis] >= 0 && at[axis] < side && at[2] >= low && at[2] < high;
   }
 };
 
-// Adds where the plane of a cell goes on in the cells next to it that have no samples.
-void add_leaving(const SampleCell& cell, const CellPolygon& polygon, const CellRange& range,
-                 CellNeighbors* neighbors, std::vector<Leaving>* leaving) {
+// Adds the exits of a cell's plane into adjacent cells without samples.
+void add_exits(const SampleCell& cell, const CellPolygon& polygon, const CellRange& range,
+               CellNeighbors* neighbors, std::vector<PlaneExit>* exits) {
   const CellPosition at = cell_position(cell.key);
   for (int face = 0; face < 6; ++face) {
     const int axis = face / 2;
@@ -169,21 +169,21 @@ void add_leaving(const SampleCell& cell, const CellPolygon& polygon, const CellR
     next[axis] += is_high ? 1 : -1;
     if (!range.holds(next, axis)) continue;
     if (neighbors->has(static_cast<std::size_t>(face), cell_key(next))) continue;
-    leaving->push_back({cell_key(next), &cell, face});
+    exits->push_back({cell_key(next), &cell, face});
   }
 }
 
-// The sums for each cell that planes go on in, in the order of these cells.
-std::vector<Guess> guesses_of(std::vector<Leaving> leaving) {
-  std::stable_sort(leaving.begin(), leaving.end(),
-                   [](const Leaving& a, const Leaving& b) { return a.key < b.key; });
-  std::vector<Guess> guesses;
-  for (const Leaving& each : leaving) {
+// Sums the exits per cell entered, in order of these cells.
+std::vector<ExtrapolatedPlane> sum_exits(std::vector<PlaneExit> exits) {
+  std::stable_sort(exits.begin(), exits.end(),
+                   [](const PlaneExit& a, const PlaneExit& b) { return a.key < b.key; });
+  std::vector<ExtrapolatedPlane> guesses;
+  for (const PlaneExit& each : exits) {
     if (guesses.empty() || guesses.back().key != each.key) guesses.push_back({each.key});
     const SampleCell& cell = *each.from;
     std::array<float, 3> position = cell.position;
     position[each.face / 2] += (each.face & 1) != 0 ? -cell.weight : cell.weight;
-    Guess& sum = guesses.back();
+    ExtrapolatedPlane& sum = guesses.back();
     sum.weight += static_cast<double>(cell.weight);
     sum.normal = sum.normal + doubles(cell.normal);
     sum.position = sum.position + doubles(position);
@@ -191,7 +191,7 @@ std::vector<Guess> guesses_of(std::vector<Leaving> leaving) {
   return guesses;
 }
 
-// Calls visit(level, i) for the cells of a slab and of the layers next to it, in row-major order.
+// Calls visit(level, i) for the cells of a slab and of the adjacent layers, in row-major order.
 template <typename Visit>
 void for_cells_and_layers(const SampleLevel* below, const SampleLevel& level,
                           const SampleLevel* above, const CellRange& range, const Visit& visit) {
@@ -208,18 +208,19 @@ void for_cells_and_layers(const SampleLevel* below, const SampleLevel& level,
   }
 }
 
-// Whether leaves of another size tell of a cell without samples: a coarser one that holds it, or
-// smaller ones beside it.
-bool is_others(CellKey key, const SampleLevel* coarser, const std::vector<CellKey>& split) {
+// Whether a cell without samples is covered by leaves of another size: by a coarser one that
+// contains it, or by finer ones next to it.
+bool is_covered_by_other_depths(CellKey key, const SampleLevel* coarser,
+                                const std::vector<CellKey>& split) {
   const CellPosition at = cell_position(key);
   if (coarser != nullptr) {
     const std::vector<SampleCell>& cells = coarser->samples.cells;
     const CellKey parent = cell_key({at[0] / 2, at[1] / 2, at[2] / 2});
-    const auto found =
+    const auto it =
         std::lower_bound(cells.begin(), cells.end(), parent,
                          [](const SampleCell& cell, CellKey sought) { return cell.key < sought; });
-    if (found != cells.end() && found->key == parent &&
-        coarser->is_split[static_cast<std::size_t>(found - cells.begin())] == 0) {
+    if (it != cells.end() && it->key == parent &&
+        coarser->is_split[static_cast<std::size_t>(it - cells.begin())] == 0) {
       return true;
     }
   }
@@ -239,10 +240,10 @@ void add_patches(const PatchLevels& levels, int depth, int low, int high, const 
                  PooledFlux* flux) {
   const auto& [below, own, above, coarser] = levels;
   const SampleLevel& level = *own;
-  const Pieces pieces = {splits, flux};
+  const PatchSink sink = {splits, flux};
   const std::vector<CellKey> keys = with_layers(below, level, above).keys;
   CellNeighbors neighbors(keys);
-  std::vector<Leaving> leaving;
+  std::vector<PlaneExit> exits;
   const CellRange range = {1 << depth, low, high};
   std::vector<CellKey> split;
   const auto visit = [&](const SampleLevel& from, std::size_t i) {
@@ -254,15 +255,15 @@ void add_patches(const PatchLevels& levels, int depth, int low, int high, const 
     const CellPolygon polygon = cut_to_cell(*plane);
     if (polygon.count < 3) return;
     if (&from == &level) {
-      pieces.add_cut(morton_index(cell_position(cell.key)), depth, *plane, polygon, true);
+      sink.add_cut(morton_index(cell_position(cell.key)), depth, *plane, polygon, true);
     }
-    add_leaving(cell, polygon, range, &neighbors, &leaving);
+    add_exits(cell, polygon, range, &neighbors, &exits);
   };
   for_cells_and_layers(below, level, above, range, visit);
-  for (const Guess& guess : guesses_of(std::move(leaving))) {
-    if (is_others(guess.key, coarser, split)) continue;
+  for (const ExtrapolatedPlane& guess : sum_exits(std::move(exits))) {
+    if (is_covered_by_other_depths(guess.key, coarser, split)) continue;
     const std::optional<Plane> plane = plane_of(guess.normal, guess.position, guess.weight);
-    if (plane) pieces.add(morton_index(cell_position(guess.key)), depth, *plane, false);
+    if (plane) sink.add(morton_index(cell_position(guess.key)), depth, *plane, false);
   }
 }
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The surface in each cell as a piece of a plane.
+// Represents the surface in each leaf by a planar patch.
 //
-// Beyond the text, which gives each leaf the area of its side. A few samples scattered over a cell
-// give its flux but roughly; the plane across their mean normal, cut to the cell, gives it to the
-// second order. Where such a plane leaves through a face and there are no samples behind it, the
-// surface is taken to go on: cells that it merely grazes may have been missed.
+// Not in the dissertation, which gives each leaf the area of one side. A few samples scattered over
+// a cell approximate its flux poorly; the plane through their mean, across their mean normal and
+// clipped to the cell, gives it to second order. Where such a plane leaves its cell into one
+// without samples, the surface is assumed to continue: cells that it barely touches may contain no
+// sample.
 #pragma once
 
 #include <vector>
@@ -16,8 +17,8 @@
 
 namespace prefilter {
 
-/// The samples of a depth in a slab, and in those below and above it, and of the depth above in the
-/// same slab; null where there are none.
+/// The sample levels of one depth in a slab and the slabs below and above it, and the next coarser
+/// level in the same slab; null where there are none.
 struct PatchLevels {
   const SampleLevel* below;
   const SampleLevel* own;
@@ -25,9 +26,9 @@ struct PatchLevels {
   const SampleLevel* coarser;
 };
 
-/// Adds the pieces in the cells of one depth of a slab whose samples count there, and in those
-/// between them. The slab is from `low` up to `high`, in cells. In cells that are split the pieces
-/// are cut further.
+/// Adds the patches of one depth: in the slab's cells whose samples count at this depth, and in the
+/// gaps between them. The slab reaches from `low` up to `high`, in cells. In split cells the
+/// patches are clipped to the octants.
 void add_patches(const PatchLevels& levels, int depth, int low, int high, const SplitCells& splits,
                  PooledFlux* flux);
 

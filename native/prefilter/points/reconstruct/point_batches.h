@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A source's points, read by one thread and looked at by several.
+// Reads a source's points in one thread and processes them in several.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace prefilter {
 
-/// Reads batches, hands some at a time to threads, and joins what these make of them in order.
+/// Reads batches, calls make(batch, &part) for several at a time, and join(part) in order.
 template <typename Part, typename Make, typename Join>
 void for_batches(PointSource* source, const Progress& progress, int threads, const Make& make,
                  const Join& join) {
@@ -27,7 +27,7 @@ void for_batches(PointSource* source, const Progress& progress, int threads, con
   for (bool is_more = true; is_more;) {
     std::size_t filled = 0;
     while (filled < width) {
-      is_more = source->read(PointOrder::kMostPoints, &batches[filled]);
+      is_more = source->read(PointOrder::kMaxPoints, &batches[filled]);
       if (!is_more) break;
       done += batches[filled].positions.size();
       ++filled;

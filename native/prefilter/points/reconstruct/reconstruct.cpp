@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Slab by slab (section 4.3.2): the samples of all slabs give the coarse levels of the tree; with
-// these a slab's own levels can be made, smoothed, contoured and dropped.
+// Reconstructs slab by slab (section 4.3.2). The samples of all slabs determine the coarse levels
+// of the octree; given these, each slab's own levels are computed, smoothed, contoured and dropped.
 #include "prefilter/points/reconstruct.h"
 
 #include <optional>
@@ -20,7 +20,7 @@
 namespace prefilter {
 namespace {
 
-// Of reversed normals, where a tenth of all are, a fifth of the neighbors' are opposed.
+// Share of opposed neighbors at which about 1/10 of all normals are reversed.
 constexpr double kMostContradiction = 0.2;
 
 }  // namespace
@@ -33,7 +33,7 @@ ReconstructReport reconstruct(PointSource* source, const ReconstructOptions& opt
                               MeshSink* sink) {
   check_options(options);
   const bool is_automatic = !options.depth && !options.cell_size;
-  CloudLoad load = {source->count().value_or(PointOrder::kMostPoints), source->attributes().size(),
+  CloudLoad load = {source->count().value_or(PointOrder::kMaxPoints), source->attributes().size(),
                     options.basis, options.adaptivity > 0.0};
   const int width = batches_at_once(load, options);
   MeasuredCloud cloud(source, is_automatic || options.check_normals,
@@ -45,17 +45,17 @@ ReconstructReport reconstruct(PointSource* source, const ReconstructOptions& opt
     return report;
   }
   load.points = cloud.extent().part.points;
-  cloud.leave_out_rest(options.progress.part(0.08, 0.1), width);
+  cloud.exclude_outliers(options.progress.part(0.08, 0.1), width);
   source = cloud.points();
   const CloudExtent& extent = cloud.extent();
-  const SampleGrid grid = grid_of(extent.part.box, cloud.some(), options);
+  const SampleGrid grid = grid_of(extent.part.box, cloud.thinned(), options);
   describe_grid(grid, extent, &report);
   report.points += cloud.phantom_points();
   std::optional<NormalProbe> probe;
   if (options.check_normals) {
-    probe.emplace(cloud.some(), extent.part.box, options.progress.part(0.12, 0.13), width);
+    probe.emplace(cloud.thinned(), extent.part.box, options.progress.part(0.12, 0.13), width);
   }
-  cloud.some() = ThinnedPoints();
+  cloud.thinned() = ThinnedPoints();
   SampleStore store(grid.depth, slab_bits(grid.depth), source->attributes().size(),
                     options.memory_limit / 4, options.folder);
   gather_samples(source, grid, options.progress.part(0.13, 0.4), width, &store,
@@ -68,18 +68,18 @@ ReconstructReport reconstruct(PointSource* source, const ReconstructOptions& opt
   const MemoryPlan plan = plan_memory(store, load, options);
   if (!plan.is_held) store.spill();
   report.is_spilled = store.is_spilled();
-  ReconstructOptions rest = options;
-  rest.progress = options.progress.part(0.4, 1.0);
-  rest.threads = plan.threads;
-  rest.memory_limit = plan.left;
-  SurfaceParts parts(source, load.attributes, grid, extent, rest, plan.keeps_all, &store);
+  ReconstructOptions slab_options = options;
+  slab_options.progress = options.progress.part(0.4, 1.0);
+  slab_options.threads = plan.threads;
+  slab_options.memory_limit = plan.left;
+  SurfaceParts parts(source, load.attributes, grid, extent, slab_options, plan.keeps_all, &store);
   parts.describe(&report);
-  ReconstructOptions mesh = rest;
-  mesh.progress = rest.progress.part(0.6, 0.6);
-  PartJoiner joiner(grid, parts.slab_height(), load.attributes, mesh, sink);
-  parts.make(0, parts.count(), rest.progress.part(0.6, 0.95),
+  ReconstructOptions mesh_options = slab_options;
+  mesh_options.progress = slab_options.progress.part(0.6, 0.6);
+  PartJoiner joiner(grid, parts.slab_height(), load.attributes, mesh_options, sink);
+  parts.make(0, parts.count(), slab_options.progress.part(0.6, 0.95),
              [&](const SlabMesh& part) { joiner.add(part); });
-  joiner.finish(rest.progress.part(0.95, 1.0), &report);
+  joiner.finish(slab_options.progress.part(0.95, 1.0), &report);
   check_mesh(options, report);
   return report;
 }

@@ -46,12 +46,12 @@ void check_options(const ReconstructOptions& options) {
 
 void check_cloud(const CloudExtent& extent) {
   if (extent.part.points < 3) {
-    std::string found = extent.points == 0 ? "none" : std::to_string(extent.part.points);
+    std::string count = extent.points == 0 ? "none" : std::to_string(extent.part.points);
     if (extent.dropped.sum() > 0) {
-      found += " of " + std::to_string(extent.points) +
+      count += " of " + std::to_string(extent.points) +
                " count, as the others have no finite position below 1e30, no normal or no weight";
     }
-    throw_invalid("points: " + found + "; at least 3 are needed");
+    throw_invalid("points: " + count + "; at least 3 are needed");
   }
   const Box& box = extent.part.box;
   const double longest = std::max({box.size(0), box.size(1), box.size(2)});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What reconstructions refuse, with messages that say what is needed.
+// Checks the inputs and results of reconstructions; messages state what is required.
 #pragma once
 
 #include "prefilter/points/reconstruct.h"
@@ -10,9 +10,9 @@ namespace prefilter {
 
 /// Throws Error for options out of range.
 void check_options(const ReconstructOptions& options);
-/// Throws Error for clouds of fewer than 3 points, or that all coincide.
+/// Throws Error for clouds of fewer than 3 valid points, or whose points all coincide.
 void check_cloud(const CloudExtent& extent);
-/// Throws Error for a mesh of no triangle, which helps nobody.
+/// Throws Error for a mesh without triangles.
 void check_mesh(const ReconstructOptions& options, const ReconstructReport& report);
 
 }  // namespace prefilter

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What is kept of the samples in a cell: sums, which nest.
+// Sums over the samples in a cell.
 //
-// All that the Haar coefficients need is linear in a sample's normal and in the products p_a n_a
-// (wavelet/boundary_flux.h), and so is all that a local plane needs of its samples, but for the
-// weight that falls off with the distance. So a cloud becomes a list of cells, as long as the
-// surface is large, however many samples there are.
+// The Haar coefficients (wavelet/boundary_flux.h) are linear in a sample's normal and in the
+// products p_a n_a. So is everything that a local plane needs, except for the distance weights,
+// which are applied per cell. Therefore a cloud is stored as a list of cells, whose length depends
+// on the area of the surface and not on the number of samples.
 #pragma once
 
 #include <array>
@@ -14,14 +14,14 @@
 
 namespace prefilter {
 
-/// The coordinates of a cell, from 0 to 4095, in cells of its depth.
+/// Coordinates of a cell at its depth, from 0 to 4095.
 using CellPosition = std::array<std::int32_t, 3>;
 
-/// Where a cell is in row-major order: z first, x last. Between neighbors of any two cells there
-/// is room, so that keys of neighbors outside of the root name no cell.
+/// Index of a cell in row-major order: z first, x last. Gaps between rows ensure that the key of a
+/// neighbor outside the root names no cell.
 using CellKey = std::uint64_t;
 
-inline constexpr int kRowShift = 13;
+inline constexpr int kRowShift = 13;  // bits per coordinate
 inline constexpr int kKeyBits = 3 * kRowShift;
 
 inline CellKey cell_key(const CellPosition& cell) {
@@ -36,12 +36,11 @@ inline CellPosition cell_position(CellKey key) {
           static_cast<std::int32_t>(key >> (2 * kRowShift)) - 1};
 }
 
-/// Sums over samples in a cell, each times its weight. Positions p are in cells, from the low
-/// corner.
+/// Weighted sums over the samples in a cell. Positions p are in cells, relative to the low corner.
 struct SampleCell {
   CellKey key = 0;
   float weight = 0.0F;
-  std::array<float, 3> normal{};    // of n, of length 1, outward
+  std::array<float, 3> normal{};    // of the outward unit normals n
   std::array<float, 3> position{};  // of p
   std::array<float, 3> flux{};      // of p_x n_x, p_y n_y, p_z n_z
 
@@ -55,7 +54,7 @@ struct SampleCell {
   }
 };
 
-/// The same samples as part of the cell of the next smaller depth.
+/// Converts the sums to the coordinates of the parent cell.
 inline SampleCell in_parent(const SampleCell& cell) {
   const CellPosition at = cell_position(cell.key);
   SampleCell parent = cell;
@@ -68,10 +67,10 @@ inline SampleCell in_parent(const SampleCell& cell) {
   return parent;
 }
 
-/// Cells in the order of their keys, each once, and sums of what else the samples carry.
+/// Cells in order of their keys, without duplicates, and the sums of the samples' attributes.
 struct SampleCells {
   std::vector<SampleCell> cells;
-  std::vector<float> attributes;  // of each cell one sum, weighted, for each attribute
+  std::vector<float> attributes;  // weighted sums, for each cell all attributes
 
   std::size_t size() const { return cells.size(); }
 };

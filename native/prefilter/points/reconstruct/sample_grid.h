@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The cells that samples are put into.
+// The grid of cells into which samples are sorted.
 #pragma once
 
 #include <array>
@@ -10,8 +10,8 @@
 
 namespace prefilter {
 
-/// A cube of 2^depth cells along an axis. Its axes are those of the points, moved on in a circle so
-/// that z is the one along which the cloud is longest: slabs between heights are then smallest.
+/// A cube of 2^depth cells per axis. The points' axes are rotated cyclically so that z is the
+/// cloud's longest axis, which makes the slabs between two heights smallest.
 struct SampleGrid {
   int depth = 0;
   int turn = 0;       // axis a of the grid is axis (a + turn) % 3 of the points
@@ -29,7 +29,7 @@ struct SampleGrid {
     return result;
   }
 
-  /// A point in cells from the low corner.
+  /// Converts a point to cells from the low corner.
   Vector3 in_cells(const Vector3& point) const {
     const Vector3 p = turned(point);
     return {(p[0] - low[0]) / cell, (p[1] - low[1]) / cell, (p[2] - low[2]) / cell};

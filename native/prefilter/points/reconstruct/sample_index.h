@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Samples near a point.
+// Finds the samples near a point.
 #pragma once
 
 #include <algorithm>
@@ -15,14 +15,14 @@
 
 namespace prefilter {
 
-/// The cells of one depth between two heights, by rows.
+/// The cells of one depth between two heights, indexed by rows.
 class SampleIndex {
  public:
   SampleIndex(int depth, int low, int high) : side_(1 << depth), low_(low), high_(high) {
     rows_.reserve(static_cast<std::size_t>(side_) * static_cast<std::size_t>(high - low) + 1);
   }
 
-  /// The next cells, from below; those at other heights are passed over.
+  /// Adds cells in order from bottom to top; cells at other heights are ignored.
   void add(const SampleLevel& level) {
     for (std::size_t i = 0; i < level.size(); ++i) {
       const SampleCell& cell = level.samples.cells[i];
@@ -37,9 +37,9 @@ class SampleIndex {
     begin_rows(static_cast<std::size_t>(side_) * static_cast<std::size_t>(high_ - low_) + 1);
   }
 
-  /// Calls visit(cell, corner, attributes) for the cells with samples up to `reach` cells away from
-  /// the one that holds a point, along each axis; `corner` is the cell's low one. Points and
-  /// corners are in cells from the root's corner.
+  /// Calls visit(cells, index, corner) for the cells with samples within `reach` cells, along each
+  /// axis, of the cell that contains a point; `corner` is the cell's low corner. Points and corners
+  /// are in cells from the root's corner.
   template <typename Visit>
   void for_near(const Vector3& point, int reach, const Visit& visit) const {
     CellPosition at;
@@ -50,23 +50,23 @@ class SampleIndex {
     for (int z = std::max(at[2] - reach, low_); z <= std::min(at[2] + reach, high_ - 1); ++z) {
       for (int y = std::max(at[1] - reach, 0); y <= std::min(at[1] + reach, side_ - 1); ++y) {
         const std::size_t r = row(y, z);
-        auto found = cells_.begin() + rows_[r];
+        auto entry = cells_.begin() + rows_[r];
         const auto end = cells_.begin() + rows_[r + 1];
-        if (end - found > 8) {
-          found = std::lower_bound(found, end, at[0] - reach,
+        if (end - entry > 8) {
+          entry = std::lower_bound(entry, end, at[0] - reach,
                                    [](const Entry& e, std::int32_t x) { return e.x < x; });
         }
-        for (; found != end && found->x <= at[0] + reach; ++found) {
-          if (found->x < at[0] - reach) continue;
-          visit(found->level->samples, found->index,
-                Vector3{static_cast<double>(found->x), static_cast<double>(y),
+        for (; entry != end && entry->x <= at[0] + reach; ++entry) {
+          if (entry->x < at[0] - reach) continue;
+          visit(entry->level->samples, entry->index,
+                Vector3{static_cast<double>(entry->x), static_cast<double>(y),
                         static_cast<double>(z)});
         }
       }
     }
   }
 
-  /// Calls visit(cell) for all.
+  /// Calls visit(cell) for all cells.
   template <typename Visit>
   void for_all(const Visit& visit) const {
     for (const Entry& entry : cells_) visit(entry.level->samples.cells[entry.index]);
@@ -83,7 +83,7 @@ class SampleIndex {
     return static_cast<std::size_t>(z - low_) * static_cast<std::size_t>(side_) +
            static_cast<std::size_t>(y);
   }
-  // Rows before this number begin at cells before the next one.
+  // Completes the row offsets below `count`: these rows end at the present number of cells.
   void begin_rows(std::size_t count) {
     while (rows_.size() < count) rows_.push_back(static_cast<std::uint32_t>(cells_.size()));
   }
@@ -92,7 +92,7 @@ class SampleIndex {
   int low_;
   int high_;
   std::vector<Entry> cells_;
-  std::vector<std::uint32_t> rows_;  // where they begin
+  std::vector<std::uint32_t> rows_;  // offset of each row's first cell
 };
 
 }  // namespace prefilter

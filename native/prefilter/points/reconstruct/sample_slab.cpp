@@ -17,25 +17,27 @@ namespace prefilter {
 namespace {
 
 constexpr int kIndexBits = 64 - kKeyBits;
-constexpr int kAreaSteps = 2;
-// Cells this large always count, so that there is one where every sample does.
+constexpr int kAreaDepthsUp = 2;  // areas are averaged over cells so much coarser
+// Cells at this depth always count, so that every sample has a leaf.
 constexpr int kCoarsestLeaf = 2;
-// A plane through a cell's middle meets about so many cells of the 27 around it.
-constexpr double kCellsAround = 9.0;
-// Of a surface, cells with samples among the 27 around one, and how far the means of their samples
-// are from a plane, in cells: of points spread over space that is about 0.8.
-constexpr std::size_t kLeastOfSurface = 6;
-constexpr double kMostOffPlane = 0.25;
-// Depths that a stray's cell is above those of the samples around it.
-constexpr int kOutlierDepths = 3;
-// In a cell that the surface meets.
-constexpr double kLeastSamples = 0.75;
-// In the cells around one that has octants with so many.
-constexpr double kEnough = 4.0 * kCellsAround * kLeastSamples;
-// In a cell that is met, for its octants' octants: just less than 8, as rounding is not to decide.
-constexpr double kEnoughOfCell = 7.99;
-// Where there are so many in the cells around one, a sample in it without neighbors is a stray.
-constexpr double kIsolated = 6.0 * kCellsAround * (1 << (2 * (kOutlierDepths - 1)));
+// Approximate number of cells, among the 27 around one, that a plane through its center crosses.
+constexpr double kCrossedCellsAround27 = 9.0;
+// Criteria for a surface: occupied cells among the 27 around one, and the RMS distance of their
+// mean samples from a plane, in cells. For points scattered in space the latter is about 0.8.
+constexpr std::size_t kMinSurfaceCells = 6;
+constexpr double kMaxRmsOffPlane = 0.25;
+// Minimum difference in depth between the cell of a stray sample and the samples around it.
+constexpr int kStrayDepths = 3;
+// Samples per crossed cell.
+constexpr double kMinSamplesPerCell = 0.75;
+// Samples in the 27 cells around one whose octants hold kMinSamplesPerCell each.
+constexpr double kMinSamplesAround27 = 4.0 * kCrossedCellsAround27 * kMinSamplesPerCell;
+// Samples per crossed cell from which it can be refined twice: slightly less than 8, so that
+// rounding does not decide.
+constexpr double kMinSamplesOfCell = 7.99;
+// Samples in the 27 cells around one from which a lone sample in it is a stray.
+constexpr double kStraySamplesAround =
+    6.0 * kCrossedCellsAround27 * (1 << (2 * (kStrayDepths - 1)));
 
 SampleLevel coarser(SampleLevel* level, std::size_t attribute_count) {
   const std::vector<SampleCell>& cells = level->samples.cells;
@@ -75,9 +77,9 @@ SampleLevel coarser(SampleLevel* level, std::size_t attribute_count) {
   return result;
 }
 
-// Whether the mean samples of cells are near a plane; means are in cells from anywhere.
+// Whether the mean samples of cells lie near a plane.
 bool are_flat(std::span<const Vector3> means) {
-  if (means.size() < kLeastOfSurface) return false;
+  if (means.size() < kMinSurfaceCells) return false;
   const double share = 1.0 / static_cast<double>(means.size());
   Vector3 middle{};
   for (const Vector3& mean : means) middle = middle + share * mean;
@@ -89,8 +91,8 @@ bool are_flat(std::span<const Vector3> means) {
     const double off = dot(mean - middle, normal);
     squared += off * off;
   }
-  // Three of any points are on a plane.
-  return squared <= kMostOffPlane * kMostOffPlane * static_cast<double>(means.size() - 3);
+  // Any three points lie on a plane.
+  return squared <= kMaxRmsOffPlane * kMaxRmsOffPlane * static_cast<double>(means.size() - 3);
 }
 
 Vector3 mean_sample(const SampleCell& cell) {
@@ -102,10 +104,10 @@ Vector3 mean_sample(const SampleCell& cell) {
   return mean;
 }
 
-// Of the cells, those with enough neighbors, and those thinly sampled ones that are of no surface.
-// As keys are in row-major order, so are the nine rows around them: one cursor for each goes
-// through all keys once.
-void mark_met(const CellLayers& cells, double mean_weight, SampleLevel* level) {
+// Counts the occupied neighbors of each cell, and marks thinly sampled cells that lie on no
+// surface. Because keys are in row-major order, the nine rows around consecutive cells are as well,
+// so one cursor per row suffices for a single pass.
+void mark_crossed_cells(const CellLayers& cells, double mean_weight, SampleLevel* level) {
   const std::vector<CellKey>& keys = cells.keys;
   std::array<CellKey, 9> rows;
   for (std::size_t r = 0; r < 9; ++r) {
@@ -120,7 +122,7 @@ void mark_met(const CellLayers& cells, double mean_weight, SampleLevel* level) {
   std::vector<Vector3> means;
   for (std::size_t i = 0; i < level->size(); ++i) {
     const CellKey key = level->samples.cells[i].key;
-    int found = -1;  // itself
+    int last_near = -1;  // excludes the cell itself
     float around = 0.0F;
     means.clear();
     for (std::size_t r = 0; r < 9; ++r) {
@@ -128,62 +130,62 @@ void mark_met(const CellLayers& cells, double mean_weight, SampleLevel* level) {
       std::size_t& cursor = cursors[r];
       while (cursor < keys.size() && keys[cursor] + 1 < middle) ++cursor;
       for (std::size_t j = cursor; j < keys.size() && keys[j] <= middle + 1; ++j) {
-        ++found;
+        ++last_near;
         around += cells.cells[j]->weight;
-        near[static_cast<std::size_t>(found)] = cells.cells[j];
+        near[static_cast<std::size_t>(last_near)] = cells.cells[j];
       }
     }
     level->around[i] = around;
-    level->occupied[i] = static_cast<std::uint8_t>(found + 1);
+    level->occupied[i] = static_cast<std::uint8_t>(last_near + 1);
     level->is_scattered[i] = 0;
-    if (static_cast<double>(around) >= kIsolated * mean_weight) continue;
-    for (int n = 0; n <= found; ++n)
+    if (static_cast<double>(around) >= kStraySamplesAround * mean_weight) continue;
+    for (int n = 0; n <= last_near; ++n)
       means.push_back(mean_sample(*near[static_cast<std::size_t>(n)]));
     level->is_scattered[i] = are_flat(means) ? 0 : 1;
   }
 }
 
-// Of the cells that the surface meets, the share in which there are samples, from their mean
-// number where there are some. With rho samples per cell that is met, whose share of the surface is
-// spread evenly between 0 and twice its mean, that share is 1 - (1 - exp(-2 rho)) / (2 rho).
+// Share of the crossed cells that contain samples, from the mean number of samples per occupied
+// cell. Suppose rho samples per crossed cell, and cells' shares of the surface spread evenly
+// between 0 and twice their mean; then it is 1 - (1 - exp(-2 rho)) / (2 rho).
 double share_hit(double samples_per_cell) {
-  constexpr double kLeast = 0.3;
+  constexpr double kMinShare = 0.3;  // lower limit of the result
   double rho = samples_per_cell;
   for (int i = 0; i < 30; ++i) {
     const double share = 1.0 + elementary::expm1(-2.0 * rho) / (2.0 * rho);
-    if (share < kLeast) return kLeast;
+    if (share < kMinShare) return kMinShare;
     rho = samples_per_cell * share;
   }
   return rho / samples_per_cell;
 }
 
-// Of the surface in a cell, in sides of the cell squared, if it is met as often as cells are on
-// average.
+// Expected area of the surface in a cell, in squared cell sides, averaged over all positions of a
+// plane with the cell's normal.
 double area_in(const SampleCell& cell) {
   Vector3 n;
   for (std::size_t a = 0; a < 3; ++a) n[a] = static_cast<double>(cell.normal[a]);
   const double sum = std::abs(n[0]) + std::abs(n[1]) + std::abs(n[2]);
   const double length = std::sqrt(dot(n, n));
-  // Normals that cancel each other tell nothing: the mean over all directions.
+  // Normals cancel each other: use the mean over all directions.
   if (!(length > 0.2 * static_cast<double>(cell.weight))) return 1.0 / 1.5;
   return length / sum;
 }
 
-// Whether there are samples enough in the cells around the one two depths above that have any: thin
-// parts meet few. `parent` is a cell of the depth above.
+// Whether the occupied cells around the ancestor two depths up hold enough samples each, which thin
+// parts with few occupied cells need. `parent` is a cell of the depth above.
 bool is_crowded(const SampleSlab& slab, int k, std::uint32_t parent, const CloudLeaves& cloud) {
   if (k - 2 < slab.top) return false;
   const std::uint32_t i = slab.at(k - 1).parents[parent];
   const SampleLevel& above = slab.at(k - 2);
   return static_cast<double>(above.around[i]) >=
-         kEnoughOfCell * above.occupied[i] * cloud.mean_weight;
+         kMinSamplesOfCell * above.occupied[i] * cloud.mean_weight;
 }
 
-// Cells count where the surface seems to meet them and there are samples enough for their size:
-// those in and around the cell two depths up, so that sizes do not change with every few samples.
+// Samples count at this depth where the surface seems to cross their cell and there are enough
+// samples for its size, counted around the ancestor two depths up so that sizes do not fluctuate.
 void find_leaves_of_level(const CloudLeaves& cloud, int finest, int k, SampleSlab* slab) {
-  const double enough = kEnough * cloud.mean_weight;
-  const double isolated = kIsolated * cloud.mean_weight;
+  const double enough = kMinSamplesAround27 * cloud.mean_weight;
+  const double isolated = kStraySamplesAround * cloud.mean_weight;
   SampleLevel& level = slab->at(k);
   const SampleLevel& above = slab->at(k - 1);
   level.leaf.resize(level.size());
@@ -195,10 +197,10 @@ void find_leaves_of_level(const CloudLeaves& cloud, int finest, int k, SampleSla
             ? static_cast<double>(slab->at(k - 2).around[above.parents[parent]]) / 4.0
             : around;
     const bool counts =
-        k <= kCoarsestLeaf || (level.is_met(i) && around >= enough / 4.0 &&
+        k <= kCoarsestLeaf || (level.is_crossed(i) && around >= enough / 4.0 &&
                                (wide >= enough || is_crowded(*slab, k, parent, cloud)));
     const bool is_stray =
-        above.leaf[parent] == k - 1 && around >= isolated && finest - (k - 1) >= kOutlierDepths;
+        above.leaf[parent] == k - 1 && around >= isolated && finest - (k - 1) >= kStrayDepths;
     if (counts) {
       const bool is_outlier = k < cloud.least_leaf && level.is_scattered[i] != 0;
       level.leaf[i] = static_cast<std::int8_t>(is_outlier ? -1 : k);
@@ -246,12 +248,12 @@ CellLayers with_layers(const SampleLevel* below, const SampleLevel& level,
   return layers;
 }
 
-void find_met_cells(const SampleSlab* below, const SampleSlab* above, double mean_weight,
-                    SampleSlab* slab) {
+void find_crossed_cells(const SampleSlab* below, const SampleSlab* above, double mean_weight,
+                        SampleSlab* slab) {
   for (int k = slab->top; k <= slab->depth(); ++k) {
-    mark_met(with_layers(below == nullptr ? nullptr : &below->at(k), slab->at(k),
-                         above == nullptr ? nullptr : &above->at(k)),
-             mean_weight, &slab->at(k));
+    mark_crossed_cells(with_layers(below == nullptr ? nullptr : &below->at(k), slab->at(k),
+                                   above == nullptr ? nullptr : &above->at(k)),
+                       mean_weight, &slab->at(k));
   }
 }
 
@@ -287,7 +289,7 @@ void find_leaves(const CloudLeaves& cloud, int finest, SampleSlab* slab) {
   for (int k = slab->top; k <= slab->depth(); ++k) {
     SampleLevel& level = slab->at(k);
     if (k > slab->top) find_leaves_of_level(cloud, finest, k, slab);
-    const int steps = std::min(kAreaSteps, k - slab->top);
+    const int steps = std::min(kAreaDepthsUp, k - slab->top);
     std::vector<std::uint32_t> ancestors(level.size());
     for (std::size_t i = 0; i < level.size(); ++i) {
       std::uint32_t at = static_cast<std::uint32_t>(i);
@@ -311,7 +313,7 @@ void find_leaves(const CloudLeaves& cloud, int finest, SampleSlab* slab) {
     level.unit_area.resize(level.size());
     for (std::size_t i = 0; i < level.size(); ++i) level.unit_area[i] = unit_areas[ancestors[i]];
   }
-  // These have told all that they are for.
+  // Free the intermediate results.
   for (SampleLevel& level : slab->levels) {
     level.occupied = {};
     level.around = {};

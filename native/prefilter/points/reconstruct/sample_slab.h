@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Samples between two heights, at all depths: where they tell of a surface, and how much of it.
+// Samples between two heights, at all depths: which cells the surface crosses, and the area per
+// sample.
 //
-// Area per sample follows section 4.2, with corrections. A cell counts where at least three of its
-// neighbors of the same depth have samples as well; what counts in none counts in the next larger
-// one. A plane of normal n meets |n_x| + |n_y| + |n_z| cells per cell side squared, so each cell
-// stands for one over that, not for one. Cells that the surface merely grazes may have no sample:
-// their share follows from the number of samples per cell that has some. Both are taken over cells
+// The area per sample follows section 4.2, with corrections. Samples count at the finest depth at
+// which at least three neighbors of their cell also have samples. A plane with normal n crosses
+// |n_x| + |n_y| + |n_z| cells per squared cell side, so each cell represents one over that area,
+// not one squared side. Cells that the surface barely touches may contain no sample; their share
+// follows from the number of samples per occupied cell. Both corrections are averaged over cells
+// two depths up.
 // two depths up.
 #pragma once
 
@@ -21,25 +23,26 @@ namespace prefilter {
 /// The cells of one depth.
 struct SampleLevel {
   SampleCells samples;
-  std::vector<std::uint32_t> parents;  // of each, its index on the level above; none on the first
-  std::vector<std::uint8_t> occupied;  // of a cell and its neighbors, how many have samples
-  std::vector<float> around;           // the weight of its samples and of those of its neighbors
-  // Whether samples, if they are few, are spread over space instead of a surface.
+  // index of each cell's parent on the level above; empty on the first level
+  std::vector<std::uint32_t> parents;
+  std::vector<std::uint8_t> occupied;  // number of occupied cells among the 27 around a cell
+  std::vector<float> around;           // weight of the samples in these 27 cells
+  // Whether samples, provided that they are few, are scattered in space rather than on a surface.
   std::vector<std::uint8_t> is_scattered;
-  // The depth at which its samples count, if not at a larger one; below 0: not at all.
+  // Depth at which a cell's samples count, unless finer cells split them; below 0: outliers.
   std::vector<std::int8_t> leaf;
   std::vector<std::uint8_t> is_split;  // whether some of its samples count at a larger depth
-  // Whether its samples count here: at this depth, or with others of the cell above at a larger
+  // Whether a cell's samples count here: at this depth, or as part of a split cell at a smaller
   // one.
   std::vector<std::uint8_t> is_leaf;
-  std::vector<float> unit_area;  // of the surface, in finest cells, per unit of weight
+  std::vector<float> unit_area;  // area per unit of weight, in squared finest cells
 
   std::size_t size() const { return samples.size(); }
-  // Whether the surface seems to meet a cell: three of its neighbors have samples, or more.
-  bool is_met(std::size_t i) const { return occupied[i] > 3; }
+  // Whether the surface seems to cross a cell: at least three of its neighbors have samples.
+  bool is_crossed(std::size_t i) const { return occupied[i] > 3; }
 };
 
-/// Depths from `top`, of cells as high as the slab, to the finest.
+/// The levels from `top`, where cells are as high as the slab, to the finest.
 struct SampleSlab {
   int top = 0;
   std::vector<SampleLevel> levels;
@@ -49,16 +52,15 @@ struct SampleSlab {
   const SampleLevel& at(int depth) const { return levels[static_cast<std::size_t>(depth - top)]; }
 };
 
-/// The levels of cells of `depth`, up to `top`.
+/// Builds all levels from the finest cells at `depth`, up to level `top`.
 SampleSlab make_sample_slab(SampleCells finest, int depth, int top, std::size_t attribute_count);
 
-/// Sets `occupied`, `around` and is_scattered of all levels, where the slabs below and above, if
-/// there are any, have been made.
-void find_met_cells(const SampleSlab* below, const SampleSlab* above, double mean_weight,
-                    SampleSlab* slab);
+/// Sets occupied, around and is_scattered of all levels. The adjacent slabs, where they exist, must
+/// have their levels.
+void find_crossed_cells(const SampleSlab* below, const SampleSlab* above, double mean_weight,
+                        SampleSlab* slab);
 
-/// The cells of a level and, where there are any, of the layers next to them, in order of their
-/// keys.
+/// The cells of a level and of the adjacent layers, in order of their keys.
 struct CellLayers {
   std::vector<CellKey> keys;
   std::vector<const SampleCell*> cells;
@@ -71,21 +73,21 @@ struct CellLayers {
 CellLayers with_layers(const SampleLevel* below, const SampleLevel& level,
                        const SampleLevel* above);
 
-/// What is known of all samples.
+/// Statistics of all samples.
 struct CloudLeaves {
   double mean_weight = 1.0;
-  // Those that count at less depth than this are outliers where they are spread over space.
+  // Scattered samples that count at a smaller depth than this are outliers.
   int least_leaf = 0;
 };
 
-/// Sets is_split of all levels, from that of the last, and is_leaf.
+/// Sets is_split of all levels, given that of the last, and is_leaf.
 void find_split(SampleSlab* slab);
 
-/// The weight of the samples that do not count.
+/// Total weight of the samples marked as outliers.
 double weight_of_outliers(const SampleLevel& finest);
 
-/// Sets `leaf`, from that of the first level, is_split, is_leaf and unit_area, and drops what
-/// find_met_cells set. `finest` is the depth of the cells that areas are measured in.
+/// Sets leaf (given that of the first level), is_split, is_leaf and unit_area, and frees the
+/// results of find_crossed_cells. `finest` is the depth of the cells in which areas are measured.
 void find_leaves(const CloudLeaves& cloud, int finest, SampleSlab* slab);
 
 }  // namespace prefilter

@@ -23,7 +23,7 @@ void append(const SampleCells& from, std::size_t begin, std::size_t end,
                         at(from.attributes, end * attribute_count));
 }
 
-// How many different keys there are.
+// Number of different keys in two sorted lists.
 std::size_t union_size(const std::vector<SampleCell>& a, const std::vector<SampleCell>& b) {
   std::size_t count = 0;
   std::size_t i = 0;
@@ -88,7 +88,7 @@ std::unique_ptr<SampleStore> SampleStore::open(std::unique_ptr<ArchiveReader> fi
     run.is_in_file = true;
     run.offset = file->place();
     run.count = file->skip_all<SampleCell>();
-    run.more = file->place();
+    run.attributes_offset = file->place();
     if (file->skip_all<float>() != run.count * store->attribute_count_) file->refuse();
     if (run.count > 0) runs.push_back(std::move(run));
   }
@@ -107,7 +107,7 @@ std::unique_ptr<SampleStore> SampleStore::empty_copy(std::uint64_t memory_limit,
                                        std::move(folder));
 }
 
-bool SampleStore::is_like(const SampleStore& other) const {
+bool SampleStore::has_shape_of(const SampleStore& other) const {
   return depth() == other.depth() && slab_shift_ == other.slab_shift_ &&
          attribute_count_ == other.attribute_count_;
 }
@@ -188,7 +188,7 @@ void SampleStore::save(ArchiveWriter* file) const {
 }
 
 void SampleStore::finish(int threads) {
-  // Where a file is written, slabs take turns, so that one of them is in memory at a time.
+  // When spilling to a file, slabs take turns so that one at a time is in memory.
   const int width = file_ ? 1 : threads;
   parallel_for(slab_count(), width, Progress(), [&](std::int64_t i) {
     end_cloud(static_cast<std::size_t>(i));
@@ -218,7 +218,7 @@ SampleCells SampleStore::read(const Run& run) const {
   SampleCells cells;
   if (opened_) {
     cells.cells = opened_->all_at<SampleCell>(run.offset);
-    cells.attributes = opened_->all_at<float>(run.more);
+    cells.attributes = opened_->all_at<float>(run.attributes_offset);
     return cells;
   }
   cells.cells.resize(run.count);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The cells of a cloud, slab by slab: in memory, or where that is not enough, in a temporary file.
+// Stores a cloud's cells slab by slab, in memory or in a temporary file.
 #pragma once
 
 #include <atomic>
@@ -18,40 +18,40 @@ namespace prefilter {
 
 class SampleStore {
  public:
-  /// Slabs are 2^slab_bits cells high, from 0 up to 2^depth. What is held is at most `memory_limit`
-  /// bytes, but for what a single `add` brings; the rest goes to a file in a folder. Sums are the
-  /// same, to the last bit, for any limit.
+  /// Slabs are 2^slab_bits cells high, from 0 up to 2^depth. At most `memory_limit` bytes stay in
+  /// memory, apart from the cells of one `add`; the others go to a file in `folder`. The limit does
+  /// not affect the sums, not even by rounding.
   SampleStore(int depth, int slab_bits, std::size_t attribute_count, std::uint64_t memory_limit,
               std::string folder);
 
-  /// What `save` has written there. Nothing can be added.
+  /// Opens cells written by `save`, read-only.
   static std::unique_ptr<SampleStore> open(std::unique_ptr<ArchiveReader> file);
 
-  /// A store of the same shape without cells; and whether one is of the same shape.
+  /// A store of the same shape without cells.
   std::unique_ptr<SampleStore> empty_copy(std::uint64_t memory_limit, std::string folder) const;
-  bool is_like(const SampleStore& other) const;
+  bool has_shape_of(const SampleStore& other) const;
 
-  /// Cells in the order of their keys; some may be there already.
+  /// Adds cells in order of their keys; equal keys are summed.
   void add(const SampleCells& run);
-  /// The next cells are of another cloud. The sums of each are made before those of all.
+  /// Ends a cloud. The sums of each cloud are computed before they are added together.
   void end_cloud();
   /// Call once, after the last `add`.
   void finish(int threads);
-  /// Writes all cells, after `finish`.
+  /// Writes all cells; call after `finish`.
   void save(ArchiveWriter* file) const;
 
   int slab_count() const { return static_cast<int>(slabs_.size()); }
   bool is_spilled() const { return file_ != nullptr; }
-  /// Cells of all slabs, and of one.
+  /// Number of cells in all slabs, and in one.
   std::size_t size() const;
   std::size_t size(int index) const;
-  /// What is held in memory.
+  /// Bytes held in memory.
   std::size_t held_bytes() const { return held_ * bytes_per_cell(); }
-  /// Writes all that is held to the file.
+  /// Writes all cells in memory to the file.
   void spill();
   /// The cells of a slab.
   SampleCells slab(int index) const;
-  /// The same, for the last time.
+  /// The cells of a slab, which are released where possible.
   SampleCells take(int index);
 
  private:
@@ -63,9 +63,9 @@ class SampleStore {
     std::uint64_t offset = 0;
     std::size_t count = 0;
     bool is_in_file = false;
-    std::uint64_t more = 0;  // where attributes are in a file that was opened
+    std::uint64_t attributes_offset = 0;  // offset of the attributes, in an opened file
   };
-  // Each run but the last is at least twice as long as the next, when an `add` ends.
+  // After an `add`, each run except the last is at least twice as long as the next.
   using Runs = std::vector<Run>;
 
   void merge_last(Runs* runs);
@@ -80,7 +80,7 @@ class SampleStore {
   std::uint64_t memory_limit_;
   std::string folder_;
   std::vector<Runs> slabs_;
-  std::vector<std::uint8_t> is_begun_;  // by earlier clouds, whose cells are the first run
+  std::vector<std::uint8_t> is_begun_;  // whether the first run holds the sums of earlier clouds
   std::atomic<std::size_t> held_ = 0;   // cells in memory
   std::unique_ptr<TemporaryFile> file_;
   std::unique_ptr<const ArchiveReader> opened_;

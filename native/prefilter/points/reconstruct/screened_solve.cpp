@@ -12,39 +12,39 @@
 namespace prefilter {
 namespace {
 
-// How much samples count beside differences, for a cell side squared of surface in a cell.
+// Weight of the samples against the differences, per squared cell side of surface in a cell.
 constexpr float kScreening = 2.0F;
-// For each depth: what is started with is nearly right.
-constexpr int kSteps = 8;
+// Conjugate gradient iterations per depth; the initial values are nearly right.
+constexpr int kSolveIterations = 8;
 
 constexpr std::int32_t kNoBlock = -1;
 
-// What is beyond a face of a block.
-struct Side {
-  std::int32_t block = kNoBlock;  // of the same depth; or outside; or less, where there is a leaf
-  float value = 0.0F;             // of a leaf
+// The cell or leaf beyond a face of a block.
+struct BlockSide {
+  std::int32_t block = kNoBlock;  // block of the same depth; kNoBlock: outside; less: a leaf
+  float value = 0.0F;             // value of the leaf
 
-  // A leaf without samples.
-  static Side leaf(int depth, float value) { return {kNoBlock - 1 - depth, value}; }
+  // A larger leaf that contains no surface.
+  static BlockSide leaf(int depth, float value) { return {kNoBlock - 1 - depth, value}; }
   bool is_leaf() const { return block < kNoBlock; }
   int depth() const { return kNoBlock - 1 - block; }
 };
 
-using Sides = std::array<Side, 6>;  // of the faces: low and high along each axis
+using BlockSides = std::array<BlockSide, 6>;  // per face: low and high along each axis
 
-// A sample's condition: weight * (sum of shares * values - middle)^2.
+// Condition at a sample: weight * (sum of shares * values - target)^2.
 struct Screen {
   std::array<std::uint32_t, 4> cells;
   std::array<float, 4> shares;
   float weight;
 };
 
-// The equations for the octants of all blocks of a level.
+// The linear system for the octants of all blocks of a level.
 class LevelSystem {
  public:
   LevelSystem(const TreeLevel& level, const std::vector<BlockSource>& sources,
-              const std::vector<Sides>& sides, int depth, float middle)
-      : sources_(sources), sides_(sides), depth_(depth), middle_(middle) {
+              const std::vector<BlockSides>& neighbors, int depth, float target)
+      : sources_(sources), neighbors_(neighbors), depth_(depth), target_(target) {
     const std::size_t count = 8 * level.size();
     right_.resize(count);
     diagonal_.resize(count);
@@ -58,7 +58,7 @@ class LevelSystem {
     }
   }
 
-  // Steps of the conjugate gradient method, preconditioned by the diagonal; call it once.
+  // Runs conjugate gradient iterations with diagonal preconditioning; call once.
   void improve(int steps, std::vector<OctantValues>* blocks) {
     const std::size_t count = right_.size();
     if (count == 0) return;
@@ -111,12 +111,12 @@ class LevelSystem {
     return count;
   }
 
-  // The cell beyond a face of another; below 0: none.
+  // The octant beyond a face of an octant; below 0: none.
   std::int32_t neighbor(std::size_t block, int octant, int face) const {
     const int bit = 1 << (face / 2);
     const bool is_within = ((octant & bit) != 0) != ((face & 1) != 0);
     const std::int32_t next = is_within ? static_cast<std::int32_t>(block)
-                                        : sides_[block][static_cast<std::size_t>(face)].block;
+                                        : neighbors_[block][static_cast<std::size_t>(face)].block;
     return next < 0 ? kNoBlock : 8 * next + (octant ^ bit);
   }
 
@@ -131,9 +131,9 @@ class LevelSystem {
       const bool is_high = (face & 1) != 0;
       std::size_t next_block = block;
       const bool is_within = ((octant & bit) != 0) != is_high;
-      const Side& side = sides_[block][static_cast<std::size_t>(face)];
+      const BlockSide& side = neighbors_[block][static_cast<std::size_t>(face)];
       if (!is_within && side.block >= 0) next_block = static_cast<std::size_t>(side.block);
-      // How much the function falls toward the face, by the samples of the cell itself.
+      // Decrease of the function toward the face, from the cell's own samples.
       float fall = 0.0F;
       if (own != nullptr) {
         fall = is_high ? own->moment[axis] : own->moment[axis] - own->area[axis];
@@ -174,23 +174,23 @@ class LevelSystem {
       screen.shares[a + 1] = std::abs(off);
       screen.shares[0] -= std::abs(off);
     }
-    // Where normals cancel each other the mean is on no surface.
+    // Where normals cancel each other, the mean sample lies on no surface.
     const float coherence = squared / (own->sampled.area * own->sampled.area);
     screen.weight = kScreening * own->sampled.area * std::min(coherence, 1.0F);
     for (std::size_t i = 0; i < 4; ++i) {
       diagonal_[screen.cells[i]] += screen.weight * screen.shares[i] * screen.shares[i];
-      right_[screen.cells[i]] += screen.weight * screen.shares[i] * middle_;
+      right_[screen.cells[i]] += screen.weight * screen.shares[i] * target_;
     }
     screens_.push_back(screen);
   }
 
   void apply(const float* values, float* image) const {
     static constexpr OctantValues kNothing{};
-    for (std::size_t b = 0; b < sides_.size(); ++b) {
+    for (std::size_t b = 0; b < neighbors_.size(); ++b) {
       const float* const own = values + 8 * b;
       std::array<const float*, 6> beyond;
       for (std::size_t face = 0; face < 6; ++face) {
-        const std::int32_t next = sides_[b][face].block;
+        const std::int32_t next = neighbors_[b][face].block;
         beyond[face] = next < 0 ? kNothing.data() : values + 8 * static_cast<std::size_t>(next);
       }
       for (std::size_t o = 0; o < 8; ++o) {
@@ -215,19 +215,21 @@ class LevelSystem {
   }
 
   const std::vector<BlockSource>& sources_;
-  const std::vector<Sides>& sides_;
+  const std::vector<BlockSides>& neighbors_;
   int depth_;
-  float middle_;
-  std::vector<float> right_;  // then what is left of it
+  float target_;
+  std::vector<float> right_;  // becomes the residual
   std::vector<float> diagonal_;
-  std::vector<float> leaf_weight_;  // of faces alone
+  std::vector<float> leaf_weight_;  // from faces alone
   std::vector<Screen> screens_;
 };
 
-// What is beyond the faces of the blocks of the next level. `depth` is that of the octants.
-std::vector<Sides> sides_of_next(const TreeLevel& level, const std::vector<BlockSource>& sources,
-                                 const std::vector<Sides>& sides, int depth) {
-  std::vector<Sides> result;
+// The neighbors of the next level's blocks; `depth` is that of the present octants.
+std::vector<BlockSides> neighbors_of_next_level(const TreeLevel& level,
+                                                const std::vector<BlockSource>& sources,
+                                                const std::vector<BlockSides>& neighbors,
+                                                int depth) {
+  std::vector<BlockSides> result;
   std::size_t count = 0;
   for (const std::uint8_t split : level.split)
     count += static_cast<std::size_t>(std::popcount(split));
@@ -235,22 +237,24 @@ std::vector<Sides> sides_of_next(const TreeLevel& level, const std::vector<Block
   for (std::size_t b = 0; b < level.size(); ++b) {
     for (int o = 0; o < 8; ++o) {
       if (!level.is_split(b, o)) continue;
-      Sides next;
+      BlockSides next;
       for (int face = 0; face < 6; ++face) {
         const int bit = 1 << (face / 2);
         const bool is_within = ((o & bit) != 0) != ((face & 1) != 0);
-        const Side& side = sides[b][static_cast<std::size_t>(face)];
-        Side& found = next[static_cast<std::size_t>(face)];
+        const BlockSide& side = neighbors[b][static_cast<std::size_t>(face)];
+        BlockSide& next_side = next[static_cast<std::size_t>(face)];
         if (!is_within && side.block < 0) {
-          found = side;
+          next_side = side;
           continue;
         }
         const std::size_t other = is_within ? b : static_cast<std::size_t>(side.block);
         if (level.is_split(other, o ^ bit)) {
-          found.block = static_cast<std::int32_t>(level.child(other, o ^ bit));
+          next_side.block = static_cast<std::int32_t>(level.child(other, o ^ bit));
         } else if (sources[other].level->flux(sources[other].block, o ^ bit) == nullptr) {
-          // The mean of a larger leaf that the surface meets is not that near the face.
-          found = Side::leaf(depth, level.blocks[other][static_cast<std::size_t>(o ^ bit)]);
+          // Leaves that the surface crosses are ignored: their mean differs from the value at the
+          // face.
+          next_side =
+              BlockSide::leaf(depth, level.blocks[other][static_cast<std::size_t>(o ^ bit)]);
         }
       }
       result.push_back(next);
@@ -261,9 +265,9 @@ std::vector<Sides> sides_of_next(const TreeLevel& level, const std::vector<Block
 
 }  // namespace
 
-void solve_screened(const BlockSources& sources, int first, float middle, CellTree* tree) {
-  std::vector<Sides> sides(1);
-  std::vector<float> changes;  // of the blocks' cells, by what was found above
+void solve_screened(const BlockSources& sources, int first, float target, CellTree* tree) {
+  std::vector<BlockSides> neighbors(1);
+  std::vector<float> changes;  // changes of the parent cells by the previous solve
   for (std::size_t k = 0; k < tree->levels.size(); ++k) {
     TreeLevel& level = tree->levels[k];
     const int depth = static_cast<int>(k) + 1;
@@ -280,7 +284,8 @@ void solve_screened(const BlockSources& sources, int first, float middle, CellTr
       for (std::size_t b = 0; b < level.size() && !changes.empty(); ++b) {
         for (float& value : level.blocks[b]) value += changes[b];
       }
-      LevelSystem(level, sources[k], sides, depth, middle).improve(kSteps, &level.blocks);
+      LevelSystem(level, sources[k], neighbors, depth, target)
+          .improve(kSolveIterations, &level.blocks);
     }
     std::size_t next = 0;
     for_split([&](float value) {
@@ -289,7 +294,7 @@ void solve_screened(const BlockSources& sources, int first, float middle, CellTr
     });
     if (k + 1 == tree->levels.size()) break;
     changes = std::move(next_changes);
-    sides = sides_of_next(level, sources[k], sides, depth);
+    neighbors = neighbors_of_next_level(level, sources[k], neighbors, depth);
   }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Smoothing (section 4.3.1) and octree contouring (section 4.3) of one slab.
 #include "prefilter/points/reconstruct/slab_mesh.h"
 
 #include <algorithm>
@@ -20,8 +21,8 @@
 namespace prefilter {
 namespace {
 
-// The function at cells that are inside or outside but for those that the surface passes: as much
-// as the mean is off, all are.
+// Shifts the mean to 1/2 for functions that are 0 or 1 except in cells that the surface crosses:
+// the offset of the mean applies to all values.
 void center_occupancies(float mean, CellTree* tree) {
   for (TreeLevel& blocks : tree->levels) {
     for (OctantValues& block : blocks.blocks) {
@@ -30,7 +31,7 @@ void center_occupancies(float mean, CellTree* tree) {
   }
 }
 
-// The samples of slabs at the depths that are asked for.
+// Sample indices around a slab, built per depth on demand.
 class SampleDepths {
  public:
   SampleDepths(const Slabs& slabs, int s)
@@ -53,10 +54,10 @@ SampleFit fit_of(const SurfaceSamples& surface, SampleDepths* samples) {
                    surface.slabs.depth(), surface.noise);
 }
 
-// The largest leaves whose values are fitted, rather than the vertices beside them: what counts for
-// these is in the slabs around.
+// Side of the largest leaves whose values are fitted; beside larger ones vertices are moved
+// instead, since the values that affect these leaves lie within the adjacent slabs.
 int largest_fitted(const Slabs& slabs, const ReconstructOptions& options) {
-  if (!options.fit || !options.smooth || slabs.middle == 0.0F) return 0;
+  if (!options.fit || !options.smooth || slabs.target == 0.0F) return 0;
   return slabs.count() == 1 ? slabs.height() : std::max(1, slabs.height() / 16);
 }
 
@@ -88,8 +89,8 @@ ContourSlab contour_of_slab(const SurfaceSamples& surface, const ReconstructOpti
   return contour;
 }
 
-// Of the samples near a point in finest cells, next to leaves of depth k: of the smallest cells
-// that hold some.
+// Blends the attributes of the samples near a point, which is in finest cells and next to leaves of
+// depth k, at the greatest depth up to k that has samples there.
 void find_attributes(const Vector3& point, int k, int finest, SampleDepths* samples,
                      std::span<float> attributes) {
   for (; k > 0; --k) {
@@ -99,10 +100,10 @@ void find_attributes(const Vector3& point, int k, int finest, SampleDepths* samp
   }
 }
 
-// The line that a vertex is on, from the center of its leaf to the one beyond the face.
+// The line of a vertex, from the center of its leaf to the center beyond the face.
 FitLine line_of(const VertexPlace& place, const Vector3& position, int depth) {
-  // Between a vertex and the centers, in sides of the leaf.
-  constexpr double kLeastGap = 0.01;
+  // Minimum distance between a vertex and the centers, in sides of the leaf.
+  constexpr double kMinCenterGap = 0.01;
   const double side = std::ldexp(1.0, depth - place.depth);
   const auto axis = static_cast<std::size_t>(place.face / 2);
   FitLine line;
@@ -111,21 +112,21 @@ FitLine line_of(const VertexPlace& place, const Vector3& position, int depth) {
     line.direction[a] = position[a] - line.start[a];
   }
   const double along = std::abs(line.direction[axis]);
-  if (along > kLeastGap * side) {
+  if (along > kMinCenterGap * side) {
     for (double& x : line.direction) x *= side / along;
   } else {
     line.direction = {};
     line.direction[axis] = (place.face & 1) != 0 ? side : -side;
   }
-  line.low = kLeastGap;
-  line.high = std::max(1.0 - kLeastGap, along / side);
+  line.low = kMinCenterGap;
+  line.high = std::max(1.0 - kMinCenterGap, along / side);
   return line;
 }
 
-// Moves the vertices beside leaves larger than `largest_still`, and finds attributes for all.
+// Moves the vertices beside leaves larger than `largest_still`, and blends attributes for all.
 void follow_samples(const SurfaceSamples& surface, std::optional<int> largest_still,
                     SampleDepths* samples, SlabMesh* slab) {
-  const bool is_solved = surface.slabs.middle != 0.0F;
+  const bool is_solved = surface.slabs.target != 0.0F;
   const int depth = surface.slabs.depth();
   const std::size_t width = surface.attribute_count;
   std::vector<Vector3>& positions = slab->contour.mesh.positions;
@@ -165,10 +166,10 @@ SampleIndex samples_around(const Slabs& slabs, int s, int k, int margin) {
 }
 
 SampleNoise find_noise(int s, Slabs* slabs) {
-  constexpr std::size_t kCells = 4096;
+  constexpr std::size_t kCells = 4096;  // about as many are measured
   const int depth = slabs->depth();
   if (depth == slabs->top()) return {};
-  slabs->bring(s - 1, s + 2, SlabStage::kLeaves);
+  slabs->advance_to(s - 1, s + 2, SlabStage::kLeaves);
   const SampleLevel& level = slabs->samples(s)->at(depth);
   const SampleIndex coarser = samples_around(*slabs, s, depth - 1, 2);
   const std::size_t step = std::max<std::size_t>(1, level.size() / kCells);
@@ -198,11 +199,11 @@ SlabMesh mesh_of_slab(const SurfaceSamples& surface, const ReconstructOptions& o
 }
 
 void mark_far_vertices(const Slabs& slabs, int s, double limit, SlabMesh* slab) {
-  constexpr double kMostCells = 8.0;
+  constexpr double kMaxReachCells = 8.0;  // a larger limit is tested in coarser cells
   int k = slabs.depth();
-  // Cells of the next slabs are at hand as well, but not of those after.
-  while (k > 0 &&
-         (limit > kMostCells || (k > slabs.top() && std::ceil(limit) > (1 << (k - slabs.top()))))) {
+  // Cells of the adjacent slabs are in memory as well, but no others.
+  while (k > 0 && (limit > kMaxReachCells ||
+                   (k > slabs.top() && std::ceil(limit) > (1 << (k - slabs.top()))))) {
     --k;
     limit /= 2.0;
   }

@@ -16,8 +16,8 @@
 namespace prefilter {
 namespace {
 
-// Edges and triangles that are shorter than so many spacings lie near their corners.
-constexpr double kLongEdge = 2.0;
+// In spacings: points on shorter edges and triangles are near their corners.
+constexpr double kMinLongEdgeSpacings = 2.0;
 
 float density_of(const Support& support, double cell) {
   constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
@@ -33,7 +33,7 @@ class SupportFinder {
   void find_normals();
 
   void add_attributes();
-  void find_far_places();
+  void find_far_midpoints();
 
  private:
   using Corners = std::array<std::size_t, 3>;
@@ -44,18 +44,19 @@ class SupportFinder {
   }
   const Vector3& position(std::size_t v) const { return slab_.contour.mesh.positions[v]; }
   bool is_long(std::size_t a, std::size_t b) const {
-    const double spacing = static_cast<double>(std::min(found_[a].spacing, found_[b].spacing));
+    const double spacing =
+        static_cast<double>(std::min(supports_[a].spacing, supports_[b].spacing));
     const Vector3 edge = position(b) - position(a);
-    return length(edge) > kLongEdge * std::max(1.0, spacing);
+    return length(edge) > kMinLongEdgeSpacings * std::max(1.0, spacing);
   }
-  void look(const FacingPoint& point, int a, int b);
+  void add_if_far(const OrientedPoint& point, int a, int b);
 
   const SurfaceSamples& surface_;
   double limit_;
   SlabMesh& slab_;
   SupportField field_;
-  std::vector<Vector3> normals_;  // of vertices, by area
-  std::vector<Support> found_;    // of each vertex
+  std::vector<Vector3> normals_;   // area-weighted vertex normals
+  std::vector<Support> supports_;  // per vertex
 };
 
 void SupportFinder::find_normals() {
@@ -75,25 +76,25 @@ void SupportFinder::add_attributes() {
   attributes.reserve(count * (width + kSupportAttributes));
   for (std::size_t v = 0; v < count; ++v) {
     const int k = v < places.size() ? places[v].depth : surface_.slabs.depth();
-    found_.push_back(field_.at({position(v), normals_[v]}, k));
+    supports_.push_back(field_.at({position(v), normals_[v]}, k));
     const auto first = slab_.attributes.begin() + static_cast<std::ptrdiff_t>(v * width);
     attributes.insert(attributes.end(), first, first + static_cast<std::ptrdiff_t>(width));
-    attributes.push_back(found_[v].distance);
-    attributes.push_back(density_of(found_[v], surface_.cell));
+    attributes.push_back(supports_[v].distance);
+    attributes.push_back(density_of(supports_[v], surface_.cell));
   }
   slab_.attributes = std::move(attributes);
 }
 
-void SupportFinder::look(const FacingPoint& point, int a, int b) {
-  const Support found = field_.at(point, surface_.slabs.depth());
-  if (static_cast<double>(found.distance) <= limit_) return;
-  slab_.far_places.push_back({a, b, found.distance, density_of(found, surface_.cell)});
+void SupportFinder::add_if_far(const OrientedPoint& point, int a, int b) {
+  const Support support = field_.at(point, surface_.slabs.depth());
+  if (static_cast<double>(support.distance) <= limit_) return;
+  slab_.far_midpoints.push_back({a, b, support.distance, density_of(support, surface_.cell)});
 }
 
-void SupportFinder::find_far_places() {
+void SupportFinder::find_far_midpoints() {
   std::set<std::pair<std::size_t, std::size_t>> seen;
   const auto is_near = [&](std::size_t v) {
-    return static_cast<double>(found_[v].distance) <= limit_;
+    return static_cast<double>(supports_[v].distance) <= limit_;
   };
   const std::vector<std::array<std::int32_t, 3>>& triangles = slab_.contour.mesh.triangles;
   for (std::size_t t = 0; t < triangles.size(); ++t) {
@@ -105,14 +106,14 @@ void SupportFinder::find_far_places() {
       if (!is_near(a) || !is_near(b) || !is_long(a, b)) continue;
       ++count;
       if (!seen.insert({a, b}).second) continue;
-      look({0.5 * (position(a) + position(b)), normals_[a] + normals_[b]}, static_cast<int>(a),
-           static_cast<int>(b));
+      add_if_far({0.5 * (position(a) + position(b)), normals_[a] + normals_[b]},
+                 static_cast<int>(a), static_cast<int>(b));
     }
     if (count < 2 || !std::all_of(corners.begin(), corners.end(), is_near)) continue;
     const auto [a, b, c] = corners;
-    look({(1.0 / 3.0) * (position(a) + position(b) + position(c)),
-          cross(position(b) - position(a), position(c) - position(a))},
-         static_cast<int>(t), -1);
+    add_if_far({(1.0 / 3.0) * (position(a) + position(b) + position(c)),
+                cross(position(b) - position(a), position(c) - position(a))},
+               static_cast<int>(t), -1);
   }
 }
 
@@ -122,7 +123,7 @@ void add_support(const SurfaceSamples& surface, double limit, double sign, int s
   SupportFinder finder(surface, limit, sign, s, slab);
   finder.find_normals();
   finder.add_attributes();
-  finder.find_far_places();
+  finder.find_far_midpoints();
 }
 
 }  // namespace prefilter

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// All slabs of a cloud, from below, with few in memory at a time.
+// Processes all slabs of a cloud from bottom to top, with few in memory at a time.
 #pragma once
 
 #include <algorithm>
@@ -13,28 +13,28 @@
 
 namespace prefilter {
 
-/// What a walk brings slabs to.
+/// How for_slabs advances and drops slabs.
 struct SlabWalk {
   SlabStage stage = SlabStage::kNone;
-  int margin = 0;        // so many slabs to both sides of a slab are to be there, too
-  bool is_last = false;  // slabs are forgotten for good
-  int begin = 0;         // the slabs
+  int margin = 0;        // slabs on each side that are advanced as well
+  bool is_last = false;  // the last walk: slabs are dropped even if all are kept
+  int begin = 0;         // first slab
   int end = std::numeric_limits<int>::max();
 };
 
-/// Bring(s) slabs to a stage, some at a time with those next to them, and calls visit(s) for
-/// each, on any thread, and then join(s), in order. Without a reason to keep them slabs are
-/// forgotten as soon as no other one needs them, and none is made twice.
+/// Advances slabs to a stage, several at a time with their neighbors, and calls visit(s) for each
+/// in any thread and then join(s) in order. Unless all are kept, slabs are dropped as soon as no
+/// other one needs them, and none is processed twice.
 template <typename Visit, typename Join>
 void for_slabs(const SlabWalk& walk, const Progress& progress, int threads, Slabs* slabs,
                const Visit& visit, const Join& join) {
-  // What the next slabs are made from is that of the one below them, at the most.
+  // The next slabs depend at most on the one below them.
   const int reach = std::max(walk.margin, 1);
   const int width = resolve_threads(threads);
   const int last = std::min(walk.end, slabs->count());
   for (int begin = walk.begin; begin < last; begin += width) {
     const int end = std::min(begin + width, last);
-    slabs->bring(begin - walk.margin, end + walk.margin, walk.stage);
+    slabs->advance_to(begin - walk.margin, end + walk.margin, walk.stage);
     parallel_for(end - begin, threads, Progress(),
                  [&](std::int64_t i) { visit(begin + static_cast<int>(i)); });
     for (int s = begin; s < end; ++s) join(s);

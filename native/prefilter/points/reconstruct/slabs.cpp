@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// The streaming pass of section 4.3.2: a slab's tree is built, used by its neighbors and dropped.
 #include "prefilter/points/reconstruct/slabs.h"
 
 #include <algorithm>
@@ -37,7 +38,7 @@ void Slabs::set_values(int s, FluxTree tree) {
   slot.stage = SlabStage::kValues;
 }
 
-void Slabs::bring(int begin, int end, SlabStage stage) {
+void Slabs::advance_to(int begin, int end, SlabStage stage) {
   if (stage == SlabStage::kNone) return;
   begin = std::max(begin, 0);
   end = std::min(end, count());
@@ -45,11 +46,12 @@ void Slabs::bring(int begin, int end, SlabStage stage) {
   while (begin < end && is_there(begin)) ++begin;
   while (begin < end && is_there(end - 1)) --end;
   if (begin == end) return;
-  // Neighbors tell which cells are met, and their patches leave through the sides.
-  if (stage == SlabStage::kMet) bring(begin - 1, end + 1, SlabStage::kLevels);
-  if (stage == SlabStage::kCoefficients) bring(begin - 1, end + 1, SlabStage::kLeaves);
-  if (stage == SlabStage::kSolved) bring(begin - 1, end + 1, SlabStage::kValues);
-  bring(begin, end, static_cast<SlabStage>(static_cast<int>(stage) - 1));
+  // Whether the surface crosses a cell depends on neighboring slabs, and so do patches at the
+  // sides.
+  if (stage == SlabStage::kCrossedCells) advance_to(begin - 1, end + 1, SlabStage::kLevels);
+  if (stage == SlabStage::kCoefficients) advance_to(begin - 1, end + 1, SlabStage::kLeaves);
+  if (stage == SlabStage::kSolved) advance_to(begin - 1, end + 1, SlabStage::kValues);
+  advance_to(begin, end, static_cast<SlabStage>(static_cast<int>(stage) - 1));
   parallel_for(end - begin, threads_, Progress(), [&](std::int64_t i) {
     const int s = begin + static_cast<int>(i);
     if (!is_there(s)) advance(s, stage);
@@ -74,8 +76,8 @@ void Slabs::advance(int s, SlabStage stage) {
       slot.samples = make_sample_slab(keeps_all_ ? store_->take(s) : store_->slab(s), depth_, top_,
                                       attribute_count_);
       break;
-    case SlabStage::kMet:
-      find_met_cells(samples(s - 1), samples(s + 1), mean_weight, &slot.samples);
+    case SlabStage::kCrossedCells:
+      find_crossed_cells(samples(s - 1), samples(s + 1), mean_weight, &slot.samples);
       break;
     case SlabStage::kLeaves:
       find_leaves_of(s);
@@ -84,7 +86,7 @@ void Slabs::advance(int s, SlabStage stage) {
       analyze(s);
       break;
     case SlabStage::kValues:
-      synthesise_slab(s);
+      synthesize_slab(s);
       break;
     case SlabStage::kSolved:
       solve(s);
@@ -119,7 +121,7 @@ void Slabs::analyze(int s) {
   }
   const SplitCells splits = splits_in_slab(all_splits, s, top_, depth_);
   for (int k = top_; k <= depth_; ++k) {
-    // A piece for each leaf, about as many beside them, and those of the band.
+    // A patch per leaf, about as many extrapolated ones, and the band's cells.
     const std::vector<std::uint8_t>& is_leaf = slot.samples.at(k).is_leaf;
     const auto leaves = std::count(is_leaf.begin(), is_leaf.end(), std::uint8_t{1});
     pooled[static_cast<std::size_t>(k)].reserve(2 * static_cast<std::size_t>(leaves) +
@@ -136,23 +138,23 @@ void Slabs::analyze(int s) {
   slot.tree = analyze_flux(std::move(pooled), top_, depth_);
 }
 
-void Slabs::synthesise_slab(int s) {
+void Slabs::synthesize_slab(int s) {
   FluxTree& tree = slots_[static_cast<std::size_t>(s)].tree;
   std::vector<float> values;
   for (const CellFlux& cell : tree.tops) {
     float value = coarse.root;
     if (top_ > 0) {
       const NodeLevel& last = coarse.tree.levels.back();
-      const auto found = std::lower_bound(last.places.begin(), last.places.end(), cell.place >> 3U);
-      value = last.blocks
-                  .blocks[static_cast<std::size_t>(found - last.places.begin())][cell.place & 7U];
+      const auto it = std::lower_bound(last.places.begin(), last.places.end(), cell.place >> 3U);
+      value =
+          last.blocks.blocks[static_cast<std::size_t>(it - last.places.begin())][cell.place & 7U];
     }
     values.push_back(value);
   }
-  synthesise_part(values, &tree);
+  synthesize_part(values, &tree);
 }
 
-// What a stage was made from, once no slab next to it needs that any more.
+// Frees the inputs of a stage once no adjacent slab needs them.
 void Slabs::drop_used(int s, SlabStage stage) {
   for (int t = std::max({s - 1, dropped_, 0}); t < std::min(s + 2, count()); ++t) {
     if (slots_[static_cast<std::size_t>(t)].stage < stage) return;
@@ -171,11 +173,11 @@ void Slabs::drop_used(int s, SlabStage stage) {
 }
 
 void Slabs::solve(int s) {
-  if (middle == 0.0F) return;
+  if (target == 0.0F) return;
   BlockSources sources;
   CellTree window =
       assemble_unsolved(coarse, {tree(s - 1), tree(s), tree(s + 1)}, s, depth_, &sources);
-  solve_screened(sources, top_, middle, &window);
+  solve_screened(sources, top_, target, &window);
   for (int k = top_; k < depth_; ++k) {
     const auto level = static_cast<std::size_t>(k);
     NodeLevel& own =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What is made of a cloud's slabs, stage by stage, and forgotten where memory is scarce.
+// Processes a cloud's slabs stage by stage, and drops them where memory is scarce.
 #pragma once
 
 #include <algorithm>
@@ -19,68 +19,67 @@
 
 namespace prefilter {
 
-/// Each needs those before it; some need a neighboring slab's, too.
+/// Each stage requires the previous ones; some require those of the adjacent slabs too.
 enum class SlabStage : std::uint8_t {
   kNone,
   kLevels,        // the samples at all depths
-  kMet,           // which cells the surface meets
-  kLeaves,        // where samples count, and for how much
+  kCrossedCells,  // the cells that the surface crosses
+  kLeaves,        // leaves and areas of samples
   kCoefficients,  // the slab's part of the tree
   kValues,
   kSolved,
 };
 
-/// The slabs of a cloud, from below. What has been made of one is kept until it is dropped, and
-/// made again, the same, when it is asked for again.
+/// The slabs of a cloud, from bottom to top. A slab's data is kept until dropped, and recomputed
+/// with identical results on demand.
 class Slabs {
  public:
-  /// `keeps_all`: nothing is dropped before the last time that it is needed.
+  /// With `keeps_all`, slabs are only dropped after their last use.
   Slabs(SampleStore* store, int depth, int top, std::size_t attribute_count, bool keeps_all,
         int threads);
 
   int count() const { return static_cast<int>(slots_.size()); }
   int depth() const { return depth_; }
-  /// The depth of cells that are as high as a slab.
+  /// The depth at which cells are as high as a slab.
   int top() const { return top_; }
   int height() const { return 1 << (depth_ - top_); }
 
-  /// Brings slabs from `begin` up to `end`, as far as there are such, to a stage.
-  void bring(int begin, int end, SlabStage stage);
-  /// Forgets slabs below one, where not all are kept, or `for_good`.
+  /// Advances slabs from `begin` up to `end`, clamped to those that exist, to a stage.
+  void advance_to(int begin, int end, SlabStage stage);
+  /// Drops the slabs below `end`, unless all are kept; with `for_good`, even then.
   void drop_below(int end, bool for_good);
 
-  /// How many times a slab was brought to its next stage.
+  /// Number of times that a slab was advanced by one stage.
   std::size_t steps() const { return steps_; }
 
-  /// Null where there is no such slab.
+  /// Null for slabs that do not exist.
   const SampleSlab* samples(int s) const;
   const FluxTree* tree(int s) const;
-  /// Values that were made otherwise, as kValues.
+  /// Sets values computed elsewhere, and advances the slab to kValues.
   void set_values(int s, FluxTree tree);
 
   /// The weight of outliers in a slab.
   double left_out(int s) const { return slots_[static_cast<std::size_t>(s)].left_out; }
 
-  /// What counts at depths whose cells are as high as a slab, or half, may be of slabs that are not
-  /// at hand: it is little, and kept of each slab since it had its leaves.
+  /// Leaves of about a slab's height may be needed from slabs that are no longer in memory. They
+  /// are few, so each slab's are stored from stage kLeaves on.
   bool is_sparse(int k) const { return k >= top_ && k <= std::min(top_ + 1, depth_); }
   const std::vector<SupportCell>& sparse(int s, int k) const {
     return sparse_[static_cast<std::size_t>(s)][static_cast<std::size_t>(k - top_)];
   }
 
-  /// For kLeaves: the levels down to `top` of all slabs together, and where a slab's cells begin
-  /// in the last of them. For kValues: the levels
-  /// above.
+  /// Input of kLeaves: the levels of all slabs together down to `top`, and the offset of each
+  /// slab's cells in the last of them. Input of kValues: the coarse tree.
   SampleSlab whole;
   std::vector<std::size_t> offsets;
   double mean_weight = 1.0;
   int least_leaf = 0;
   CoarseTree coarse;
-  /// For kSolved: the value wanted at samples; 0: nothing is solved for.
-  float middle = 0.0F;
-  /// Of the wavelets' function, where it is solved for: over the box around the points.
+  /// Input of kSolved: the value wanted at samples; 0: no solve.
+  float target = 0.0F;
+  /// Mean of the wavelets' function over the box around the points, before the solve.
   double unsolved_mean = 0.0;
-  /// Of the root's volume: that of the box around the points.
+  /// Volume of the box around the points, as a share of the root's.
   double box_share = 1.0;
 
  private:
@@ -95,7 +94,7 @@ class Slabs {
   void advance(int s, SlabStage stage);
   void find_leaves_of(int s);
   void analyze(int s);
-  void synthesise_slab(int s);
+  void synthesize_slab(int s);
   void solve(int s);
   void drop_used(int s, SlabStage stage);
 
@@ -105,7 +104,7 @@ class Slabs {
   std::size_t attribute_count_;
   bool keeps_all_;
   int threads_;
-  int dropped_ = 0;  // slabs below this have nothing
+  int dropped_ = 0;  // slabs below this are dropped
   std::atomic<std::size_t> steps_ = 0;
   std::vector<Slot> slots_;
   std::vector<std::array<std::vector<SupportCell>, 2>> sparse_;

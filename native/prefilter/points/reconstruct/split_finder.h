@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Which cells of a tree are split, so that the cells around others are there.
+// Finds the cells to split so that all neighbors of given cells exist.
 #pragma once
 
 #include <cstddef>
@@ -11,14 +11,14 @@
 
 namespace prefilter {
 
-/// Of some cells of a depth, the cells that are to be split: which hold these, or a neighbor, as
-/// places along the Morton curve of the depth above. Only those from `low` up to `high` there.
+/// For given cells of one depth, collects the cells one depth up that contain them or a neighbor,
+/// as Morton indices, limited to heights from `low` up to `high` there.
 class SplitFinder {
  public:
   SplitFinder(int depth, int low, int high) : side_(1 << depth >> 1), low_(low), high_(high) {}
 
   void add(const CellPosition& cell);
-  /// Each once, in order.
+  /// The collected indices, sorted and unique.
   std::vector<std::uint64_t> take();
 
  private:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A machine that makes a part finds what all slabs have in common by itself, from the cells of all.
+// Implements the separate steps of a reconstruction. A machine that makes a part recomputes the
+// data that all slabs share from the merged cells.
 #include "prefilter/points/steps.h"
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 #include "prefilter/base/io/archive.h"
 #include "prefilter/base/text.h"
 #include "prefilter/points/reconstruct/cloud_grid.h"
+#include "prefilter/points/reconstruct/far_outliers.h"
 #include "prefilter/points/reconstruct/gather_samples.h"
 #include "prefilter/points/reconstruct/memory_plan.h"
 #include "prefilter/points/reconstruct/part_files.h"
@@ -21,7 +23,6 @@
 #include "prefilter/points/reconstruct/phantom_points.h"
 #include "prefilter/points/reconstruct/reconstruct_checks.h"
 #include "prefilter/points/reconstruct/sample_store.h"
-#include "prefilter/points/reconstruct/stray_points.h"
 #include "prefilter/points/reconstruct/surface_parts.h"
 
 namespace prefilter {
@@ -85,7 +86,7 @@ CloudExtent read_extent(ArchiveReader* file) {
   return extent;
 }
 
-// Of all shares, one after the other.
+// Combines the extents of all shares in order.
 CloudExtent whole_extent(const StepFiles& files) {
   CloudExtent whole;
   for (const std::string& path : files.measures) {
@@ -99,7 +100,7 @@ CloudExtent whole_extent(const StepFiles& files) {
   }
   whole.settle_huge();
   check_cloud(whole);
-  if (may_have_strays(whole)) {
+  if (may_have_far_outliers(whole)) {
     throw_invalid(
         "box: none; some points may be far from all others, which steps cannot leave out: give a "
         "box around those that count");
@@ -140,7 +141,7 @@ void check_steps(const ReconstructOptions& options) {
 void measure_step(PointSource* share, std::size_t number, const StepFiles& files,
                   const ReconstructOptions& options) {
   check_steps(options);
-  const std::size_t points = share->count().value_or(PointOrder::kMostPoints);
+  const std::size_t points = share->count().value_or(PointOrder::kMaxPoints);
   const CloudLoad load = load_of(points, share->attributes().size(), options);
   const int width = batches_at_once(load, options);
   RepeatedPositions repeated;
@@ -184,7 +185,7 @@ void merge_step(const StepFiles& files, const ReconstructOptions& options) {
     const std::unique_ptr<SampleStore> own = SampleStore::open(
         std::make_unique<ArchiveReader>(files.counts[k], mark_of(StepFile::kCounts, files)));
     if (!all) all = own->empty_copy(options.memory_limit / 2, options.folder);
-    if (!all->is_like(*own)) throw_invalid("'" + files.counts[k] + "' has other cells");
+    if (!all->has_shape_of(*own)) throw_invalid("'" + files.counts[k] + "' has other cells");
     for (int s = 0; s < own->slab_count(); ++s) all->add(own->slab(s));
     all->end_cloud();
     options.progress.report(0.9 * static_cast<double>(k + 1) /
@@ -205,19 +206,21 @@ void part_step(std::size_t number, std::size_t attributes, const StepFiles& file
   const std::unique_ptr<SampleStore> store = SampleStore::open(
       std::make_unique<ArchiveReader>(files.cells, mark_of(StepFile::kCells, files)));
   const SampleStore expected(grid.depth, slab_bits(grid.depth), attributes, 0, "");
-  if (!store->is_like(expected)) throw_invalid("'" + files.cells + "' has other cells");
+  if (!store->has_shape_of(expected)) throw_invalid("'" + files.cells + "' has other cells");
   const CloudLoad load = load_of(extent.part.points, attributes, options);
   const MemoryPlan plan = plan_memory(*store, load, options);
-  ReconstructOptions rest = options;
-  rest.threads = plan.threads;
-  SurfaceParts surface(nullptr, attributes, grid, extent, rest, plan.keeps_all, store.get());
-  ReconstructReport found;
-  surface.describe(&found);
+  ReconstructOptions slab_options = options;
+  slab_options.threads = plan.threads;
+  SurfaceParts surface(nullptr, attributes, grid, extent, slab_options, plan.keeps_all,
+                       store.get());
+  ReconstructReport report;
+  surface.describe(&report);
   const int begin = begin_of(number, files.parts.size(), surface.count());
   const int end = begin_of(number + 1, files.parts.size(), surface.count());
   ArchiveWriter file(files.parts[number], mark_of(StepFile::kPart, files));
-  file.put_structs(std::vector<PartHead>{{begin, end, found.is_flipped ? 1 : 0,
-                                          found.is_room ? 1 : 0, found.outliers, found.residual}});
+  file.put_structs(
+      std::vector<PartHead>{{begin, end, report.is_flipped ? 1 : 0, report.is_room ? 1 : 0,
+                             report.outliers, report.residual}});
   if (begin < end) {
     surface.make(begin, end, options.progress.part(0.6, 1.0),
                  [&](const SlabMesh& part) { write_part(part, &file); });
@@ -232,10 +235,10 @@ ReconstructReport join_step(std::size_t attributes, const StepFiles& files,
   const SampleGrid grid = grid_of(extent.part.box, ThinnedPoints(), options);
   ReconstructReport report;
   describe_grid(grid, extent, &report);
-  ReconstructOptions mesh = options;
-  mesh.progress = options.progress.part(0.0, 0.0);
+  ReconstructOptions mesh_options = options;
+  mesh_options.progress = options.progress.part(0.0, 0.0);
   const int slabs = 1 << (grid.depth - slab_bits(grid.depth));
-  PartJoiner joiner(grid, 1 << slab_bits(grid.depth), attributes, mesh, sink);
+  PartJoiner joiner(grid, 1 << slab_bits(grid.depth), attributes, mesh_options, sink);
   for (std::size_t k = 0; k < files.parts.size(); ++k) {
     ArchiveReader file(files.parts[k], mark_of(StepFile::kPart, files));
     const std::vector<PartHead> heads = file.get_all<PartHead>();

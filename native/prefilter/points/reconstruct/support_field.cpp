@@ -12,28 +12,28 @@
 namespace prefilter {
 namespace {
 
-// Of a cell's side, how far its samples reach: the square root of the area for which each stands,
-// within bounds, as scans in lines are much denser along these than across.
-constexpr double kLeastReach = 0.75;
-constexpr double kMostReach = 1.5;
+// Range of a cell's reach, in sides. The reach is the square root of the area per sample; it is
+// clamped because scan lines are much denser along themselves than across.
+constexpr double kMinReach = 0.75;
+constexpr double kMaxReach = 1.5;
 
 constexpr int kNearCells = 1;
-constexpr double kNear = 1.0;  // what is nearer is not searched further
+constexpr double kNearDistance = 1.0;  // no further search below this distance
 constexpr int kMiddleCells = 3;
-constexpr double kMiddle = kMiddleCells / kMostReach;
-constexpr int kExactCells = static_cast<int>(SupportField::kExact * kMostReach);
+constexpr double kMiddleDistance = kMiddleCells / kMaxReach;
+constexpr int kExactCells = static_cast<int>(SupportField::kExact * kMaxReach);
 constexpr int kFarCells = 8;
-// Of the length of normals: what faces away from them by more is not supported. At a sharp edge the
-// surface faces away from both sides.
-constexpr double kAway = -0.25;
-// What faces away by less than this is supported as well as can be, and the rest as if it were
-// farther off: around its rim a sheet turns within a cell or two, and would end folded.
-constexpr double kFacing = 0.7;
-constexpr double kTurned = 2.0;
-// But so near that what fills a hole, as a step between two levels, still does.
-constexpr double kMostTurned = 3.0;
-// Where normals cancel each other, to so much of their lengths, they face all ways.
-constexpr double kAligned = 0.5;
+// Minimum cosine between a sample's normal and the surface's; samples below it are ignored. At a
+// sharp edge the surface faces away from both sides.
+constexpr double kMinFacingCosine = -0.25;
+// Below this cosine, the distance is scaled up: a sheet turns around its rim within a cell or two,
+// and would otherwise end folded.
+constexpr double kFullFacingCosine = 0.7;
+constexpr double kTurnedFactor = 2.0;
+// Upper limit of a scaled distance, so that steps between two levels still count as filled holes.
+constexpr double kMaxTurnedDistance = 3.0;
+// Where the mean normal is shorter than this, normals cancel each other and match all directions.
+constexpr double kMinAlignment = 0.5;
 
 SupportCell support_of(const SampleCell& sum, int k, int finest, double unit_area,
                        double mean_weight) {
@@ -49,11 +49,11 @@ SupportCell support_of(const SampleCell& sum, int k, int finest, double unit_are
   const Vector3 normal = {static_cast<double>(sum.normal[0]), static_cast<double>(sum.normal[1]),
                           static_cast<double>(sum.normal[2])};
   const double size = length(normal);
-  if (size > kAligned * static_cast<double>(sum.weight)) {
+  if (size > kMinAlignment * static_cast<double>(sum.weight)) {
     for (std::size_t a = 0; a < 3; ++a) cell.normal[a] = static_cast<float>(normal[a] / size);
   }
   cell.reach =
-      static_cast<float>(std::clamp(spacing, std::max(1.0, kLeastReach * side), kMostReach * side));
+      static_cast<float>(std::clamp(spacing, std::max(1.0, kMinReach * side), kMaxReach * side));
   cell.spacing = static_cast<float>(spacing);
   return cell;
 }
@@ -70,9 +70,10 @@ bool is_at(const SampleCell& cell, const HeightRange& heights) {
   return heights.holds(cell_position(cell.key)[2]);
 }
 
-// All cells of a depth, at some heights, that count at it or at larger ones.
-void add_met(const SampleSlab& slab, int k, const HeightRange& heights, int finest,
-             double mean_weight, std::vector<SupportCell>* cells) {
+// Appends the cells of one depth, at the given heights, whose samples count at this or a larger
+// depth.
+void add_crossed(const SampleSlab& slab, int k, const HeightRange& heights, int finest,
+                 double mean_weight, std::vector<SupportCell>* cells) {
   const SampleLevel& level = slab.at(k);
   for (std::size_t i = 0; i < level.size(); ++i) {
     if (level.leaf[i] != k || !is_at(level.samples.cells[i], heights)) continue;
@@ -133,23 +134,24 @@ void SupportLevel::for_near(const CellPosition& at, int reach, const Visit& visi
     for (int y = std::max(at[1] - reach, 0); y <= std::min(at[1] + reach, side_ - 1); ++y) {
       const std::size_t row =
           static_cast<std::size_t>(z - low_) * side + static_cast<std::size_t>(y);
-      auto found = cells_.begin() + rows_[row];
+      auto cell = cells_.begin() + rows_[row];
       const auto end = cells_.begin() + rows_[row + 1];
-      if (found == end) continue;
+      if (cell == end) continue;
       const CellKey first = cell_key({std::max(at[0] - reach, 0), y, z});
       const CellKey last = cell_key({std::min(at[0] + reach, side_ - 1), y, z});
-      if (end - found > 8) {
-        found = std::lower_bound(found, end, first,
-                                 [](const SupportCell& c, CellKey key) { return c.key < key; });
+      if (end - cell > 8) {
+        cell = std::lower_bound(cell, end, first,
+                                [](const SupportCell& c, CellKey key) { return c.key < key; });
       }
-      for (; found != end && found->key <= last; ++found) {
-        if (found->key >= first) visit(*found);
+      for (; cell != end && cell->key <= last; ++cell) {
+        if (cell->key >= first) visit(*cell);
       }
     }
   }
 }
 
-void SupportLevel::look(const FacingPoint& point, double side, int reach, Support* best) const {
+void SupportLevel::lower_to_nearest(const OrientedPoint& point, double side, int reach,
+                                    Support* best) const {
   if (cells_.empty()) return;
   CellPosition at;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -165,17 +167,18 @@ void SupportLevel::look(const FacingPoint& point, double side, int reach, Suppor
     const double distance = std::sqrt(squared) / static_cast<double>(cell.reach);
     if (distance < static_cast<double>(best->distance)) {
       const double facing = facing_of(cell, point.normal);
-      if (facing < kAway) return;
-      const double turned = (1.0 + kTurned * std::max(0.0, kFacing - facing)) * distance;
-      const double felt = std::max(distance, std::min(turned, kMostTurned));
-      if (felt >= static_cast<double>(best->distance)) return;
-      *best = {static_cast<float>(felt), cell.spacing};
+      if (facing < kMinFacingCosine) return;
+      const double turned =
+          (1.0 + kTurnedFactor * std::max(0.0, kFullFacingCosine - facing)) * distance;
+      const double effective = std::max(distance, std::min(turned, kMaxTurnedDistance));
+      if (effective >= static_cast<double>(best->distance)) return;
+      *best = {static_cast<float>(effective), cell.spacing};
     }
   });
 }
 
 SupportField::SupportField(const Slabs& slabs, double sign, int s)
-    : slabs_(slabs), sign_(sign), s_(s), met_(static_cast<std::size_t>(slabs.depth()) + 1) {
+    : slabs_(slabs), sign_(sign), s_(s), crossed_(static_cast<std::size_t>(slabs.depth()) + 1) {
   for (int k = 0; k <= slabs.depth(); ++k) {
     levels_.push_back(level_of(k));
   }
@@ -212,48 +215,49 @@ SupportLevel SupportField::level_of(int k) const {
   return {k, heights, std::move(cells)};
 }
 
-SupportLevel SupportField::met_level_of(int k) const {
+SupportLevel SupportField::crossed_level_of(int k) const {
   const HeightRange heights = heights_around(k, kFarCells);
   std::vector<SupportCell> cells;
   if (k <= slabs_.top()) {
-    add_met(slabs_.whole, k, heights, slabs_.depth(), slabs_.mean_weight, &cells);
+    add_crossed(slabs_.whole, k, heights, slabs_.depth(), slabs_.mean_weight, &cells);
   } else {
     for (int t = s_ - 1; t <= s_ + 1; ++t) {
       if (slabs_.samples(t) == nullptr) continue;
-      add_met(*slabs_.samples(t), k, heights, slabs_.depth(), slabs_.mean_weight, &cells);
+      add_crossed(*slabs_.samples(t), k, heights, slabs_.depth(), slabs_.mean_weight, &cells);
     }
   }
   return {k, heights, std::move(cells)};
 }
 
-Support SupportField::at(FacingPoint point, int k) {
+Support SupportField::at(OrientedPoint point, int k) {
   const double size = length(point.normal);
   point.normal = (size > 0.0 ? sign_ / size : 0.0) * point.normal;
   constexpr float kNone = std::numeric_limits<float>::max();
   Support best = {kNone, 1.0F};
   const auto depth = static_cast<std::size_t>(std::clamp(k, 0, slabs_.depth()));
-  levels_[depth].look(point, side(static_cast<int>(depth)), kNearCells, &best);
-  if (static_cast<double>(best.distance) <= kNear) return best;
-  constexpr std::pair<int, double> kReaches[] = {{kMiddleCells, kMiddle}, {kExactCells, kExact}};
-  for (const auto& [cells, enough] : kReaches) {
+  levels_[depth].lower_to_nearest(point, side(static_cast<int>(depth)), kNearCells, &best);
+  if (static_cast<double>(best.distance) <= kNearDistance) return best;
+  constexpr std::pair<int, double> kReaches[] = {{kMiddleCells, kMiddleDistance},
+                                                 {kExactCells, kExact}};
+  for (const auto& [cells, sufficient] : kReaches) {
     for (int j = slabs_.depth(); j >= 0; --j) {
-      levels_[static_cast<std::size_t>(j)].look(point, side(j), cells, &best);
+      levels_[static_cast<std::size_t>(j)].lower_to_nearest(point, side(j), cells, &best);
     }
-    if (static_cast<double>(best.distance) <= enough) return best;
+    if (static_cast<double>(best.distance) <= sufficient) return best;
   }
   const Support far = far_support(point);
   return best.distance < far.distance ? best : far;
 }
 
-// By cells that are small beside the distance. Nothing is nearer than kExact reaches, so means that
-// lie in holes of their cells are no nearer, either.
-Support SupportField::far_support(const FacingPoint& point) {
-  constexpr float kMost = 1e6F;
+// Searches coarser cells that are small against the distance. Nothing is nearer than kExact
+// reaches, so the result is clamped to that: a cell's mean may lie in a hole.
+Support SupportField::far_support(const OrientedPoint& point) {
+  constexpr float kMost = 1e6F;  // distance if no sample is near
   for (int k = slabs_.depth(); k >= 0; --k) {
-    std::optional<SupportLevel>& level = met_[static_cast<std::size_t>(k)];
-    if (!level) level = met_level_of(k);
+    std::optional<SupportLevel>& level = crossed_[static_cast<std::size_t>(k)];
+    if (!level) level = crossed_level_of(k);
     Support best = {kMost, 1.0F};
-    level->look(point, side(k), kFarCells, &best);
+    level->lower_to_nearest(point, side(k), kFarCells, &best);
     if (best.distance < kMost) {
       best.distance = std::max(best.distance, static_cast<float>(kExact));
       return best;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// How well samples support the surface: how far a point is from them, measured by how far they are
-// from one another. A hole in a dense part of a scan is told from a thin part by that.
+// Measures how well samples support the surface: the distance of a point from them, relative to
+// their spacing, which distinguishes holes in dense parts of a scan from thin parts.
 //
-// Samples support what faces the way that they do: the back of a sheet, which closes it, is far
-// from all of them.
+// Samples support only surfaces that face the same way: the back that closes a sheet is far from
+// all of them.
 //
-// A sample counts at the depth of its leaf, the finest at which there are others around it, so the
-// side of that leaf is about their spacing; the area for which each stands tells it more exactly.
+// Samples count at the depth of their leaf, the finest at which others are around them, so the
+// leaf's side approximates their spacing; the area per sample gives it more exactly.
 #pragma once
 
 #include <array>
@@ -28,39 +28,39 @@ class Slabs;
 /// The samples of a cell that count at its depth.
 struct SupportCell {
   CellKey key = 0;
-  std::array<float, 3> position{};  // their mean, in finest cells from the root's corner
-  std::array<float, 3> normal{};    // zero: they face all ways
-  float reach = 1.0F;               // how far each stands for the surface, in finest cells
+  std::array<float, 3> position{};  // mean sample, in finest cells from the root's corner
+  std::array<float, 3> normal{};    // zero: matches all directions
+  float reach = 1.0F;               // radius of surface that a sample represents, in finest cells
   float spacing = 1.0F;             // between samples, in finest cells
 };
 
-/// Adds the cells of depth `k` of a slab, at some heights, with samples that count at just that
-/// depth, in the order of their keys. The slab has its leaves; `finest` is the depth of finest
-/// cells.
+/// Appends the cells of depth `k` of a slab, at the given heights, with samples that count at
+/// exactly that depth, in order of their keys. The slab must be at kLeaves; `finest` is the depth
+/// of finest cells.
 void add_support(const SampleSlab& slab, int k, const HeightRange& heights, int finest,
                  double mean_weight, std::vector<SupportCell>* cells);
 
-/// A point of a surface, in finest cells, and where that faces there, in any length.
-struct FacingPoint {
+/// A point of a surface, in finest cells, and a normal of any length.
+struct OrientedPoint {
   Vector3 position;
   Vector3 normal;
 };
 
-/// What samples near a point tell.
+/// Support of a point by the samples near it.
 struct Support {
-  float distance = 0.0F;  // from the nearest, each in its own reach
-  float spacing = 1.0F;   // of those that are nearest, in finest cells
+  float distance = 0.0F;  // to the nearest sample, in units of its reach
+  float spacing = 1.0F;   // between the nearest samples, in finest cells
 };
 
-/// The cells of one depth at some heights, by rows.
+/// The cells of one depth at some heights, indexed by rows.
 class SupportLevel {
  public:
-  /// Cells in the order of their keys, all at these heights, which are within the root.
+  /// Cells must be in order of their keys, and at these heights, which must lie within the root.
   SupportLevel(int depth, const HeightRange& heights, std::vector<SupportCell> cells);
 
   bool is_empty() const { return cells_.empty(); }
-  /// Lowers `best` to what cells up to `reach` cells away support of a point.
-  void look(const FacingPoint& point, double side, int reach, Support* best) const;
+  /// Lowers `best` to the support of a point by cells within `reach` cells.
+  void lower_to_nearest(const OrientedPoint& point, double side, int reach, Support* best) const;
 
  private:
   template <typename Visit>
@@ -71,34 +71,35 @@ class SupportLevel {
   int low_;
   int high_;
   std::vector<SupportCell> cells_;
-  std::vector<std::uint32_t> rows_;  // where they begin
+  std::vector<std::uint32_t> rows_;  // offset of each row's first cell
 };
 
-/// What supports the part of a surface in one slab. The slabs next to it have their leaves.
+/// Support of the surface in one slab. The adjacent slabs must be at kLeaves.
 class SupportField {
  public:
-  /// `sign` is -1 where normals of samples point inward.
+  /// `sign` is -1 where the samples' normals point inward.
   SupportField(const Slabs& slabs, double sign, int s);
 
-  /// Of a point; `k` is the depth of the leaves around it. Up to kExact reaches the
-  /// distance is that of the means of samples in cells; beyond, it is right by about a tenth.
-  Support at(FacingPoint point, int k);
+  /// Support of a point next to leaves of depth `k`. Distances are measured to the mean samples of
+  /// cells; beyond kExact reaches they are only accurate to about 1/10.
+  Support at(OrientedPoint point, int k);
 
+  // Distance, in reaches, up to which the nearest sample is found.
   static constexpr double kExact = 4.0;
 
  private:
   SupportLevel level_of(int k) const;
-  SupportLevel met_level_of(int k) const;
-  Support far_support(const FacingPoint& point);
+  SupportLevel crossed_level_of(int k) const;
+  Support far_support(const OrientedPoint& point);
   double side(int k) const;
-  // Up to so many cells away from the slab.
+  // Heights at depth `k` of the slab and `reach` cells around it.
   HeightRange heights_around(int k, int reach) const;
 
   const Slabs& slabs_;
   double sign_;
   int s_;
   std::vector<SupportLevel> levels_;
-  std::vector<std::optional<SupportLevel>> met_;  // of all samples at a depth, as far as needed
+  std::vector<std::optional<SupportLevel>> crossed_;  // all samples at a depth, built on demand
 };
 
 }  // namespace prefilter

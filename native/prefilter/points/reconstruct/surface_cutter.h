@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A mesh that comes part by part, cut where no samples support it.
+// Trims a mesh that arrives part by part where no samples support it.
 //
-// Which regions are cut, and which parts are islands, is known when all has come. Until then the
-// mesh is kept, in memory or in a file; of the regions only what their pieces have in common is.
+// The regions to cut, and the islands, are only known after the last part. Until then the mesh is
+// stored in memory or in a file; regions are represented by totals over their pieces.
 #pragma once
 
 #include <array>
@@ -25,9 +25,10 @@ namespace prefilter {
 
 class SurfaceCutter final : public MeshSink {
  public:
-  /// Attributes are `width` for each vertex, the last two those of its support. `cell` is the least
-  /// spacing of samples. Of attributes the last two go no further where they are not `wanted`.
-  SurfaceCutter(const TrimOptions& options, std::size_t width, double cell, bool wanted,
+  /// `width` is the number of attributes per vertex, of which the last two are the support
+  /// attributes; these are removed from the result unless `keeps_support`. `cell` is the smallest
+  /// spacing of samples.
+  SurfaceCutter(const TrimOptions& options, std::size_t width, double cell, bool keeps_support,
                 std::uint64_t memory_limit, std::string folder);
 
   void add_vertices(std::vector<Vector3> positions, std::vector<float> attributes) override {
@@ -36,18 +37,19 @@ class SurfaceCutter final : public MeshSink {
   void add_triangles(std::vector<std::array<std::int64_t, 3>> triangles) override {
     builder_.add_triangles(std::move(triangles));
   }
-  /// Of the part that has come; edges by the numbers of their ends.
-  void add_far_places(const std::vector<FarPlace<std::int64_t>>& places) {
-    builder_.add_far_places(places);
+  /// Sets the far midpoints of the current part; edges are given by the numbers of their ends.
+  void add_far_midpoints(const std::vector<FarMidpoint<std::int64_t>>& places) {
+    builder_.add_far_midpoints(places);
   }
-  /// Has the regions cut in which these vertices of the part are, if they are far.
-  void cut_at(std::vector<std::int64_t> numbers) { builder_.cut_at(std::move(numbers)); }
-  /// Later parts may name those vertices that are `shared`, and no others.
+  /// Requests that the regions around these vertices of the part be cut, provided that they are
+  /// far.
+  void request_cut(std::vector<std::int64_t> numbers) { builder_.request_cut(std::move(numbers)); }
+  /// Later parts may refer to the vertices in `shared`, but to no others.
   void end_part(std::span<const std::int64_t> shared) override {
     parts_.add(builder_.take_part(shared));
   }
 
-  /// Hands on what is left, in parts.
+  /// Outputs the remaining mesh in parts.
   TrimReport finish(const Progress& progress, MeshSink* sink);
 
   const MeshCounts& counts() const { return counts_; }
@@ -56,7 +58,7 @@ class SurfaceCutter final : public MeshSink {
  private:
   TrimOptions options_;
   std::size_t width_;
-  bool are_wanted_;
+  bool keeps_support_;
   SurfaceRegions regions_;
   CutBuilder builder_;
   CutParts parts_;

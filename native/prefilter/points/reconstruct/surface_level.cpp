@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// The data-dependent isovalue of section 4.3: the mean of the function over the samples.
 #include "prefilter/points/reconstruct/surface_level.h"
 
 #include <cstddef>
@@ -49,22 +50,23 @@ SurfaceLevel find_surface_level(const ReconstructOptions& options, bool is_inwar
   const bool is_flipped = is_inward && !options.are_sides_known;
   const bool may_be_room = is_inward && options.are_sides_known;
   MeanSample mean;
-  const bool is_solved = slabs->middle != 0.0F;
-  // Smoothing leaves little of shapes of a few cells.
-  constexpr int kLeastDepth = 4;
-  const bool is_known = is_solved && slabs->depth() >= kLeastDepth;
+  const bool is_solved = slabs->target != 0.0F;
+  // Smoothing removes most of shapes that are only a few cells wide.
+  constexpr int kMinSolvedDepth = 4;
+  const bool is_known = is_solved && slabs->depth() >= kMinSolvedDepth;
   if ((options.isovalue == Isovalue::kMean && !is_known) || may_be_room) {
     mean = mean_at_samples(is_flipped ? -1.0F : 1.0F, options, progress, slabs);
   }
-  // Room is then what is inside, as it is what normals point to: there is no end to what is not.
-  // The solve wants the same at all samples, and so tells no room from a sheet.
+  // In a scanned room the normals point into the enclosed space, so the enclosed space counts as
+  // inside; the outside is unbounded. The solve enforces one value at all samples, so only the
+  // function before it distinguishes a room from a sheet.
   const double before = is_solved ? slabs->unsolved_mean : mean.value;
   const bool is_reversed = may_be_room && is_room({before, mean.normal});
   if (is_reversed) mean.value = -mean.value;
   const float sign = is_flipped || is_reversed ? -1.0F : 1.0F;
   SurfaceLevel level;
   if (options.isovalue == Isovalue::kMean && is_known) {
-    level = {sign, sign * slabs->middle};
+    level = {sign, sign * slabs->target};
   } else if (options.isovalue == Isovalue::kMean) {
     level = level_of_mean(mean.value, sign < 0.0F, options.are_sides_known);
   } else {
@@ -77,15 +79,15 @@ SurfaceLevel find_surface_level(const ReconstructOptions& options, bool is_inwar
 }
 
 bool is_room(const MeanSample& mean) {
-  constexpr double kMostOfRoom = -0.15;
-  constexpr double kLeastOfSheet = 0.4;
-  return mean.value < kMostOfRoom && length(mean.normal) < kLeastOfSheet;
+  constexpr double kMaxRoomMean = -0.15;
+  constexpr double kMinSheetNormal = 0.4;
+  return mean.value < kMaxRoomMean && length(mean.normal) < kMinSheetNormal;
 }
 
 SurfaceLevel level_of_mean(double mean, bool is_flipped, bool are_sides_known) {
-  constexpr double kLeastOfClosed = 0.2;
+  constexpr double kMinClosedMean = 0.2;  // below it the level is shifted, not scaled
   const float sign = is_flipped ? -1.0F : 1.0F;
-  if (are_sides_known || mean < kLeastOfClosed) return {sign, static_cast<float>(mean)};
+  if (are_sides_known || mean < kMinClosedMean) return {sign, static_cast<float>(mean)};
   return {sign * static_cast<float>(0.5 / mean), 0.5F};
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// At which value of the function the surface is.
+// Finds the value of the function at the surface.
 #pragma once
 
 #include "prefilter/base/geometry.h"
@@ -12,42 +12,43 @@
 
 namespace prefilter {
 
-/// The surface is where the function times `scale` is `isovalue`.
+/// The surface is the set where the function times `scale` equals `isovalue`.
 struct SurfaceLevel {
   float scale = 1.0F;
   float isovalue = 0.5F;
-  bool is_reversed = false;  // the outside is where the function is larger: a room, from within
+  bool is_reversed = false;  // the function is larger outside: a room, scanned from within
 };
 
-/// As the options say, from the mean at the samples where that counts; `is_inward`: most normals
-/// point inward. Slabs have got all but their values. Throws Error(kCancelled).
+/// Finds the level that the options request, from the mean at the samples where needed.
+/// `is_inward`: most normals point inward. Everything except the slabs' values must have been
+/// computed. Throws Error(kCancelled).
 SurfaceLevel find_surface_level(const ReconstructOptions& options, bool is_inward,
                                 const Progress& progress, Slabs* slabs);
 
-/// What the samples of a cloud have in the mean, by their weight.
+/// Weighted means over the samples of a cloud.
 struct MeanSample {
   double value = 0.0;  // of the function
   Vector3 normal{};
 };
 
-/// Whether samples are of a room, seen from within: the function, which jumps by 1 at its walls, is
-/// about -1/2 there, and walls that face each other leave nothing of the mean normal. Of one sheet,
-/// as a terrain, much of that is left.
+/// Whether the samples show a room from within: the function, which jumps by 1 at the walls, is
+/// about -1/2 there, and opposite walls cancel in the mean normal. For a single sheet such as
+/// terrain the mean normal is long.
 bool is_room(const MeanSample& mean);
 
-/// The level that follows from the mean of the function, times -1 where it is flipped, at the
-/// samples. Of a closed surface the mean is off from 1/2 as the areas are; of an open one, as the
-/// mean over the root is, to which its holes leave much.
+/// The level for a mean of the function at the samples, which is negated where the function is
+/// flipped. On closed surfaces the mean deviates from 1/2 as the estimated areas do; on open ones,
+/// which holes bring closer to 0, as the mean over the root does.
 SurfaceLevel level_of_mean(double mean, bool is_flipped, bool are_sides_known);
 
-/// Around a slab, in octants of any depth: what its contour needs.
+/// Radius around a slab that its contour requires, in octants of each depth.
 inline constexpr int kContourOctants = 2;
 
-/// The tree around slab `s`, and so many octants beyond, of values times `scale`.
-/// The values of the slab and of those next to it have been made.
+/// The tree around slab `s` and `octants` beyond, with values times `scale`. The values of the slab
+/// and its neighbors must have been computed.
 CellTree tree_around(const Slabs& slabs, int s, int octants, float scale);
 
-/// The value of the leaf that holds a cell of depth `depth`.
+/// The value of the leaf that contains cell `at` of depth `depth`.
 float leaf_value(const CellTree& tree, int depth, const CellPosition& at);
 
 }  // namespace prefilter

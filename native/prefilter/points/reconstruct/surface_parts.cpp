@@ -16,16 +16,16 @@
 namespace prefilter {
 namespace {
 
-// What the function is like.
+// Findings about the function.
 struct FunctionFindings {
   double left_out = 0.0;   // the weight of outliers
   bool is_inward = false;  // most normals point inward
 };
 
-// Values of all slabs in the D4 basis.
+// Computes the values of all slabs in the D4 basis.
 FunctionFindings find_d4_trees(PointSource* source, const SampleGrid& grid,
                                const Progress& progress, int threads, Slabs* slabs) {
-  slabs->bring(0, slabs->count(), SlabStage::kLeaves);
+  slabs->advance_to(0, slabs->count(), SlabStage::kLeaves);
   D4Function made = make_d4_function(source, grid, *slabs, progress, threads);
   for (int s = 0; s < slabs->count(); ++s) {
     slabs->set_values(s, std::move(made.trees[static_cast<std::size_t>(s)]));
@@ -34,34 +34,36 @@ FunctionFindings find_d4_trees(PointSource* source, const SampleGrid& grid,
   return {made.left_out, made.is_flipped};
 }
 
-// Of flat boxes, which hold nothing.
-constexpr double kLeastBoxShare = 1e-3;
+// Lower limit for the share of flat boxes, whose volume is 0.
+constexpr double kMinBoxShare = 1e-3;
 
-// The function that is 1 inside and 0 outside: the tree above the slabs, and what these need to
-// make their own levels.
+// Computes the function that is 1 inside and 0 outside: the coarse tree, and the data from which
+// slabs compute their own levels.
 FunctionFindings find_function(PointSource* source, const SampleGrid& grid,
                                const ReconstructOptions& options, Slabs* slabs) {
-  FunctionFindings found;
+  FunctionFindings findings;
   if (options.basis == WaveletBasis::kD4) {
-    found = find_d4_trees(source, grid, options.progress.part(0.15, 0.4), options.threads, slabs);
+    findings =
+        find_d4_trees(source, grid, options.progress.part(0.15, 0.4), options.threads, slabs);
   } else {
-    found.left_out = find_coarse_tree(options.progress.part(0.15, 0.35), options.threads, slabs);
-    found.is_inward = slabs->coarse.root < 0.0F;
-    // What is inside, of the box around the points: their walls enclose most of it, or of
-    // themselves.
+    findings.left_out =
+        build_coarse_tree(options.progress.part(0.15, 0.35), options.threads, slabs);
+    findings.is_inward = slabs->coarse.root < 0.0F;
+    // The share of the box around the points that is inside. In a room the walls enclose most of
+    // the box; for a solid object they enclose the object.
     slabs->unsolved_mean =
-        static_cast<double>(slabs->coarse.root) / std::max(slabs->box_share, kLeastBoxShare);
-    slabs->middle = found.is_inward ? -0.5F : 0.5F;
-    solve_coarse_tree(slabs->middle, &slabs->coarse);
+        static_cast<double>(slabs->coarse.root) / std::max(slabs->box_share, kMinBoxShare);
+    slabs->target = findings.is_inward ? -0.5F : 0.5F;
+    solve_coarse_tree(slabs->target, &slabs->coarse);
   }
   if (slabs->coarse.is_empty()) {
     throw_invalid(
         "normals: they contradict each other everywhere; recalculate them, or have them estimated");
   }
-  return found;
+  return findings;
 }
 
-// Of the root's volume, that of the box around the points.
+// Volume of the box around the points, as a share of the root's volume.
 double box_share(const SampleGrid& grid, const Box& box) {
   const double side = std::ldexp(grid.cell, grid.depth);
   double share = 1.0;
@@ -83,12 +85,13 @@ SurfaceParts::SurfaceParts(PointSource* source, std::size_t attribute_count, con
       cell_(grid.cell) {
   slabs_.mean_weight = extent.part.weight / static_cast<double>(extent.part.points);
   slabs_.box_share = box_share(grid, extent.part.box);
-  const int largest =
-      find_whole(attribute_count, options.progress.part(0.0, 0.15), options.threads, &slabs_);
-  const FunctionFindings found = find_function(source, grid, options, &slabs_);
-  outliers_ = found.left_out / extent.part.weight;
-  is_flipped_ = found.is_inward && !options.are_sides_known;
-  level_ = find_surface_level(options, found.is_inward, options.progress.part(0.35, 0.6), &slabs_);
+  const int largest = compute_whole_samples(attribute_count, options.progress.part(0.0, 0.15),
+                                            options.threads, &slabs_);
+  const FunctionFindings findings = find_function(source, grid, options, &slabs_);
+  outliers_ = findings.left_out / extent.part.weight;
+  is_flipped_ = findings.is_inward && !options.are_sides_known;
+  level_ =
+      find_surface_level(options, findings.is_inward, options.progress.part(0.35, 0.6), &slabs_);
   noise_ = find_noise(largest, &slabs_);
 }
 

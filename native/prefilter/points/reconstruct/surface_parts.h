@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The surface of samples in cells, slab by slab.
+// Reconstructs the surface of samples in cells, slab by slab.
 #pragma once
 
 #include <cstddef>
@@ -20,25 +20,28 @@
 
 namespace prefilter {
 
-/// Slabs are up to 64 cells high; lower where there are many cells, so that those in memory at a
-/// time are fewer. That follows from the depth alone, as the order of triangles follows from it.
+/// Slabs are up to 64 cells high, but lower at large depths, to limit the number of cells in
+/// memory. The height depends on the depth alone because the order of the triangles follows from
+/// it.
 int slab_bits(int depth);
 
 class SurfaceParts {
  public:
-  /// Finds what all slabs have in common. The source is read again for the D4 basis, and else may
-  /// be null. Throws Error for normals that contradict each other everywhere; Error(kCancelled).
+  /// Computes the data that all slabs share. The source is only read for the D4 basis, and may
+  /// otherwise be null. Throws Error for normals that contradict each other everywhere;
+  /// Error(kCancelled).
   SurfaceParts(PointSource* source, std::size_t attribute_count, const SampleGrid& grid,
                const CloudExtent& extent, const ReconstructOptions& options, bool keeps_all,
                SampleStore* store);
 
   int count() const { return slabs_.count(); }
   int slab_height() const { return slabs_.height(); }
-  /// Makes the parts of slabs from `begin` up to `end`, some at a time, and hands them on in order.
+  /// Makes the parts of slabs from `begin` up to `end`, several at a time, and passes them to `use`
+  /// in order.
   void make(int begin, int end, const Progress& progress,
             const std::function<void(const SlabMesh&)>& use);
 
-  /// Sets what was found of all of them.
+  /// Writes the findings about the samples to the report.
   void describe(ReconstructReport* report) const;
 
  private:
@@ -48,7 +51,7 @@ class SurfaceParts {
   SampleNoise noise_;
   std::size_t attribute_count_;
   double cell_;
-  double outliers_ = 0.0;  // the share of the weight
+  double outliers_ = 0.0;  // as a share of all weight
   bool is_flipped_ = false;
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Connected components with union-find and path halving (R. Tarjan, J. van Leeuwen, 1984).
 #include "prefilter/points/reconstruct/surface_regions.h"
 
 #include <algorithm>
@@ -8,13 +9,13 @@
 
 namespace prefilter {
 
-std::int32_t SurfaceRegions::make() {
+std::int32_t SurfaceRegions::add_piece() {
   const auto piece = static_cast<std::int32_t>(regions_.size());
   regions_.push_back({piece});
   return piece;
 }
 
-std::int32_t SurfaceRegions::find(std::int32_t piece) {
+std::int32_t SurfaceRegions::find_root(std::int32_t piece) {
   while (regions_[index(piece)].parent != piece) {
     std::int32_t& parent = regions_[index(piece)].parent;
     parent = regions_[index(parent)].parent;
@@ -24,8 +25,8 @@ std::int32_t SurfaceRegions::find(std::int32_t piece) {
 }
 
 std::int32_t SurfaceRegions::unite(std::int32_t a, std::int32_t b) {
-  // The one that came first, so that sums are the same for any shape of the forest.
-  std::tie(a, b) = std::minmax({find(a), find(b)});
+  // The earliest piece becomes the root, so that sums do not depend on the forest's shape.
+  std::tie(a, b) = std::minmax({find_root(a), find_root(b)});
   if (a == b) return a;
   Region& into = regions_[index(a)];
   Region& from = regions_[index(b)];
@@ -37,13 +38,13 @@ std::int32_t SurfaceRegions::unite(std::int32_t a, std::int32_t b) {
 }
 
 void SurfaceRegions::add_area(std::int32_t piece, double area, double patches) {
-  Region& region = regions_[index(find(piece))];
+  Region& region = regions_[index(find_root(piece))];
   region.area += area;
   region.patches += patches;
 }
 
 void SurfaceRegions::add_distance(std::int32_t piece, double distance) {
-  double& farthest = regions_[index(find(piece))].farthest;
+  double& farthest = regions_[index(find_root(piece))].farthest;
   farthest = std::max(farthest, distance);
 }
 
@@ -53,7 +54,7 @@ void SurfaceRegions::add_borders(std::vector<std::pair<std::int32_t, std::int32_
   borders_.insert(borders_.end(), near_and_far.begin(), end);
 }
 
-// What fills a hole is as large as that is deep; a fold, whose back no samples support, is not.
+// Regions that fill a hole are as large as it is deep; folds with an unsupported back are smaller.
 bool SurfaceRegions::is_cut_off(const Region& region, double hole) {
   return region.farthest > hole && (region.patches >= hole * hole || std::isinf(region.farthest));
 }
@@ -65,7 +66,7 @@ TrimReport SurfaceRegions::decide(const TrimOptions& options) {
   fates_.assign(regions_.size(), Fate::kKept);
   for (std::size_t i = 0; i < regions_.size(); ++i) {
     const auto piece = static_cast<std::int32_t>(i);
-    const Region& root = regions_[index(find(piece))];
+    const Region& root = regions_[index(find_root(piece))];
     if (is_cut_off(root, options.hole)) fates_[i] = Fate::kCut;
     if (root.parent != piece) continue;
     all += root.area;
@@ -91,7 +92,7 @@ void SurfaceRegions::find_islands(const TrimOptions& options, double all, TrimRe
   for (std::size_t i = 0; i < regions_.size(); ++i) {
     if (fates_[i] == Fate::kCut) continue;
     const auto piece = static_cast<std::int32_t>(i);
-    const std::int32_t root = find(piece);
+    const std::int32_t root = find_root(piece);
     if (root == largest || regions_[index(root)].patches >= options.island) continue;
     fates_[i] = Fate::kIsland;
     if (root != piece) continue;

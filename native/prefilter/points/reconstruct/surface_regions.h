@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Which regions of a surface are cut, and which parts of the rest are islands.
+// Decides which regions of a surface are cut, and which remaining parts are islands.
 #pragma once
 
 #include <cstddef>
@@ -12,21 +12,21 @@
 
 namespace prefilter {
 
-/// Regions of vertices that are all near samples, or all far from them. Each is known by the
-/// numbers of the pieces that it was put together from.
+/// Regions of vertices that are all near samples, or all far from them. A region consists of
+/// pieces, and any of its pieces identifies it.
 class SurfaceRegions {
  public:
-  std::int32_t make();
-  /// Makes one region of two. Both are near, or both far.
+  std::int32_t add_piece();
+  /// Unites two regions, which must both be near or both be far; returns the united region.
   std::int32_t unite(std::int32_t a, std::int32_t b);
-  /// Some surface of a region, as it is and in squared spacings.
+  /// Adds surface to a region: its area, and its area in squared spacings.
   void add_area(std::int32_t piece, double area, double patches);
-  /// A vertex of a region that is far; infinite: it is to be cut.
+  /// Adds the distance of a far vertex; infinity requests a cut.
   void add_distance(std::int32_t piece, double distance);
-  /// Triangles lie in both. The same pairs may come often.
+  /// Adds pairs of adjacent regions, in any order and with repetitions.
   void add_borders(std::vector<std::pair<std::int32_t, std::int32_t>> near_and_far);
 
-  /// Decides; call it once. No regions may come after.
+  /// Decides; call once, after all regions have been added.
   TrimReport decide(const TrimOptions& options);
   bool is_cut(std::int32_t piece) const { return fates_[index(piece)] == Fate::kCut; }
   bool is_kept(std::int32_t piece) const { return fates_[index(piece)] == Fate::kKept; }
@@ -41,14 +41,14 @@ class SurfaceRegions {
   };
 
   static std::size_t index(std::int32_t piece) { return static_cast<std::size_t>(piece); }
-  std::int32_t find(std::int32_t piece);
+  std::int32_t find_root(std::int32_t piece);
   static bool is_cut_off(const Region& region, double hole);
-  // Islands among what is left.
+  // Finds islands among the remaining regions.
   void find_islands(const TrimOptions& options, double all, TrimReport* report);
 
   std::vector<Region> regions_;
   std::vector<std::pair<std::int32_t, std::int32_t>> borders_;
-  std::vector<Fate> fates_;  // of all pieces
+  std::vector<Fate> fates_;  // of each piece
 };
 
 }  // namespace prefilter

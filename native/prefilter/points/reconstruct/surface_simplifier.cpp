@@ -15,7 +15,7 @@ namespace {
 
 using Triangle = std::array<std::int32_t, 3>;
 
-// Triangles wait that are in so many rings around an end that goes on.
+// Width, in rings of triangles, of the waiting region around an open end that later parts continue.
 constexpr int kWaitingRings = 3;
 
 bool has_any(const Triangle& triangle, const std::vector<std::uint8_t>& flags) {
@@ -23,8 +23,8 @@ bool has_any(const Triangle& triangle, const std::vector<std::uint8_t>& flags) {
           flags[as_index(triangle[2])]) != 0;
 }
 
-// Vertices of edges that have not just two triangles.
-void find_open(std::span<const Triangle> triangles, std::vector<std::uint8_t>* is_open) {
+// Flags the vertices of edges that do not have exactly two triangles.
+void flag_open_vertices(std::span<const Triangle> triangles, std::vector<std::uint8_t>* is_open) {
   std::vector<std::pair<std::int32_t, std::int32_t>> edges;
   edges.reserve(3 * triangles.size());
   for (const Triangle& triangle : triangles) {
@@ -43,8 +43,8 @@ void find_open(std::span<const Triangle> triangles, std::vector<std::uint8_t>* i
   }
 }
 
-// The vertices of triangles near some.
-void grow(std::span<const Triangle> triangles, std::vector<std::uint8_t>* is_near) {
+// Adds the vertices of all triangles that touch flagged vertices.
+void grow_by_ring(std::span<const Triangle> triangles, std::vector<std::uint8_t>* is_near) {
   const std::vector<std::uint8_t> before = *is_near;
   for (const Triangle& triangle : triangles) {
     if (!has_any(triangle, before)) continue;
@@ -52,33 +52,33 @@ void grow(std::span<const Triangle> triangles, std::vector<std::uint8_t>* is_nea
   }
 }
 
-// Facets that have not been simplified.
+// Appends facets that have not been simplified yet.
 void append_new(std::vector<Triangle>* triangles, Facets* facets) {
-  Facets some;
-  some.errors.assign(triangles->size(), 0.0F);
-  some.deviations.assign(triangles->size(), 0.0F);
-  some.point_ends.assign(triangles->size(), 0U);
-  some.triangles = std::exchange(*triangles, {});
-  append(&some, facets);
+  Facets chosen;
+  chosen.errors.assign(triangles->size(), 0.0F);
+  chosen.deviations.assign(triangles->size(), 0.0F);
+  chosen.point_ends.assign(triangles->size(), 0U);
+  chosen.triangles = std::exchange(*triangles, {});
+  append(&chosen, facets);
 }
 
-// The facets around vertices, simplified before.
+// The facets around chosen vertices, with their simplification history.
 Facets facets_around(const Facets& facets, const std::vector<std::uint8_t>& is_chosen) {
-  Facets some;
+  Facets chosen;
   std::uint32_t begin = 0;
   for (std::size_t t = 0; t < facets.triangles.size(); ++t) {
     const std::uint32_t end = facets.point_ends[t];
     if (has_any(facets.triangles[t], is_chosen)) {
-      some.triangles.push_back(facets.triangles[t]);
-      some.errors.push_back(facets.errors[t]);
-      some.deviations.push_back(facets.deviations[t]);
-      some.points.insert(some.points.end(), facets.points.begin() + begin,
-                         facets.points.begin() + end);
-      some.point_ends.push_back(static_cast<std::uint32_t>(some.points.size()));
+      chosen.triangles.push_back(facets.triangles[t]);
+      chosen.errors.push_back(facets.errors[t]);
+      chosen.deviations.push_back(facets.deviations[t]);
+      chosen.points.insert(chosen.points.end(), facets.points.begin() + begin,
+                           facets.points.begin() + end);
+      chosen.point_ends.push_back(static_cast<std::uint32_t>(chosen.points.size()));
     }
     begin = end;
   }
-  return some;
+  return chosen;
 }
 
 }  // namespace
@@ -112,20 +112,21 @@ void SurfaceSimplifier::end_part(std::span<const std::int64_t> shared) {
     const SimplifyScale scale = scale_of(pending_.mesh.positions, added_, options_.tolerance);
     append_new(&added_, &pending_.facets);
     FixedVertices fixed{is_waiting, far_vertices()};
-    find_open(pending_.facets.triangles, &fixed.is_open);
+    flag_open_vertices(pending_.facets.triangles, &fixed.is_open);
     simplify_facets(pending_.mesh, scale, std::move(fixed), options_.progress, options_.threads,
                     &pending_.facets);
   }
-  for (int ring = 1; ring < kWaitingRings; ++ring) grow(pending_.facets.triangles, &is_waiting);
-  hand_on(is_waiting);
-  keep(is_waiting, shared);
+  for (int ring = 1; ring < kWaitingRings; ++ring)
+    grow_by_ring(pending_.facets.triangles, &is_waiting);
+  output_finished(is_waiting);
+  retain_waiting(is_waiting, shared);
 }
 
 std::span<const float> SurfaceSimplifier::attributes_of(std::size_t vertex) const {
   return std::span(pending_.attributes).subspan(vertex * options_.width, options_.width);
 }
 
-// What fills holes: only there the mesh can still be cut.
+// Flags vertices that fill holes: only there can the mesh still be cut.
 std::vector<std::uint8_t> SurfaceSimplifier::far_vertices() const {
   std::vector<std::uint8_t> is_far(pending_.numbers.size(), 0);
   if (!options_.has_support) return is_far;
@@ -137,8 +138,8 @@ std::vector<std::uint8_t> SurfaceSimplifier::far_vertices() const {
   return is_far;
 }
 
-// All triangles but those around vertices that wait.
-void SurfaceSimplifier::hand_on(const std::vector<std::uint8_t>& is_waiting) {
+// Outputs all triangles except those around waiting vertices.
+void SurfaceSimplifier::output_finished(const std::vector<std::uint8_t>& is_waiting) {
   std::vector<Vector3> positions;
   std::vector<float> attributes;
   std::vector<std::array<std::int64_t, 3>> triangles;
@@ -146,8 +147,8 @@ void SurfaceSimplifier::hand_on(const std::vector<std::uint8_t>& is_waiting) {
     std::int64_t& number = pending_.out_numbers[v];
     if (number >= 0) return number;
     positions.push_back(pending_.mesh.positions[v]);
-    const std::span<const float> some = attributes_of(v);
-    attributes.insert(attributes.end(), some.begin(), some.end());
+    const std::span<const float> chosen = attributes_of(v);
+    attributes.insert(attributes.end(), chosen.begin(), chosen.end());
     return number = static_cast<std::int64_t>(counts_.vertices++);
   };
   for (const Triangle& triangle : pending_.facets.triangles) {
@@ -161,31 +162,31 @@ void SurfaceSimplifier::hand_on(const std::vector<std::uint8_t>& is_waiting) {
   if (!triangles.empty()) sink_->add_triangles(std::move(triangles));
 }
 
-// Those, and the vertices that are to come again.
-void SurfaceSimplifier::keep(const std::vector<std::uint8_t>& is_waiting,
-                             std::span<const std::int64_t> shared) {
-  Pending rest;
-  rest.facets = facets_around(pending_.facets, is_waiting);
+// Keeps the waiting facets, and the vertices to which later parts refer.
+void SurfaceSimplifier::retain_waiting(const std::vector<std::uint8_t>& is_waiting,
+                                       std::span<const std::int64_t> shared) {
+  Pending waiting;
+  waiting.facets = facets_around(pending_.facets, is_waiting);
   std::vector<std::uint8_t> is_kept(pending_.numbers.size(), 0);
   for (const std::int64_t number : shared) is_kept[as_index(pending_.places.at(number))] = 1;
-  for (const Triangle& triangle : rest.facets.triangles) {
+  for (const Triangle& triangle : waiting.facets.triangles) {
     for (const std::int32_t v : triangle) is_kept[as_index(v)] = 1;
   }
   std::vector<std::int32_t> places(pending_.numbers.size(), -1);
   for (std::size_t v = 0; v < is_kept.size(); ++v) {
     if (is_kept[v] == 0) continue;
-    places[v] = static_cast<std::int32_t>(rest.numbers.size());
-    rest.places.emplace(pending_.numbers[v], places[v]);
-    rest.numbers.push_back(pending_.numbers[v]);
-    rest.out_numbers.push_back(pending_.out_numbers[v]);
-    rest.mesh.positions.push_back(pending_.mesh.positions[v]);
-    const std::span<const float> some = attributes_of(v);
-    rest.attributes.insert(rest.attributes.end(), some.begin(), some.end());
+    places[v] = static_cast<std::int32_t>(waiting.numbers.size());
+    waiting.places.emplace(pending_.numbers[v], places[v]);
+    waiting.numbers.push_back(pending_.numbers[v]);
+    waiting.out_numbers.push_back(pending_.out_numbers[v]);
+    waiting.mesh.positions.push_back(pending_.mesh.positions[v]);
+    const std::span<const float> chosen = attributes_of(v);
+    waiting.attributes.insert(waiting.attributes.end(), chosen.begin(), chosen.end());
   }
-  for (Triangle& triangle : rest.facets.triangles) {
+  for (Triangle& triangle : waiting.facets.triangles) {
     for (std::int32_t& v : triangle) v = places[as_index(v)];
   }
-  pending_ = std::move(rest);
+  pending_ = std::move(waiting);
 }
 
 }  // namespace prefilter

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A mesh that comes part by part, with fewer triangles where it is flat or gently curved.
+// Simplifies a mesh that arrives part by part, where it is flat or gently curved.
 //
-// Each part is simplified with what is left around its lower end, and what is around its upper end
-// waits for the next one, with what is known of the surface that was there: so the tolerance holds
-// across parts, and no row of small triangles stays between them.
+// Triangles near a part's upper end wait for the next part and are simplified together with it,
+// along with the record of the original surface there. Therefore the tolerance holds across parts,
+// and no row of small triangles remains between them.
 #pragma once
 
 #include <array>
@@ -23,17 +23,17 @@
 namespace prefilter {
 
 struct SimplifierOptions {
-  double tolerance;   // above 0: how far from the surface that came, as `simplify` has it
-  std::size_t width;  // of attributes, for each vertex
+  double tolerance;   // above 0: maximum distance from the original surface, as in `simplify`
+  std::size_t width;  // number of attributes per vertex
   bool has_support;   // the last two are those of support_attributes()
   int threads;
-  Progress progress;  // for cancels alone
+  Progress progress;  // for canceling only
 };
 
-/// Hands a mesh on to a sink with fewer vertices, which neither move nor change their attributes.
-/// Vertices stay where the mesh ends, where it is no two-manifold, and where it is farther from all
-/// samples than TrimOptions have it, so that it can be cut there. A two-manifold stays one, with
-/// the same ends.
+/// Forwards a mesh to a sink with fewer vertices, which neither move nor change their attributes.
+/// Vertices stay where the mesh ends, where it is not two-manifold, and where it is farther from
+/// all samples than TrimOptions::distance, so that it can be cut there. A two-manifold mesh remains
+/// one, with the same boundaries.
 class SurfaceSimplifier final : public MeshSink {
  public:
   SurfaceSimplifier(SimplifierOptions options, MeshSink* sink);
@@ -46,20 +46,21 @@ class SurfaceSimplifier final : public MeshSink {
   const MeshCounts& counts() const { return counts_; }
 
  private:
-  // What has come and was not handed on.
+  // Mesh that has arrived but was not output yet.
   struct Pending {
     FacetedMesh mesh;  // positions alone
     Facets facets;
     std::vector<float> attributes;
-    std::vector<std::int64_t> numbers;                      // of vertices, as they came
-    std::vector<std::int64_t> out_numbers;                  // as they are handed on; -1: not yet
-    std::unordered_map<std::int64_t, std::int32_t> places;  // of vertices by their numbers
+    std::vector<std::int64_t> numbers;                      // input numbers of the vertices
+    std::vector<std::int64_t> out_numbers;                  // output numbers; -1: none yet
+    std::unordered_map<std::int64_t, std::int32_t> places;  // vertex of each input number
   };
 
   std::span<const float> attributes_of(std::size_t vertex) const;
   std::vector<std::uint8_t> far_vertices() const;
-  void hand_on(const std::vector<std::uint8_t>& is_waiting);
-  void keep(const std::vector<std::uint8_t>& is_waiting, std::span<const std::int64_t> shared);
+  void output_finished(const std::vector<std::uint8_t>& is_waiting);
+  void retain_waiting(const std::vector<std::uint8_t>& is_waiting,
+                      std::span<const std::int64_t> shared);
 
   SimplifierOptions options_;
   MeshSink* sink_;

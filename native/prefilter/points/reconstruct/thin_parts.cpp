@@ -16,49 +16,51 @@
 namespace prefilter {
 namespace {
 
-// How far from the heights values are changed, in sides of a leaf: what fit_values reads.
-constexpr int kThinReach = 8;
-// Of 1 less the squared length of the mean normal: at creases it is 1/2, of a plate nearly 1. Noise
-// stays below, so that where there is some the samples are trusted as for the fit.
-constexpr float kOfCrease = 0.5F;
-constexpr float kOfThinPart = 0.9F;
-// How much it counts that a value stays, beside a sample in the middle of its leaf.
-constexpr float kThinStill = 0.05F;
+// Margin around the heights in which values are changed, in sides of a leaf: fit_values reads
+// these.
+constexpr int kThinMargin = 8;
+// Range of 1 - |mean normal|^2: 1/2 at creases, nearly 1 on a plate. Noise stays below it, so noisy
+// samples are trusted only as far as the fit trusts them.
+constexpr float kCreaseCancellation = 0.5F;
+constexpr float kThinCancellation = 0.9F;
+// Regularization toward the present value, relative to a sample in the middle of its leaf.
+constexpr float kThinDamping = 0.05F;
 
-// The squared length of a mean; squares of weights may be beyond what floats hold.
+// Squared length of a mean; squares of the weight could overflow a float.
 float squared_mean(const std::array<float, 3>& sum, float weight) {
   float squared = 0.0F;
   for (const float x : sum) squared += (x / weight) * (x / weight);
   return squared;
 }
 
-// What the samples in and around a leaf say.
-struct Around {
+// Sums over the samples in and around a leaf.
+struct LeafSums {
   std::array<float, 3> normal{};
   float weight = 0.0F;
   float change = 0.0F;
   float change_weight = 0.0F;
 
-  // How thin the part is that they are of, from 0 to 1.
+  // How much the samples resemble those of a thin part, from 0 to 1.
   float thinness() const {
     if (!(weight > 0.0F)) return 0.0F;
     const float cancelled = 1.0F - squared_mean(normal, weight);
-    return std::clamp((cancelled - kOfCrease) / (kOfThinPart - kOfCrease), 0.0F, 1.0F);
+    return std::clamp((cancelled - kCreaseCancellation) / (kThinCancellation - kCreaseCancellation),
+                      0.0F, 1.0F);
   }
 };
 
-class Restorer {
+class ThinPartRestorer {
  public:
-  Restorer(const SampleFit& fit, const FitRange& range, CellTree* tree)
+  ThinPartRestorer(const SampleFit& fit, const FitRange& range, CellTree* tree)
       : fit_(fit), range_(range), tree_(tree) {
-    for (const TreeLevel& level : tree->levels) around_.emplace_back(8 * level.size());
+    for (const TreeLevel& level : tree->levels) sums_.emplace_back(8 * level.size());
   }
 
   void add_normals() {
     for_samples([&](const SampleCell& cell, const TreeCell& leaf) {
-      for_around(leaf.depth, cell, [&](Around& around, float share) {
-        around.weight += share * cell.weight;
-        for (std::size_t a = 0; a < 3; ++a) around.normal[a] += share * cell.normal[a];
+      for_neighbors(leaf.depth, cell, [&](LeafSums& sums, float share) {
+        sums.weight += share * cell.weight;
+        for (std::size_t a = 0; a < 3; ++a) sums.normal[a] += share * cell.normal[a];
       });
     });
   }
@@ -66,28 +68,27 @@ class Restorer {
   void add_changes(float isovalue) {
     for_samples([&](const SampleCell& cell, const TreeCell& leaf) {
       const float change = trust_in_sample(cell, leaf) * (isovalue - value_at(leaf.depth, cell));
-      // Where normals of the cell cancel each other, the mean sample is on no surface.
+      // Where the cell's normals cancel each other, its mean sample lies on no surface.
       const float coherence = squared_mean(cell.normal, cell.weight);
-      for_around(leaf.depth, cell, [&](Around& around, float share) {
-        around.change += coherence * share * change;
-        around.change_weight += coherence * share;
+      for_neighbors(leaf.depth, cell, [&](LeafSums& sums, float share) {
+        sums.change += coherence * share * change;
+        sums.change_weight += coherence * share;
       });
     });
   }
 
   void apply_changes() {
-    for (std::size_t k = 0; k < around_.size(); ++k) {
-      for (std::size_t i = 0; i < around_[k].size(); ++i) {
-        const Around& around = around_[k][i];
-        if (!(around.weight > 0.0F)) continue;
-        tree_->levels[k].blocks[i / 8][i % 8] +=
-            around.change / (around.change_weight + kThinStill);
+    for (std::size_t k = 0; k < sums_.size(); ++k) {
+      for (std::size_t i = 0; i < sums_[k].size(); ++i) {
+        const LeafSums& sums = sums_[k][i];
+        if (!(sums.weight > 0.0F)) continue;
+        tree_->levels[k].blocks[i / 8][i % 8] += sums.change / (sums.change_weight + kThinDamping);
       }
     }
   }
 
  private:
-  // Calls visit(cell, leaf) for the cells of samples that are leaves, and count.
+  // Calls visit(cell, leaf) for the sample cells that are leaves within the range.
   template <typename Visit>
   void for_samples(const Visit& visit) const {
     const int depth = tree_->depth();
@@ -97,8 +98,8 @@ class Restorer {
       fit_.samples(k).for_all([&](const SampleCell& cell) {
         const CellPosition at = cell_position(cell.key);
         const int low = at[2] * size;
-        if (low + (kThinReach + 1) * size < range_.heights.low ||
-            low - kThinReach * size > range_.heights.high) {
+        if (low + (kThinMargin + 1) * size < range_.heights.low ||
+            low - kThinMargin * size > range_.heights.high) {
           return;
         }
         const std::optional<TreeCell> own = cell_at(*tree_, k, at);
@@ -107,19 +108,19 @@ class Restorer {
     }
   }
 
-  // Calls visit(around, share) for the leaf of a cell and those around it that are no smaller;
-  // shares are those of a tent.
+  // Calls visit(around, share) for the leaf of a cell and the leaves around it that are no smaller;
+  // shares are those of a tent function.
   template <typename Visit>
-  void for_around(int k, const SampleCell& cell, const Visit& visit) {
+  void for_neighbors(int k, const SampleCell& cell, const Visit& visit) {
     const CellPosition at = cell_position(cell.key);
     for (int dz = -1; dz <= 1; ++dz) {
       for (int dy = -1; dy <= 1; ++dy) {
         for (int dx = -1; dx <= 1; ++dx) {
-          const std::optional<TreeCell> found =
+          const std::optional<TreeCell> neighbor =
               cell_at(*tree_, k, {at[0] + dx, at[1] + dy, at[2] + dz});
-          if (!found || !found->is_leaf) continue;
+          if (!neighbor || !neighbor->is_leaf) continue;
           const int steps = std::abs(dx) + std::abs(dy) + std::abs(dz);
-          visit(around_[found->level()][found->cell], 1.0F / static_cast<float>(1 << steps));
+          visit(sums_[neighbor->level()][neighbor->cell], 1.0F / static_cast<float>(1 << steps));
         }
       }
     }
@@ -132,12 +133,12 @@ class Restorer {
     for (std::size_t a = 0; a < 3; ++a) {
       point[a] = size * (at[a] + static_cast<double>(cell.position[a] / cell.weight));
     }
-    const float thinness = around_[leaf.level()][leaf.cell].thinness();
+    const float thinness = sums_[leaf.level()][leaf.cell].thinness();
     const std::optional<LocalSurface> surface = fit_.surface_near(leaf.depth, point);
     return surface ? std::max(thinness, static_cast<float>(surface->trust)) : thinness;
   }
 
-  // The function at the mean sample of a cell: trilinear between centers.
+  // The function at the mean sample of a cell, interpolated trilinearly between cell centers.
   float value_at(int k, const SampleCell& cell) const {
     const CellPosition at = cell_position(cell.key);
     CellPosition first;
@@ -150,10 +151,10 @@ class Restorer {
     float sum = 0.0F;
     for (int o = 0; o < 8; ++o) {
       const std::array<int, 3> step = {o & 1, (o >> 1) & 1, o >> 2};
-      const std::optional<TreeCell> found =
+      const std::optional<TreeCell> corner_cell =
           cell_at(*tree_, k, {first[0] + step[0], first[1] + step[1], first[2] + step[2]});
-      if (!found) continue;
-      float value = value_of(*found, *tree_);
+      if (!corner_cell) continue;
+      float value = value_of(*corner_cell, *tree_);
       for (std::size_t a = 0; a < 3; ++a) value *= step[a] != 0 ? off[a] : 1.0F - off[a];
       sum += value;
     }
@@ -163,14 +164,14 @@ class Restorer {
   const SampleFit& fit_;
   FitRange range_;
   CellTree* tree_;
-  std::vector<std::vector<Around>> around_;
+  std::vector<std::vector<LeafSums>> sums_;
 };
 
 }  // namespace
 
 void restore_thin_parts(const SampleFit& fit, float isovalue, const FitRange& range,
                         CellTree* tree) {
-  Restorer restorer(fit, range, tree);
+  ThinPartRestorer restorer(fit, range, tree);
   restorer.add_normals();
   restorer.add_changes(isovalue);
   restorer.apply_changes();

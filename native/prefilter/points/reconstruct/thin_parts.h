@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What smoothing takes from thin parts, given back.
+// Restores thin parts that smoothing weakens.
 //
-// Beyond the text: of a plate a cell thick smoothing leaves half, of a rod a quarter. What is less
-// than the iso-value is no surface, and no line across it is left for values to be fitted to. Thin
-// parts are where the samples of opposite sides are close together.
+// Not in the dissertation: smoothing leaves half of a plate one cell thick, and a quarter of a rod.
+// Below the iso-value there is no surface, and so no line across it to which values could be
+// fitted. Thin parts are recognized by samples of opposite sides that are close together.
 #pragma once
 
 #include "prefilter/points/reconstruct/fit_samples.h"
@@ -13,10 +13,10 @@
 
 namespace prefilter {
 
-/// Changes the values of leaves around samples. The mean samples in and around a leaf say how far
-/// the function is off the iso-value at them: its value changes by as much as that is to be
-/// trusted, and by all of it where the normals around cancel each other. The range, and what is
-/// known beyond it, are as for fit_values.
+/// Changes the values of leaves around samples, by the difference between the iso-value and the
+/// function at the mean samples in and around each leaf. The change is weighted by the samples'
+/// trust, and applied in full where the normals around cancel each other. Ranges and margins are
+/// those of fit_values.
 void restore_thin_parts(const SampleFit& fit, float isovalue, const FitRange& range,
                         CellTree* tree);
 

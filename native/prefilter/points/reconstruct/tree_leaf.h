@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The cells and leaves of a tree by their place.
+// Finds cells and leaves of an octree by position.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace prefilter {
 
-/// A cell by its level.
+/// A cell, identified by its level and index.
 struct TreeCell {
   int depth;
   std::size_t cell;  // on level depth - 1: 8 * block + octant
@@ -21,8 +21,8 @@ struct TreeCell {
   std::size_t level() const { return static_cast<std::size_t>(depth - 1); }
 };
 
-/// The cell of depth `depth` there, or the larger leaf that holds it; none outside of the root. The
-/// tree has levels.
+/// The cell at coordinates `at` of depth `depth`, or the larger leaf that contains it; none outside
+/// the root. The tree must have at least one level.
 inline std::optional<TreeCell> cell_at(const CellTree& tree, int depth,
                                        const std::array<std::int32_t, 3>& at) {
   for (const std::int32_t x : at) {
@@ -42,7 +42,7 @@ inline std::optional<TreeCell> cell_at(const CellTree& tree, int depth,
   }
 }
 
-/// A cell's value.
+/// The value of a cell.
 inline float& value_of(const TreeCell& cell, CellTree* tree) {
   return tree->levels[cell.level()].blocks[cell.cell / 8][cell.cell % 8];
 }

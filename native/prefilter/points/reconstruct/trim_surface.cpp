@@ -48,7 +48,7 @@ void check_mesh(std::size_t count, std::span<const std::array<std::int32_t, 3>> 
   }
 }
 
-// The vertices where the mesh ends.
+// The vertices on boundary edges.
 std::vector<std::int64_t> border_vertices(std::span<const std::array<std::int32_t, 3>> triangles) {
   std::vector<std::pair<std::int32_t, std::int32_t>> edges;
   edges.reserve(3 * triangles.size());
@@ -81,8 +81,8 @@ TrimReport trim_surface(std::span<const Vector3> positions,
   wide.reserve(triangles.size());
   for (const auto& [a, b, c] : triangles) wide.push_back({a, b, c});
   cutter.add_triangles(std::move(wide));
-  // What reaches an end of the mesh fills no hole.
-  cutter.cut_at(border_vertices(triangles));
+  // Regions that reach a boundary of the mesh fill no hole.
+  cutter.request_cut(border_vertices(triangles));
   progress.report(0.2);
   cutter.end_part({});
   ArraySink sink;

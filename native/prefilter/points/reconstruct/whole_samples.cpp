@@ -12,7 +12,7 @@
 namespace prefilter {
 namespace {
 
-constexpr int kOutlierDepths = 2;
+constexpr int kOutlierDepths = 2;  // outliers have leaves this far above the median
 
 void append(const SampleCells& more, SampleCells* all) {
   all->cells.insert(all->cells.end(), more.cells.begin(), more.cells.end());
@@ -21,7 +21,8 @@ void append(const SampleCells& more, SampleCells* all) {
 
 }  // namespace
 
-int find_whole(std::size_t attribute_count, const Progress& progress, int threads, Slabs* slabs) {
+int compute_whole_samples(std::size_t attribute_count, const Progress& progress, int threads,
+                          Slabs* slabs) {
   SampleCells tops;
   std::vector<double> weights(static_cast<std::size_t>(slabs->depth()) + 1);
   std::size_t most = 0;
@@ -37,9 +38,9 @@ int find_whole(std::size_t attribute_count, const Progress& progress, int thread
     }
   };
   for_slabs(
-      {SlabStage::kMet}, progress, threads, slabs, [](int) {}, collect);
+      {SlabStage::kCrossedCells}, progress, threads, slabs, [](int) {}, collect);
   slabs->whole = make_sample_slab(std::move(tops), slabs->top(), 0, attribute_count);
-  find_met_cells(nullptr, nullptr, slabs->mean_weight, &slabs->whole);
+  find_crossed_cells(nullptr, nullptr, slabs->mean_weight, &slabs->whole);
   slabs->whole.at(0).leaf.assign(slabs->whole.at(0).size(), 0);
   slabs->least_leaf = least_leaf_depth(weights);
   find_leaves({slabs->mean_weight, slabs->least_leaf}, slabs->depth(), &slabs->whole);
@@ -52,7 +53,7 @@ void weigh_leaves(const SampleSlab& slab, std::vector<double>* weights) {
     const SampleLevel& level = slab.at(k);
     std::vector<std::int8_t> next(level.size());
     for (std::size_t i = 0; i < level.size(); ++i) {
-      next[i] = level.is_met(i) ? static_cast<std::int8_t>(k) : leaf[level.parents[i]];
+      next[i] = level.is_crossed(i) ? static_cast<std::int8_t>(k) : leaf[level.parents[i]];
     }
     leaf = std::move(next);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What is known of all slabs together before any of them is made into a tree.
+// Computes the sample data that all slabs share, before any slab's tree is built.
 #pragma once
 
 #include <vector>
@@ -11,16 +11,18 @@
 
 namespace prefilter {
 
-/// Sets what Slabs needs for kLeaves and kCoefficients: `whole`, `offsets` and `least_leaf`.
-/// Returns the slab that has most cells. Throws Error(kCancelled).
-int find_whole(std::size_t attribute_count, const Progress& progress, int threads, Slabs* slabs);
+/// Sets `whole`, `offsets` and `least_leaf` of Slabs, the inputs of kLeaves and kCoefficients.
+/// Returns the slab with the most cells. Throws Error(kCancelled).
+int compute_whole_samples(std::size_t attribute_count, const Progress& progress, int threads,
+                          Slabs* slabs);
 
-/// Adds the weight of a slab's samples to that of the depth at which they count: the largest one at
-/// which their cell is met. Those that count above the slab's first level are taken to count there.
+/// Adds the weight of a slab's samples to that of the depth at which they count, the largest at
+/// which the surface crosses their cell. Samples that count above the slab's first level are
+/// assigned to that level.
 void weigh_leaves(const SampleSlab& slab, std::vector<double>* weights);
 
-/// Samples that count at smaller depths than this lie much thinner than most: one depth above the
-/// one up to which half of the weight counts.
+/// Samples that count at smaller depths than this are much sparser than most: one less than the
+/// median depth by weight.
 int least_leaf_depth(const std::vector<double>& weights);
 
 }  // namespace prefilter

@@ -22,7 +22,7 @@ std::vector<std::size_t> fewest_loops(std::vector<BlamedLoop> blamed, std::size_
     }
     return open;
   };
-  // Counts only fall: one that is still right at the top is the highest.
+  // Counts only decrease, so an entry at the top whose count is still correct is the maximum.
   struct Entry {
     std::size_t open;
     std::size_t first;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Which sharp loops have to change, for triangles not to intersect.
+// Chooses the sharp loops that must change so that triangles do not intersect.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace prefilter {
 
-/// A loop that has a triangle of a pair.
+/// A loop that has a triangle of an intersecting pair.
 struct BlamedLoop {
   std::int32_t loop;
   std::size_t pair;
@@ -19,8 +19,8 @@ struct BlamedLoop {
   }
 };
 
-/// Loops so that each pair that any is blamed for has one of them: the one with the most pairs
-/// first, of several the first, then the one with the most of those left, and so on.
+/// Greedy cover: chooses loops such that each pair has one, the loop with the most pairs first (the
+/// first one in case of a tie), then the loop with the most remaining pairs, and so on.
 std::vector<std::size_t> fewest_loops(std::vector<BlamedLoop> blamed, std::size_t pair_count);
 
 }  // namespace prefilter

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Contours of octrees larger than memory, height by height.
+// Contours octrees larger than memory, height by height.
 #pragma once
 
 #include <vector>
@@ -13,16 +13,17 @@
 
 namespace prefilter {
 
-/// The part of a contour that is made of the dual cells at some heights. Parts at heights that
-/// follow each other have vertices in common, and together are the whole.
+/// The part of a contour made of the dual cells at some heights. Parts at adjacent heights share
+/// vertices, and together form the whole contour.
 struct ContourSlab {
-  TriangleMesh mesh;  // in a root that is the unit cube; all vertices have triangles
-  // Of the first vertices, which lie between two leaves. The others are of this part alone.
+  TriangleMesh mesh;  // the root is the unit cube; all vertices are used
+  // Places of the first vertices, which lie between two leaves. The other vertices belong to this
+  // part alone.
   std::vector<VertexPlace> places;
 };
 
-/// Of a tree that has levels, and is complete where dual cells at these heights have corners. Runs
-/// on the calling thread.
+/// Contours a tree that has levels, and is complete where dual cells at these heights have corners.
+/// Runs on the calling thread.
 ContourSlab contour_slab(const CellTree& cells, float isovalue, Interpolant interpolant,
                          const HeightRange& heights);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A tree of cell means as contours see it: leaves inside and outside, and their neighbors.
+// A tree of cell means for contouring: leaves inside and outside, and their neighbors.
 #pragma once
 
 #include <algorithm>
@@ -17,12 +17,12 @@ namespace prefilter {
 
 /// A cell of a tree, or one of the empty cells, as large as the root, that surround it.
 struct CellNode {
-  std::uint32_t block = 0;    // that holds it, on level depth - 1
-  std::uint32_t octants = 0;  // its own block, on level depth, where it is split
-  std::int8_t depth = 0;      // 0 is the root, -1 what surrounds it
+  std::uint32_t block = 0;    // block that contains it, on level depth - 1
+  std::uint32_t octants = 0;  // block of its octants, on level depth, if it is split
+  std::int8_t depth = 0;      // 0: the root; -1: surroundings of the root
   std::uint8_t octant = 0;
   bool is_split = false;
-  std::uint8_t sides = 0;  // of the surface, that its leaves are on: kInside, kOutside, or both
+  std::uint8_t sides = 0;  // bits kInside and kOutside: the sides on which its leaves lie
 
   bool is_outside() const { return depth < 0; }
 };
@@ -33,18 +33,17 @@ inline constexpr std::uint8_t kBothSides = kInside | kOutside;
 
 inline constexpr CellNode kSurroundings = {0, 0, -1, 0, false, kOutside};
 
-/// A tree with an iso-value. Leaves of at least that are inside.
+/// A tree with an iso-value. Leaves of at least that value are inside.
 class ContourTree {
  public:
-  /// Throws Error(kCancelled), as update_sides does.
+  /// Throws Error(kCancelled), as does update_sides.
   ContourTree(const CellTree& cells, float isovalue, const Progress& progress, int threads);
 
   const CellTree& cells() const { return cells_; }
   float isovalue() const { return isovalue_; }
   CellNode root() const { return {0, 0, 0, 0, !cells_.levels.empty(), root_sides_}; }
 
-  /// Puts a leaf on a side, kInside or kOutside, whatever its value. Afterward update_sides() is
-  /// due.
+  /// Overrides the side of a leaf, kInside or kOutside. Requires update_sides() afterward.
   void set_side(std::size_t level, std::size_t block, int octant, std::uint8_t side) {
     std::uint16_t& sides = blocks_[level][block].sides;
     const int shift = 2 * octant;
@@ -52,7 +51,7 @@ class ContourTree {
   }
   void update_sides(const Progress& progress, int threads);
 
-  /// The octant of a cell that is split; a leaf is its own octants.
+  /// The octant of a split cell; a leaf is its own octants.
   CellNode octant(const CellNode& node, int o) const {
     if (!node.is_split) return node;
     const Block& block = blocks_[static_cast<std::size_t>(node.depth)][node.octants];
@@ -78,10 +77,10 @@ class ContourTree {
   }
 
  private:
-  // What walks through the tree read of a block, in one place.
+  // The data of a block that traversals read, stored together.
   struct Block {
     std::uint32_t first;
-    std::uint16_t sides;  // two bits an octant
+    std::uint16_t sides;  // two bits per octant
     std::uint8_t split;
   };
 
@@ -94,19 +93,19 @@ class ContourTree {
 /// A tree of one cell, split once.
 CellTree split_root(float value);
 
-/// The coordinates of a cell, in cells of its depth.
+/// Coordinates of a cell at its depth.
 using CellCoordinates = std::array<std::int32_t, 3>;
 
-/// Of an octant of a cell, in cells of the octant's depth.
+/// Coordinates of an octant of a cell, at the octant's depth.
 inline CellCoordinates octant_at(const CellCoordinates& at, int o) {
   return {2 * at[0] + (o & 1), 2 * at[1] + ((o >> 1) & 1), 2 * at[2] + ((o >> 2) & 1)};
 }
 
-/// The cell that a face of a cell of the same depth leads to, or the leaf that holds it. Faces are
-/// numbered 2 a for the one across axis a at its low side, and 2 a + 1 for that at its high side.
+/// The cell of the same depth across each face, or the larger leaf that contains it. Faces are
+/// numbered 2 a for the low side along axis a, and 2 a + 1 for the high side.
 using FaceNeighbors = std::array<CellNode, 6>;
 
-/// The neighbors of an octant, from the neighbors of the cell.
+/// The neighbors of an octant, from the neighbors of its cell.
 inline FaceNeighbors octant_neighbors(const ContourTree& tree, const CellNode& cell,
                                       const FaceNeighbors& of_cell, int octant) {
   FaceNeighbors result;

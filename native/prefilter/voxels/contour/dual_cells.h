@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The dual grid of an octree's leaves: around every corner of a leaf there is a cell with the
-// centers of the eight leaves, or fewer, that meet there (Ju, Losasso, Schaefer and Warren 2002;
-// Schaefer and Warren 2004).
+// The dual grid of an octree's leaves: around every corner of a leaf there is a cell whose corners
+// are the centers of the eight leaves, or fewer, that meet there (T. Ju, F. Losasso, S. Schaefer,
+// J. Warren, Dual contouring of Hermite data, 2002; S. Schaefer, J. Warren, Dual marching cubes,
+// 2004).
 #pragma once
 
 #include <array>
@@ -13,19 +14,19 @@
 
 namespace prefilter {
 
-/// Eight cells that meet at a point: cell i lies at the high side along x where bit 0 of i is set,
-/// along y for bit 1, along z for bit 2. Where larger cells meet there, some are the same.
+/// Eight cells that meet at a point: cell i lies at the high side along x if bit 0 of i is set,
+/// along y for bit 1, along z for bit 2. Larger cells appear several times.
 using Meeting = std::array<CellNode, 8>;
 
-/// Finds the meetings of leaves that the surface passes through, at points of some heights: in
-/// parts that can be visited one by one, in any order.
+/// Finds the meeting points of leaves that the surface passes through, at given heights, in parts
+/// that can be visited in any order.
 class DualCells {
  public:
   explicit DualCells(const ContourTree& tree, const HeightRange& heights = HeightRange());
 
   std::size_t part_count() const { return parts_.size(); }
 
-  /// Calls visit(meeting) for each meeting of a part; the eight are leaves, on both sides.
+  /// Calls visit(meeting) for each meeting of a part; the eight cells are leaves, on both sides.
   template <typename Visit>
   void for_part(std::size_t part, const Visit& visit) const {
     const Part& p = parts_[part];
@@ -47,8 +48,8 @@ class DualCells {
 
  private:
   enum class Kind { kCell, kFace, kEdge, kPoint };
-  /// The lowest cells of some that meet: how high they begin, and how tall they are, a larger leaf
-  /// being cut to the others' size.
+  /// Height and size of the lowest of the cells that meet; larger leaves are cut to the others'
+  /// size.
   struct Layer {
     int z;
     int height;
@@ -67,22 +68,22 @@ class DualCells {
   template <typename Visit>
   void at_face(const Layer& layer, int axis, const CellNode& low, const CellNode& high,
                const Visit& visit) const;
-  /// Cell k lies at the high side along axis + 1 where bit 0 of k is set, along axis + 2 for bit 1.
+  /// Cell k lies at the high side along axis + 1 if bit 0 of k is set, along axis + 2 for bit 1.
   template <typename Visit>
   void at_edge(const Layer& layer, int axis, const std::array<CellNode, 4>& around,
                const Visit& visit) const;
   template <typename Visit>
   void at_point(const Layer& layer, Meeting cells, const Visit& visit) const;
 
-  /// Whether points between cells may be at the heights asked for: those within one layer, or those
-  /// between it and the next.
+  /// Whether points within a layer, or between it and the next one, may be at the requested
+  /// heights.
   bool is_wanted(const Layer& layer, bool is_between) const {
     const int top = layer.z + layer.height;
     return is_between ? heights_.holds(top) : layer.z + 1 < heights_.high && top > heights_.low;
   }
 
-  /// The faces, edges and points between eight octants that meet, those across or along `axis` only
-  /// if asked for.
+  /// Visits the faces, edges and points between eight octants that meet; those across or along
+  /// `axis` only on request.
   template <typename Visit>
   void faces_across(const Layer& layer, int axis, const Meeting& cells, const Visit& visit) const {
     const int b = 1 << ((axis + 1) % 3);
@@ -111,7 +112,7 @@ class DualCells {
     return sides == kBothSides;
   }
 
-  // Work on cells of this depth is left to the parts.
+  // Cells of this depth are left to the parts.
   static constexpr int kPartDepth = 3;
   static int depth_of(const CellNode* cells, int count) {
     int depth = -1;
@@ -122,7 +123,7 @@ class DualCells {
   const ContourTree& tree_;
   HeightRange heights_;
   std::vector<Part> parts_;
-  // While parts are being found: where they go.
+  // Receives the parts while they are collected.
   std::vector<Part>* found_ = nullptr;
 };
 
@@ -211,7 +212,7 @@ inline DualCells::DualCells(const ContourTree& tree, const HeightRange& heights)
   const int side = 1 << tree.cells().depth();
   const Layer within = {0, side};
   const Layer below = {-side, side};
-  // Around an edge or a corner of the root its neighbors are cells of their own.
+  // Each cell around an edge or a corner of the root counts as a separate cell.
   const auto surroundings = [](std::size_t number) {
     CellNode cell = kSurroundings;
     cell.block = static_cast<std::uint32_t>(number);
@@ -221,7 +222,7 @@ inline DualCells::DualCells(const ContourTree& tree, const HeightRange& heights)
   for (int axis = 0; axis < 3; ++axis) {
     at_face(axis == 2 ? below : within, axis, outside, root, nothing);
     at_face(within, axis, root, outside, nothing);
-    // Of the cells around an edge, those with this bit are the higher ones.
+    // Among the cells around an edge, this bit marks the upper ones.
     const std::size_t upper = axis == 0 ? 2 : 1;
     for (std::size_t k = 0; k < 4; ++k) {
       std::array<CellNode, 4> around;

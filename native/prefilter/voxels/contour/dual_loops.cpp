@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::int64_t kPartsPerTask = 8;
 
-// A vertex of a loop, and on which edge of its dual cell it is.
+// A vertex of a loop, and the edge of its dual cell on which it lies.
 struct Crossing {
   std::int32_t vertex;
   std::uint8_t edge;
@@ -40,7 +40,7 @@ struct TaskLoops {
   std::vector<DoubledFace> doubled;
 };
 
-// The faces that a loop of a case passes through twice.
+// The faces that loops of a case pass through twice.
 unsigned doubled_faces(const std::vector<MarchingLoop>& loops) {
   unsigned doubled = 0;
   for (const MarchingLoop& loop : loops) {
@@ -106,7 +106,7 @@ class LoopMaker {
   std::array<unsigned, 256> doubled_{};
 };
 
-// The faces of dual cells that are doubled on both sides, by the first loop of the cell.
+// The faces that are doubled in both adjacent dual cells, by the first loop of each cell.
 std::map<std::size_t, DoubledFace> doubled_twice(std::vector<DoubledFace> doubled) {
   std::sort(doubled.begin(), doubled.end(), [](const DoubledFace& a, const DoubledFace& b) {
     return a.vertices != b.vertices ? a.vertices < b.vertices : a.first < b.first;
@@ -120,8 +120,8 @@ std::map<std::size_t, DoubledFace> doubled_twice(std::vector<DoubledFace> double
   return found;
 }
 
-// Puts a loop into the quads of its vertices. Of the four dual cells around an edge, that whose
-// edge is at its low sides comes first.
+// Adds a loop to the quads of its vertices. Among the four dual cells around an edge, the one with
+// the edge at its low sides comes first.
 void add_to_quads(std::span<const Crossing> crossings, std::uint8_t shares_cell, DualLoops* loops) {
   constexpr std::array<std::size_t, 4> kInTurn = {0, 1, 3, 2};
   const auto number = static_cast<std::int32_t>(loops->size());
@@ -136,7 +136,7 @@ void add_to_quads(std::span<const Crossing> crossings, std::uint8_t shares_cell,
   loops->shares_cell.push_back(shares_cell);
 }
 
-// All loops of tasks, but those of cells that are cut otherwise.
+// Joins the loops of all tasks, except loops of cells that are cut differently.
 DualLoops join(std::size_t vertices, std::vector<TaskLoops>* tasks) {
   std::vector<DoubledFace> doubled;
   std::size_t start = 0;

@@ -16,8 +16,10 @@ namespace prefilter {
 namespace {
 
 constexpr std::int64_t kLoopsPerTask = 256;
-constexpr double kMostHeight = 0.5;   // cells, of a vertex above the middle of its loop
-constexpr double kLeastCosine = 0.5;  // between the normals of a loop that is taken for smooth
+// cells; maximum height of a vertex above the center of its loop
+constexpr double kMostHeight = 0.5;
+// minimum cosine between the normals of a loop that counts as smooth
+constexpr double kLeastCosine = 0.5;
 constexpr double kSameCorner = 1e-3;  // cells
 
 Vector3 unit(const Vector3& v) {
@@ -37,7 +39,7 @@ class Placer {
     return (1.0 / static_cast<double>(loop.size())) * sum;
   }
 
-  // Of the surface at a vertex: as sampled, or from where the loops around it are.
+  // Normal of the surface at a vertex: as sampled, or from the positions of the loops around it.
   Vector3 normal(std::size_t vertex, const std::vector<Vector3>& around) const {
     const auto& quad = loops_.quads[vertex];
     const auto at = [&](std::size_t k) -> const Vector3& {
@@ -49,7 +51,7 @@ class Placer {
     return dot(sample->normal, found) < 0.0 ? -1.0 * sample->normal : sample->normal;
   }
 
-  // `normals` are those of the vertices.
+  // `normals` are the normals at the vertices.
   Vector3 smooth(std::size_t i, const std::vector<Vector3>& middles,
                  const std::vector<Vector3>& normals) const {
     const std::span<const std::int32_t> loop = loops_.loop(i);
@@ -67,7 +69,7 @@ class Placer {
     return middles[i] + std::clamp(height, -kMostHeight * cell_, kMostHeight * cell_) * up;
   }
 
-  // None where no edge of the shape passes through the loop.
+  // None if no edge of the shape passes through the loop.
   std::optional<Feature> feature(std::size_t i) const {
     if (features_ == nullptr) return std::nullopt;
     const std::span<const std::int32_t> loop = loops_.loop(i);
@@ -77,7 +79,7 @@ class Placer {
     return features_->of_loop(loop, positions_, edges_.samples, is_divided);
   }
 
-  // Where two of the regions of a corner meet, next to the start.
+  // The point next to the start where two of the regions of a corner intersect.
   Feature off_corner(const Feature& feature) const {
     Feature best = feature;
     best.position = feature.start;
@@ -98,7 +100,7 @@ class Placer {
     return best;
   }
 
-  // The two loops beyond its sides that an edge of the shape crosses; none where that are not two.
+  // The two loops beyond the sides that an edge of the shape crosses; none unless there are two.
   std::optional<std::array<std::int32_t, 2>> beside(std::size_t i) const {
     const std::span<const std::int32_t> loop = loops_.loop(i);
     std::array<std::int32_t, 2> found;
@@ -117,7 +119,7 @@ class Placer {
   const FeaturePlaces* features() const { return features_; }
 
  private:
-  // The other loop of two vertices that have one beside each other.
+  // The other loop at the side between two adjacent vertices.
   std::int32_t across(std::int32_t a, std::int32_t b, std::int32_t loop) const {
     const auto& one = loops_.quads[static_cast<std::size_t>(a)];
     const auto& other = loops_.quads[static_cast<std::size_t>(b)];
@@ -138,7 +140,7 @@ class Placer {
   double cell_;
 };
 
-// The middle of a dual cell that has an edge with this middle.
+// The center of a dual cell that has an edge with this midpoint.
 Vector3 cell_of(const Vector3& middle, std::uint8_t edge, const Vector3& cell) {
   Vector3 found = middle;
   for (unsigned k = 0; k < 2; ++k) {
@@ -148,7 +150,7 @@ Vector3 cell_of(const Vector3& middle, std::uint8_t edge, const Vector3& cell) {
   return found;
 }
 
-// Of several that are at one corner, the nearest stays there.
+// If several features are at one corner, only the nearest stays there.
 void part_corners(const Placer& placer, double cell, std::vector<Feature>* features) {
   PointGrid grid(kSameCorner * cell);
   for (std::size_t i = 0; i < features->size(); ++i) {
@@ -205,7 +207,7 @@ void place_features(const Placer& placer, double cell, const Progress& progress,
   }
 }
 
-// Where smooth regions come to a point, the nearest of the loops around goes there.
+// Moves the nearest of the loops around it to the tip of a smooth region.
 void place_tips(const DualLoops& loops, const VertexSamples& samples, DualPlaces* places) {
   for (const std::int32_t tip : samples.tips) {
     const Vector3& position = samples.of(tip)->position;
@@ -254,7 +256,7 @@ DualPlaces dual_places(const DualLoops& loops, const std::vector<Vector3>& posit
     const auto corner = static_cast<std::size_t>(loops.loop(i).front());
     places.cells[i] = cell_of(halfway[corner], loops.first_edges[i], cell);
   });
-  // First by normals from the middles; then by those from where that puts the loops.
+  // First from normals at the loops' centers, then from normals at the resulting positions.
   std::vector<Vector3> normals(positions.size());
   for (const double begin : {0.1, 0.3}) {
     const std::vector<Vector3>& around = begin == 0.1 ? places.middles : places.positions;

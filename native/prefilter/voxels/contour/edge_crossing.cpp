@@ -20,14 +20,14 @@ bool is_bottom_to_side(double a1, double a2) {
   return excess * excess < 4.0 * a1 * (a1 + a2);
 }
 
-// From the emptier cell, of occupancy a1 < 1/2, to the other.
+// Crossing seen from the emptier cell, whose occupancy a1 is below 1/2.
 double crossing_from_emptier(double a1, double a2) {
   const bool first_side = a2 <= 3.0 * a1;
   const bool second_side = 3.0 * a2 <= a1 + 2.0;
   if (first_side && second_side) return (a1 - 0.5) / (a1 - a2);  // 5.2: side to side
   if (first_side != second_side) {
     if (!first_side && is_bottom_to_side(a1, a2)) return bottom_to_side(a1, a2);
-    // 5.8 is 5.6 of what is outside, seen from the other end.
+    // Equation 5.8 is 5.6 applied to the outside, seen from the other end.
     if (!second_side && is_bottom_to_side(1.0 - a2, 1.0 - a1)) {
       return 1.0 - bottom_to_side(1.0 - a2, 1.0 - a1);
     }

@@ -35,7 +35,7 @@ std::vector<std::int64_t> trace_labels(const SourceSurface& surface, FacetedMesh
   const auto known = static_cast<std::int32_t>(triangles.size());
   const int added = spread_labels(mesh, known, Progress());
   triangles.resize(triangles.size() + static_cast<std::size_t>(added), -1);
-  // What has no edges close to it is of one region: one of its triangles tells.
+  // Regions without edges nearby: use any of their triangles.
   for (std::size_t t = 0; t < mesh->triangles.size() && added > 0; ++t) {
     std::int64_t& triangle = triangles[static_cast<std::size_t>(mesh->labels[t])];
     if (triangle >= 0) continue;

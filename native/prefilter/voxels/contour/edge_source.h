@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Where the edges of a contour are.
+// The source of a contour's edges.
 #pragma once
 
 #include <cstdint>
@@ -26,11 +26,11 @@ inline Interpolant interpolant_of(const ContourOptions& options) {
   return options.interpolant.value_or(Interpolant::kSharp);
 }
 
-/// A surface with edges, and what the vertices know of it.
+/// A surface with edges, and samples of it at the vertices.
 struct EdgeSource {
   std::optional<SourceSurface> meshes;
   std::optional<PartSides> part_sides;           // where several meshes meet
-  std::optional<OccupancySurface> smooth_parts;  // where there are no meshes
+  std::optional<OccupancySurface> smooth_parts;  // used if there are no meshes
   VertexSamples samples;
   Crossings crossings;
 
@@ -40,18 +40,18 @@ struct EdgeSource {
   }
 };
 
-/// Reads the sources, of which there are some, and puts leaves where several meet on their sides.
+/// Reads the sources, which must exist, and sets the sides of leaves where several sources meet.
 /// Throws as SourceSurface does.
 void read_sources(const CellTree& cells, const RootFrame& frame, const ContourOptions& options,
                   const Progress& progress, ContourTree* tree, EdgeSource* edges);
 
-/// Moves the vertices near edges onto the sources, or onto what the occupancies tell where there
-/// are none. Throws Error(kCancelled).
+/// Moves the vertices near edges onto the sources, or onto the surface that the occupancies define
+/// if there are none. Throws Error(kCancelled).
 void sample_edges(const ContourTree& tree, const RootFrame& frame, const CellTree* thickened,
                   const Progress& progress, int threads, SurfaceVertices* vertices,
                   EdgeSource* edges);
 
-/// Gives all triangles labels; returns a triangle of the sources for each of these.
+/// Gives all triangles labels; returns a source triangle for each label.
 std::vector<std::int64_t> trace_labels(const SourceSurface& surface, FacetedMesh* mesh);
 
 }  // namespace prefilter

@@ -10,7 +10,7 @@ namespace prefilter {
 namespace {
 
 constexpr double kLeastFacing = 0.05;
-constexpr double kLeastArea = 1e-12;              // twice a triangle's, of a cell's face
+constexpr double kLeastArea = 1e-12;  // double area of a triangle, relative to a cell's face
 constexpr double kAlong = 0.9396926207859084;     // 20 degrees
 constexpr double kBorderReach = 2.0;              // cells
 constexpr double kEdgeReach = 0.3;                // cells
@@ -18,7 +18,7 @@ constexpr double kCrossingReach = 0.2;            // cells
 constexpr double kOnCrossing = 0.05;              // cells
 constexpr double kOpposed = -0.1736481776669303;  // 100 degrees
 
-// The side that two triangles have in common.
+// The common side of two triangles.
 struct SharedSide {
   Vector3 middle;
   bool is_convex;
@@ -42,7 +42,7 @@ SharedSide side_between(const MeshView<std::int32_t>& mesh,
   return {middle, dot(cross(b - a, c - a), far - middle) < 0.0};
 }
 
-// The sample of a triangle's corner, of its region, along whose plane it lies; null where none is.
+// A corner's sample, of the triangle's region, whose plane the triangle follows; null if none.
 const SourcePoint* sample_along(const MeshView<std::int32_t>& mesh, std::size_t triangle,
                                 std::int32_t label, const VertexSamples& samples, bool is_turned) {
   const auto [a, b, c] = mesh.corners(triangle);
@@ -57,7 +57,7 @@ const SourcePoint* sample_along(const MeshView<std::int32_t>& mesh, std::size_t 
   return nullptr;
 }
 
-// The point next to one on the line in which the planes of two surface points meet.
+// The nearest point on the intersection line of the planes of two surface points.
 std::optional<Vector3> crossing_near(const Vector3& point, const SourcePoint& one,
                                      const SourcePoint& other) {
   const double cosine = dot(one.normal, other.normal);
@@ -69,7 +69,7 @@ std::optional<Vector3> crossing_near(const Vector3& point, const SourcePoint& on
          ((other_height - cosine * height) / rest) * other.normal;
 }
 
-// Whether two regions have a line near a point in which they cross.
+// Whether two regions intersect near a point.
 bool cross_near(const Vector3& point, const SourcePoint& one, const SourcePoint& other,
                 const FeatureSurface& surface) {
   const std::optional<Vector3> crossing = crossing_near(point, one, other);
@@ -119,7 +119,7 @@ bool are_at_edge(const MeshView<std::int32_t>& mesh, std::span<const std::int32_
   const SharedSide side = side_between(mesh, triangles);
   const std::int32_t first = labels[triangles[0]];
   const std::int32_t second = labels[triangles[1]];
-  // No crevice: but where two parts meet, which have no border, it is theirs.
+  // A crevice does not count, unless it lies between two parts, which have no border.
   if (!side.is_convex &&
       (first == second ||
        surface.nearest_border(side.middle, kBorderReach * surface.cell(), first, second))) {
@@ -137,7 +137,7 @@ bool are_at_edge(const MeshView<std::int32_t>& mesh, std::span<const std::int32_
     normals[i] = is_turned ? -1.0 * sample->normal : sample->normal;
   }
   if (!(dot(normals[0], normals[1]) < kOpposed)) return false;
-  // Beside each other parts leave a slit, whose end is none of their edges.
+  // Adjacent parts leave a slit, whose end is not an edge of either.
   return side.is_convex || cross_near(side.middle, *nearest[0], *nearest[1], surface);
 }
 

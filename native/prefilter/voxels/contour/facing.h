@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Which way triangles near edges face, beside the surface that they stand for.
+// Orientation of triangles near edges, compared with the surface that they represent.
 #pragma once
 
 #include <array>
@@ -13,18 +13,19 @@
 
 namespace prefilter {
 
-/// The labels whose normals point into the shape, as those of what was cut away do.
+/// The labels of regions with normals that point into the shape, such as surfaces of subtracted
+/// shapes.
 std::unordered_set<std::int32_t> turned_labels(const VertexSamples& samples);
 
 /// Whether a triangle of this label faces away from the normals of all its sampled corners, or is
-/// so small beside a cell that rounding makes it flat. One with a corner of another label is not
-/// upside down, as that has no side of its own.
+/// so small relative to a cell that rounding makes it degenerate. A triangle with a corner of
+/// another label is not upside down, since it lies on no single side.
 bool is_upside_down(const MeshView<std::int32_t>& mesh, std::size_t triangle, std::int32_t label,
                     const VertexSamples& samples, const std::unordered_set<std::int32_t>& turned,
                     double cell);
 
-/// Whether two triangles lie along the surface on both sides of a convex edge that turns by more
-/// than 100 degrees, and the side between them is close to that. It is no fold; a crevice is one.
+/// Whether two triangles lie on both sides of a convex edge of the surface that turns by more than
+/// 100 degrees, and their common side is close to it. Such an edge is no fold; a crevice is.
 bool are_at_edge(const MeshView<std::int32_t>& mesh, std::span<const std::int32_t> labels,
                  const std::array<std::uint32_t, 2>& triangles, const FeatureSurface& surface,
                  const VertexSamples& samples, const std::unordered_set<std::int32_t>& turned);

@@ -8,7 +8,7 @@
 namespace prefilter {
 namespace {
 
-// All in cells.
+// All lengths are in cells.
 constexpr double kFeatureReach = 5.0;
 constexpr double kRegionReach = 5.0;
 constexpr double kOnSurface = 0.05;
@@ -20,7 +20,7 @@ constexpr int kMostSteps = 12;
 
 using Labels = std::vector<std::int32_t>;
 
-// The symmetric matrix with these columns' products, plus a little, times the result is `right`.
+// Solves the ridge-regularized Gram system of `normals`.
 std::vector<double> solve_products(const std::vector<Vector3>& normals, std::vector<double> right) {
   constexpr double kRidge = 1e-4;
   const std::size_t n = normals.size();
@@ -29,7 +29,7 @@ std::vector<double> solve_products(const std::vector<Vector3>& normals, std::vec
     for (std::size_t j = 0; j < n; ++j) m[i * n + j] = dot(normals[i], normals[j]);
     m[i * n + i] += kRidge;
   }
-  // Cholesky would do; elimination without pivots is as stable for such a matrix.
+  // Elimination without pivoting is as stable as Cholesky decomposition for such a matrix.
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t k = i + 1; k < n; ++k) {
       const double factor = m[k * n + i] / m[i * n + i];
@@ -70,7 +70,7 @@ std::optional<Vector3> FeaturePlaces::place(const Vector3& start, const Labels& 
   std::optional<Vector3> found = corner_near(start, labels);
   if (!found) found = meeting_of(start, labels);
   if (found && length(*found - start) < kFarCorner * cell_) return found;
-  // Three regions run side by side here.
+  // Three regions lie side by side here.
   const std::optional<Vector3> edge = sharpest_edge_near(start, labels);
   return edge ? edge : found;
 }
@@ -79,7 +79,7 @@ std::optional<Vector3> FeaturePlaces::edge_near(const Vector3& start, const Labe
   std::optional<Vector3> found =
       surface_.nearest_border(start, kFeatureReach * cell_, labels.front(), labels.back());
   if (!found && labels.size() > 1) found = meeting_of(start, labels);
-  // Beyond the end of an edge that runs into another.
+  // The start is beyond the end of an edge that runs into another one.
   if (!found && labels.size() > 1) {
     found = corner_near(start, labels);
     if (found && length(*found - start) > kEndReach * cell_) found.reset();
@@ -87,7 +87,7 @@ std::optional<Vector3> FeaturePlaces::edge_near(const Vector3& start, const Labe
   return found;
 }
 
-// Of the edges between two of these regions that are closer than a corner may be.
+// The sharpest edge between two of these regions that is closer than a corner may be.
 std::optional<Vector3> FeaturePlaces::sharpest_edge_near(const Vector3& start,
                                                          const Labels& labels) const {
   std::vector<std::optional<SourcePoint>> nearest;
@@ -110,7 +110,7 @@ std::optional<Vector3> FeaturePlaces::sharpest_edge_near(const Vector3& start,
   return best;
 }
 
-// The corner of these regions, or more, next to a point.
+// The nearest corner of these regions, or of more.
 std::optional<Vector3> FeaturePlaces::corner_near(const Vector3& start,
                                                   const Labels& labels) const {
   std::size_t best = surface_.corner_count();
@@ -129,7 +129,7 @@ std::optional<Vector3> FeaturePlaces::corner_near(const Vector3& start,
   return surface_.corner(best).position;
 }
 
-// Where the surfaces of regions meet, from a point on: least steps onto all their planes.
+// The intersection of regions nearest to a start point, by least-norm steps onto their planes.
 std::optional<Vector3> FeaturePlaces::meeting_of(const Vector3& start, const Labels& labels) const {
   Vector3 at = start;
   for (int step = 0; step < kMostSteps; ++step) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Where the vertices of a contour's edges and corners are.
+// Positions of vertices on a contour's edges and corners.
 #pragma once
 
 #include <algorithm>
@@ -22,20 +22,20 @@ namespace prefilter {
 /// A loop's vertex on an edge or a corner.
 struct Feature {
   Vector3 position{};
-  Vector3 start{};                   // in the loop's middle, from where the position was looked for
-  std::vector<std::int32_t> labels;  // of the regions around it, in order
+  Vector3 start{};                   // the loop's center, at which the search started
+  std::vector<std::int32_t> labels;  // of the regions around it, sorted
   bool is_corner = false;
 };
 
-/// Points by the cubes of a grid that they are in.
+/// Points in the cubes of a grid.
 class PointGrid {
  public:
-  /// `reach` is how far searches look.
+  /// `reach` is the radius of searches.
   explicit PointGrid(double reach) : side_(kWider * reach) {}
 
   void add(const Vector3& point, std::size_t index) { places_[place_of(point)].push_back(index); }
 
-  /// Calls visit(index) for all points within reach of one, and some others, in no order.
+  /// Calls visit(index) for all points within reach of a point, and some others, in any order.
   template <typename Visit>
   void for_around(const Vector3& point, const Visit& visit) const {
     if (places_.empty()) return;
@@ -63,7 +63,7 @@ class PointGrid {
       return hash;
     }
   };
-  // So that rounding takes no point two cubes away.
+  // Margin that keeps rounding from placing a point two cubes away.
   static constexpr double kWider = 1.0 + 1e-6;
 
   Place place_of(const Vector3& point) const {
@@ -78,17 +78,17 @@ class PointGrid {
   std::unordered_map<Place, std::vector<std::size_t>, PlaceHash> places_;
 };
 
-/// Finds where the regions of a surface meet, which has to live as long.
+/// Finds the intersections of a surface's regions; the surface must outlive it.
 class FeaturePlaces {
  public:
   explicit FeaturePlaces(const FeatureSurface& surface);
 
-  /// The feature of a loop whose vertices are of these regions, in order; where nothing is found
-  /// next to `start`, it is there.
+  /// The feature of a loop whose vertices belong to these regions, sorted; it is at `start` if none
+  /// is found nearby.
   Feature feature(const Vector3& start, std::vector<std::int32_t> labels) const;
 
-  /// The feature of a loop of vertices, looked for in the middle of the sides that an edge of the
-  /// shape crosses by `is_divided(side)`; none where there is no such side.
+  /// The feature of a loop of vertices. The search starts at the center of the sides that an edge
+  /// of the shape crosses, by `is_divided(side)`; none if there is no such side.
   template <typename IsDivided>
   std::optional<Feature> of_loop(std::span<const std::int32_t> loop,
                                  std::span<const Vector3> positions, const VertexSamples& samples,
@@ -111,11 +111,11 @@ class FeaturePlaces {
     return feature((1.0 / divided) * start, std::move(labels));
   }
 
-  /// The point next to `start` where regions meet; of one, where it has a sharp edge.
+  /// The nearest point to `start` where regions intersect; for a single region, on its sharp edges.
   std::optional<Vector3> place(const Vector3& start, const std::vector<std::int32_t>& labels) const;
 
-  /// Corners of the shape get the nearest feature of a cell around them that is on an edge or a
-  /// corner of their regions.
+  /// Moves the nearest feature within a cell of each corner of the shape to it, if the feature is
+  /// on an edge or a corner of the corner's regions.
   void claim_corners(std::vector<Feature>* features) const;
 
  private:

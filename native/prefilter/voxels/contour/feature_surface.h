@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What a contour's edges and corners are placed on.
+// The surface on which a contour's edges and corners are placed.
 #pragma once
 
 #include <cstddef>
@@ -16,18 +16,18 @@ namespace prefilter {
 struct SourcePoint {
   Vector3 position;
   Vector3 normal;
-  std::int32_t triangle;  // -1 where the surface has none
+  std::int32_t triangle;  // -1 if the surface has no triangles
   std::int32_t label;     // of its region
 };
 
-/// A corner that is known beforehand.
+/// A corner that is known in advance.
 struct FeatureCorner {
   Vector3 position;
-  std::span<const std::int32_t> labels;  // of the regions around it, in order
+  std::span<const std::int32_t> labels;  // of the regions around it, sorted
 };
 
-/// A surface of smooth regions, which meet at edges and corners. Lengths are the frame's; what
-/// searches find is the same for any number of threads.
+/// A surface of smooth regions that meet at edges and corners. Lengths are in the frame's unit;
+/// search results do not depend on the number of threads.
 class FeatureSurface {
  public:
   FeatureSurface() = default;
@@ -38,12 +38,12 @@ class FeatureSurface {
   /// The side of the finest cells.
   virtual double cell() const = 0;
 
-  /// The nearest point within `reach`, of one region unless `label` is -1.
+  /// The nearest point within `reach`, on one region unless `label` is -1.
   virtual std::optional<SourcePoint> nearest(const Vector3& point, double reach,
                                              std::int32_t label) const = 0;
 
-  /// The nearest point, within `reach`, of the borders between two regions; the same label twice
-  /// asks for sharp edges within a region. None where borders are not known.
+  /// The nearest point within `reach` on the borders between two regions; two equal labels select
+  /// sharp edges within a region. None if borders are unknown.
   virtual std::optional<Vector3> nearest_border(const Vector3& point, double reach,
                                                 std::int32_t label, std::int32_t other) const = 0;
 

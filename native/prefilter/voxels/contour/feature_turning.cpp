@@ -10,18 +10,18 @@
 namespace prefilter {
 namespace {
 
-constexpr double kFarCells = 1.0;     // of a feature from its loop
-constexpr double kAbove = 0.05;       // cells, of a vertex over the side of its triangle
-constexpr double kLeastAcross = 0.1;  // of the edge, to a side
-constexpr double kGapShare = 0.45;    // of the way to the next vertex
-constexpr double kMostAside = 0.2;    // cells, of what is found from what is wanted
+constexpr double kFarCells = 1.0;  // maximum distance of a feature from its loop
+constexpr double kAbove = 0.05;  // cells; minimum height of a vertex over the side of its triangle
+constexpr double kLeastAcross = 0.1;  // minimum slope of the edge relative to a side
+constexpr double kGapShare = 0.45;    // maximum share of the way to the next vertex
+constexpr double kMostAside = 0.2;  // cells; maximum distance of the found position from the target
 }  // namespace
 
 struct FeatureTurning::Range {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
 
-  // Leaves out what takes `height`, which grows at a rate, below `least`.
+  // Excludes positions where `height`, which changes at a constant rate, is below `least`.
   void keep_above(double height, double rate, double least) {
     if (rate >= kLeastAcross) low = std::max(low, (least - height) / rate);
     if (rate <= -kLeastAcross) high = std::min(high, (least - height) / rate);
@@ -60,7 +60,7 @@ FeatureTurning::Range FeatureTurning::upright_range(std::size_t loop,
     stay_above(from, features[other].position, corners.from(k), &of_joints);
     stay_above(features[other].position, to, corners.to(k), &of_joints);
   }
-  // What is joined may give way.
+  // Joined neighbors can move as well, so their limits are secondary.
   const Range all = of_sides.within(of_joints);
   return all.is_empty() ? of_sides : all;
 }

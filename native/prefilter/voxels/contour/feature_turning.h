@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Features along their edges, from where their triangles face as the surfaces do.
+// Moves features along their edges so that their triangles face the same way as the surfaces.
 #pragma once
 
 #include <cstddef>
@@ -14,11 +14,11 @@
 
 namespace prefilter {
 
-/// Where an edge is far from its loops, a loop's side may face the edge so obliquely that the
-/// triangle from it to the nearest place is upside down. All that is given has to live as long.
+/// Where an edge is far from its loops, a side of a loop may face it so obliquely that the triangle
+/// to the nearest position is upside down. All arguments must outlive the object.
 class FeatureTurning {
  public:
-  /// `turned` has the labels whose normals face inward.
+  /// `turned` contains the labels whose normals face inward.
   FeatureTurning(const LinkedLoops& loops, std::span<const std::uint8_t> is_sharp,
                  std::span<const Vector3> positions, const VertexSamples& samples,
                  const std::unordered_set<std::int32_t>& turned, const FeaturePlaces& places,
@@ -31,14 +31,14 @@ class FeatureTurning {
         places_(places),
         cell_(cell) {}
 
-  /// A place of a loop's feature, between those of its neighbors, that turns triangles upright;
-  /// none where that is not needed, or where there is none.
+  /// A position of a loop's feature, between its neighbors' features, for which all triangles are
+  /// upright; none if no change is needed, or no position works.
   std::optional<Vector3> place(std::size_t loop, std::span<const Feature> features) const;
 
  private:
   struct Range;
 
-  // Of ways from a feature along its edge.
+  // Range of offsets from a feature along its edge.
   Range upright_range(std::size_t loop, std::span<const Feature> features,
                       const Vector3& along) const;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The tree is read in bricks of cells of one depth, made dense with what is around them, so that
-// neighbors are found by adding strides.
+// Reads the tree in bricks of cells of one depth, as dense arrays with a margin, so that neighbors
+// are found by adding strides.
 #include "prefilter/voxels/contour/fit_vertices.h"
 
 #include <algorithm>
@@ -18,30 +18,30 @@ namespace {
 constexpr int kBrickDepth = 4;
 constexpr int kMargin = kHeightReach;
 constexpr std::int64_t kBricksPerTask = 64;
-// Columns that an edge passes through, or a thin part, add up to heights that are none. There the
-// crossing is farther than this, in cells, from that of the two cells alone, which on planes is
-// right within 0.03; on smooth surfaces it may be, too.
+// Columns with an edge or a thin part do not sum to a height. There the crossing differs by more
+// than this, in cells, from the crossing of the two cells alone, which is accurate to 0.03 on
+// planes; on smooth surfaces the difference may be larger.
 constexpr double kMostApart = 0.1;
 
 // The leaves of one depth below one cell.
 struct Brick {
-  CellNode cell;
+  CellNode cell;       // in cells of its depth
   CellCoordinates at;  // in cells of its depth
   int depth;           // of the leaves
 };
 
-// A block, some of whose leaves are asked about.
+// A block with leaves to process.
 struct LeafBlock {
   std::size_t block;
   CellCoordinates at;  // of its cell
 };
 
-// A brick, dense, with a margin around it.
+// A brick as a dense array, with a margin.
 class BrickWindow {
  public:
   explicit BrickWindow(const ContourTree& tree) : tree_(tree) {}
 
-  // Calls visit(block) for those blocks of the brick that is_wanted(level, block) picks, with the
+  // Calls visit(block) for the blocks of the brick that is_wanted(level, block) selects, with the
   // window around them filled.
   template <typename IsWanted, typename Visit>
   void for_blocks_of(const Brick& brick, const IsWanted& is_wanted, const Visit& visit) {
@@ -82,7 +82,7 @@ class BrickWindow {
            (at[2] - low_[2]);
   }
 
-  // Writes the part of a cell that is within the window.
+  // Writes the part of a cell that is inside the window.
   void fill(const CellNode& cell, const CellCoordinates& at, int depth) {
     const int shift = depth - cell.depth;
     CellCoordinates low;
@@ -111,7 +111,7 @@ class BrickWindow {
 
   const ContourTree& tree_;
   std::vector<LeafBlock> blocks_;
-  // Cells of the brick and kMargin around it, from low_ on.
+  // Cells of the brick and a margin of kMargin, starting at low_.
   CellCoordinates low_{};
   int width_ = 0;
   std::vector<float> values_;
@@ -133,7 +133,7 @@ void find_bricks(const ContourTree& tree, const CellNode& cell, const CellCoordi
   }
 }
 
-// Calls visit(brick, window) for all bricks; a window is used for one brick at a time.
+// Calls visit(brick, window) for all bricks; each window is used for one brick at a time.
 template <typename Visit>
 void for_bricks(const ContourTree& tree, const Progress& progress, int threads,
                 const Visit& visit) {

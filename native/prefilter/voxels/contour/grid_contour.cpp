@@ -21,14 +21,14 @@ constexpr int kTaskDepth = 3;
 using CellCoordinates = std::array<int, 3>;
 using Levels = std::vector<TreeLevel>;
 
-// On which sides of the iso-value the samples of each block of 2 x 2 x 2 are; what is outside of
-// the grid is empty.
+// Sides of the iso-value on which the samples of each block of 2 x 2 x 2 lie; the outside of the
+// grid is empty.
 class BlockSides {
  public:
   BlockSides(const GridView& grid, const ContourOptions& options, const Progress& progress)
       : grid_(grid), least_inside_(options.isovalue), most_outside_(options.isovalue) {
     if (options.interpolant == Interpolant::kPlane && options.isovalue == 0.5F) {
-      // settle_sides may put these on either side.
+      // settle_sides may assign these to either side.
       least_inside_ -= kDoubt;
       most_outside_ += kDoubt;
     }
@@ -49,7 +49,7 @@ class BlockSides {
     });
   }
 
-  /// Whether the surface passes between samples of a block, or between them and those around.
+  /// Whether the surface passes between samples of a block, or between them and adjacent samples.
   bool is_near_surface(const CellCoordinates& block) const {
     unsigned sides = 0;
     for_around(block, 1, [&](int x, int y, int z) {
@@ -74,7 +74,7 @@ class BlockSides {
                                      (sample < most_outside_ ? kOutside : 0));
   }
 
-  // Places from one before `low` to one after the `count` from there on.
+  // Visits positions from one before `low` to one after the `count` that follow.
   template <typename Visit>
   static void for_around(const CellCoordinates& low, int count, const Visit& visit) {
     for (int x = low[0] - 1; x <= low[0] + count; ++x) {
@@ -101,7 +101,7 @@ class TreeBuilder {
   TreeBuilder(const GridView& grid, const BlockSides& sides, float isovalue, int depth)
       : grid_(grid), sides_(sides), empty_(empty_sample(isovalue)), depth_(depth) {}
 
-  // The cell of a depth; its blocks are appended to the levels.
+  // Builds a cell of a depth; appends its blocks to the levels.
   Built build(const CellCoordinates& cell, int at_depth, Levels* levels) const {
     if (depth_ - at_depth == 1) {
       return build_with(cell, at_depth, levels,
@@ -128,8 +128,8 @@ class TreeBuilder {
       values[static_cast<std::size_t>(o)] = octant.value;
       if (octant.is_split) split |= 1U << o;
     }
-    // Equal samples are one leaf, but not beside the surface: a vertex is half-way between two
-    // centers, and those have to be the samples' own.
+    // Equal samples form one leaf, except near the surface: a vertex lies halfway between two
+    // centers, which must be those of the samples.
     if (split == 0 &&
         std::all_of(values.begin(), values.end(),
                     [&](float value) { return value == values[0]; }) &&

@@ -11,13 +11,13 @@ namespace prefilter {
 namespace {
 
 constexpr float kSlack = 0.05F;
-// Of heights in cells: more is an edge.
+// Maximum difference of heights in cells; larger ones indicate an edge.
 constexpr float kMostCurved = 0.5F;
-// The same of nine columns, and how far they may be off a quadratic.
+// The same for nine columns, and their maximum deviation from a quadratic.
 constexpr double kMostCurvedAround = 0.4;
 constexpr double kMostOffAround = 0.02;
 
-// `up` leads toward the empty end.
+// `up` is the stride toward the empty end.
 std::optional<float> height_at(const float* cell, std::ptrdiff_t up) {
   return column_height([&](int step) { return cell[step * up]; });
 }
@@ -28,12 +28,12 @@ struct Profile {
   bool has_slope = false;
 };
 
-// Along one axis across the columns.
+// Slope and curvature along one axis across the columns.
 Profile profile(const float* cell, std::ptrdiff_t across, std::ptrdiff_t up, float height) {
   const std::optional<float> low = height_at(cell - across, up);
   const std::optional<float> high = height_at(cell + across, up);
   Profile result;
-  if (!low || !high) return result;  // A slope to one side would be off by half the curvature.
+  if (!low || !high) return result;  // A one-sided slope would be off by half the curvature.
   result.slope = (*high - *low) / 2.0F;
   result.curvature = *high - 2.0F * height + *low;
   result.has_slope = true;
@@ -66,7 +66,7 @@ int steepest_axis(const float* cell, const float* neighbor,
   return steepest;
 }
 
-// The surface over a cell: its height over the center, and how it runs on to both sides.
+// The surface over a cell: its height over the center, and profiles along both axes.
 struct LocalSurface {
   float height;
   Profile first;
@@ -79,12 +79,12 @@ std::optional<LocalSurface> surface_over(const float* cell, std::ptrdiff_t up,
   if (!height) return std::nullopt;
   const Profile first = profile(cell, across[0], up, *height);
   const Profile second = profile(cell, across[1], up, *height);
-  // From the mean over the column to the height at its center.
+  // Converts the mean over the column to the height at its center.
   const float at_center = *height - (first.curvature + second.curvature) / 24.0F - 0.5F;
   return LocalSurface{at_center, first, second};
 }
 
-// The crossing as seen from one of the cells, on the way to the other: `along` leads there.
+// The crossing seen from one of the cells; `along` is the stride to the other one.
 std::optional<float> crossing_from(const float* cell, std::ptrdiff_t along, std::ptrdiff_t up,
                                    const std::array<std::ptrdiff_t, 2>& across) {
   const std::optional<LocalSurface> surface = surface_over(cell, up, across);
@@ -98,7 +98,7 @@ std::optional<float> crossing_from(const float* cell, std::ptrdiff_t along, std:
   const bool is_forward = along == across[0] || along == across[1];
   const float slope = is_forward ? profile_along.slope : -profile_along.slope;
   const float curvature = profile_along.curvature;
-  // Where at_center + slope t + curvature t^2 / 2 is 0. The root near that of the line.
+  // Solves at_center + slope t + curvature t^2 / 2 = 0 for the root near the linear solution.
   if (slope == 0.0F) return std::nullopt;
   float t = -at_center / slope;
   for (int i = 0; i < 3; ++i) {
@@ -109,7 +109,7 @@ std::optional<float> crossing_from(const float* cell, std::ptrdiff_t along, std:
   return t;
 }
 
-// Whether the heights of the nine columns around a cell are those of a smooth surface.
+// Whether the heights of the nine columns around a cell form a smooth surface.
 bool is_smooth_around(const float* cell, std::ptrdiff_t up,
                       const std::array<std::ptrdiff_t, 2>& across) {
   std::array<std::array<double, 3>, 3> heights;
@@ -137,7 +137,7 @@ std::optional<float> height_crossing(const float* cell,
   const std::array<std::ptrdiff_t, 2> across = {strides[(axis + 1) % 3], strides[(axis + 2) % 3]};
   std::optional<float> t = crossing_from(cell, along, up, across);
   if (axis != along_axis && (!t || *t > 0.5F)) {
-    // The other cell is nearer.
+    // The other cell is closer to the surface.
     const std::optional<float> back = crossing_from(neighbor, -along, up, across);
     if (back) t = 1.0F - *back;
   }

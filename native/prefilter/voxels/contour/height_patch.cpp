@@ -47,7 +47,7 @@ Vector3 HeightPatch::normal() const {
 bool fit_heights(const std::array<std::array<double, 3>, 3>& heights, HeightPatch* fitted,
                  double most_curved, double most_off) {
   HeightPatch& patch = *fitted;
-  // Least squares of nine heights.
+  // Least-squares fit to nine heights.
   double sum = 0.0;
   double sum_first = 0.0;
   double sum_second = 0.0;

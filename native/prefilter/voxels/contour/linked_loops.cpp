@@ -17,7 +17,7 @@ namespace {
 constexpr double kRidgeReach = 1.5;  // cells
 constexpr std::int64_t kLoopsPerTask = 64;
 
-// The two loops of a side; -1 where there is none.
+// The two loops at a side; -1: none.
 using LoopPair = std::array<std::int32_t, 2>;
 
 std::uint64_t key_of(std::int32_t a, std::int32_t b) {
@@ -29,7 +29,7 @@ std::uint64_t side_key(const SharpLoop& loop, std::size_t side) {
   return key_of(loop.from(side), loop.to(side));
 }
 
-// The loops of each divided side.
+// The loops at each divided side.
 std::unordered_map<std::uint64_t, LoopPair> loops_of_sides(const LinkedLoops& linked) {
   std::unordered_map<std::uint64_t, LoopPair> pairs;
   for (std::size_t i = 0; i < linked.size(); ++i) {
@@ -46,7 +46,7 @@ std::unordered_map<std::uint64_t, LoopPair> loops_of_sides(const LinkedLoops& li
 
 void find_joints(LinkedLoops* linked) {
   const std::unordered_map<std::uint64_t, LoopPair> pairs = loops_of_sides(*linked);
-  std::unordered_map<std::uint64_t, int> counts;  // of the sides that two loops share
+  std::unordered_map<std::uint64_t, int> counts;  // number of sides that two loops share
   for (const auto& [key, loops] : pairs) {
     if (loops[1] >= 0) ++counts[key_of(loops[0], loops[1])];
   }
@@ -63,9 +63,9 @@ void find_joints(LinkedLoops* linked) {
   }
 }
 
-// A diagonal between two vertices that loops of two dual cells have is the first one's to use.
+// A diagonal between vertices shared by loops of two dual cells is reserved for the first loop.
 void find_shared(LinkedLoops* linked) {
-  std::vector<std::array<std::int32_t, 2>> corners;  // vertices, and their loops
+  std::vector<std::array<std::int32_t, 2>> corners;  // vertex and loop
   for (std::size_t i = 0; i < linked->size(); ++i) {
     for (std::size_t k = 0; k < linked->side_count(i); ++k) {
       corners.push_back({linked->loops[i].from(k), static_cast<std::int32_t>(i)});

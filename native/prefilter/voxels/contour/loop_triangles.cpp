@@ -11,11 +11,11 @@
 namespace prefilter {
 namespace {
 
-constexpr double kLeastCosine = 0.05;  // of a triangle that is upright
+constexpr double kLeastCosine = 0.05;  // minimum cosine of an upright triangle
 
 using Triangle = std::array<std::int32_t, 3>;
 
-// Vertices on edges of the shape are corners where not just two edges of the mesh follow these.
+// Vertices on edges of the shape are corners unless exactly two mesh edges follow these edges.
 std::vector<std::int32_t> add_vertices(const LinkedLoops& loops, std::span<const Feature> features,
                                        std::span<const std::uint8_t> is_sharp,
                                        std::span<const std::size_t> merged, FacetedMesh* mesh) {
@@ -46,11 +46,11 @@ std::vector<std::int32_t> add_vertices(const LinkedLoops& loops, std::span<const
   return places;
 }
 
-// The part of a loop on one side of an edge: the loop's vertex, and those that follow each other
-// from one side that is joined to the next.
+// The part of a loop on one side of an edge: the loop's vertex, and consecutive corners from one
+// joined side to the next.
 class LoopPart {
  public:
-  // `first` is the corner behind a joined side.
+  // `first` is the corner after a joined side.
   LoopPart(const LinkedLoops& loops, std::size_t loop, std::size_t first, std::int32_t place,
            std::span<const std::uint8_t> is_sharp, const VertexSamples& samples,
            const FacetedMesh& mesh)
@@ -68,18 +68,18 @@ class LoopPart {
   std::size_t count() const { return size_ - 1; }
   std::int32_t label() const { return label_; }
 
-  // Whether the fan around the loop's vertex has a triangle upside down.
+  // Whether the fan around the loop's vertex has a triangle that is upside down.
   bool is_folded() const {
     if (normal_ == Vector3{} || size_ > kMost) return false;
-    // One triangle alone cannot be others.
+    // A single triangle has no alternative.
     for (int k = 1; size_ > 3 && k + 1 < static_cast<int>(size_); ++k) {
       if (cosine_of(0, k, k + 1) < kLeastCosine) return true;
     }
     return false;
   }
 
-  // The triangles that lie best; none where one of these is upside down, too: then the fan stays,
-  // which mending finds. The fan is always among what may be.
+  // The best triangulation; none if it also has a triangle that is upside down, in which case the
+  // fan stays and is found when mending. The fan is always among the candidates.
   std::vector<Triangle> upright_triangles() const {
     const auto is_allowed = [&](int i, int j) {
       if (i == 0 || j == 0) return true;
@@ -103,11 +103,11 @@ class LoopPart {
   }
 
  private:
-  static constexpr std::size_t kMost = 12;  // vertices that are triangulated
+  static constexpr std::size_t kMost = 12;  // maximum number of vertices to triangulate
 
   std::int32_t vertex(int i) const { return vertices_[static_cast<std::size_t>(i)]; }
 
-  // Of the region that all vertices are on; none where there are several.
+  // Normal of the region to which all vertices belong; none if there are several.
   void find_normal(const VertexSamples& samples) {
     Vector3 sum{};
     float facing = 0.0F;
@@ -170,7 +170,7 @@ LoopTriangles add_loops(const LinkedLoops& loops, std::span<const Triangle> plai
     mesh->labels.push_back(label);
     made.owners.push_back({static_cast<std::int32_t>(i), other});
   };
-  // Those of parts whose fan folds; returns flags of their sides.
+  // Adds the parts whose fans fold; returns flags of their sides.
   const auto add_folded_parts = [&](std::size_t i) {
     const std::size_t count = loops.side_count(i);
     std::array<std::uint8_t, 12> is_made{};

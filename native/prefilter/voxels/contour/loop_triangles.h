@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Sharp loops to triangles.
+// Converts sharp loops to triangles.
 #pragma once
 
 #include <array>
@@ -16,19 +16,19 @@
 
 namespace prefilter {
 
-/// What a mesh has of sharp loops, behind everything else.
+/// Mesh elements of sharp loops, stored after all others.
 struct LoopTriangles {
-  std::vector<std::int32_t> places;                 // of each loop its vertex; -1: none
-  std::vector<std::array<std::int32_t, 2>> owners;  // of each triangle its loops; -1: just one
+  std::vector<std::int32_t> places;                 // per loop: its vertex; -1: none
+  std::vector<std::array<std::int32_t, 2>> owners;  // per triangle: its loops; -1: only one
 };
 
-/// The label of the region that a triangle of the contour is on; -1 far from edges.
+/// The label of the region on which a triangle of the contour lies; -1 far from edges.
 std::int32_t label_of(const VertexSamples& samples, const std::array<std::int32_t, 3>& triangle);
 
-/// Adds a vertex for each loop of `merged` that is its own first one, and the loops' triangles: a
-/// fan around the vertex, whose sides are flipped where loops are joined. Where the fan folds on
-/// one side of the edge, what is there gets the triangles that lie best on its region. Loops that
-/// are not sharp have triangles of `plain`, those of LoopedMesh.
+/// Adds a vertex for each loop that is its own representative in `merged`, and the loops'
+/// triangles: a fan around the vertex, with sides flipped where loops are joined. Where the fan
+/// folds on one side of the edge, it is replaced there by the triangles that fit the region best.
+/// Loops that are not sharp get their triangles from `plain`, the array in LoopedMesh.
 LoopTriangles add_loops(const LinkedLoops& loops,
                         std::span<const std::array<std::int32_t, 3>> plain,
                         std::span<const Feature> features, std::span<const std::uint8_t> is_sharp,

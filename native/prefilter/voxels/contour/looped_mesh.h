@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A contour before loops that edges of the shape cross become triangles.
+// A contour whose sharp loops have not been triangulated yet.
 #pragma once
 
 #include <array>
@@ -13,13 +13,13 @@
 
 namespace prefilter {
 
-/// Where vertices between cells go back to: to where they were before they were sampled, then to
-/// the place that two cells alone say, then halfway between the centers of their cells, where loops
-/// never fold. All three are on one line along an axis.
+/// Fallback positions of vertices between cells: first the position before sampling, then the
+/// position determined by the two cells alone, then the midpoint between the cells' centers, where
+/// loops never fold. All three are on one line along an axis.
 class Crossings {
  public:
   Crossings() = default;
-  /// Of vertices where they are before they are sampled; `set` says the rest of each.
+  /// Starts with the positions before sampling; `set` adds the others per vertex.
   explicit Crossings(std::vector<Vector3> fitted)
       : middles_(std::move(fitted)), others_(middles_.size()), axes_(middles_.size(), 0) {}
 
@@ -31,10 +31,10 @@ class Crossings {
   std::size_t size() const { return middles_.size(); }
   const Vector3& middle(std::size_t v) const { return middles_[v]; }
   Vector3 fitted(std::size_t v) const { return along(v, others_[v].fitted); }
-  /// Along its line.
+  /// The new position must be on the vertex's line.
   void move_middle(std::size_t v, const Vector3& position) { middles_[v] = position; }
 
-  /// Moves a vertex to the next of them; returns whether there is one.
+  /// Moves a vertex to its next fallback position; returns whether there is one.
   bool put_back(std::size_t v, Vector3* position) const {
     if (*position == middle(v)) return false;
     const Vector3 plain = along(v, others_[v].plain);
@@ -59,15 +59,15 @@ class Crossings {
   }
 
   std::vector<Vector3> middles_;
-  std::vector<Others> others_;  // along the axis
+  std::vector<Others> others_;  // coordinate along the axis
   std::vector<std::uint8_t> axes_;
 };
 
-/// A loop of a contour whose vertices are on different sides of an edge.
+/// A loop of a contour whose vertices lie on different sides of an edge.
 struct SharpLoop {
   std::array<std::int32_t, 12> corners;
   int count = 0;
-  // Its triangles without the edge, among those of all sharp loops.
+  // Its triangles without the edge, as a range of all sharp loops' triangles.
   std::size_t first = 0;
   std::size_t end = 0;
 
@@ -77,10 +77,10 @@ struct SharpLoop {
   }
 };
 
-/// A contour of which some loops have yet to become triangles.
+/// A contour of which some loops are not triangulated yet.
 struct LoopedMesh {
   std::vector<Vector3> positions;
-  // Of all other loops.
+  // Triangles of all other loops.
   std::vector<std::array<std::int32_t, 3>> triangles;
   std::vector<SharpLoop> loops;
   std::vector<std::array<std::int32_t, 3>> loop_triangles;

@@ -26,9 +26,9 @@ int edge_between(int corner, int other) {
 
 std::vector<MarchingLoop> marching_loops(unsigned inside, unsigned joined_faces) {
   const auto is_inside = [&](int corner) { return ((inside >> corner) & 1U) != 0U; };
-  // After a face's edge where the boundary around it enters a run of inside corners comes the edge
-  // where it leaves that run, or where it left the one before. Each edge is entered in one of its
-  // two faces and left in the other, so this is a permutation of the edges that are cut.
+  // The boundary around a face enters a run of inside corners at one edge, and is followed by the
+  // edge where it leaves that run, or where it left the previous one. Each cut edge is entered in
+  // one of its two faces and left in the other, so this is a permutation of the cut edges.
   std::array<int, 12> next{};
   next.fill(-1);
   for (int face = 0; face < 6; ++face) {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// How a surface passes through a cube of eight samples: marching cubes, from a rule.
+// Generates the cases of marching cubes from a rule.
 //
-// Corner i of the cube is high along x where bit 0 of i is set, along y for bit 1, along z for bit
-// 2. Edge 4 a + k runs along axis a; bit 0 of k tells its side along axis (a + 1) % 3, bit 1 that
+// Corner i of the cube is high along x if bit 0 of i is set, along y for bit 1, along z for bit 2.
+// Edge 4 a + k runs along axis a; bit 0 of k is its side along axis (a + 1) % 3, bit 1 its side
 // along axis (a + 2) % 3.
 //
-// On a face the segments depend on the signs of its four corners alone: each run of inside corners
-// around the face is cut off by itself. Neighbors see the same segments, in opposite directions,
-// so the surface is closed. Diagonals of a loop of segments must not lie in faces of the cube: such
-// a one could be a diagonal, or a segment, of the neighbor's too, and belong to four triangles.
+// The segments on a face depend on the signs of its four corners alone: each run of inside corners
+// around the face is cut off separately. Neighbors have the same segments, in opposite directions,
+// so the surface is closed. Diagonals of a loop must not lie in faces of the cube: they could also
+// be a diagonal or a segment of the neighbor, and belong to four triangles.
 #pragma once
 
 #include <array>
@@ -20,24 +20,24 @@
 
 namespace prefilter {
 
-/// The edges that a loop passes through; seen from outside, counter-clockwise.
+/// The edges that a loop passes through, counterclockwise seen from outside.
 using MarchingLoop = std::vector<std::uint8_t>;
 
 struct MarchingCase {
   std::vector<MarchingLoop> loops;
-  // The faces with two inside corners that are opposite of each other, as bits: 2 a for the low
-  // face across axis a, 2 a + 1 for the high one.
+  // Bit mask of the faces with two diagonally opposite inside corners: 2 a for the low face across
+  // axis a, 2 a + 1 for the high one.
   unsigned ambiguous_faces = 0;
 };
 
 /// The case of each set of inside corners (bit i: corner i).
 const std::array<MarchingCase, 256>& marching_cases();
 
-/// The loops of a set of inside corners. On the ambiguous faces given as bits the inside corners
-/// are joined, and the outside ones cut off by themselves.
+/// The loops of a set of inside corners. On the ambiguous faces in `joined_faces` the inside
+/// corners are joined, and the outside corners cut off.
 std::vector<MarchingLoop> marching_loops(unsigned inside, unsigned joined_faces);
 
-/// The corners of a face, counter-clockwise seen from outside of the cube.
+/// The corners of a face, counterclockwise seen from outside the cube.
 std::array<int, 4> face_corners(int axis, bool is_high);
 
 /// The corner of an edge that is low along it.
@@ -48,7 +48,7 @@ constexpr int low_corner(int edge) {
 }
 constexpr int high_corner(int edge) { return low_corner(edge) | (1 << (edge / 4)); }
 
-/// The faces that an edge lies in, as bits.
+/// Bit mask of the faces in which an edge lies.
 constexpr unsigned faces_of_edge(int edge) {
   unsigned faces = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -58,9 +58,9 @@ constexpr unsigned faces_of_edge(int edge) {
   return faces;
 }
 
-/// Triangulates a loop of 3 to 12 vertices without the diagonals that `is_allowed(i, j)` refuses,
-/// at the least sum of `cost(i, j, k)` over its triangles. Calls `add(i, j, k)` with their places
-/// in the loop; false, and no call, where there is no way.
+/// Triangulates a loop of 3 to 12 vertices without the diagonals that `is_allowed(i, j)` rejects,
+/// minimizing the sum of `cost(i, j, k)` over its triangles. Calls `add(i, j, k)` with their
+/// indices in the loop; returns false, without calls, if there is no triangulation.
 template <typename IsAllowed, typename Cost, typename Add>
 bool triangulate_loop(int count, const IsAllowed& is_allowed, const Cost& cost, const Add& add) {
   if (count == 3) {
@@ -68,7 +68,7 @@ bool triangulate_loop(int count, const IsAllowed& is_allowed, const Cost& cost, 
     return true;
   }
   constexpr int kMost = 12;
-  // The best of the triangulations of i .. j: its cost, and the third corner over the side (i, j).
+  // Best triangulation of i .. j: its cost, and the third corner of the triangle at side (i, j).
   std::array<std::array<double, kMost>, kMost> least;
   std::array<std::array<std::int8_t, kMost>, kMost> apex;
   for (int i = 0; i + 1 < count; ++i) least[i][i + 1] = 0.0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What of a contour changes while its sharp loops are mended.
+// State of a contour that changes while its sharp loops are mended.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 
 namespace prefilter {
 
-/// The vertices of the contour and the triangles far from edges, near them, and of sharp loops, in
-/// that order.
+/// The vertices of the contour, and its triangles: far from edges, near edges, and of sharp loops,
+/// in this order.
 struct LayeredMesh {
   FacetedMesh mesh;
   std::size_t contour_vertices = 0;
@@ -22,17 +22,17 @@ struct LayeredMesh {
   std::size_t loops = 0;  // the first triangle of a loop
 };
 
-/// Of each loop.
+/// State of each loop.
 struct LoopStates {
   std::vector<Feature> features;
   std::vector<std::uint8_t> is_sharp;
-  std::vector<std::uint8_t> is_single;  // not to be merged
+  std::vector<std::uint8_t> is_single;  // must not be merged
   std::vector<std::size_t> merged;
   std::vector<std::uint8_t> attempts;
   std::vector<std::uint8_t> halvings;
 };
 
-/// Since intersections were looked for.
+/// Changes since the last search for intersections.
 struct LoopChanges {
   std::vector<std::uint8_t> loops;
   std::vector<std::uint8_t> vertices;

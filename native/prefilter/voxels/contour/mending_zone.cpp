@@ -10,11 +10,11 @@ namespace prefilter {
 namespace {
 
 constexpr double kLeastCells = 2.0;
-constexpr double kSides = 2.0;  // of a cube, in the largest size
+constexpr double kSides = 2.0;  // side of a cube, in multiples of the largest size
 constexpr std::int32_t kZoneReach = 2;
 constexpr std::int32_t kInsideReach = 1;
-// Parts of all, above which looking at everything is as fast: triangles of a zone, and cubes with
-// changes, around each of which it has several.
+// Reciprocal shares of all triangles in a zone, and of all cubes with changes, above which
+// processing everything is as fast; several cubes surround each change.
 constexpr std::size_t kTrianglePart = 2;
 constexpr std::size_t kCubePart = 6;
 
@@ -24,7 +24,7 @@ double largest_side(const Box& box) {
   return std::max({box.high[0] - box.low[0], box.high[1] - box.low[1], box.high[2] - box.low[2]});
 }
 
-// Of the boxes of loops and triangles.
+// Largest size of the boxes of loops and triangles.
 double largest_size(const LinkedLoops& loops, const FacetedMesh& mesh) {
   double largest = 0.0;
   const auto include = [&](std::span<const std::int32_t> corners) {
@@ -43,7 +43,7 @@ std::size_t count_of(const Flags& flags) {
   return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), 1));
 }
 
-// The number of a loop in a zone; -1 where it is not there.
+// Index of a loop in a zone; -1: not in the zone.
 std::int32_t number_in(const std::vector<std::size_t>& numbers, std::size_t loop) {
   const auto found = std::lower_bound(numbers.begin(), numbers.end(), loop);
   if (found == numbers.end() || *found != loop) return -1;
@@ -140,7 +140,7 @@ std::vector<ZoneFinder::Cube> ZoneFinder::changed_cubes(const LoopChanges& chang
   return cubes;
 }
 
-// Flags of cubes.
+// Flags the cubes around some cubes.
 Flags ZoneFinder::around(std::span<const Cube> cubes, std::int32_t reach) const {
   Flags is_around(cubes_.size(), 0);
   for (const Cube& cube : cubes) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Mending a few loops without looking at all others.
+// Mends a few loops without examining all others.
 #pragma once
 
 #include <array>
@@ -16,34 +16,33 @@
 
 namespace prefilter {
 
-/// The loops and triangles around those that have changed, with loops numbered anew. Vertices keep
-/// their numbers.
+/// The loops and triangles around changed ones, with loops renumbered. Vertices keep their numbers.
 struct MendingZone {
-  std::vector<std::size_t> numbers;     // of each loop, among all
-  std::vector<std::uint8_t> is_inside;  // of each loop: far from where the zone ends
+  std::vector<std::size_t> numbers;     // per loop: its number among all
+  std::vector<std::uint8_t> is_inside;  // per loop: far from the zone's border
   LinkedLoops loops;
   LoopStates states;
-  LayeredMesh layered;  // its positions and kinds are those of all, while it has them
+  LayeredMesh layered;  // temporarily owns the positions and kinds of the whole mesh
   LoopChanges changes;
 };
 
-/// Finds zones by the cubes of a grid, whose side is at least four cells, and twice the size of any
-/// loop or triangle. What changes is two cubes at least from where its zone ends, and the loops
-/// inside are one.
+/// Finds zones by the cubes of a grid with sides of at least four cells, and twice the size of any
+/// loop or triangle. Changes are at least two cubes from the border of their zone, and inside loops
+/// at least one.
 class ZoneFinder {
  public:
-  /// Of a mesh without the triangles of loops.
+  /// For a mesh without the triangles of loops.
   ZoneFinder(const LinkedLoops& loops, const LayeredMesh& layered, double cell);
 
-  /// Whether most loops have changed: then no zone is worth while.
+  /// Whether most loops have changed, in which case zones are not worthwhile.
   static bool are_most(const LoopChanges& changes);
 
-  /// Moves the positions and kinds of `layered` into the zone, and all changes of vertices. Does
-  /// nothing, and returns nothing, where looking at everything is as fast.
+  /// Moves the positions and kinds of `layered`, and all changes of vertices, into the zone.
+  /// Returns none, without effect, if processing everything is as fast.
   std::optional<MendingZone> enter(const LinkedLoops& loops, const LoopStates& states,
                                    LoopChanges* changes, LayeredMesh* layered) const;
 
-  /// Takes what changed in a zone out of it, and its positions and kinds.
+  /// Moves the changes, positions and kinds of a zone back.
   static void leave(MendingZone zone, LoopStates* states, LoopChanges* changes,
                     LayeredMesh* layered);
 
@@ -62,9 +61,9 @@ class ZoneFinder {
   double per_side_;
   std::unordered_map<Cube, std::uint32_t, CubeHash> numbers_;
   std::vector<Cube> cubes_;
-  std::vector<std::uint32_t> loops_;      // the cube of each
-  std::vector<std::uint32_t> triangles_;  // the cube of each
-  std::vector<std::uint32_t> counts_;     // of the triangles in each cube
+  std::vector<std::uint32_t> loops_;      // cube of each loop
+  std::vector<std::uint32_t> triangles_;  // cube of each triangle
+  std::vector<std::uint32_t> counts_;     // number of triangles in each cube
 };
 
 }  // namespace prefilter

@@ -21,7 +21,7 @@ bool is_in(std::int32_t vertex, const Flags& is_flagged) {
   return v < is_flagged.size() && is_flagged[v] != 0;
 }
 
-// The vertices that several loops have.
+// Flags the vertices shared by several loops.
 Flags shared_vertices(std::span<const std::int32_t> places, std::span<const std::size_t> merged) {
   Flags is_shared;
   for (std::size_t i = 0; i < merged.size(); ++i) {
@@ -33,7 +33,7 @@ Flags shared_vertices(std::span<const std::int32_t> places, std::span<const std:
   return is_shared;
 }
 
-// Whether the sides opposite of a vertex, each from one neighbor to the next, are one circle.
+// Whether the edges opposite to a vertex form one cycle.
 bool is_circle(const std::vector<std::array<std::int32_t, 2>>& link) {
   std::int32_t at = link[0][1];
   std::size_t steps = 1;
@@ -115,7 +115,7 @@ bool unmerge(std::span<const Triangle> triangles, const LoopTriangles& made,
              std::vector<std::uint8_t>* is_changed) {
   const Flags is_shared = shared_vertices(made.places, merged);
   if (is_shared.empty()) return false;
-  Flags is_faulty(merged.size(), 0);  // of the first loops of vertices
+  Flags is_faulty(merged.size(), 0);  // indexed by the first loop at each vertex
   for (const std::size_t t : repeating_triangles(triangles, is_shared)) {
     for (const std::int32_t owner : made.owners[t]) {
       if (owner >= 0) is_faulty[merged[static_cast<std::size_t>(owner)]] = 1;

@@ -203,7 +203,7 @@ std::vector<OccupancySurface::Candidate> OccupancySurface::candidates(
   return found;
 }
 
-// Regions that go on beyond what is not smooth.
+// Merges regions that continue across cells that are not smooth.
 void OccupancySurface::merge_across_gaps() {
   for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
     const std::vector<Candidate>& near = near_[cell];
@@ -248,12 +248,12 @@ void OccupancySurface::mark_edges() {
   }
 }
 
-// Whether what is inside of some of the regions, or of any, has the cell's occupancy.
+// Whether some combination of the regions' insides explains the cell's occupancy.
 bool OccupancySurface::explains(const std::vector<Candidate>& all,
                                 const CellCoordinates& at) const {
   const auto occupancy = static_cast<double>(occupancy_at(tree_.cells(), depth_, at));
   const std::size_t count = std::min(all.size(), kMostRegions);
-  // For each set of regions, the share that is inside of just these.
+  // Share of the cell inside exactly each set of regions.
   std::array<double, 1U << kMostRegions> shares{};
   for (int i = 0; i < kSamples * kSamples * kSamples; ++i) {
     const Vector3 point = {at[0] + (i % kSamples + 0.5) / kSamples,
@@ -265,8 +265,7 @@ bool OccupancySurface::explains(const std::vector<Candidate>& all,
     }
     shares[inside] += 1.0 / (kSamples * kSamples * kSamples);
   }
-  // Monotone functions of up to three sides: the sets that are inside are given by what each asks
-  // for.
+  // Monotone functions of up to three regions, given by the conditions on the sets that are inside.
   const auto share_of = [&](const auto& is_inside) {
     double share = 0.0;
     for (unsigned set = 0; set < 1U << count; ++set) {
@@ -337,8 +336,8 @@ std::optional<SourcePoint> OccupancySurface::nearest(const Vector3& point, doubl
   return result;
 }
 
-// The nearest point of any of these regions on the line of a vertex through the middles of two
-// cells, where the surface rises the way that the occupancies do.
+// The nearest intersection of these regions with a vertex's line between two cells' centers, where
+// the surface has the same orientation as the occupancies.
 std::optional<OccupancySurface::Hit> OccupancySurface::hit_on_line(
     const std::vector<Candidate>& near, const CellCoordinates& at, int face, double rises,
     const Vector3& start) const {
@@ -366,7 +365,7 @@ std::optional<OccupancySurface::Hit> OccupancySurface::hit_on_line(
   return best;
 }
 
-// The nearest point of any of these regions.
+// The nearest point on any of these regions.
 std::optional<OccupancySurface::Hit> OccupancySurface::hit_beside(
     const std::vector<Candidate>& near, const Vector3& start) const {
   std::optional<Hit> best;
@@ -397,8 +396,8 @@ std::optional<OccupancySurface::Found> OccupancySurface::sample_face(
   const double rises = is_fuller == is_high ? 1.0 : -1.0;
   const std::optional<Hit> hit = hit_on_line(near, cell.at, face, rises, start);
   if (!hit) {
-    // The sides of leaves are those of their occupancies, not of their centers: beside edges the
-    // line may miss the surface.
+    // The sides of leaves follow from occupancies, not from their centers, so beside edges the line
+    // may miss the surface.
     const std::optional<Hit> beside = hit_beside(near, start);
     if (!beside) return std::nullopt;
     const SourcePoint sample = {to_frame(beside->point), normal_in_frame(beside->gradient), -1,

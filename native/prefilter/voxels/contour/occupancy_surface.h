@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The smooth surfaces that occupancies fix by themselves, for edges and corners where they meet.
+// Smooth surfaces determined by occupancies alone, for finding edges and corners at their
+// intersections.
 //
-// Beyond the text. Where 3 x 3 columns of cells run from full to empty, and their sums lie on a
-// gently curved quadratic, the surface is smooth and known; cells beside each other whose surfaces
-// go on into one another are a region. Around an edge no columns tell anything. There the
-// quadratics of the regions on its sides are carried on, as far as they explain the occupancies.
+// Not in the dissertation. Where 3 x 3 columns of cells run from full to empty, and their sums fit
+// a gently curved quadratic, the surface is smooth and known; adjacent cells whose surfaces
+// continue each other form a region. Columns around an edge provide no information. There the
+// quadratics of the regions on both sides are extrapolated as far as they explain the occupancies.
 #pragma once
 
 #include <cstdint>
@@ -23,14 +24,15 @@
 
 namespace prefilter {
 
-/// Of a tree of occupancies whose surface is in its finest cells.
+/// The surface of a tree of occupancies with all surface in its finest cells.
 class OccupancySurface final : public FeatureSurface {
  public:
   /// Throws Error(kCancelled).
   OccupancySurface(const ContourTree& tree, const RootFrame& frame, const SurfaceVertices& vertices,
                    const Progress& progress, int threads);
 
-  /// Moves the vertices beside edges onto the regions that they are on. Throws Error(kCancelled).
+  /// Moves the vertices beside edges onto the regions to which they belong. Throws
+  /// Error(kCancelled).
   VertexSamples sample_vertices(const Progress& progress, int threads,
                                 SurfaceVertices* vertices) const;
 
@@ -48,27 +50,27 @@ class OccupancySurface final : public FeatureSurface {
   struct SurfaceCell {
     CellCoordinates at;
     std::size_t first_vertex;
-    std::uint8_t faces;  // with vertices
+    std::uint8_t faces;  // faces with vertices
     bool is_smooth = false;
-    bool is_deep = false;  // and so are all around it
+    bool is_deep = false;  // this and all adjacent cells are smooth
     bool is_beside_edge = false;
     std::int32_t region = -1;
     HeightPatch patch;
   };
-  // A region near a cell, by its most telling patch.
+  // A region near a cell, represented by its most relevant patch.
   struct Candidate {
     std::int32_t region;
     std::size_t cell;
     double score;
   };
 
-  // A place of a region's surface, in cells.
+  // A point of a region's surface, in cells.
   struct Hit {
     std::int32_t region;
     Vector3 point;
     Vector3 gradient;
   };
-  // A vertex with its sample, as VertexSamples has them.
+  // A vertex with its sample, as in VertexSamples.
   struct Found {
     std::size_t vertex;
     SourcePoint sample;
@@ -101,7 +103,7 @@ class OccupancySurface final : public FeatureSurface {
   std::vector<SurfaceCell> cells_;
   std::unordered_map<std::uint64_t, std::uint32_t> places_;
   DisjointSets<std::int32_t> regions_;
-  std::vector<std::vector<Candidate>> near_;  // of cells that are not smooth, the nearest first
+  std::vector<std::vector<Candidate>> near_;  // per cell that is not smooth, nearest first
 };
 
 }  // namespace prefilter

@@ -14,7 +14,7 @@ constexpr double kBeyondCells = 0.1;
 
 using Triangle = std::array<std::int32_t, 3>;
 
-// The sample of a vertex whose line misses the surface; -1 for others, and where it is on its line.
+// The sample of a vertex whose line misses the surface; -1 for all other vertices.
 std::int32_t off_line(std::int32_t vertex, const VertexSamples& samples,
                       std::span<const Vector3> positions) {
   const auto v = static_cast<std::size_t>(vertex);
@@ -89,8 +89,8 @@ std::vector<OffLineVertices::Around> OffLineVertices::look_around(
   return around;
 }
 
-// From a vertex to beyond the line of two others, within the plane of its sample, where the
-// triangle of the three is upside down; 0 where it is not.
+// Direction, within the plane of the vertex's sample, from the vertex to beyond the line through
+// two other vertices if their triangle is upside down; otherwise 0.
 Vector3 OffLineVertices::way_across(std::int32_t vertex, const Vector3& from, const Vector3& a,
                                     const Vector3& b) const {
   const SourcePoint& sample = *samples_.of(vertex);

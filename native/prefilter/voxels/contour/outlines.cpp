@@ -12,8 +12,8 @@
 namespace prefilter {
 namespace {
 
-// Outlines, cut through the squares between four samples each. A point lies between two
-// samples: along x (0) or y (1) from the lower one.
+// Traces outlines through the squares between four samples. A point lies between two samples, along
+// x (0) or y (1) from the lower one.
 class Outliner {
  public:
   Outliner(const PlaneView& samples, const PlaneFrame& frame, const ContourOptions& options)
@@ -56,8 +56,8 @@ class Outliner {
     return 2 * (static_cast<std::int64_t>(x + 1) * (samples_.size[1] + 1) + (y + 1)) + axis;
   }
 
-  // Corners around the square, counter-clockwise; runs of inside corners are cut off one by one,
-  // the inside to the left.
+  // Cuts off the runs of inside corners around a square one by one, counterclockwise, with the
+  // inside on the left.
   void cut_square(int x, int y) {
     const std::array<std::array<int, 2>, 4> corners = {
         {{x, y}, {x + 1, y}, {x + 1, y + 1}, {x, y + 1}}};
@@ -92,7 +92,7 @@ class Outliner {
   const PlaneView& samples_;
   const PlaneFrame& frame_;
   const ContourOptions& options_;
-  // After a point the next one of its outline; -1: no outline passes.
+  // The next point of the same outline; -1: none.
   std::vector<std::int64_t> nexts_;
 };
 }  // namespace

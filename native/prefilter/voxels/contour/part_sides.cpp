@@ -11,22 +11,22 @@
 namespace prefilter {
 namespace {
 
-constexpr double kPartReach = 2.5;  // of parts that count
-constexpr double kCertain = 1e-4;   // of an occupancy, from 0 or 1
+constexpr double kPartReach = 2.5;  // cells; distance at which parts count
+constexpr double kCertain = 1e-4;   // maximum distance of a certain occupancy from 0 or 1
 constexpr int kLeastVotes = 3;
-constexpr int kMajority = 10;  // times as many as against
-// Along an axis of a brick. Not a divisor of its cells: samples are off the planes of coordinates.
+constexpr int kMajority = 10;  // required ratio to the opposing votes
+// Samples per axis of a brick; not a divisor of its cells, so that samples avoid grid planes.
 constexpr int kCellSamples = 3;
-constexpr int kShares = 4;  // samples of a leaf along an axis
-constexpr int kClose = 5;   // samples, from half of them, where the center decides
+constexpr int kShares = 4;  // samples per axis of a leaf
+constexpr int kClose = 5;   // samples; if the count differs less from half, the center decides
 constexpr std::int64_t kLeavesPerTask = 64;
-// Of wedges between two parts. They end where they are thinner than a share of what cells reach
-// over across them, if their tip is within reach of features.
+// Parameters of wedges between two parts. They end where they are thinner than a share of a cell's
+// extent across them, if their tip is within reach of features.
 constexpr double kAcute = -0.6;  // 53 degrees
 constexpr double kThinnest = 0.5;
 constexpr double kTipCells = 4.0;
 constexpr double kThickestCells = 2.0;
-constexpr double kBodyCells = 1.0;  // that a wedge has to go on behind where it ends
+constexpr double kBodyCells = 1.0;  // minimum length of the wedge behind its end
 
 float value_at(const ContourTree& tree, const RootFrame& frame, const Vector3& point) {
   CellNode cell = tree.root();
@@ -146,11 +146,11 @@ std::optional<bool> PartSides::side_in_wedge(const Parts& parts, const Vector3& 
     const double from_middle = std::abs(below_first - below_second) / length(across);
     return from_middle <= 0.5 * reach ? std::optional<bool>(true) : std::nullopt;
   }
-  // Of half an angle: tan(a / 2)^2 = (1 - cos(a)) / (1 + cos(a)).
+  // Half-angle formula: tan(a / 2)^2 = (1 - cos(a)) / (1 + cos(a)).
   const double cosine_of_tip = std::min(1.0, -cosine);
   const double slope = 2.0 * std::sqrt((1.0 - cosine_of_tip) / (1.0 + cosine_of_tip));
   if (thickness > slope * kTipCells * surface_.cell()) return std::nullopt;
-  // It has to go on behind that, or nothing of it would be left.
+  // The wedge must continue behind that point, or nothing of it would remain.
   const Vector3 middle = center + ((below_first - below_second) / dot(across, across)) * across;
   const Vector3 outer = first + second;
   const double width = length(outer);
@@ -165,7 +165,7 @@ std::optional<bool> PartSides::is_mostly_inside(const Vector3& center, const Vec
   if (!parts) return std::nullopt;
   const std::optional<bool> in_wedge = side_in_wedge(*parts, center, size);
   if (in_wedge) return in_wedge;
-  // Where but one part runs through, the occupancy tells.
+  // If only one part passes through, the occupancy decides.
   int passing = 0;
   for (std::size_t i = 0; i < parts->count; ++i) {
     const SourcePoint& plane = parts->planes[i];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Which side of a shape points are on where parts of its sources meet.
+// Determines the side of points where parts of a shape's sources meet.
 #pragma once
 
 #include <array>
@@ -17,24 +17,24 @@
 
 namespace prefilter {
 
-/// How a shape was combined from the parts of its sources is not known; it is learned from the
-/// tree: close to where some parts meet, cells that are full or empty tell what being inside of one
-/// part and outside of another amounts to. Occupancies of cells that several parts run through do
-/// not tell it: max(a, b) and min(a, b) are not the occupancies of unions and intersections.
+/// The operation that combined the parts of the sources is unknown, so it is learned from the tree:
+/// near intersections of parts, full and empty cells show for each combination of inside and
+/// outside which side of the shape it is. Cells that several parts cross are not used, since max(a,
+/// b) and min(a, b) are not the occupancies of unions and intersections.
 class PartSides {
  public:
   /// Throws Error(kCancelled).
   PartSides(const ContourTree& tree, const RootFrame& frame, const SourceSurface& surface,
             const Progress& progress);
 
-  /// Puts leaves where parts meet on the side that most of them is on, by the parts' planes, but
-  /// for those that are thickened. Throws Error(kCancelled).
+  /// Assigns leaves where parts meet, except thickened ones, to the side on which most of their
+  /// volume lies, by the parts' planes. Throws Error(kCancelled).
   void settle(const ThickenedCells& thickened, const Progress& progress, int threads,
               ContourTree* tree) const;
 
-  /// Where the segment from `in`, a point that counts as inside, to `out` leaves the shape; of
-  /// several places the one nearest to `expected`. `is_known` tells whether what is inside is known
-  /// along the segment: not where fewer than two parts are close.
+  /// The point at which the segment from `in`, which must be inside, to `out` leaves the shape; if
+  /// there are several, the one nearest to `expected`. `is_known` is set if the sides along the
+  /// segment are known, which requires at least two parts nearby.
   std::optional<SourcePoint> exit(const Vector3& in, const Vector3& out, const Vector3& expected,
                                   bool* is_known) const;
 
@@ -52,14 +52,14 @@ class PartSides {
     std::array<int, 1U << kMostParts> outside{};
   };
 
-  // The normals, outward, of the planes of two parts between which the shape is; none where it is
-  // elsewhere, too.
+  // Outward normals of the planes of two parts if the shape is exactly the wedge between them; none
+  // otherwise.
   std::optional<std::array<Vector3, 2>> wedge_normals(const Parts& parts) const;
-  // Whether the shape is at a point, and both parts are near.
+  // Whether a point is in the shape, and both parts are near.
   bool is_between(const Parts& parts, const Vector3& point) const;
-  // The side of a leaf in the tip of a wedge, where the occupancies of single cells would leave
-  // teeth. All leaves are inside that its middle runs through, so that it has no holes, up to where
-  // it is too thin for that: from there on, the loops at its end reach to its tip.
+  // The side of a leaf in the tip of a wedge, where the occupancies of single cells would produce
+  // teeth. All leaves crossed by the wedge's center plane are inside, so that it has no holes, up
+  // to where it is too thin; from there the loops at its end reach to its tip.
   std::optional<bool> side_in_wedge(const Parts& parts, const Vector3& center,
                                     const Vector3& size) const;
   std::optional<bool> is_mostly_inside(const Vector3& center, const Vector3& size) const;

@@ -23,7 +23,7 @@
 namespace prefilter {
 namespace {
 
-// A triangle of the sources for each quad; -1 in cells that are not theirs.
+// A source triangle for each quad; -1 in thickened cells.
 std::vector<std::int64_t> origins_of(const QuadSurface& surface, const SourceSurface& meshes,
                                      const ThickenedCells& thickened) {
   FacetedMesh mesh;
@@ -44,8 +44,8 @@ std::vector<std::int64_t> origins_of(const QuadSurface& surface, const SourceSur
   return origins;
 }
 
-// Puts leaves above the finest depth on the sides of their values. In a refined tree those on two
-// sides are nowhere beside each other.
+// Assigns leaves above the finest depth to the side of their value. In a refined tree such leaves
+// on different sides are never adjacent.
 void unsettle_coarse(const Progress& progress, int threads, ContourTree* tree) {
   const std::vector<TreeLevel>& levels = tree->cells().levels;
   for (std::size_t level = 0; level + 1 < levels.size(); ++level) {
@@ -60,7 +60,7 @@ void unsettle_coarse(const Progress& progress, int threads, ContourTree* tree) {
   tree->update_sides(progress, threads);
 }
 
-// None where the surface is between leaves that are not of the finest depth.
+// None if the surface passes between leaves that are not of the finest depth.
 std::optional<QuadMesh> quads_of(const CellTree& cells, const Box& root, bool is_refined,
                                  const ContourOptions& options, const Progress& progress) {
   const int threads = options.threads;

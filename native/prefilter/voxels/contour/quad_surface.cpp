@@ -8,11 +8,11 @@
 namespace prefilter {
 namespace {
 
-// Triangles that are this much narrower than long have no normal.
+// Triangles with a smaller height relative to their length have no normal.
 constexpr double kNarrow = 1e-6;
 
-// Two triangles beside each other: the cosine between their normals, -1 where one has none, and in
-// what proportion the volume is between them and a large sphere through their corners.
+// Two adjacent triangles: the cosine between their normals, -1 if one has none, and a value
+// proportional to the volume between them and a large sphere through their corners.
 struct Cut {
   double cosine;
   double gap;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Quads as two triangles each.
+// Quads as pairs of triangles.
 #pragma once
 
 #include <array>
@@ -14,17 +14,17 @@ namespace prefilter {
 
 using Quad = std::array<std::int32_t, 4>;
 
-/// Closed quads, of one label each or kNoLabel. Renderers cut them from the first corner to the
-/// third.
+/// A closed surface of quads, each with a label or kNoLabel. Renderers divide quads between the
+/// first and the third corner.
 struct QuadSurface {
   std::vector<Vector3> positions;
   std::vector<Quad> quads;
   std::vector<std::int32_t> labels;
 
-  /// The triangles 2 i and 2 i + 1 of each quad i.
+  /// Triangles 2 i and 2 i + 1 for each quad i.
   std::vector<std::array<std::int32_t, 3>> triangles() const;
 
-  /// Has a quad begin at the corner from which it is best cut: flat, and next to Delaunay's.
+  /// Rotates a quad so that its division is best: flat, and close to Delaunay.
   void turn(std::size_t quad);
 };
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kRowsPerReport = 1 << 14;
 constexpr double kStraight = 0.5176380902050415;  // twice the sine of 15 degrees
-// A chain of edges is roughness where it turns or parts this often, and they are this blunt.
+// A chain of edges is roughness if it turns or branches this often, and is this blunt.
 constexpr double kRoughCells = 12.0;
 constexpr int kRoughEdges = 4;
 constexpr double kRoughAngle = 0.6981317007977318;  // 40 degrees, on average
@@ -46,7 +46,7 @@ std::array<std::int32_t, 2> labels_of(const std::vector<std::int32_t>& labels, c
           labels[static_cast<std::size_t>(wall.triangles[1])]};
 }
 
-// Of the walls of small regions, in order: joins each of these with the other it shares most with.
+// For the sorted walls of small regions: joins each small region with the one it shares most with.
 Sets joined_by_length(const std::vector<Shared>& shared, int region_count) {
   Sets joined(static_cast<std::size_t>(region_count));
   for (std::size_t i = 0; i < shared.size();) {
@@ -69,7 +69,7 @@ Sets joined_by_length(const std::vector<Shared>& shared, int region_count) {
   return joined;
 }
 
-// Those of less than that width: of their area over half of what is around them.
+// Regions narrower than `narrow`: area / (perimeter / 2).
 std::vector<std::uint8_t> narrow_regions(const WeldedMeshes& welded,
                                          const std::vector<double>& areas, double narrow,
                                          const SmoothRegions& regions) {
@@ -89,7 +89,7 @@ std::vector<std::uint8_t> narrow_regions(const WeldedMeshes& welded,
   return is_narrow;
 }
 
-// What several edges that hang together are like.
+// Properties of connected edges.
 struct Chain {
   double cells = 0.0;
   double angles = 0.0;
@@ -108,11 +108,11 @@ double angle_between(const WeldedMeshes& welded, const std::array<std::int32_t, 
   return elementary::atan2(length(cross(a, b)), dot(a, b));
 }
 
-// The vertices where edges turn by 30 degrees, end or meet.
+// Flags vertices where edges turn by 30 degrees, end or meet.
 std::vector<std::int32_t> rough_vertices(const WeldedMeshes& welded,
                                          const std::vector<RegionBorder>& borders) {
   struct Meeting {
-    Vector3 sum{};  // of the directions of the edges that end there
+    Vector3 sum{};  // sum of the directions of edges that end there
     int edges = 0;
   };
   std::vector<Meeting> meetings(welded.positions.size());
@@ -244,7 +244,7 @@ std::vector<RegionBorder> find_borders(const WeldedMeshes& welded, double cell,
   for (RegionBorder& border : borders) {
     for (std::int32_t& label : border.labels) label = numbers[static_cast<std::size_t>(label)];
   }
-  // Edges within a region are found only where they are sharp.
+  // Edges within a region are only kept where they are sharp.
   borders.erase(std::remove_if(borders.begin() + static_cast<std::ptrdiff_t>(sharp), borders.end(),
                                [](const RegionBorder& border) {
                                  return border.labels[0] == border.labels[1];

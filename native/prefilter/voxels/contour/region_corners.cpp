@@ -9,7 +9,7 @@ namespace prefilter {
 namespace {
 
 constexpr double kTurnCosine = 0.8660254037844387;  // 30 degrees
-constexpr double kPointedShare = 0.75;              // of a mean normal's length, at a tip
+constexpr double kPointedShare = 0.75;              // length of the mean normal at a tip
 
 struct BorderEnd {
   std::int32_t vertex;

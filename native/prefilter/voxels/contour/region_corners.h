@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Where borders of regions meet, end or turn, and where regions come to a point.
+// Finds where borders of regions meet, end or turn, and where regions have tips.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@
 
 namespace prefilter {
 
-/// The vertices with another number of borders than two, or where two turn by more than 30 degrees.
+/// Vertices where the number of borders is not two, or two borders turn by more than 30 degrees.
 std::vector<RegionCorner> border_corners(const FramedPositions& positions,
                                          const std::vector<RegionBorder>& borders);
 
-/// The vertices that no wall ends at, with triangles of more than `least` area around, whose
-/// normals differ much.
+/// Vertices that are not on walls, have triangles of more than `least` area around, and very
+/// different normals.
 std::vector<RegionCorner> tips(const WeldedMeshes& welded, std::span<const std::int32_t> labels,
                                const std::vector<std::uint8_t>& is_on_wall,
                                const std::vector<float>& areas, double least);

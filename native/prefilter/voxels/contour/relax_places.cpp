@@ -16,12 +16,14 @@ namespace {
 
 constexpr std::int64_t kLoopsPerTask = 1024;
 constexpr int kPasses = 5;
-constexpr double kStep = 0.5;         // of the way to the mean
-constexpr double kLeastOwn = 0.25;    // weight of where a vertex was in where it is
-constexpr double kLeastCosine = 0.5;  // between the normals around a loop that is taken for smooth
+constexpr double kStep = 0.5;  // share of the way to the mean
+// minimum weight of a vertex's original corner weights in its new position
+constexpr double kLeastOwn = 0.25;
+// minimum cosine between the normals around a loop that counts as smooth
+constexpr double kLeastCosine = 0.5;
 
-// The triangles between a vertex and the sides of its loop, as heights over the plane through the
-// vertex.
+// The triangles between a vertex and the sides of its loop, as heights over the tangent plane at
+// the vertex.
 class Fan {
  public:
   Fan(std::span<const std::int32_t> loop, const std::vector<Vector3>& positions,
@@ -32,7 +34,7 @@ class Fan {
     if (size > 0.0) up_ = (1.0 / size) * up_;
   }
 
-  // Whether the loop goes once around the vertex, seen along the normal, and is nowhere steep.
+  // Whether the loop winds once around the vertex, projected along the normal, and is not steep.
   bool is_flat() const {
     for (std::size_t k = 0; k < loop_.size(); ++k) {
       if (!(dot(normals_[corner(k)], up_) >= kLeastCosine)) return false;
@@ -41,8 +43,8 @@ class Fan {
     return true;
   }
 
-  // The point of the surface over another one. Halfway between the triangles and the tangent planes
-  // at their corners it is exact for quadrics.
+  // The point of the surface above another point. Halfway between the triangles and the tangent
+  // planes at their corners, which is exact for quadrics.
   Vector3 point_over(const Vector3& wanted) const {
     Vector3 offset = wanted - middle_;
     offset = offset - dot(offset, up_) * up_;
@@ -66,7 +68,7 @@ class Fan {
   }
   Vector3 arm(std::size_t k) const { return positions_[corner(k)] - middle_; }
 
-  // Of the parallelogram of two arms, seen along the normal.
+  // Projected area of the parallelogram of two arms.
   double area(const Vector3& a, const Vector3& b) const { return dot(cross(a, b), up_); }
 
   Vector3 over(const Vector3& offset, std::size_t k, double first, double second) const {
@@ -86,7 +88,7 @@ class Fan {
   Vector3 up_{};
 };
 
-// For each corner of a loop the next of the loops around it: together they are the loops beside.
+// For each corner of a loop the next loop around it; together, these are the adjacent loops.
 std::vector<std::int32_t> loops_beside(const DualLoops& loops) {
   std::vector<std::int32_t> beside;
   beside.reserve(loops.corners.size());

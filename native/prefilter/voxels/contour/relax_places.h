@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Vertices of quads moved along a surface, so that quads are regular.
+// Moves vertices of quads along a surface to make the quads more regular.
 #pragma once
 
 #include <vector>
@@ -11,10 +11,10 @@
 
 namespace prefilter {
 
-/// Moves the vertices that are not sharp toward the mean of those beside them, along the surface
-/// and within their loops. The surface is that through a vertex and its loop's corners, which have
-/// these positions and unit normals: right to second order, as where the vertices are at first.
-/// Throws Error(kCancelled).
+/// Moves vertices that are not sharp toward the mean of their neighbors, along the surface and
+/// within their loops. The surface passes through a vertex and its loop's corners, which have these
+/// positions and unit normals; it is accurate to second order, like the initial positions. Throws
+/// Error(kCancelled).
 void relax_places(const DualLoops& loops, const std::vector<Vector3>& positions,
                   const std::vector<Vector3>& normals, const Progress& progress, int threads,
                   DualPlaces* places);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Features of loops in order along their edge.
+// Sorts the features of loops along their edge.
 #pragma once
 
 #include <cstddef>
@@ -14,10 +14,10 @@
 
 namespace prefilter {
 
-/// Where an edge is far from the loops, as at the tip of a thin wedge, their nearest points of it
-/// may be out of order. Moves the features of these loops, and of the next two on each side, on the
-/// edge to between their neighbors', and on to where their triangles are upright; returns all of
-/// these loops, in order.
+/// Where an edge is far from the loops, as at the tip of a thin wedge, the nearest points of
+/// adjacent loops may be out of order. Moves the features of these loops, and of the next two on
+/// each side, to between their neighbors on the edge, and further to where their triangles are
+/// upright; returns all of these loops, sorted.
 std::vector<std::size_t> relax_features(std::vector<std::size_t> moving, const LinkedLoops& loops,
                                         std::span<const std::uint8_t> is_sharp,
                                         const FeaturePlaces& places, const FeatureTurning& turning,

@@ -9,7 +9,7 @@
 
 namespace prefilter {
 namespace {
-constexpr double kSteps = 4.0;  // of floating-point numbers
+constexpr double kSteps = 4.0;  // units in the last place
 constexpr double kLeast = 1e-5;
 constexpr double kMost = 0.25;
 constexpr std::int64_t kRowsPerTask = 1 << 16;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The coordinates in which contours are made.
+// Coordinates in which contours are computed.
 #pragma once
 
 #include <algorithm>
@@ -12,19 +12,19 @@
 
 namespace prefilter {
 
-/// Coordinates with their origin at the root's low corner, and its longest side for a unit: a
-/// contour is the same wherever the root is and however large, and its lengths neither overflow nor
-/// underflow when they are multiplied.
+/// Coordinates with the origin at the root's low corner and the longest side as the unit: contours
+/// do not depend on the root's position and size, and products of lengths neither overflow nor
+/// underflow.
 class RootFrame {
  public:
   explicit RootFrame(const Box& root);
 
-  /// A point along an axis, given in cells of a depth from the root's low side.
+  /// Coordinate of a point along an axis, given in cells of a depth from the root's low side.
   double position(int axis, double cells, int depth) const { return cells * cell_[axis][depth]; }
 
-  /// The vertex on the way from a sample across a face, t cells of a depth away. It keeps a
-  /// distance from both samples that remains where positions become floats relative to the root, or
-  /// doubles where the root is, so that no triangle has zero area.
+  /// Coordinate of the vertex on the way from a sample across a face, t cells of a depth away. It
+  /// keeps a minimum distance from both samples that survives rounding to floats relative to the
+  /// root, or to doubles at the root's position, so that no triangle has zero area.
   double crossing(int face, double sample, double t, double distance, int depth) const {
     const int axis = face / 2;
     const double least = least_[axis][depth] * distance;
@@ -38,20 +38,20 @@ class RootFrame {
   /// The sides of a cell of a depth.
   Vector3 cells(int depth) const { return {cell(0, depth), cell(1, depth), cell(2, depth)}; }
 
-  /// A point of the space that the root is in.
+  /// Converts a point from the root's space.
   Vector3 from_space(const Vector3& point) const { return (1.0 / unit_) * (point - origin_); }
 
-  /// The frame's unit of length, in that space.
+  /// The frame's unit of length in the root's space.
   double unit() const { return unit_; }
 
-  /// Moves the vertices to where the root is. Throws Error(kCancelled).
+  /// Converts positions to the root's space. Throws Error(kCancelled).
   void place(const Progress& progress, int threads, std::vector<Vector3>* positions) const;
 
  private:
   Vector3 origin_;
   double unit_;
-  std::array<std::array<double, kMaxTreeDepth + 1>, 3> cell_;   // of a depth: its side
-  std::array<std::array<double, kMaxTreeDepth + 1>, 3> least_;  // in cells
+  std::array<std::array<double, kMaxTreeDepth + 1>, 3> cell_;   // side per depth
+  std::array<std::array<double, kMaxTreeDepth + 1>, 3> least_;  // minimum distance, in cells
 };
 
 }  // namespace prefilter

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What samples of grids, in the plane and in space, have to be.
+// Checks samples of grids in the plane and in space.
 #pragma once
 
 #include <cmath>
@@ -13,10 +13,10 @@
 
 namespace prefilter {
 
-/// Most samples along an axis.
+/// Maximum number of samples along an axis.
 inline constexpr int kLargestSide = 1 << kMaxTreeDepth;
 
-/// Throws Error where a grid has no samples, or too many, along an axis.
+/// Throws Error if a grid has no samples, or too many, along an axis.
 inline void check_sides(std::span<const int> sizes) {
   for (std::size_t a = 0; a < sizes.size(); ++a) {
     if (sizes[a] >= 1 && sizes[a] <= kLargestSide) continue;
@@ -25,7 +25,7 @@ inline void check_sides(std::span<const int> sizes) {
   }
 }
 
-/// Throws Error where a sample is not finite.
+/// Throws Error if a sample is not finite.
 inline void check_samples(std::span<const float> samples) {
   for (const float sample : samples) {
     if (std::isfinite(sample)) continue;

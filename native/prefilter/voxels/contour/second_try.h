@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Loops and vertices that gave way to what has moved since.
+// Restores retracted loops and vertices where obstacles have moved since.
 #pragma once
 
 #include <cstddef>
@@ -15,25 +15,26 @@
 
 namespace prefilter {
 
-/// Those beside a loop lose or gain a joint.
+/// Marks the loops adjacent to a loop, which gain or lose a joint.
 void mark_around(std::size_t loop, const LinkedLoops& loops, std::vector<std::uint8_t>* is_changed);
 
-/// The loops that were drawn back, and the vertices that were moved, which may have their places
-/// where what was in their way has moved since.
+/// Retracted loops and moved vertices that are put back on trial, since their obstacles may have
+/// moved.
 class SecondTry {
  public:
-  /// Puts all of them where they were to be. Keeps references to `loops`, `states` and `positions`.
+  /// Puts all of them at their targets. Keeps references to `loops`, `states` and `positions`.
   SecondTry(const LinkedLoops& loops, std::span<const Feature> wanted,
             std::span<const Vector3> wanted_places, LoopStates* states,
             std::vector<Vector3>* positions);
 
   LoopChanges changed() const;
 
-  /// Puts those of these back that are tried, or all where none is; returns what changed.
+  /// Reverts the given loops and vertices if they are on trial, or everything on trial if none of
+  /// them is; returns what changed.
   LoopChanges give_up(std::span<const std::size_t> loops, std::span<const std::size_t> vertices);
 
  private:
-  // What a loop is to be again.
+  // The state to which a loop reverts.
   struct Settled {
     Feature feature;
     std::uint8_t is_sharp;
@@ -47,7 +48,7 @@ class SecondTry {
   const LinkedLoops& loops_;
   LoopStates& states_;
   std::vector<Vector3>& positions_;
-  std::size_t vertices_;  // that may be moved
+  std::size_t vertices_;  // number of vertices that may be moved
   Loops settled_;
   Places settled_places_;
   std::vector<std::uint8_t> settled_single_;

@@ -16,16 +16,16 @@ namespace prefilter {
 namespace {
 
 constexpr double kCubeCells = 2.0;
-// How far a vertex is on its way back: some steps to the middle of its loop, and some more to the
-// safe place.
+// Number of steps by which a vertex retreats: first to the center of its loop, then to the safe
+// position.
 constexpr std::uint8_t kStepsToMiddle = 3;
 constexpr std::uint8_t kMostSteps = 6;
 constexpr std::uint8_t kMostSlides = 3;
-constexpr double kWithin = 0.5 + 1e-6;  // cells, from the middle of one to its sides
-constexpr double kFlat = 0.5;           // cosine to the mean of normals
-constexpr double kOpposed = -0.17;      // between normals of regions: 100 degrees
+constexpr double kWithin = 0.5 + 1e-6;  // cells; from a cell's center to its sides
+constexpr double kFlat = 0.5;           // minimum cosine to the mean normal
+constexpr double kOpposed = -0.17;      // maximum cosine between normals of regions: 100 degrees
 constexpr double kEdgeReach = 0.3;      // cells
-constexpr double kNarrow = 1e-6;        // of a triangle's longest side
+constexpr double kNarrow = 1e-6;        // relative to a triangle's longest side
 
 using Flags = std::vector<std::uint8_t>;
 using Pairs = std::vector<std::array<std::uint32_t, 2>>;
@@ -56,7 +56,7 @@ class Settling {
     find_risky();
   }
 
-  // Moves vertices of what is faulty; returns whether it has.
+  // Moves vertices of faulty triangles; returns whether any moved.
   bool step(Flags* is_suspect, const Progress& progress, int threads) {
     const Pairs pairs = faulty_pairs(*is_suspect, progress, threads);
     Flags is_moved(surface_.positions.size(), 0);
@@ -85,8 +85,8 @@ class Settling {
   QuadSurface take() { return std::move(surface_); }
 
  private:
-  // Triangles whose vertices are in their dual cells, alone, and lie flat, meet no others but at
-  // their sides: the cells of two vertices beside each other are one box.
+  // Flat triangles whose vertices are alone in their dual cells intersect no others except at their
+  // sides, because the cells of two adjacent vertices form a box.
   void find_risky() {
     std::vector<Vector3> normals(surface_.positions.size());
     const auto unit_normal = [&](const std::array<std::int32_t, 3>& triangle) -> Vector3 {
@@ -161,7 +161,8 @@ class Settling {
     return dot(normals[0], normals[1]) < kOpposed;
   }
 
-  // Whether a triangle faces away from what its quad was sampled from, or is as good as a line.
+  // Whether a triangle faces away from the surface that its quad was sampled from, or is
+  // degenerate.
   bool faces_away(std::uint32_t t, const MeshView<std::int32_t>& view) const {
     const auto [a, b, c] = view.corners(t);
     const Vector3 normal = cross(b - a, c - a);
@@ -174,7 +175,7 @@ class Settling {
     return (turned_.contains(sample->label) ? -up : up) < 0.0;
   }
 
-  // Flags the vertices of two triangles that may slide yet; returns whether there are any.
+  // Flags the vertices of two triangles that may still slide; returns whether there are any.
   bool mark_slides(const std::array<std::uint32_t, 2>& pair, Flags* slides) const {
     bool is_any = false;
     for (const std::uint32_t t : pair) {
@@ -190,7 +191,7 @@ class Settling {
     return is_any;
   }
 
-  // Where some vertices are, once they have slid between those beside them.
+  // New positions of vertices that slide to between their neighbors.
   std::vector<std::pair<std::size_t, Vector3>> slide(const Flags& slides) {
     std::vector<std::pair<std::size_t, Vector3>> slid;
     for (std::size_t v = 0; v < slides.size(); ++v) {
@@ -206,8 +207,8 @@ class Settling {
     return slid;
   }
 
-  // Of the vertices of two triangles, the one that is farthest from where it may go back to;
-  // corners of the shape are the last.
+  // The vertex of two triangles that is farthest from its fallback position; corners of the shape
+  // are chosen last.
   std::int32_t to_blame(const std::array<std::uint32_t, 2>& pair) const {
     std::int32_t found = -1;
     int least = std::numeric_limits<int>::max();
@@ -274,7 +275,7 @@ class Settling {
   std::vector<std::uint8_t> slides_;
   QuadSurface surface_;
   std::vector<std::array<std::int32_t, 3>> triangles_;  // of the quads
-  Flags is_risky_;                                      // of each vertex
+  Flags is_risky_;                                      // per vertex
 };
 }  // namespace
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Quads without folds and intersections.
+// Removes folds and intersections of quads.
 #pragma once
 
 #include "prefilter/base/progress.h"
@@ -11,9 +11,9 @@
 
 namespace prefilter {
 
-/// Quads between the loops at their places. Where triangles of theirs fold by more than 120
-/// degrees, intersect or face the wrong way, vertices slide along their edges; or go back toward
-/// the middles of their loops, and then to the safe ones. Throws Error(kCancelled).
+/// Builds quads between the loops at their positions. Where their triangles fold by more than 120
+/// degrees, intersect or face the wrong way, vertices slide along their edges, or retreat toward
+/// the centers of their loops and then to the safe positions. Throws Error(kCancelled).
 QuadSurface settled_quads(const DualLoops& loops, const DualPlaces& places, const EdgeSource& edges,
                           const FeaturePlaces* features, const Vector3& cell,
                           const Progress& progress, int threads);

@@ -14,8 +14,9 @@ namespace prefilter {
 namespace {
 
 constexpr int kTaskDepth = 3;
-constexpr double kTipCells = 3.0;     // of the vertex that goes to a tip
-constexpr double kReachCells = 1.25;  // of a vertex whose line does not cross the surface
+constexpr double kTipCells = 3.0;  // search radius for the vertex that moves to a tip
+// search radius for a vertex whose line does not cross the surface
+constexpr double kReachCells = 1.25;
 
 struct Block {
   CellNode cell;
@@ -103,7 +104,7 @@ class Sampler {
   SurfaceVertices& vertices_;
 };
 
-// Cells of a grid by their coordinates.
+// Grid cells by their coordinates.
 using Place = std::array<std::int64_t, 3>;
 
 void move_tips(const SourceSurface& surface, VertexSamples* samples, SurfaceVertices* vertices) {

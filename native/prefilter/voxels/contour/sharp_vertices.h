@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Vertices of a contour on the surface that its shape was made of.
+// Moves vertices of a contour onto the surface of the shape's sources.
 #pragma once
 
 #include <cstdint>
@@ -14,17 +14,17 @@
 
 namespace prefilter {
 
-/// What vertices near edges know of the surface that they are on.
+/// Samples of the source surface at vertices near edges.
 struct VertexSamples {
-  std::vector<std::int32_t> index;  // of each vertex, its sample; -1: none
+  std::vector<std::int32_t> index;  // per vertex: its sample; -1: none
   std::vector<SourcePoint> samples;
-  // For each sample that is off the line between its leaves, the nearest point of that; otherwise
-  // its own position.
+  // For each sample that is off the line between its leaves, the nearest point on that line;
+  // otherwise its own position.
   std::vector<Vector3> on_lines;
-  // For each sample, how much its normal points from the leaf inside to the one outside, -1 to 1; 0
-  // off the line.
+  // For each sample, the component of its normal along the direction from the inner to the outer
+  // leaf, from -1 to 1; 0 off the line.
   std::vector<float> facing;
-  std::vector<std::int32_t> tips;  // vertices where a smooth region comes to a point
+  std::vector<std::int32_t> tips;  // vertices at the tips of smooth regions
 
   const SourcePoint* of(std::int32_t vertex) const {
     const std::int32_t i = index[static_cast<std::size_t>(vertex)];
@@ -32,10 +32,9 @@ struct VertexSamples {
   }
 };
 
-/// Moves the vertices near edges to where the lines that they are on cross the surface; where these
-/// do not, to the nearest point. The vertex next to where a smooth region comes to a point goes
-/// there. `parts` is for what was combined of several. Throws
-/// Error(kCancelled).
+/// Moves the vertices near edges to where their lines cross the surface, or to the nearest point if
+/// they do not. The vertex nearest to the tip of a smooth region moves there. `parts` is for shapes
+/// combined from several parts. Throws Error(kCancelled).
 VertexSamples sample_vertices(const ContourTree& tree, const RootFrame& frame,
                               const SourceSurface& surface, const PartSides* parts,
                               const ThickenedCells& thickened, const Progress& progress,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Loops get vertices on the edges; then, as long as triangles intersect, the loops and vertices
-// that are to blame go back some of the way.
+// Adds a vertex on the edge to each loop; then, as long as triangles intersect, retracts the
+// responsible loops and vertices step by step.
 #include "prefilter/voxels/contour/sharpen.h"
 
 #include <algorithm>
@@ -62,7 +62,7 @@ LoopStates first_states(const LinkedLoops& loops, std::span<const Vector3> posit
   return states;
 }
 
-// With place for all triangles that loops may get.
+// Builds the layers, with space for all triangles that loops may get.
 LayeredMesh without_loops(const LinkedLoops& loops, std::vector<Vector3> positions,
                           std::vector<Triangle> triangles, const VertexSamples& samples) {
   const auto is_far = [&](const Triangle& triangle) {
@@ -96,8 +96,8 @@ LayeredMesh without_loops(const LinkedLoops& loops, std::vector<Vector3> positio
   return made;
 }
 
-// Makes the triangles of loops anew. Where a vertex of several would not leave the mesh a
-// two-manifold, each gets its own.
+// Rebuilds the triangles of loops. Where a shared vertex would make the mesh non-manifold, each
+// loop gets its own.
 LoopTriangles assemble(const LinkedLoops& loops, std::span<const Triangle> plain,
                        const VertexSamples& samples, double cell, LoopStates* states,
                        Flags* is_changed, LayeredMesh* layered) {
@@ -118,7 +118,7 @@ LoopTriangles assemble(const LinkedLoops& loops, std::span<const Triangle> plain
   }
 }
 
-// The triangles near edges that have changed.
+// Flags the changed triangles near edges.
 Flags suspects(const LayeredMesh& layered, const LoopTriangles& made, const LoopChanges& changes) {
   const std::vector<Triangle>& triangles = layered.mesh.triangles;
   Flags is_suspect(triangles.size(), 0);
@@ -135,8 +135,8 @@ Flags suspects(const LayeredMesh& layered, const LoopTriangles& made, const Loop
   return is_suspect;
 }
 
-// Of pairs of triangles: moves vertices that are off their lines; otherwise blames loops; otherwise
-// puts vertices where they were before they were sampled. Flags the vertices that have moved.
+// Resolves pairs of triangles: moves vertices that are off their lines; otherwise blames loops;
+// otherwise moves vertices back to their positions before sampling. Flags the vertices moved.
 std::vector<BlamedLoop> blame(const Pairs& pairs, const LoopTriangles& made, const Flags& is_sharp,
                               std::span<const std::uint8_t> attempts, const Crossings& crossings,
                               OffLineVertices* off_lines, Flags* is_moved, LayeredMesh* layered) {
@@ -173,7 +173,7 @@ std::vector<BlamedLoop> blame(const Pairs& pairs, const LoopTriangles& made, con
   return blamed;
 }
 
-// Takes out the loops that have been moved less often than they may, which it returns.
+// Removes the loops that may be moved again from `blamed`, and returns them.
 std::vector<std::size_t> take_attempts(std::vector<std::uint8_t>* attempts,
                                        std::vector<BlamedLoop>* blamed) {
   std::vector<std::size_t> moving;
@@ -189,7 +189,7 @@ std::vector<std::size_t> take_attempts(std::vector<std::uint8_t>* attempts,
   return moving;
 }
 
-// What cannot reach the edge gets as close to it as it can.
+// Features that cannot reach the edge stay as close to it as possible.
 void draw_back(std::size_t i, const LinkedLoops& loops, LoopStates* states, Flags* is_changed) {
   Feature& feature = states->features[i];
   feature.position = 0.5 * (feature.start + feature.position);
@@ -197,8 +197,8 @@ void draw_back(std::size_t i, const LinkedLoops& loops, LoopStates* states, Flag
   mark_around(i, loops, is_changed);
 }
 
-// Vertices on their lines keep a triangle in its cell of the dual grid, which meets no other: left
-// are the suspects of loops, and those with a vertex elsewhere.
+// A triangle whose vertices are on their lines stays in its cell of the dual grid and intersects no
+// other. Returns the suspects of loops, and suspects with a vertex elsewhere.
 Flags may_intersect(const LayeredMesh& layered, const Crossings& crossings, Flags is_suspect) {
   const auto is_on_line = [&](std::int32_t corner) {
     const auto v = static_cast<std::size_t>(corner);
@@ -215,7 +215,7 @@ Flags may_intersect(const LayeredMesh& layered, const Crossings& crossings, Flag
   return is_suspect;
 }
 
-// Of the triangles that are suspect, the pairs that intersect, of those that may, and that fold.
+// Intersecting pairs, among suspects that may intersect, and folded pairs.
 struct MetPairs {
   Pairs intersecting;
   Pairs folded;
@@ -223,14 +223,14 @@ struct MetPairs {
 
 MetPairs met_pairs(const LayeredMesh& layered, const Crossings& crossings, const Flags& is_suspect,
                    double cell, const Progress& progress, int threads) {
-  // From so few of all on, what is near them is looked for first.
+  // If fewer than 1 / kFew of all triangles are suspect, nearby triangles are collected first.
   constexpr std::ptrdiff_t kFew = 8;
-  // Among all triangles: those far from edges stay, and are in the way of what leaves its lines.
+  // Triangles far from edges do not change, but may be hit by vertices that left their lines.
   const std::size_t first = 0;
   const MeshView<std::int32_t> view{layered.mesh.positions, layered.mesh.triangles};
   const double side = kCubeCells * cell;
-  const Flags may_meet = where_rough(view, layered.near,
-                                     may_intersect(layered, crossings, is_suspect), side, progress);
+  const Flags may_meet = keep_rough_suspects(
+      view, layered.near, may_intersect(layered, crossings, is_suspect), side, progress);
   const auto suspects = std::count(is_suspect.begin(), is_suspect.end(), std::uint8_t{1});
   if (kFew * suspects > std::ssize(is_suspect)) {
     return {near_intersections(view, first, may_meet, side, progress, threads),
@@ -253,8 +253,8 @@ MetPairs met_pairs(const LayeredMesh& layered, const Crossings& crossings, const
   return met;
 }
 
-// Of the triangles that are suspect: those that intersect any, that fold, and that are upside down.
-// Triangles of a plane that overlap need not intersect, by rounding: then one is upside down.
+// Pairs with suspect triangles that intersect, fold, or are upside down. Overlapping coplanar
+// triangles may not intersect because of rounding, but then one of them is upside down.
 Pairs faulty_pairs(const LayeredMesh& layered, const Crossings& crossings, const Flags& is_suspect,
                    const FeatureSurface& surface, const VertexSamples& samples,
                    const std::unordered_set<std::int32_t>& turned, const Progress& progress,
@@ -276,14 +276,14 @@ Pairs faulty_pairs(const LayeredMesh& layered, const Crossings& crossings, const
   return pairs;
 }
 
-// Where loops are mended: everything, or a zone.
+// The scope of mending: everything, or a zone.
 struct Place {
   const LinkedLoops& loops;
   LoopStates& states;
   LayeredMesh& layered;
   LoopChanges& changes;
-  std::span<const std::size_t> numbers;     // of each loop, among all; none: they are all
-  std::span<const std::uint8_t> is_inside;  // of each loop; none: all are
+  std::span<const std::size_t> numbers;     // per loop: its number among all; empty: these are all
+  std::span<const std::uint8_t> is_inside;  // per loop; empty: all are
 
   std::size_t number_of(std::size_t loop) const { return numbers.empty() ? loop : numbers[loop]; }
 };
@@ -293,7 +293,7 @@ struct Faults {
   Pairs pairs;
 };
 
-// A contour whose loops are mended as long as there are faults.
+// A contour whose loops are mended until there are no faults.
 class Mending {
  public:
   Mending(LinkedLoops loops, LoopedMesh looped, LoopStates states, const Crossings& crossings,
@@ -338,7 +338,7 @@ class Mending {
   }
 
  private:
-  // What has a triangle of a pair.
+  // Loops and vertices of faulty triangles.
   struct Faulty {
     bool is_any = false;
     std::vector<std::size_t> loops;
@@ -361,13 +361,13 @@ class Mending {
     ZoneFinder::leave(std::move(*zone), &states_, &changes_, &layered_);
   }
 
-  // Forgets the changes.
+  // Clears the changes.
   Faults find_faults(Place* place) {
     LoopChanges& changes = place->changes;
     Faults faults;
     faults.made = assemble(place->loops, plain_, samples_, surface_.cell(), &place->states,
                            &changes.loops, &place->layered);
-    // Where a zone ends, loops miss those beyond.
+    // At the border of a zone, loops lack their outside neighbors.
     for (std::size_t i = 0; i < place->is_inside.size(); ++i) {
       if (place->is_inside[i] == 0) changes.loops[i] = 0;
     }

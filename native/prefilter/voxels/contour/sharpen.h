@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Edges and corners in a contour: extended marching cubes (Kobbelt, Botsch, Schwanecke and Seidel
-// 2001), on loops of any dual grid.
+// Adds edges and corners to a contour by extended marching cubes (L. Kobbelt, M. Botsch, U.
+// Schwanecke, H.-P. Seidel, Feature sensitive surface extraction from volume data, 2001), on loops
+// of any dual grid.
 #pragma once
 
 #include <vector>
@@ -14,12 +15,12 @@
 
 namespace prefilter {
 
-/// Puts a vertex into each sharp loop, where the surfaces of its vertices meet, and joins those of
-/// loops that are side by side: the mesh edges between them are flipped. So each triangle is on one
-/// region, whose label it has; -1 is far from edges. Where that would have triangles intersect,
-/// loops stay as they are: the result is closed, two-manifold and free of intersections where it is
-/// without its edges. `crossings` are the positions of the vertices between cells, the first ones,
-/// before they were sampled. Throws Error(kCancelled).
+/// Adds a vertex to each sharp loop, at the intersection of the surfaces of its vertices, and flips
+/// the mesh edges between adjacent loops to join their vertices. As a result each triangle lies on
+/// one region, whose label it gets; -1 far from edges. Loops for which triangles would intersect
+/// stay unchanged: the result is closed, two-manifold and free of intersections if the contour
+/// without edges is. `crossings` holds the positions of the vertices between cells, which come
+/// first, before sampling. Throws Error(kCancelled).
 FacetedMesh sharpen(LoopedMesh looped, const Crossings& crossings, const FeatureSurface& surface,
                     const VertexSamples& samples, const Progress& progress, int threads);
 

@@ -23,7 +23,7 @@ constexpr double kLeastTurn = 2.0 / 15.0;            // 7.6 degrees, in radians
 
 using Triangle = std::array<std::int32_t, 3>;
 
-// A side of a triangle, as its lower vertex keeps it; `half` is three times the triangle plus the
+// A side of a triangle, stored at its lower vertex; `half` is three times the triangle plus the
 // corner where it begins.
 struct Side {
   std::uint32_t other;  // the higher vertex
@@ -34,7 +34,7 @@ struct Side {
   }
 };
 
-// The sides of a range of lower vertices, those of each behind one another; `ends` says where.
+// The sides of a range of lower vertices, grouped by vertex; `ends` holds the end of each group.
 struct SideRows {
   std::vector<Side> sides;
   std::vector<std::uint32_t> ends;
@@ -58,14 +58,14 @@ SideRows gather_sides(const WeldedMeshes& welded, std::size_t first, std::size_t
   for_sides([&](std::size_t row, const Side&) { ++rows.ends[row + 1]; });
   std::partial_sum(rows.ends.begin(), rows.ends.end(), rows.ends.begin());
   rows.sides.resize(rows.ends.back());
-  // Each row's begin moves to its end, which is where the next one begins.
+  // Each row's begin moves to its end, where the next row begins.
   for_sides([&](std::size_t row, const Side& side) { rows.sides[rows.ends[row]++] = side; });
   rows.ends.pop_back();
   return rows;
 }
 
-// Calls visit(sweep, low, sides) for the sides of every edge, in order within a sweep, which is of
-// a range of lower vertices; sweeps are in parallel.
+// Calls visit(sweep, low, sides) for the sides of every edge. Each sweep covers a range of lower
+// vertices in order; sweeps run in parallel.
 template <typename Visit>
 void for_edges(const WeldedMeshes& welded, std::int64_t sweeps, const Progress& progress,
                int threads, const Visit& visit) {
@@ -97,7 +97,7 @@ bool runs_up(const WeldedMeshes& welded, const Side& side) {
 
 using Sets = DisjointSets<std::int32_t>;
 
-// Two triangles at an edge that no other has.
+// Two triangles at an edge that belongs to no other triangle.
 struct Neighbors {
   std::array<std::int32_t, 2> ends;
   std::array<std::int32_t, 2> triangles;
@@ -108,8 +108,8 @@ struct Neighbors {
   bool is_plane() const { return is_of_one_group && cosine >= kPlaneCosine; }
 };
 
-// Calls visit(sweep, neighbors) from several threads; returns whether some edges have one side
-// alone.
+// Calls visit(sweep, neighbors) from several threads; returns whether some edges have a single
+// side.
 template <typename Visit>
 bool for_neighbors(const WeldedMeshes& welded, std::int64_t sweeps, const Progress& progress,
                    int threads, const Visit& visit) {
@@ -134,7 +134,8 @@ bool for_neighbors(const WeldedMeshes& welded, std::int64_t sweeps, const Progre
   return has_single;
 }
 
-// Joins where is_joined(neighbors); the others are walls. Returns as for_neighbors does.
+// Joins triangles where is_joined(neighbors) holds; other edges are walls. Returns as for_neighbors
+// does.
 template <typename IsJoined>
 bool join_regions(const WeldedMeshes& welded, const IsJoined& is_joined, const Progress& progress,
                   int threads, SmoothRegions* found) {
@@ -159,7 +160,7 @@ bool join_regions(const WeldedMeshes& welded, const IsJoined& is_joined, const P
   return has_single;
 }
 
-// Nothing where some edges have one side alone, unless that may be.
+// None if some edges have a single side, unless `may_have_single`.
 std::optional<SmoothRegions> try_to_join(const WeldedMeshes& welded, double least_width,
                                          bool may_have_single, const Progress& progress,
                                          int threads) {
@@ -179,7 +180,7 @@ std::optional<SmoothRegions> try_to_join(const WeldedMeshes& welded, double leas
   const std::vector<std::int32_t> facet_of = facets.numbers(&facet_count);
   const std::vector<double> widths = wide_facets(welded, facet_of, facet_count, least_width);
   if (widths.empty()) return found;
-  // What stands out where an edge is rounded off grows with the width of facets and with the angle.
+  // The deviation of a rounded edge grows with the width of facets and with the angle.
   const auto is_beside_none = [&](const Neighbors& both) {
     const auto t = static_cast<std::size_t>(both.triangles[0]);
     const auto u = static_cast<std::size_t>(both.triangles[1]);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Triangles of meshes joined across smooth edges.
+// Joins triangles of meshes across smooth edges.
 #pragma once
 
 #include <array>
@@ -14,11 +14,11 @@
 
 namespace prefilter {
 
-/// Meshes as one, whose vertices at one place are one where that is needed.
+/// Several meshes as one, with vertices at equal positions welded if necessary.
 struct WeldedMeshes {
   JoinedMeshes meshes;
   FramedPositions positions;
-  std::vector<std::int32_t> firsts;  // of each vertex, the first at its place; none: each is
+  std::vector<std::int32_t> firsts;  // per vertex: the first at its position; empty: no welding
 
   WeldedMeshes(std::span<const SourceMesh> sources, const RootFrame& frame)
       : meshes(sources), positions(meshes, frame) {}
@@ -34,7 +34,7 @@ struct WeldedMeshes {
   Vector3 position(std::int32_t vertex) const {
     return positions[static_cast<std::size_t>(vertex)];
   }
-  /// As long as twice the area.
+  /// Area vector times 2.
   Vector3 normal(std::size_t t) const {
     const auto [i, j, k] = meshes.triangle(t);
     const Vector3 a = position(i);
@@ -42,29 +42,29 @@ struct WeldedMeshes {
   }
 };
 
-/// Two triangles that meet at an edge of theirs alone, and are not of one smooth surface.
+/// An edge of exactly two triangles that do not belong to one smooth surface.
 struct Wall {
   std::array<std::int32_t, 2> ends;  // the lower vertex first
   std::array<std::int32_t, 2> triangles;
-  bool is_crease = false;  // of less than 20 degrees, beside a wide facet
+  bool is_crease = false;  // turns by less than 20 degrees, beside a wide facet
 };
 
 struct SmoothRegions {
-  std::vector<std::int32_t> labels;  // of each triangle, its region
+  std::vector<std::int32_t> labels;  // per triangle: its region
   int region_count = 0;
-  std::vector<std::int32_t> parts;  // of each triangle, what hangs together by its edges
+  std::vector<std::int32_t> parts;  // per triangle: its component, connected by edges
   int part_count = 0;
   std::vector<Wall> walls;
 };
 
-/// For each vertex the first one at its place. Throws Error(kCancelled).
+/// For each vertex the first one at its position. Throws Error(kCancelled).
 std::vector<std::int32_t> first_places(const FramedPositions& positions, const Progress& progress,
                                        int threads);
 
-/// Joins triangles that meet at an edge of less than 20 degrees and are of one group; but facets
-/// that are wider than `least_width` only where it is less than 1 degree, or less than an edge
-/// of 7.6 degrees of this width stands out. Where some edges have one side alone, `welded` gets
-/// first places before that. Throws Error(kCancelled).
+/// Joins triangles of one group at edges that turn by less than 20 degrees. Facets wider than
+/// `least_width` are only joined at edges of less than 1 degree, or with a smaller deviation than
+/// an edge of 7.6 degrees and this width. If some edges have a single side, `welded` gets first
+/// places before that. Throws Error(kCancelled).
 SmoothRegions join_smooth(double least_width, const Progress& progress, int threads,
                           WeldedMeshes* welded);
 

@@ -15,8 +15,8 @@
 namespace prefilter {
 namespace {
 
-// The length of the mean of the normals around a vertex, by area: the cosine of half of 30 degrees.
-// Slivers do not count, as their normals are by chance.
+// Length of the area-weighted mean normal around a vertex: the cosine of half of 30 degrees.
+// Slivers do not count, as their normals are random.
 constexpr double kRough = 0.966;
 constexpr int kRounds = 8;
 constexpr double kShrinking = 0.5;
@@ -31,7 +31,7 @@ std::span<const std::int32_t> corners_of(const FacetedMesh& mesh, std::size_t t)
   return mesh.triangles[t];
 }
 
-// Vertices around which normals differ much.
+// Flags vertices with very different normals around them.
 Flags rough_vertices(const FacetedMesh& mesh) {
   std::vector<Vector3> sums(mesh.positions.size());
   std::vector<double> areas(sums.size(), 0.0);
@@ -99,7 +99,7 @@ class Stairs {
     }
   }
 
-  // The triangles with vertices that have moved.
+  // Flags triangles with moved vertices.
   Flags changed() const {
     Flags is_changed(mesh_.triangles.size(), 0);
     for (std::size_t t = 0; t < is_changed.size(); ++t) {
@@ -110,7 +110,7 @@ class Stairs {
     return is_changed;
   }
 
-  // Puts the vertices of triangles back to where they were; returns whether one had moved.
+  // Restores the vertices of triangles; returns whether any had moved.
   bool put_back(std::span<const std::array<std::uint32_t, 2>> pairs) {
     bool has_changed = false;
     for (const auto& pair : pairs) {
@@ -170,8 +170,8 @@ class Stairs {
   FacetedMesh& mesh_;
   std::vector<std::size_t> moved_;
   std::vector<Vector3> starts_;
-  std::vector<std::uint32_t> places_;              // of each vertex among those that move
-  std::vector<std::vector<std::int32_t>> around_;  // those of an edge twice
+  std::vector<std::uint32_t> places_;              // index of each vertex among the movable ones
+  std::vector<std::vector<std::int32_t>> around_;  // neighbors, twice each
 };
 
 }  // namespace

@@ -15,9 +15,10 @@
 namespace prefilter {
 namespace {
 
-constexpr double kLeastRegion = 4.0;  // of a cell's face
-constexpr double kWideCells = 1.5;    // of facets, beside which blunt edges are edges
-constexpr double kNarrowCells = 1.0;  // of regions between blunt edges, which are none then
+constexpr double kLeastRegion = 4.0;  // in areas of a cell's face
+constexpr double kWideCells = 1.5;  // minimum width of facets that make adjacent blunt edges count
+// width of regions up to which blunt edges on both sides do not count
+constexpr double kNarrowCells = 1.0;
 constexpr double kLargest = 1e150;
 
 std::vector<std::uint8_t> ends_of(const std::vector<Wall>& walls, std::size_t vertices) {

@@ -15,7 +15,7 @@
 
 namespace prefilter {
 
-/// Edges that turn by less are smooth: 20 degrees.
+/// Cosine of 20 degrees; edges that turn by less are smooth.
 inline constexpr double kSharpCosine = 0.9396926207859084;
 
 /// An edge of a mesh between two regions, or a sharp one within a region.
@@ -25,22 +25,22 @@ struct RegionBorder {
   std::array<std::int32_t, 2> triangles;
 };
 
-/// A vertex where borders meet, end or turn, or where a smooth region comes to a point.
+/// A vertex where borders meet, end or turn, or the tip of a smooth region.
 struct RegionCorner {
   std::int32_t vertex;
-  std::vector<std::int32_t> labels;  // of the regions around it, in order
+  std::vector<std::int32_t> labels;  // of the regions around it, sorted
 };
 
-/// The vertices and triangles of several meshes, numbered through, as their owners hold them.
+/// The vertices and triangles of several meshes, numbered consecutively, without copying them.
 class JoinedMeshes {
  public:
   JoinedMeshes() = default;
-  /// Throws Error as check_mesh does, and for too many.
+  /// Throws Error as check_mesh does, and for too many elements.
   explicit JoinedMeshes(std::span<const SourceMesh> sources);
 
   std::size_t vertex_count() const { return first_vertices_.back(); }
   std::size_t triangle_count() const { return first_triangles_.back(); }
-  /// Where a vertex is, in its mesh's space.
+  /// Position of a vertex in its mesh's space.
   Vector3 position(std::size_t vertex) const {
     const std::size_t i = mesh_of(first_vertices_, vertex);
     return meshes_[i].positions[vertex - first_vertices_[i]];
@@ -52,7 +52,7 @@ class JoinedMeshes {
     return {static_cast<std::int32_t>(a) + first, static_cast<std::int32_t>(b) + first,
             static_cast<std::int32_t>(c) + first};
   }
-  /// 0 where the mesh has no groups.
+  /// 0 if the mesh has no groups.
   std::int32_t group(std::size_t triangle) const {
     const std::size_t i = mesh_of(first_triangles_, triangle);
     return groups_[i].empty() ? 0 : groups_[i][triangle - first_triangles_[i]];
@@ -71,7 +71,7 @@ class JoinedMeshes {
   std::vector<std::size_t> first_triangles_ = {0};
 };
 
-/// Vertices in a frame, carried there as they are read.
+/// Vertex positions, converted to a frame when read.
 class FramedPositions {
  public:
   FramedPositions(const JoinedMeshes& meshes, const RootFrame& frame)
@@ -86,7 +86,7 @@ class FramedPositions {
   RootFrame frame_;
 };
 
-/// From a vertex to another one, of length 1; 0 where they are at one place.
+/// Unit direction from a vertex to another one; 0 if they coincide.
 Vector3 direction_of(const FramedPositions& positions, std::int32_t from, std::int32_t to);
 
 class JoinedTriangles {
@@ -101,13 +101,13 @@ class JoinedTriangles {
   JoinedMeshes meshes_;
 };
 
-/// Meshes as one, cut into regions along edges of more than 20 degrees, and between groups. Holds
-/// no copy of the meshes, which have to live as long.
+/// Several meshes as one, divided into regions at edges of more than 20 degrees, and between
+/// groups. Keeps references to the meshes.
 struct SourceRegions {
   FramedPositions positions;
   JoinedTriangles triangles;
-  std::vector<std::int32_t> labels;  // of each triangle, its region; -1 without an area
-  std::vector<std::int32_t> parts;   // of each triangle, what hangs together by its edges
+  std::vector<std::int32_t> labels;  // per triangle: its region; -1 without area
+  std::vector<std::int32_t> parts;   // per triangle: its component, connected by edges
   std::vector<RegionBorder> borders;
   std::vector<RegionCorner> corners;
   int part_count = 0;
@@ -120,13 +120,12 @@ struct SourceRegions {
   }
 };
 
-/// Vertices at one place count as one. Regions of less than four faces of a cell join the
-/// neighbor with which they share the longest border, and edges within a region count only where
-/// those that hang together are eight cells long: what is smaller is roughness. `cell` is the side
-/// of a cell.
+/// Divides meshes into regions; vertices at equal positions count as one. To ignore roughness,
+/// regions smaller than four faces of a cell are joined to the neighbor with the longest common
+/// border, and edges within a region only count if connected edges are at least eight cells long.
+/// `cell` is the side of a cell.
 ///
-/// Throws Error as check_mesh does, and for groups that are not as many as the triangles;
-/// Error(kCancelled).
+/// Throws Error as check_mesh does, and if there is not one group per triangle; Error(kCancelled).
 SourceRegions find_regions(std::span<const SourceMesh> sources, const RootFrame& frame, double cell,
                            const Progress& progress, int threads);
 

@@ -17,14 +17,15 @@ namespace prefilter {
 namespace {
 
 constexpr double kBrickCells = 4.0;
-constexpr double kReachCells = 2.5;    // of what counts as near
-constexpr double kContactCells = 1.0;  // of parts that may meet
-constexpr double kSearchCells = 6.0;   // from what is near, of triangles that are found
+constexpr double kReachCells = 2.5;    // radius of the vicinity of edges
+constexpr double kContactCells = 1.0;  // radius in which parts may meet
+constexpr double kSearchCells = 6.0;   // search radius around that vicinity
 constexpr std::size_t kLeafItems = 4;
 constexpr int kBrickBits = 21;
-// Of borders in a brick: where there are more, or very many parts, edges are not told apart.
+// Maximum length of borders in a brick, in cells; with more, or with very many parts, edges cannot
+// be distinguished.
 constexpr double kMostBorderCells = 64.0;
-constexpr double kMostBricks = 64.0;  // of a triangle's box, above which all count
+constexpr double kMostBricks = 64.0;  // in a triangle's box; with more, all bricks count
 
 std::uint64_t brick_key(const std::array<std::int64_t, 3>& brick) {
   constexpr std::int64_t kBias = std::int64_t{1} << (kBrickBits - 1);
@@ -36,7 +37,7 @@ std::uint64_t brick_key(const std::array<std::int64_t, 3>& brick) {
   return key;
 }
 
-// The bricks that a box of space overlaps, within the unit cube and what is close to it.
+// The bricks that a box overlaps, clamped to the vicinity of the unit cube.
 struct BrickRange {
   std::array<std::int64_t, 3> low;
   std::array<std::int64_t, 3> high;
@@ -71,7 +72,7 @@ Box box_of(const Vector3& a, const Vector3& b) {
 
 Vector3 middle_of(const Box& box) { return 0.5 * (box.low + box.high); }
 
-// Where the segment from a to b, as a share of it, meets a triangle.
+// Intersection of the segment from a to b with a triangle, as a share of the segment.
 std::optional<double> meeting(const Vector3& a, const Vector3& b,
                               const std::array<Vector3, 3>& corners) {
   const Vector3 d = b - a;
@@ -81,7 +82,7 @@ std::optional<double> meeting(const Vector3& a, const Vector3& b,
   const double det = dot(u, p);
   if (det == 0.0) return std::nullopt;
   const Vector3 s = a - corners[0];
-  // So that no segment slips through between two triangles.
+  // Tolerance that keeps segments from passing between two triangles.
   constexpr double kSlack = 1e-9;
   const double x = dot(s, p) / det;
   if (!(x >= -kSlack && x <= 1.0 + kSlack)) return std::nullopt;
@@ -93,7 +94,7 @@ std::optional<double> meeting(const Vector3& a, const Vector3& b,
   return t;
 }
 
-// The point of a triangle next to another.
+// The nearest point on a triangle.
 Vector3 nearest_on(const std::array<Vector3, 3>& corners, const Vector3& point) {
   const Vector3 weights = nearest_weights(point, corners[0], corners[1], corners[2]);
   return weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
@@ -322,7 +323,7 @@ std::vector<SourceCrossing> SourceSurface::crossings(const Vector3& a, const Vec
 std::optional<SourcePoint> SourceSurface::nearest_plane(const Vector3& point, double reach,
                                                         std::int32_t part) const {
   if (triangle_tree_.is_empty()) return std::nullopt;
-  // At an edge or a corner the triangle that faces the point most tells its side.
+  // At an edge or a corner the side follows from the triangle that faces the point most.
   constexpr double kTie = 1e-9;
   double least = reach * reach;
   double facing = 0.0;

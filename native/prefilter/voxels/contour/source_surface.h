@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The meshes that a shape was made of, close to their edges, ready for searches.
+// The source meshes of a shape near their edges, prepared for searches.
 #pragma once
 
 #include <array>
@@ -19,13 +19,13 @@
 
 namespace prefilter {
 
-/// Where a segment meets a triangle, as a share of it.
+/// Intersection of a segment with a triangle, as a share of the segment.
 struct SourceCrossing {
   double share;
   std::int32_t triangle;
 };
 
-/// What searches find is the same for any number of threads. Lengths are the frame's.
+/// Search results do not depend on the number of threads. Lengths are in the frame's unit.
 class SourceSurface final : public FeatureSurface {
  public:
   /// `cell` is the side of the finest cells. Throws as find_regions does.
@@ -35,22 +35,22 @@ class SourceSurface final : public FeatureSurface {
   const SourceRegions& regions() const { return regions_; }
   double cell() const override { return cell_; }
 
-  /// Whether there may be a border, or where two parts meet, within about two cells.
+  /// Whether a border, or an intersection of parts, may be within about two cells.
   bool is_near(const Vector3& point) const;
 
-  /// Where the segment from `a` to `b` runs through the surface; of several places the one nearest
-  /// to `expected`.
+  /// Intersection of the segment from `a` to `b` with the surface; if there are several, the one
+  /// nearest to `expected`.
   std::optional<SourcePoint> crossing(const Vector3& a, const Vector3& b,
                                       const Vector3& expected) const;
 
-  /// All places where it does, in order; one where that is an edge between triangles of a part.
+  /// All intersections, in order; a single one at an edge between triangles of a part.
   std::vector<SourceCrossing> crossings(const Vector3& a, const Vector3& b) const;
 
   /// A point of a triangle.
   SourcePoint point_on(std::int32_t triangle, const Vector3& position) const;
 
-  /// The parts that may meet within a cell or two of a point; none where that are fewer than two,
-  /// or very many.
+  /// The parts that may meet within a cell or two of a point; none if there are fewer than two, or
+  /// very many.
   std::span<const std::int32_t> meeting_parts(const Vector3& point) const;
 
   bool has_meetings() const { return !meetings_.empty(); }
@@ -63,16 +63,16 @@ class SourceSurface final : public FeatureSurface {
     }
   }
 
-  /// The plane of the triangle of a part that is nearest to a point, and of several the one that
-  /// faces it most: the point is inside of the part where it is behind that. None where it is
-  /// farther than `reach`.
+  /// The plane of the triangle of a part that is nearest to a point, or faces it most if several
+  /// are: the point is inside the part if it is behind the plane. None if it is farther than
+  /// `reach`.
   std::optional<SourcePoint> nearest_plane(const Vector3& point, double reach,
                                            std::int32_t part) const;
 
-  /// For each label, the first triangle that has it.
+  /// The first triangle of each label.
   std::vector<std::int64_t> first_triangles() const;
 
-  /// The triangle nearest to a point, wherever that is. Looks at all of them.
+  /// The triangle nearest to a point, at any distance. Searches all triangles.
   std::int64_t nearest_of_all(const Vector3& point) const;
 
   std::optional<SourcePoint> nearest(const Vector3& point, double reach,
@@ -91,10 +91,10 @@ class SourceSurface final : public FeatureSurface {
   void mark_around(const Box& box);
   void find_rim_corners(const Progress& progress);
   void build_trees(const Progress& progress, int threads);
-  // Calls visit(triangle) for those of a node of the tree.
+  // Calls visit(triangle) for the triangles of a node of the tree.
   template <typename Visit>
   void for_triangles(std::size_t node, const Visit& visit) const;
-  // Calls visit(triangle, share) where a segment meets them.
+  // Calls visit(triangle, share) for the triangles that a segment intersects.
   template <typename Visit>
   void for_met(const Vector3& a, const Vector3& b, const Visit& visit) const;
   static constexpr std::size_t kMostMeeting = 6;
@@ -103,10 +103,10 @@ class SourceSurface final : public FeatureSurface {
     std::size_t count = 0;
     void add(std::int32_t part);
   };
-  // Where an edge of one part runs through the surface of another.
+  // Intersection of an edge of one part with the surface of another.
   struct RimCorner {
     Vector3 position;
-    std::vector<std::int32_t> labels;  // in order
+    std::vector<std::int32_t> labels;  // sorted
   };
   Vector3 low_of_brick(std::uint64_t key) const;
   std::uint64_t brick_of(const Vector3& point) const;
@@ -116,7 +116,7 @@ class SourceSurface final : public FeatureSurface {
   double brick_;
   std::unordered_set<std::uint64_t> near_bricks_;
   std::unordered_map<std::uint64_t, Meeting> meetings_;
-  std::vector<std::int32_t> triangles_;  // near borders, along the curve
+  std::vector<std::int32_t> triangles_;  // near borders, along the Morton curve
   BoxTree triangle_tree_;
   std::vector<std::int32_t> borders_;
   BoxTree border_tree_;

@@ -10,10 +10,11 @@
 namespace prefilter {
 namespace {
 
-constexpr int kPasses = 2;  // more would eat what is one quad wide from its end
+constexpr int kPasses = 2;  // more would shorten regions one quad wide from their ends
 constexpr double kBorderReach = 2.0;
 
-// The label that three vertices around one have, or four, if it is not the vertex's own; -1: none.
+// The label of at least three of the four vertices around one, if it differs from the vertex's; -1:
+// none.
 std::int32_t label_around(std::size_t vertex, const DualLoops& loops,
                           const VertexSamples& samples) {
   std::array<std::int32_t, 4> labels;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Borders between regions of quads, without spikes one quad wide.
+// Removes spikes one quad wide from the borders between regions of quads.
 #pragma once
 
 #include "prefilter/voxels/contour/dual_loops.h"
@@ -10,8 +10,8 @@
 
 namespace prefilter {
 
-/// Of a quad with another region beside three of its sides, all four corners would be on one edge,
-/// and nothing between them: it is given to that region, and its vertex moved there.
+/// If a quad has another region at three of its sides, all four corners would lie on one edge, with
+/// nothing between them. Assigns it to that region, and moves its vertex there.
 void straighten_borders(const DualLoops& loops, const FeatureSurface& surface,
                         VertexSamples* samples, SurfaceVertices* vertices);
 

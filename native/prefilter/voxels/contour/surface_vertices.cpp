@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kTaskDepth = 3;
 
-// A cell that is split, with what surrounds it.
+// A split cell with its neighbors.
 struct Visit {
   CellNode cell;
   FaceNeighbors neighbors;
@@ -31,15 +31,14 @@ bool meets_surface(const Visit& visit) {
   return sides == kBothSides;
 }
 
-// Whether the vertex between a leaf and its neighbor across a face, if there is one, is the
-// leaf's.
+// Whether a leaf owns the vertex between it and its neighbor across a face, if there is one.
 bool owns(const CellNode& leaf, const CellNode& neighbor, int face) {
   if (neighbor.is_split) return false;
   return neighbor.depth < leaf.depth || (face & 1) != 0;
 }
 
-// On the way from a leaf's center to its neighbor's, in sides of the leaf: where the surface is,
-// and where the neighbor's center is.
+// Positions of the surface and of the neighbor's center on the way from a leaf's center, in sides
+// of the leaf.
 struct Crossing {
   float t;
   float distance;
@@ -50,13 +49,13 @@ Crossing crossing(const ContourTree& tree, const CellNode& leaf, const CellNode&
   const float a = tree.value(leaf);
   const float b = tree.value(neighbor);
   const float isovalue = tree.isovalue();
-  // A side that was not settled by the value: the surface is close to that center.
+  // The side was not determined by the value, so the surface is close to that center.
   if ((a >= isovalue) == (b >= isovalue)) {
     return {std::abs(a - isovalue) < std::abs(b - isovalue) ? 0.0F : 1.0F, 1.0F};
   }
   const bool are_occupancies = a >= 0.0F && a <= 1.0F && b >= 0.0F && b <= 1.0F && isovalue == 0.5F;
-  // A coarser leaf that is full or empty holds cells of this size that are; between fractions of
-  // different cells there is but the line through the centers.
+  // A coarser leaf that is full or empty contains equal cells of this size; between fractions of
+  // different cells only the line through the centers is known.
   const bool is_fraction = b > 0.0F && b < 1.0F;
   if (is_fraction && neighbor.depth < leaf.depth) {
     const float apart = 0.5F * (1.0F + static_cast<float>(1 << (leaf.depth - neighbor.depth)));
@@ -68,10 +67,10 @@ Crossing crossing(const ContourTree& tree, const CellNode& leaf, const CellNode&
   return {occupancy_crossing(a, b), 1.0F};
 }
 
-// What a task makes of its blocks: vertices in order, and the blocks of each level that it saw.
+// Results of a task: vertices in order, and the range of blocks visited on each level.
 struct TaskVertices {
   std::vector<Vector3> positions;
-  std::vector<VertexPlace> places;  // where heights are given
+  std::vector<VertexPlace> places;  // if heights are given
   struct Range {
     std::size_t begin = std::numeric_limits<std::size_t>::max();
     std::size_t end = 0;
@@ -91,8 +90,8 @@ class VertexMaker {
         cuts_(*cuts),
         firsts_(*firsts) {}
 
-  // The octants of a cell that are leaves get their vertices; descend(octant) is called for others
-  // that the surface meets.
+  // Adds the vertices of leaf octants of a cell; calls descend(octant) for other octants with
+  // surface.
   template <typename Descend>
   void visit_block(const Visit& visit, TaskVertices* task, const Descend& descend) const {
     const auto level = static_cast<std::size_t>(visit.cell.depth);
@@ -144,7 +143,7 @@ class VertexMaker {
     for (int a = 0; a < 3; ++a) {
       const int cell = 2 * visit.at[a] + ((o >> a) & 1);
       double center = cell + 0.5;
-      // Of values between which the surface runs on, those of smooth functions, the line through
+      // For values of a smooth function the surface continues between them, so use the line through
       // the centers.
       if (heights_ != nullptr && shift > 0 && found.distance > 1.0F && a != face / 2) {
         const double other = ((cell >> shift) + 0.5) * (1 << shift);
@@ -185,7 +184,7 @@ void SurfaceVertices::make(const ContourTree& tree, const RootFrame& frame, Inte
   }
   const VertexMaker maker(tree, frame, interpolant, heights, &cuts_, &firsts_);
 
-  // The first task is what lies above the others.
+  // The first task covers the levels above the others.
   std::vector<TaskVertices> tasks(1);
   tasks[0].ranges.resize(levels.size());
   std::vector<Visit> roots;
@@ -217,7 +216,7 @@ void SurfaceVertices::make(const ContourTree& tree, const RootFrame& frame, Inte
   for (TaskVertices& task : tasks) {
     const auto offset = static_cast<std::uint32_t>(positions_.size());
     for (std::size_t k = 0; k < levels.size(); ++k) {
-      // Blocks of a task lie together; the ones in between that it did not visit have no vertices.
+      // Blocks of a task are contiguous; unvisited blocks in between have no vertices.
       for (std::size_t b = task.ranges[k].begin; b < task.ranges[k].end; ++b) {
         firsts_[k][b] += offset;
       }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The cells in which a surface is not that of its sources.
+// Cells in which a surface differs from its sources because they were thickened.
 #pragma once
 
 #include <cmath>
@@ -14,11 +14,11 @@ namespace prefilter {
 
 class ThickenedCells {
  public:
-  /// Those of a tree that are above 0; none of no tree.
+  /// The cells of a tree with values above 0; `cells` may be null.
   ThickenedCells(const CellTree* cells, const RootFrame& frame)
       : cells_(cells != nullptr && !cells->levels.empty() ? cells : nullptr), frame_(frame) {}
 
-  /// Whether a point of the frame is in one.
+  /// Whether a point of the frame is in a thickened cell.
   bool holds(const Vector3& point) const {
     if (cells_ == nullptr) return false;
     const int depth = cells_->depth();

@@ -33,12 +33,12 @@ namespace prefilter {
 namespace {
 
 constexpr std::int64_t kPartsPerTask = 8;
-constexpr double kLargestAdaptivity = 1e6;  // in cells: beyond the largest root
+constexpr double kLargestAdaptivity = 1e6;  // in cells; beyond the largest root
 
 using Triangle = std::array<std::int32_t, 3>;
 
-// The triangles of some dual cells. Vertices of its own, in the middle of loops, are numbered from
-// -1 downwards.
+// The triangles of some dual cells. Vertices that a task adds, at the centers of loops, are
+// numbered from -1 downward.
 struct TaskTriangles {
   std::vector<Triangle> triangles;
   std::vector<Vector3> middles;
@@ -46,7 +46,7 @@ struct TaskTriangles {
   std::vector<Triangle> loop_triangles;
 };
 
-// What tells whether there is an edge of the shape between two vertices.
+// Tests whether an edge of the shape passes between two vertices.
 class Division {
  public:
   Division(const FeatureSurface& surface, const VertexSamples& samples)
@@ -57,7 +57,7 @@ class Division {
   bool operator()(std::int32_t a, std::int32_t b) const {
     return are_divided(surface_, samples_, a, b);
   }
-  // Loops are fans around these.
+  // Loops are fans around tips.
   bool is_tip(std::int32_t vertex) const {
     return samples_.of(vertex) != nullptr && std::binary_search(tips_.begin(), tips_.end(), vertex);
   }
@@ -65,7 +65,7 @@ class Division {
  private:
   const FeatureSurface& surface_;
   const VertexSamples& samples_;
-  std::vector<std::int32_t> tips_;  // in order
+  std::vector<std::int32_t> tips_;  // sorted
 };
 
 constexpr std::array<unsigned, 12> kFacesOfEdges = [] {
@@ -74,9 +74,10 @@ constexpr std::array<unsigned, 12> kFacesOfEdges = [] {
   return faces;
 }();
 
-// In proportion to the volume between a triangle and a large sphere through its corners: the area
-// times the sum of the squared sides. Of the triangulations of points of one plane Delaunay's has
-// the least sum (Rajan 1994), and facets whose normals are the nearest to the sphere's.
+// Proportional to the volume between a triangle and a large sphere through its corners: the area
+// times the sum of squared sides. Among triangulations of coplanar points, Delaunay's has the least
+// sum (V. Rajan, Optimality of the Delaunay triangulation in R^d, 1994); among facets, those with
+// normals nearest to the sphere's do.
 double sphere_gap(const Vector3& a, const Vector3& b, const Vector3& c) {
   const Vector3 u = b - a;
   const Vector3 v = c - a;
@@ -119,10 +120,10 @@ class TriangleMaker {
   }
 
  private:
-  // The ambiguous faces on which the inside is to be joined: where one of the four leaves around
-  // the edge that the face stands for is smaller than the others, and outside. Other small leaves
-  // may follow it along the edge, of either side. The leaf opposite of them is cut off from them
-  // all, so that the segment around it is one, and not one for every other small leaf.
+  // The ambiguous faces on which the inside is joined: the faces whose edge has a smaller leaf
+  // among the four around it that is outside. Other small leaves, on either side, may follow along
+  // the edge. The leaf opposite to them is separated from all of them, so that the segment around
+  // it is one, and not different for every other small leaf.
   static unsigned joined_faces(const Meeting& leaves, unsigned inside, unsigned ambiguous) {
     unsigned joined = 0;
     for (int face = 0; face < 6; ++face) {
@@ -141,10 +142,10 @@ class TriangleMaker {
     return joined;
   }
 
-  // The faces of the dual cell that both leaves of each edge reach: as a leaf may be several of its
-  // corners, maybe more than those that the edge lies in.
+  // The faces of the dual cell that both leaves of each edge touch; since a leaf may be several
+  // corners of the cell, these may be more than the faces in which the edge lies.
   //
-  // Two vertices whose leaves all reach one face are in the dual cell behind it, too, and only
+  // Two vertices whose leaves all touch one face are also in the dual cell behind it, and only
   // then: the four boxes have more than this point in common.
   static void find_shared_faces(const Meeting& leaves, const std::vector<MarchingLoop>& loops,
                                 std::array<unsigned, 12>* faces) {
@@ -165,7 +166,7 @@ class TriangleMaker {
     }
   }
 
-  // A loop in which edges between the same two leaves, which are one vertex, follow each other.
+  // Adds a loop, skipping consecutive edges between the same two leaves, which are one vertex.
   void add_loop(const MarchingLoop& loop, const std::array<std::int32_t, 12>& on_edge,
                 const std::array<unsigned, 12>& faces_of, TaskTriangles* task) const {
     std::array<std::int32_t, 12> corners;
@@ -220,7 +221,7 @@ class TriangleMaker {
       triangles->push_back({corners[i], corners[j], corners[k]});
     });
     if (is_done) return;
-    // No diagonal is free: a fan around the middle needs none.
+    // No diagonal is free, so use a fan around the center.
     Vector3 middle{};
     for (int i = 0; i < count; ++i) middle = middle + position(corners[i]);
     for (double& x : middle) x /= count;
@@ -274,7 +275,7 @@ LoopedMesh join(const Progress& progress, SurfaceVertices* vertices,
   return mesh;
 }
 
-// Leaves out the vertices that no triangle has; returns where the others were.
+// Removes unused vertices; returns the previous indices of the others.
 template <typename Mesh>
 std::vector<std::int32_t> leave_out_unused(Mesh* mesh) {
   std::vector<std::int32_t> places(mesh->positions.size(), -1);
@@ -330,8 +331,8 @@ double least_cell(const RootFrame& frame, int depth) {
   return std::min({frame.cell(0, depth), frame.cell(1, depth), frame.cell(2, depth)});
 }
 
-// The cells that a contour is cut from. Their own ones may go once that is done: they and what is
-// made of them take as much memory as the contour.
+// The cells from which a contour is cut. Owned cells can be freed early, because they and their
+// derived data take as much memory as the contour.
 class ContourCells {
  public:
   explicit ContourCells(const CellTree& kept) : kept_(&kept) {}
@@ -345,8 +346,8 @@ class ContourCells {
   CellTree own_;
 };
 
-// The full contour, in the frame, which cells are dropped for. With `sources_of_labels`, all
-// triangles get labels, of each of which that is a triangle.
+// Cuts the full contour, in the frame, and frees the cells. With `sources_of_labels`, all triangles
+// get labels, and the array a source triangle for each label.
 FacetedMesh cut_tree(const RootFrame& frame, const ContourOptions& options,
                      const Progress& progress, ContourCells* own,
                      std::vector<std::int64_t>* sources_of_labels) {
@@ -417,9 +418,9 @@ Vector3 middle_of(const FacetedMesh& mesh, std::size_t triangle) {
 TriangleMesh contour_split(ContourCells cells, const Box& root, const ContourOptions& options,
                            std::vector<std::int64_t>* origins) {
   constexpr double kPlacing = 0.98;
-  constexpr double kSmallest = 1e-30;        // unit of length that may be multiplied
+  constexpr double kSmallest = 1e-30;        // unit of length whose powers are representable
   constexpr double kCreaseTolerance = 0.01;  // cells
-  constexpr double kCleaningShare = 0.2;     // of the adaptivity, which simplifying leaves
+  constexpr double kCleaningShare = 0.2;     // share of the adaptivity for cleaning up
   const double simplifying = options.clean_up ? 0.7 : kPlacing;
   const double cutting = options.adaptivity > 0.0 ? 0.4 * simplifying : simplifying - 0.02;
   const RootFrame frame(root);
@@ -428,8 +429,7 @@ TriangleMesh contour_split(ContourCells cells, const Box& root, const ContourOpt
   FacetedMesh mesh = cut_tree(frame, options, options.progress.part(0.0, cutting), &cells,
                               origins != nullptr ? &sources_of_labels : nullptr);
   cells.drop();
-  // Where rounding may let triangles meet, what changes them has to see the positions that come
-  // out.
+  // Where rounding may make triangles intersect, later stages must work on the final positions.
   const bool places_first = frame.unit() > kSmallest && frame.unit() < 1.0 / kSmallest;
   const Progress placing = options.progress.part(cutting, cutting + 0.02);
   if (places_first) {
@@ -500,7 +500,7 @@ TriangleMesh contour_any(ContourCells cells, const Box& root, const ContourOptio
   return contour_split(ContourCells(split_root(cells.tree().root)), root, options, origins);
 }
 
-// As it is, or refined where the surface passes through cells of several sizes.
+// Contours a tree, refined first if the surface passes through cells of several sizes.
 TriangleMesh contour_refined(const CellTree& cells, const Box& root, const ContourOptions& options,
                              std::vector<std::int64_t>* origins) {
   constexpr double kRefining = 0.3;

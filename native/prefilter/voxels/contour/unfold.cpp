@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What is around the folds of a contour is taken out of it, unfolded, and put back.
+// Extracts the surroundings of a contour's folds, unfolds them, and writes them back.
 #include "prefilter/voxels/contour/unfold.h"
 
 #include <algorithm>
@@ -21,8 +21,8 @@ namespace prefilter {
 
 namespace {
 
-// Calls visit(vertex, axis, place) for each vertex: the axis of its line, and where on that it is
-// halfway between the centers of its cells.
+// Calls visit(vertex, axis, position) for each vertex: the axis of its line, and the midpoint
+// between its cells' centers along that line.
 template <typename Visit>
 void for_vertices(const ContourTree& tree, const RootFrame& frame, const SurfaceVertices& vertices,
                   const Visit& visit) {
@@ -72,24 +72,25 @@ constexpr int kMostRegions = 8;
 constexpr double kCubeCells = 2.0;
 constexpr int kRings = 4;  // around folds
 constexpr int kSlidingRings = 3;
-constexpr int kMostRounds = 8;   // of sliding
-constexpr int kMostPasses = 16;  // of unfolding loops, as two that share a side may undo each other
+constexpr int kMostRounds = 8;  // of sliding
+// of unfolding loops; loops that share a side may undo each other's changes
+constexpr int kMostPasses = 16;
 constexpr double kLeastGain = 1e-3;
-// How far vertices slide that fold where they are halfway, in cells: they remain the nearest to
-// these places.
+// Distances, in cells, by which vertices that fold at their midpoints slide; they stay nearest to
+// these midpoints.
 constexpr std::array<double, 4> kSlides = {0.12, -0.12, 0.24, -0.24};
 
 using Triangle = std::array<std::int32_t, 3>;
 using Flags = std::vector<std::uint8_t>;
 using Pairs = std::vector<std::array<std::uint32_t, 2>>;
 
-// The triangles around some of a contour's, with vertices of their own.
+// Triangles around some of a contour's triangles, with vertices of their own.
 struct Region {
   std::vector<Vector3> positions;
   std::vector<Triangle> triangles;
   std::vector<std::size_t> numbers;   // of the contour's triangles
   std::vector<std::size_t> vertices;  // of the contour
-  Flags is_inner;                     // of each vertex: all triangles around it are here
+  Flags is_inner;                     // per vertex: all triangles around it are in the region
 
   MeshView<std::int32_t> view() const { return {positions, triangles}; }
 };
@@ -136,12 +137,12 @@ Region region_around(const Pairs& pairs, const MeshView<std::int32_t>& looped) {
   return region;
 }
 
-// Of a region's triangles, those that fold, by vertices that may be moved.
+// The folds of a region with movable vertices.
 class Folds {
  public:
   Folds(Region* region, Flags is_movable) : region_(*region), is_movable_(std::move(is_movable)) {}
 
-  // Calls move(vertex) for the vertices of folds, each once; it returns whether it has.
+  // Calls move(vertex) once for each vertex of folds; it returns whether the vertex moved.
   template <typename Move>
   bool move_vertices(const Move& move) {
     Flags is_seen(region_.positions.size(), 0);
@@ -161,10 +162,10 @@ class Folds {
     return has_moved;
   }
 
-  // Whether a vertex has moved that has triangles outside.
+  // Whether a vertex with triangles outside the region moved.
   bool reaches_out() const { return reaches_out_; }
 
-  // Whether all vertices of two triangles may be moved.
+  // Whether all vertices of two triangles are movable.
   bool are_movable(const std::array<std::uint32_t, 2>& pair) const {
     return std::all_of(pair.begin(), pair.end(), [&](std::uint32_t t) {
       const Triangle& triangle = region_.triangles[t];
@@ -180,7 +181,7 @@ class Folds {
   bool reaches_out_ = false;
 };
 
-// Where a region's vertices are between cells.
+// Grid positions of a region's vertices between cells.
 std::vector<GridPlace> places_of(const Region& region, const Vector3& cell,
                                  const Crossings& crossings) {
   std::vector<GridPlace> places(region.vertices.size(), kNoPlace);
@@ -194,7 +195,7 @@ std::vector<GridPlace> places_of(const Region& region, const Vector3& cell,
   return places;
 }
 
-// The numbers of a region's triangles that are around two of them.
+// The numbers of a region's triangles around two of them.
 std::vector<std::size_t> triangles_around(const std::array<std::uint32_t, 2>& pair,
                                           const Region& region) {
   Flags is_near(region.positions.size(), 0);
@@ -211,7 +212,7 @@ std::vector<std::size_t> triangles_around(const std::array<std::uint32_t, 2>& pa
   return found;
 }
 
-// By how much triangles fold, beyond 120 degrees: the sum over their pairs, of cosines.
+// Total excess of folds beyond 120 degrees, in cosines.
 double excess(const MeshView<std::int32_t>& mesh) {
   const auto normal_of = [&](std::uint32_t t) {
     const auto [a, b, c] = mesh.corners(t);
@@ -226,15 +227,15 @@ double excess(const MeshView<std::int32_t>& mesh) {
   return sum;
 }
 
-// A vertex that has slid, and the triangles around it since.
+// A slide of a vertex, and the resulting triangles around it.
 struct Slide {
   std::size_t vertex;
   Vector3 position;
   std::vector<Triangle> triangles;
 };
 
-// The slide of a vertex of two triangles after which what is around them folds the least. Each
-// vertex stays on its line between two cells, so that triangles stay in their cubes.
+// The slide of a vertex of two triangles that leaves the least folds around them. Vertices stay on
+// their lines between two cells, so that triangles stay in their cubes.
 std::optional<Slide> best_slide(const std::array<std::uint32_t, 2>& pair,
                                 std::span<const std::size_t> around,
                                 std::span<const GridPlace> places, const Vector3& cell,
@@ -271,7 +272,7 @@ std::optional<Slide> best_slide(const std::array<std::uint32_t, 2>& pair,
   return best;
 }
 
-// Slides vertices of triangles that fold, as long as these fold less.
+// Slides vertices of folded triangles as long as the folds decrease.
 void slide(std::span<const GridPlace> places, const Vector3& cell, const Folds& folds,
            Crossings* crossings, Region* region) {
   bool has_slid = true;
@@ -304,7 +305,7 @@ void slide(std::span<const GridPlace> places, const Vector3& cell, const Folds& 
   }
 }
 
-// Vertices between cells move, but for those that are sampled.
+// Flags vertices between cells that were not sampled.
 Flags movable_vertices(const VertexSamples& samples, const Crossings& crossings,
                        const Region& region) {
   Flags is_movable(region.vertices.size(), 0);
@@ -323,7 +324,7 @@ void unfold_all_loops(std::span<const GridPlace> places, Region* region) {
   }
 }
 
-// Returns whether what is around the region may fold since.
+// Returns whether the surroundings of the region may have new folds.
 bool unfold_region(const VertexSamples& samples, const Vector3& cell, Crossings* crossings,
                    Region* region) {
   const std::vector<GridPlace> places = places_of(*region, cell, *crossings);
@@ -333,12 +334,12 @@ bool unfold_region(const VertexSamples& samples, const Vector3& cell, Crossings*
     return crossings->put_back(region->vertices[v], &region->positions[v]);
   };
   while (folds.move_vertices(put_back)) unfold_all_loops(places, region);
-  // Between three cells of a gap even these may fold.
+  // In a gap of three cells even these may fold.
   slide(places, cell, folds, crossings, region);
   return folds.reaches_out();
 }
 
-// Puts a region's vertices and triangles into the mesh that it is of.
+// Writes a region's vertices and triangles back into the mesh.
 void write_back(const Region& region, std::vector<Vector3>* positions,
                 std::vector<Triangle>* triangles) {
   for (std::size_t v = 0; v < region.vertices.size(); ++v) {
@@ -359,8 +360,8 @@ bool is_on_line(std::size_t vertex, const Vector3& position, const Crossings& cr
   return (position[0] != middle[0]) + (position[1] != middle[1]) + (position[2] != middle[2]) <= 1;
 }
 
-// The pairs of triangles that fold and have all vertices on their lines, some of them halfway:
-// folds at which others are have been mended.
+// Folded pairs of triangles with all vertices on their lines, and some at midpoints; other folds
+// were mended before.
 Pairs plain_folds(const MeshView<std::int32_t>& mesh, const Crossings& crossings) {
   Flags is_halfway(mesh.positions.size(), 0);
   for (std::size_t v = 0; v < crossings.size(); ++v) {
@@ -388,7 +389,7 @@ Pairs plain_folds(const MeshView<std::int32_t>& mesh, const Crossings& crossings
   return pairs;
 }
 
-// The triangles of a region that another one has changed, or a vertex of.
+// Flags the triangles of a region changed by another region, including by a moved vertex.
 Flags changed_triangles(const Region& before, const Region& after, std::size_t count) {
   Flags is_changed(count, 0);
   for (std::size_t t = 0; t < before.numbers.size(); ++t) {

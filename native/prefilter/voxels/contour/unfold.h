@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Contours without folds.
+// Removes folds of contours.
 #pragma once
 
 #include <span>
@@ -17,22 +17,21 @@
 
 namespace prefilter {
 
-/// Where vertices are halfway between the centers of their cells.
+/// The midpoints between the centers of each vertex's cells.
 std::vector<Vector3> halfway(const ContourTree& tree, const RootFrame& frame,
                              const SurfaceVertices& vertices);
 
-/// Where vertices go back to that are fitted now; `plain` is where they were before that.
+/// Fallback positions for fitted vertices; `plain` holds the positions before fitting.
 Crossings crossings_of(const ContourTree& tree, const RootFrame& frame,
                        std::span<const Vector3> plain, const SurfaceVertices& vertices);
 
-/// Triangulates loops that fold anew; where that does not do, puts their vertices back, but for
-/// those that were sampled, or moves them toward those around them. `cell` has the sides of the
-/// smallest cells.
+/// Retriangulates folded loops. If that fails, moves their vertices, except sampled ones, back, or
+/// toward their neighbors. `cell` holds the sides of the smallest cells.
 void unfold(const VertexSamples& samples, const Vector3& cell, Crossings* crossings,
             LoopedMesh* looped);
 
-/// The same for loops without edges where a contour's other loops have them. What that would have
-/// intersect stays. Throws Error(kCancelled).
+/// The same for loops without edges when other loops of the contour have edges. Changes that would
+/// cause intersections are omitted. Throws Error(kCancelled).
 void unfold_plain_loops(const VertexSamples& samples, const Vector3& cell, Crossings* crossings,
                         const Progress& progress, int threads, FacetedMesh* mesh);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The triangles of a loop are those of one cube that have vertices in common. What is around the
-// loop stays; of all its triangulations the one with the least sum over its edges is found, by
-// triangles over each diagonal.
+// The triangles of a loop are the triangles of one cube that share vertices. Keeps the surroundings
+// of the loop, and finds its triangulation with the least sum of edge costs by dynamic programming
+// over diagonals.
 #include "prefilter/voxels/contour/unfolded_loops.h"
 
 #include <algorithm>
@@ -22,8 +22,8 @@ constexpr double kFoldCost = 1e6;
 
 using Triangle = std::array<std::int32_t, 3>;
 
-// The cube that a triangle is in, by its low corner; none where it has a vertex without a place, or
-// is in a face.
+// The low corner of the cube that contains a triangle; none if it has a vertex without a grid
+// position, or lies in a face.
 std::optional<GridPlace> cube_of(const Triangle& triangle, std::span<const GridPlace> places) {
   GridPlace low;
   GridPlace high;
@@ -55,7 +55,7 @@ bool is_in_face(const GridPlace& place, const GridPlace& other) {
   return false;
 }
 
-// How much an edge between two normals costs.
+// Cost of an edge between two normals.
 double edge_cost(const Vector3& normal, const Vector3& other) {
   const double sizes = std::sqrt(dot(normal, normal) * dot(other, other));
   if (!(sizes > 0.0)) return kFoldCost;
@@ -63,21 +63,21 @@ double edge_cost(const Vector3& normal, const Vector3& other) {
   return (cosine < kFold ? kFoldCost : 0.0) + (1.0 - cosine) * (1.0 - cosine);
 }
 
-// A loop's corners, in the order of its triangles, the normals around it, and what may be between
-// two corners.
+// A loop's corners, in the order of its triangles, the normals around it, and the allowed
+// diagonals.
 class Loop {
  public:
   std::size_t count = 0;
   std::array<std::int32_t, kMost> corners;
   std::array<Vector3, kMost> positions;
-  std::array<Vector3, kMost> around;  // over the side from each corner; 0 where there is none
+  std::array<Vector3, kMost> around;  // across the side from each corner; 0 if none
   std::array<std::array<bool, kMost>, kMost> is_free;
 
   Vector3 normal(std::size_t i, std::size_t k, std::size_t j) const {
     return cross(positions[k] - positions[i], positions[j] - positions[i]);
   }
 
-  // The cost of the side from i to j, which is none of the loop's but for neighbors.
+  // Cost of the side from i to the next corner; 0 if nothing is across it.
   double side_cost(std::size_t i, const Vector3& normal) const {
     return around[i] == Vector3{} ? 0.0 : edge_cost(normal, around[i]);
   }
@@ -112,7 +112,8 @@ class Triangulation {
  private:
   static constexpr double kNever = std::numeric_limits<double>::infinity();
 
-  // The cost of the triangle over (i, j) with the corner k, and of all between it and the loop.
+  // Cost of the triangle over (i, j) with corner k, including all triangles between it and the
+  // loop.
   void choose(std::size_t i, std::size_t k, std::size_t j) {
     double& sum = least_[i][k][j];
     sum = kNever;
@@ -121,7 +122,7 @@ class Triangulation {
     sum = best(i, k, normal, &low_[i][k][j]) + best(k, j, normal, &high_[i][k][j]);
   }
 
-  // Over the side (i, j) of a triangle.
+  // Best cost over the side (i, j) of a triangle.
   double best(std::size_t i, std::size_t j, const Vector3& normal, std::uint8_t* apex) const {
     if (j == i + 1) return loop_.side_cost(i, normal);
     double least = kNever;
@@ -156,7 +157,7 @@ class Triangulation {
 using Numbers = std::vector<std::uint32_t>;
 using Side = std::array<std::int32_t, 2>;
 
-// The triangles of cubes, and those at the sides of them.
+// The triangles of cubes, and the triangles at their sides.
 class Cubes {
  public:
   Cubes(std::span<const Vector3> positions, std::span<const GridPlace> places,
@@ -195,7 +196,7 @@ class Cubes {
   }
 
  private:
-  // Those of a cube's triangles that are of one loop.
+  // The triangles of a cube that form one loop.
   Numbers take_loop(Numbers* numbers) const {
     Numbers loop = {numbers->back()};
     numbers->pop_back();
@@ -218,7 +219,7 @@ class Cubes {
     return cross(b - a, c - a);
   }
 
-  // Of triangles that are a disk.
+  // The loop of triangles that form a disk.
   std::optional<Loop> loop_of(const Numbers& numbers) const {
     std::map<std::int32_t, std::int32_t> next;
     for (const std::uint32_t t : numbers) {
@@ -250,7 +251,7 @@ class Cubes {
     return loop;
   }
 
-  // The cost of its triangles as they are.
+  // The cost of the present triangles.
   double cost_of(const Numbers& numbers) const {
     double sum = 0.0;
     for (const std::uint32_t t : numbers) {

@@ -7,17 +7,18 @@
 namespace prefilter {
 namespace {
 
-constexpr double kPlane = 1.0 - 1e-5;  // a mean normal's length: a quarter of a degree off
+// length of the mean normal of a facet that counts as planar, up to 1/4 degree
+constexpr double kPlane = 1.0 - 1e-5;
 
 struct Facet {
-  Vector3 sum{};  // of normals, as long as twice the areas
+  Vector3 sum{};  // of normals with length twice the areas
   Box box = kEmptyBox;
 };
 }  // namespace
 
 std::vector<double> wide_facets(const WeldedMeshes& welded, std::span<const std::int32_t> facets,
                                 int facet_count, double least) {
-  // No facet is wider than the root of its area, or just as wide as long, so that most are out.
+  // A facet's width is at most the square root of its area, which excludes most facets.
   std::vector<double> areas(static_cast<std::size_t>(facet_count), 0.0);
   for (std::size_t t = 0; t < facets.size(); ++t) {
     areas[static_cast<std::size_t>(facets[t])] += 0.5 * length(welded.normal(t));

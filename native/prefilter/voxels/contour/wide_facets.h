@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Plane faces of meshes that are wide beside a cell.
+// Finds planar faces of meshes that are wide relative to a cell.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,9 @@
 
 namespace prefilter {
 
-/// For each triangle the width of its facet, its area over the diagonal of its box, where that is
-/// plane, up to a quarter of a degree, and wider than `least`; 0 elsewhere. `facets` are the
-/// numbers of the triangles' facets. Empty where none is.
+/// For each triangle the width of its facet, which is its area divided by the diagonal of its box,
+/// if the facet is planar up to 1/4 degree and wider than `least`; otherwise 0. `facets` holds the
+/// facet number of each triangle. Empty if there are no such facets.
 std::vector<double> wide_facets(const WeldedMeshes& welded, std::span<const std::int32_t> facets,
                                 int facet_count, double least);
 

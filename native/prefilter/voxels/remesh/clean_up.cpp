@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Narrow triangles are widened patch by patch, each as far as its own vertices go, and then what is
-// left around the borders of patches. The triangles that are new are then looked at for
-// intersections: where there are any, the patch is done again without those that they were made of.
+// Widens narrow triangles patch by patch, as far as only vertices of one patch are involved, and
+// then the remaining ones around the borders of patches. Searches the new triangles for
+// intersections; where there are any, the patch is edited again with the vertices of the
+// intersecting triangles fixed.
 #include "prefilter/voxels/remesh/clean_up.h"
 
 #include <algorithm>
@@ -28,65 +29,65 @@ namespace prefilter {
 namespace {
 
 constexpr std::int64_t kRowsPerTask = 1 << 15;
-constexpr float kWedgeSlack = 0.0873F;  // 5 degrees, by which wedges may become sharper
+constexpr float kWedgeSlackRadians = 0.0873F;  // 5 degrees, by which wedges may become sharper
 
 using Triangle = std::array<std::int32_t, 3>;
 using Flags = std::vector<std::uint8_t>;
 
-// Triangles as they were.
+// Copies of triangles and labels before editing.
 struct Snapshot {
   std::vector<Triangle> triangles;
-  std::vector<std::int32_t> labels;  // none where the mesh has none
+  std::vector<std::int32_t> labels;  // empty if the mesh has none
 
-  void put_back(std::size_t i, std::size_t triangle, FacetedMesh* mesh) const {
+  void restore(std::size_t i, std::size_t triangle, FacetedMesh* mesh) const {
     mesh->triangles[triangle] = triangles[i];
     if (!labels.empty()) mesh->labels[triangle] = labels[i];
   }
 };
 
-// What is around the borders of patches, before it was edited.
-struct Borders {
+// Regions around the borders of patches, with their original triangles.
+struct EditedBorders {
   TriangleParts parts;
   Snapshot before;
 
   void undo(std::size_t part, FacetedMesh* mesh) const {
     for (std::size_t k = parts.begins[part]; k < parts.begins[part + 1]; ++k) {
-      before.put_back(k, parts.triangles[k], mesh);
+      before.restore(k, parts.triangles[k], mesh);
     }
   }
 };
 
-// The triangles that are there.
-struct Left {
+// The triangles that were not removed.
+struct RemainingTriangles {
   std::vector<Triangle> triangles;
-  std::vector<std::uint32_t> places;  // among all
+  std::vector<std::uint32_t> old_indices;  // index of each in the original list
 };
 
 EditedMesh edited_mesh(FacetedMesh mesh, const CleaningLimits& limits) {
   EditedMesh edited;
   edited.mesh = std::move(mesh);
   edited.crease_tolerance = limits.crease;
-  edited.most_height = limits.height;
+  edited.max_height = limits.height;
   const std::size_t vertices = edited.mesh.positions.size();
-  edited.owners.assign(vertices, EditedMesh::kNobody);
+  edited.owners.assign(vertices, EditedMesh::kUnowned);
   edited.firsts.resize(vertices);
   edited.counts.resize(vertices);
   edited.widths.resize(edited.mesh.triangles.size());
   return edited;
 }
 
-// Those with a vertex that is flagged.
+// Triangles with a flagged vertex.
 std::vector<std::uint32_t> triangles_at(const std::vector<Triangle>& triangles,
                                         const Flags& is_flagged, const Progress& progress,
                                         int threads) {
   const auto count = static_cast<std::int64_t>(triangles.size());
-  std::vector<std::vector<std::uint32_t>> found(
+  std::vector<std::vector<std::uint32_t>> lists(
       static_cast<std::size_t>(range_count(count, kRowsPerTask)));
   const auto find = [&](std::int64_t begin, std::int64_t end) {
-    std::vector<std::uint32_t>& some = found[static_cast<std::size_t>(begin / kRowsPerTask)];
+    std::vector<std::uint32_t>& some = lists[static_cast<std::size_t>(begin / kRowsPerTask)];
     for (std::int64_t t = begin; t < end; ++t) {
       const auto& [a, b, c] = triangles[static_cast<std::size_t>(t)];
-      if (a < 0) continue;  // gone
+      if (a < 0) continue;  // removed
       if ((is_flagged[static_cast<std::size_t>(a)] | is_flagged[static_cast<std::size_t>(b)] |
            is_flagged[static_cast<std::size_t>(c)]) != 0) {
         some.push_back(static_cast<std::uint32_t>(t));
@@ -95,7 +96,7 @@ std::vector<std::uint32_t> triangles_at(const std::vector<Triangle>& triangles,
   };
   parallel_ranges(count, kRowsPerTask, threads, progress, find);
   std::vector<std::uint32_t> all;
-  for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
+  for (const auto& some : lists) all.insert(all.end(), some.begin(), some.end());
   return all;
 }
 
@@ -107,9 +108,10 @@ void flag_corners(const std::vector<Triangle>& triangles, std::span<const std::u
   }
 }
 
-// What is narrow yet, and what is around it two triangles wide. The inner vertices get owners.
-Borders find_borders(const std::vector<std::vector<std::uint32_t>>& narrow,
-                     const Progress& progress, int threads, EditedMesh* edited) {
+// Remaining narrow triangles and their surroundings, two triangles wide. Sets the owners of their
+// inner vertices.
+EditedBorders find_borders(const std::vector<std::vector<std::uint32_t>>& narrow,
+                           const Progress& progress, int threads, EditedMesh* edited) {
   const FacetedMesh& mesh = edited->mesh;
   Flags is_near(mesh.positions.size());
   for (const std::vector<std::uint32_t>& some : narrow) {
@@ -120,7 +122,7 @@ Borders find_borders(const std::vector<std::vector<std::uint32_t>>& narrow,
   flag_corners(mesh.triangles, inner, &is_near);
   const std::vector<std::uint32_t> all =
       triangles_at(mesh.triangles, is_near, progress.part(0.4, 0.8), threads);
-  Borders borders{parts_by_inner_vertices(mesh.triangles, all, is_near, &edited->firsts), {}};
+  EditedBorders borders{parts_by_inner_vertices(mesh.triangles, all, is_near, &edited->firsts), {}};
   for (const std::uint32_t t : borders.parts.triangles) {
     borders.before.triangles.push_back(mesh.triangles[t]);
     if (!mesh.labels.empty()) borders.before.labels.push_back(mesh.labels[t]);
@@ -129,7 +131,7 @@ Borders find_borders(const std::vector<std::vector<std::uint32_t>>& narrow,
     for (const std::uint32_t t : borders.parts.part(i)) {
       for (const std::int32_t vertex : mesh.triangles[t]) {
         const auto v = static_cast<std::size_t>(vertex);
-        edited->owners[v] = is_near[v] != 0 ? static_cast<std::uint32_t>(i) : EditedMesh::kSeveral;
+        edited->owners[v] = is_near[v] != 0 ? static_cast<std::uint32_t>(i) : EditedMesh::kShared;
       }
     }
   }
@@ -137,9 +139,9 @@ Borders find_borders(const std::vector<std::vector<std::uint32_t>>& narrow,
   return borders;
 }
 
-Borders edit_borders(const std::vector<std::vector<std::uint32_t>>& narrow,
-                     const Progress& progress, int threads, EditedMesh* edited) {
-  Borders borders = find_borders(narrow, progress.part(0.0, 0.5), threads, edited);
+EditedBorders edit_borders(const std::vector<std::vector<std::uint32_t>>& narrow,
+                           const Progress& progress, int threads, EditedMesh* edited) {
+  EditedBorders borders = find_borders(narrow, progress.part(0.0, 0.5), threads, edited);
   constexpr std::int64_t kPartsPerTask = 16;
   const auto edit = [&](std::int64_t begin, std::int64_t end) {
     PatchEditor editor(edited);
@@ -160,27 +162,28 @@ std::vector<std::uint32_t> edit_patch(const TriangleParts& patches, std::size_t 
   return editor.narrow();
 }
 
-Left find_left(const std::vector<Triangle>& triangles, const Progress& progress, int threads) {
+RemainingTriangles find_remaining(const std::vector<Triangle>& triangles, const Progress& progress,
+                                  int threads) {
   const auto rows = static_cast<std::int64_t>(triangles.size());
   std::vector<std::size_t> begins(static_cast<std::size_t>(range_count(rows, kRowsPerTask)) + 1);
   const auto count = [&](std::int64_t begin, std::int64_t end) {
     std::size_t& some = begins[static_cast<std::size_t>(begin / kRowsPerTask) + 1];
     for (std::int64_t t = begin; t < end; ++t) {
-      if (triangles[static_cast<std::size_t>(t)] != kGone) ++some;
+      if (triangles[static_cast<std::size_t>(t)] != kRemoved) ++some;
     }
   };
   parallel_ranges(rows, kRowsPerTask, threads, progress.part(0.0, 0.3), count);
   std::partial_sum(begins.begin(), begins.end(), begins.begin());
-  Left left;
+  RemainingTriangles left;
   left.triangles.resize(begins.back());
-  left.places.resize(begins.back());
+  left.old_indices.resize(begins.back());
   const auto fill = [&](std::int64_t begin, std::int64_t end) {
     std::size_t place = begins[static_cast<std::size_t>(begin / kRowsPerTask)];
     for (std::int64_t i = begin; i < end; ++i) {
       const auto t = static_cast<std::size_t>(i);
-      if (triangles[t] == kGone) continue;
+      if (triangles[t] == kRemoved) continue;
       left.triangles[place] = triangles[t];
-      left.places[place] = static_cast<std::uint32_t>(t);
+      left.old_indices[place] = static_cast<std::uint32_t>(t);
       ++place;
     }
   };
@@ -206,8 +209,8 @@ double angle_between(const MeshView<std::int32_t>& mesh,
   return elementary::atan2(length(cross(normals[0], normals[1])), dot(normals[0], normals[1]));
 }
 
-// Of the ends of edges of the shape that are as sharp as a fold: by how much they turn; 0
-// elsewhere.
+// For vertices on edges of the shape that are as sharp as folds: the largest angle between adjacent
+// normals; 0 for all other vertices.
 std::vector<float> wedge_turns(const MeshView<std::int32_t>& mesh,
                                const std::vector<VertexKind>& kinds, const Progress& progress) {
   std::vector<float> turns(mesh.positions.size(), 0.0F);
@@ -229,9 +232,8 @@ std::vector<float> wedge_turns(const MeshView<std::int32_t>& mesh,
   return turns;
 }
 
-// Looks for triangles that intersect others, or fold. Each search but the first looks only at what
-// is not as it was in the last or in the first one, and what has been found: of all other pairs it
-// is known that they do not.
+// Finds triangles that intersect others, or fold. Later searches test only triangles that changed
+// since the first or the last search, and earlier hits; all other pairs are known to be disjoint.
 class CrossingSearch {
  public:
   CrossingSearch(const FacetedMesh& mesh, const std::vector<Triangle>& original,
@@ -241,7 +243,7 @@ class CrossingSearch {
         side_(cube_side({mesh.positions, original})),
         wedge_turns_(wedge_turns({mesh.positions, original}, mesh.kinds, progress)) {}
 
-  // The triangles of pairs that are not as they were before the mesh was edited.
+  // Intersecting or folded triangles that differ from the original mesh.
   std::vector<std::uint32_t> find(const FacetedMesh& mesh, const Progress& progress) {
     Flags is_suspect = changed(first_.empty() ? original_ : last_, mesh.triangles);
     if (first_.empty()) {
@@ -282,8 +284,8 @@ class CrossingSearch {
   std::vector<std::uint32_t> find_among(const FacetedMesh& mesh, const Flags& is_suspect,
                                         const Progress& progress) const {
     const MeshView<std::int32_t> all{mesh.positions, mesh.triangles};
-    const NearTriangles near =
-        near_triangles(all, 0, where_rough(all, 0, is_suspect, side_, progress), side_, progress);
+    const NearTriangles near = near_triangles(
+        all, 0, keep_rough_suspects(all, 0, is_suspect, side_, progress), side_, progress);
     std::vector<std::uint32_t> crossing;
     const auto add = [&](const std::vector<std::array<std::uint32_t, 2>>& pairs) {
       for (const auto& pair : pairs) {
@@ -300,7 +302,7 @@ class CrossingSearch {
     std::erase_if(folds, [&](const auto& pair) {
       const std::vector<std::int32_t> side =
           shared_vertices(view.triangles[pair[0]], view.triangles[pair[1]]);
-      const auto turn = static_cast<float>(angle_between(view, pair)) - kWedgeSlack;
+      const auto turn = static_cast<float>(angle_between(view, pair)) - kWedgeSlackRadians;
       return std::all_of(side.begin(), side.end(), [&](std::int32_t v) {
         return turn <= wedge_turns_[static_cast<std::size_t>(v)];
       });
@@ -318,30 +320,30 @@ class CrossingSearch {
   std::vector<std::uint32_t> found_;
 };
 
-// A patch as it was: vertices that are gone are its own again.
+// Restores a patch; removed vertices become its own again.
 void restore_patch(const TriangleParts& patches, std::size_t patch, const Snapshot& original,
                    EditedMesh* edited) {
   for (const std::uint32_t t : patches.part(patch)) {
-    original.put_back(t, t, &edited->mesh);
+    original.restore(t, t, &edited->mesh);
     for (const std::int32_t vertex : original.triangles[t]) {
       std::uint32_t& owner = edited->owners[static_cast<std::size_t>(vertex)];
-      if (std::atomic_ref(owner).load(std::memory_order_relaxed) == EditedMesh::kNobody) {
+      if (std::atomic_ref(owner).load(std::memory_order_relaxed) == EditedMesh::kUnowned) {
         owner = static_cast<std::uint32_t>(patch);
       }
     }
   }
 }
 
-// Edits patches with crossing triangles again, with the vertices of these fixed, until there are
-// none.
-void redo_patches(const TriangleParts& patches, const Snapshot& original,
-                  std::vector<std::uint32_t> crossing, Progress rest, int threads,
-                  CrossingSearch* search, EditedMesh* edited,
-                  std::vector<std::vector<std::uint32_t>>* narrow) {
+// Edits patches with intersecting triangles again, with the vertices of these fixed, until there
+// are none.
+void edit_again(const TriangleParts& patches, const Snapshot& original,
+                std::vector<std::uint32_t> crossing, Progress remaining, int threads,
+                CrossingSearch* search, EditedMesh* edited,
+                std::vector<std::vector<std::uint32_t>>* narrow) {
   const FacetedMesh& mesh = edited->mesh;
   edited->is_fixed.assign(mesh.positions.size(), 0);
   const std::vector<std::uint32_t> patch_of =
-      patches.numbers(mesh.triangles.size(), EditedMesh::kNobody);
+      patches.part_numbers(mesh.triangles.size(), EditedMesh::kUnowned);
   while (!crossing.empty()) {
     flag_corners(mesh.triangles, crossing, &edited->is_fixed);
     flag_corners(original.triangles, crossing, &edited->is_fixed);
@@ -353,86 +355,87 @@ void redo_patches(const TriangleParts& patches, const Snapshot& original,
       restore_patch(patches, patch, original, edited);
       (*narrow)[patch] = edit_patch(patches, patch, edited);
     };
-    parallel_for(static_cast<std::int64_t>(patches.count()), threads, rest.part(0.0, 0.3), redo);
-    crossing = search->find(mesh, rest.part(0.3, 0.5));
-    // Steps without end, each shorter than the one before.
-    rest = rest.part(0.5, 1.0);
+    parallel_for(static_cast<std::int64_t>(patches.count()), threads, remaining.part(0.0, 0.3),
+                 redo);
+    crossing = search->find(mesh, remaining.part(0.3, 0.5));
+    // The number of rounds is unknown, so each gets half of the remaining progress.
+    remaining = remaining.part(0.5, 1.0);
   }
 }
 
-// Undoes borders with crossing triangles until none has any.
-void undo_borders(const Borders& borders, Progress rest, CrossingSearch* search,
+// Restores border regions with intersecting triangles until there are none.
+void undo_borders(const EditedBorders& borders, Progress remaining, CrossingSearch* search,
                   FacetedMesh* mesh) {
   const std::vector<std::uint32_t> border_of =
-      borders.parts.numbers(mesh->triangles.size(), EditedMesh::kNobody);
+      borders.parts.part_numbers(mesh->triangles.size(), EditedMesh::kUnowned);
   Flags is_undone(borders.parts.count());
   bool is_any = true;
   while (is_any) {
     is_any = false;
-    for (const std::uint32_t t : search->find(*mesh, rest.part(0.0, 0.5))) {
+    for (const std::uint32_t t : search->find(*mesh, remaining.part(0.0, 0.5))) {
       const std::uint32_t border = border_of[t];
-      if (border == EditedMesh::kNobody || is_undone[border] != 0) continue;
+      if (border == EditedMesh::kUnowned || is_undone[border] != 0) continue;
       is_undone[border] = 1;
       borders.undo(border, mesh);
       is_any = true;
     }
-    rest = rest.part(0.5, 1.0);
+    remaining = remaining.part(0.5, 1.0);
   }
 }
 
-// Takes back what makes triangles intersect, or fold.
-void mend(const TriangleParts& patches, const Snapshot& original, Borders borders,
-          const Progress& progress, int threads, EditedMesh* edited,
-          std::vector<std::vector<std::uint32_t>>* narrow) {
+// Reverts changes that make triangles intersect or fold.
+void undo_conflicts(const TriangleParts& patches, const Snapshot& original, EditedBorders borders,
+                    const Progress& progress, int threads, EditedMesh* edited,
+                    std::vector<std::vector<std::uint32_t>>* narrow) {
   FacetedMesh& mesh = edited->mesh;
   CrossingSearch search(mesh, original.triangles, progress, threads);
   if (search.find(mesh, progress.part(0.0, 0.4)).empty()) return;
   for (std::size_t i = 0; i < borders.parts.count(); ++i) borders.undo(i, &mesh);
-  std::fill(edited->owners.begin(), edited->owners.end(), EditedMesh::kNobody);
+  std::fill(edited->owners.begin(), edited->owners.end(), EditedMesh::kUnowned);
   find_owners(patches, original.triangles, progress.part(0.4, 0.5), threads, &edited->owners);
   std::vector<std::uint32_t> crossing = search.find(mesh, progress.part(0.5, 0.6));
-  redo_patches(patches, original, std::move(crossing), progress.part(0.6, 0.8), threads, &search,
-               edited, narrow);
+  edit_again(patches, original, std::move(crossing), progress.part(0.6, 0.8), threads, &search,
+             edited, narrow);
   borders = edit_borders(*narrow, progress.part(0.8, 0.9), threads, edited);
   undo_borders(borders, progress.part(0.9, 1.0), &search, &mesh);
 }
 
-// Leaves the triangles that are left, and their vertices.
-void drop_gone(const Progress& progress, int threads, FacetedMesh* result) {
+// Compacts the remaining triangles and vertices.
+void drop_removed(const Progress& progress, int threads, FacetedMesh* result) {
   FacetedMesh& mesh = *result;
-  Left left = find_left(mesh.triangles, progress.part(0.0, 0.2), threads);
+  RemainingTriangles left = find_remaining(mesh.triangles, progress.part(0.0, 0.2), threads);
   mesh.triangles = std::move(left.triangles);
   if (!mesh.labels.empty()) {
-    for (std::size_t i = 0; i < left.places.size(); ++i) {
-      mesh.labels[i] = mesh.labels[left.places[i]];
+    for (std::size_t i = 0; i < left.old_indices.size(); ++i) {
+      mesh.labels[i] = mesh.labels[left.old_indices[i]];
     }
-    mesh.labels.resize(left.places.size());
+    mesh.labels.resize(left.old_indices.size());
   }
   const auto count = static_cast<std::int64_t>(mesh.triangles.size());
-  std::vector<std::int32_t> places(mesh.positions.size(), -1);
+  std::vector<std::int32_t> old_indices(mesh.positions.size(), -1);
   const auto mark = [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t t = begin; t < end; ++t) {
       for (const std::int32_t v : mesh.triangles[static_cast<std::size_t>(t)]) {
-        std::atomic_ref place(places[static_cast<std::size_t>(v)]);
+        std::atomic_ref place(old_indices[static_cast<std::size_t>(v)]);
         place.store(0, std::memory_order_relaxed);
       }
     }
   };
   parallel_ranges(count, kRowsPerTask, threads, progress.part(0.2, 0.5), mark);
   std::int32_t next = 0;
-  for (std::size_t v = 0; v < places.size(); ++v) {
-    if (places[v] < 0) continue;
+  for (std::size_t v = 0; v < old_indices.size(); ++v) {
+    if (old_indices[v] < 0) continue;
     const auto place = static_cast<std::size_t>(next);
     mesh.positions[place] = mesh.positions[v];
     if (!mesh.kinds.empty()) mesh.kinds[place] = mesh.kinds[v];
-    places[v] = next++;
+    old_indices[v] = next++;
   }
   mesh.positions.resize(static_cast<std::size_t>(next));
   if (!mesh.kinds.empty()) mesh.kinds.resize(static_cast<std::size_t>(next));
   const auto rename = [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t t = begin; t < end; ++t) {
       for (std::int32_t& v : mesh.triangles[static_cast<std::size_t>(t)]) {
-        v = places[static_cast<std::size_t>(v)];
+        v = old_indices[static_cast<std::size_t>(v)];
       }
     }
   };
@@ -454,9 +457,10 @@ FacetedMesh clean_up(FacetedMesh mesh, const CleaningLimits& limits, const Progr
                  const auto patch = static_cast<std::size_t>(i);
                  narrow[patch] = edit_patch(patches, patch, &edited);
                });
-  Borders borders = edit_borders(narrow, progress.part(0.5, 0.6), threads, &edited);
-  mend(patches, original, std::move(borders), progress.part(0.6, 0.9), threads, &edited, &narrow);
-  drop_gone(progress.part(0.9, 1.0), threads, &edited.mesh);
+  EditedBorders borders = edit_borders(narrow, progress.part(0.5, 0.6), threads, &edited);
+  undo_conflicts(patches, original, std::move(borders), progress.part(0.6, 0.9), threads, &edited,
+                 &narrow);
+  drop_removed(progress.part(0.9, 1.0), threads, &edited.mesh);
   return std::move(edited.mesh);
 }
 

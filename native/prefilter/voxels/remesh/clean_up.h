@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Contours without narrow triangles.
+// Removes narrow triangles from contours.
 #pragma once
 
 #include <limits>
@@ -10,23 +10,23 @@
 
 namespace prefilter {
 
-/// What cleaning up may do to a surface, in lengths.
+/// Limits on how far cleaning up may move a surface, in lengths.
 struct CleaningLimits {
-  double crease;                                            // how far creases may move
-  double height = std::numeric_limits<double>::infinity();  // and what is between them
+  double crease;                                            // for creases
+  double height = std::numeric_limits<double>::infinity();  // for the surface between them
 };
 
-/// Widens triangles whose smallest angle is below 16 degrees: leaves out one of their vertices, or
-/// flips an edge. What is new is nearly as flat as what was there, and within the limit of what
-/// each change replaces. Vertices that remain do not move.
+/// Widens triangles whose smallest angle is below 16 degrees, by removing one of their vertices or
+/// flipping an edge. Replacements are nearly as flat as the triangles they replace, and within the
+/// limit of them. Remaining vertices do not move.
 ///
-/// Creases stay: a vertex on one is left out only where that keeps the crease within its limit, and
-/// kCorner ones never are. Labels stay on their side of them; a
-/// triangle of kNoLabel may get that of one beside it. No new triangle intersects another one. A
-/// closed two-manifold stays one. The same for any number of threads; vertices that are near each
-/// other should have indices that are, for several threads to be of use.
+/// Creases are preserved: a vertex on one is only removed if the crease stays within its limit, and
+/// kCorner vertices never are. Labels stay on their side of creases; a triangle of kNoLabel may get
+/// a neighbor's label. No new triangle intersects another one. A closed two-manifold remains one.
+/// The result does not depend on the number of threads; for parallelism, nearby vertices should
+/// have nearby indices.
 ///
-/// Sides from 1e-70 to 1e70. Throws Error(kCancelled).
+/// Side lengths may range from 1e-70 to 1e70. Throws Error(kCancelled).
 FacetedMesh clean_up(FacetedMesh mesh, const CleaningLimits& limits, const Progress& progress,
                      int threads);
 

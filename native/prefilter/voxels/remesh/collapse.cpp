@@ -5,34 +5,34 @@
 namespace prefilter {
 namespace {
 
-void place_points(const Ring& ring, const Outcome& outcome, Patch* patch) {
+void attach_points(const Ring& ring, const CollapseOutcome& outcome, Patch* patch) {
   for (std::size_t i = 0; i < ring.size; ++i) {
     patch->triangle(ring.triangles[i]).first_point = -1;
   }
   auto added = outcome.added.begin();
-  for (const Outcome::Place& place : outcome.places) {
-    std::int32_t p = place.point;
+  for (const CollapseOutcome::Placement& placement : outcome.placements) {
+    std::int32_t p = placement.point;
     if (p < 0) {
       p = static_cast<std::int32_t>(patch->points.size());
       patch->points.push_back({*added++, -1});
     }
-    std::int32_t& first = patch->triangle(ring.triangles[as_index(place.triangle)]).first_point;
+    std::int32_t& first = patch->triangle(ring.triangles[as_index(placement.triangle)]).first_point;
     patch->points[as_index(p)].next = first;
     first = p;
   }
 }
 
-// A triangle that goes, whose sides from the vertex and from the neighbor become one.
+// A triangle that disappears, merging its sides from the vertex and from the neighbor.
 struct Closing {
   std::size_t dead;
-  std::size_t side;        // of it, from the vertex
-  std::size_t other_side;  // from the neighbor
-  std::size_t beside;      // the ring's triangle beyond the first one
+  std::size_t side;        // its side from the vertex
+  std::size_t other_side;  // its side from the neighbor
+  std::size_t beside;      // index of the adjacent triangle in the ring
   std::size_t beside_side;
-  std::int32_t end;  // the other end of these sides
+  std::int32_t end;  // common end of both sides
 };
 
-// The creases of the two sides go to both triangles beside it.
+// Transfers the creases of both sides to the triangles on either side.
 void join_sides(const Ring& ring, const Closing& closing, std::int32_t neighbor, float error,
                 const PatchLinks& links, Patch* patch) {
   const PatchTriangle gone = patch->triangle(ring.triangles[closing.dead]);
@@ -71,22 +71,24 @@ void relink(const Ring& ring, const Collapse& which, Patch* patch, PatchLinks* l
 }
 }  // namespace
 
-void collapse(const Ring& ring, const Collapse& which, const Outcome& outcome, Patch* patch,
+void collapse(const Ring& ring, const Collapse& which, const CollapseOutcome& outcome, Patch* patch,
               PatchLinks* links) {
   const std::size_t spoke = which.spoke;
   const std::int32_t to = ring.vertices[spoke];
   const std::size_t before = ring.before(spoke);
   const std::size_t after = ring.next(spoke);
   const auto crease_error = static_cast<float>(outcome.crease_error);
-  if (outcome.adds_points) place_points(ring, outcome, patch);
+  if (outcome.adds_points) attach_points(ring, outcome, patch);
   {
-    const std::size_t c = ring.corners[spoke];  // (u, v, after): beside it is triangle `after`
+    // triangle (u, v, after) is adjacent to triangle `after`
+    const std::size_t c = ring.corners[spoke];
     const Closing closing = {spoke, (c + 2) % 3,         (c + 1) % 3,
                              after, ring.corners[after], ring.vertices[after]};
     join_sides(ring, closing, to, crease_error, *links, patch);
   }
   {
-    const std::size_t c = ring.corners[before];  // (u, before, v): beside it is the one before
+    // triangle (u, before, v) is adjacent to the previous one
+    const std::size_t c = ring.corners[before];
     const std::size_t beside = ring.before(before);
     const std::size_t beside_side = (ring.corners[beside] + 2U) % 3;
     const Closing closing = {before, c, (c + 1) % 3, beside, beside_side, ring.vertices[before]};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A vertex of a patch collapsed onto a neighbor.
+// Collapses a vertex of a patch onto a neighbor.
 #pragma once
 
 #include "prefilter/voxels/remesh/collapse_check.h"
@@ -9,9 +9,9 @@
 
 namespace prefilter {
 
-/// Moves the ring's triangles to the neighbor, but for the two that go, whose corners are all there
-/// then: with creases, points and errors.
-void collapse(const Ring& ring, const Collapse& which, const Outcome& outcome, Patch* patch,
+/// Moves the ring's triangles to the neighbor, with creases, points and errors. The two triangles
+/// that disappear get the neighbor for all corners.
+void collapse(const Ring& ring, const Collapse& which, const CollapseOutcome& outcome, Patch* patch,
               PatchLinks* links);
 
 }  // namespace prefilter

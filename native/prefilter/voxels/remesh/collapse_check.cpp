@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What bounds the distance is that removed vertices are kept as points of the triangle that they
-// are near to, and measured again whenever that triangle changes. Where the surface is so flat that
-// a removal hardly moves it, a bound that adds up does instead of a point.
+// Checks edge collapses. The distance is bounded by keeping removed vertices as points of the
+// triangle that they are near to, and measuring them again whenever that triangle changes. Where
+// the surface is so flat that a removal hardly moves it, an accumulated error bound replaces the
+// point.
 #include "prefilter/voxels/remesh/collapse_check.h"
 
 #include <algorithm>
@@ -12,15 +13,15 @@
 namespace prefilter {
 namespace {
 
-// Shares of the tolerance: what may add up without points; what is too little for crossings of
-// edges to become points.
-constexpr double kAddedUp = 0.15;
-constexpr double kCrossing = 0.1;
-constexpr double kLeastCosine = 0.8660254037844386;  // 30 degrees
-constexpr double kSliverLeastCosine = 0.5;           // 60 degrees
-// Of the angle between two triangles: how high the edge between them may rise over what lies
-// between points as far apart as that.
-constexpr double kRise = 0.0625;
+// Shares of the tolerance: the error that may accumulate without points, and the distance below
+// which edge crossings do not become points.
+constexpr double kMaxAccumulatedError = 0.15;
+constexpr double kMinCrossingGap = 0.1;
+constexpr double kMinTurnCosine = 0.8660254037844386;  // 30 degrees
+constexpr double kMinSliverTurnCosine = 0.5;           // 60 degrees
+// Height of an edge over the surface between sample points, per spacing of the points and angle
+// between the edge's triangles.
+constexpr double kRisePerAngle = 0.0625;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 bool side_is_crease(const Patch& patch, const Ring& ring, std::size_t i, int offset) {
@@ -33,51 +34,52 @@ double crease_error(const Patch& patch, const Ring& ring, std::size_t spoke) {
   return static_cast<double>(t.crease_errors[ring.corners[spoke]]);
 }
 
-// How high edges of the new triangles may rise over what lies between points.
-double rise(const Ring& ring, const RingShape& shape, const NewTriangles& made, std::size_t spoke,
-            double spacing) {
+// Bound on how far edges of the new triangles rise over the surface between sample points.
+double rise(const Ring& ring, const RingShape& shape, const NewTriangles& new_triangles,
+            std::size_t spoke, double spacing) {
   const std::size_t before = ring.before(spoke);
   double least_cosine = 1.0;
   std::size_t last = spoke;
   for (std::size_t i = ring.next(spoke); i != before; i = ring.next(i)) {
-    const double size = made[i].squared_normal;
+    const double size = new_triangles[i].squared_normal;
     const double turned =
-        dot(made[i].normal, shape.normals[i]) / std::sqrt(size * shape.squared_normals[i]);
+        dot(new_triangles[i].normal, shape.normals[i]) / std::sqrt(size * shape.squared_normals[i]);
     if (!shape.is_sliver[i]) least_cosine = std::min(least_cosine, turned);
     if (last != spoke && !ring.is_crease[i]) {
-      least_cosine = std::min(least_cosine, dot(made[i].normal, made[last].normal) /
-                                                std::sqrt(size * made[last].squared_normal));
+      least_cosine =
+          std::min(least_cosine, dot(new_triangles[i].normal, new_triangles[last].normal) /
+                                     std::sqrt(size * new_triangles[last].squared_normal));
     }
     last = i;
   }
-  return kRise * spacing * std::sqrt(std::max(0.0, 2.0 - 2.0 * least_cosine));
+  return kRisePerAngle * spacing * std::sqrt(std::max(0.0, 2.0 - 2.0 * least_cosine));
 }
 
-// Finds triangles for crossings, old points and the vertex itself; false where one is too far.
+// Assigns crossings, existing points and the vertex itself to triangles; false if one is too far.
 bool place_points(const Patch& patch, const Ring& ring, const RingShape& shape,
-                  const NewTriangles& made, const Collapse& collapse, double most, double* farthest,
-                  Outcome* outcome) {
+                  const NewTriangles& new_triangles, const Collapse& collapse, double most,
+                  double* farthest, CollapseOutcome* outcome) {
   const std::size_t spoke = collapse.spoke;
   for (const Vector3& p : outcome->added) {
-    const std::int32_t i = find_near(made, ring, spoke, p, spoke, most, farthest);
+    const std::int32_t i = find_nearest(new_triangles, ring, spoke, p, spoke, most, farthest);
     if (i < 0) return false;
-    outcome->places.push_back({-1, i});
+    outcome->placements.push_back({-1, i});
   }
   for (std::size_t i = 0; shape.has_points && i < ring.size; ++i) {
     for (std::int32_t p = patch.triangle(ring.triangles[i]).first_point; p >= 0;
          p = patch.points[as_index(p)].next) {
-      const std::int32_t place =
-          find_near(made, ring, spoke, patch.points[as_index(p)].position, i, most, farthest);
+      const std::int32_t place = find_nearest(
+          new_triangles, ring, spoke, patch.points[as_index(p)].position, i, most, farthest);
       if (place < 0) return false;
-      outcome->places.push_back({p, place});
+      outcome->placements.push_back({p, place});
     }
   }
   return true;
 }
 }  // namespace
 
-bool is_sound(const Patch& patch, const PatchLinks& links, const Ring& ring,
-              const Collapse& collapse, std::vector<std::int32_t>* slots) {
+bool keeps_manifold(const Patch& patch, const PatchLinks& links, const Ring& ring,
+                    const Collapse& collapse, std::vector<std::int32_t>* slots) {
   const std::int32_t v = ring.vertices[collapse.spoke];
   const std::size_t after = ring.next(collapse.spoke);
   const std::size_t before = ring.before(collapse.spoke);
@@ -109,7 +111,7 @@ CreaseOutcome crease_outcome(const Patch& patch, const Ring& ring, const Collaps
   const std::size_t spoke = collapse.spoke;
   const std::size_t before = ring.before(spoke);
   CreaseOutcome outcome;
-  // Triangle `spoke` is (u, v, after), `before` is (u, before, v).
+  // Triangle `spoke` is (u, v, after), triangle `before` is (u, before, v).
   if ((side_is_crease(patch, ring, spoke, 1) && ring.is_crease[ring.next(spoke)]) ||
       (side_is_crease(patch, ring, before, 1) && ring.is_crease[before])) {
     outcome.is_kept = false;
@@ -133,40 +135,41 @@ CreaseOutcome crease_outcome(const Patch& patch, const Ring& ring, const Collaps
 }
 
 bool make_triangles(const Patch& patch, const Ring& ring, const RingShape& shape,
-                    const Collapse& collapse, NewTriangles* made) {
+                    const Collapse& collapse, NewTriangles* new_triangles) {
   const std::size_t before = ring.before(collapse.spoke);
   const Vector3& to = patch.point(ring.vertices[collapse.spoke]);
   for (std::size_t i = 0; i < ring.size; ++i) {
     if (i == collapse.spoke || i == before) continue;
     const Vector3& p = patch.point(ring.vertices[i]);
     const Vector3& q = patch.point(ring.vertices[ring.next(i)]);
-    MeasuredTriangle& one = (*made)[i];
-    one = MeasuredTriangle(to, p, q);
+    MeasuredTriangle& new_triangle = (*new_triangles)[i];
+    new_triangle = MeasuredTriangle(to, p, q);
     const double longest =
         std::max({squared_length(p - to), squared_length(q - to), squared_length(q - p)});
-    if (!(one.squared_normal >= shape.squared_height * longest && one.squared_normal > 0.0)) {
+    if (!(new_triangle.squared_normal >= shape.squared_height * longest &&
+          new_triangle.squared_normal > 0.0)) {
       return false;
     }
     const bool is_free = shape.is_sliver[i];
-    const double along =
-        dot(one.normal, is_free ? shape.sector_normals[shape.sectors[i]] : shape.normals[i]);
-    const double least = is_free ? kSliverLeastCosine * kSliverLeastCosine
-                                 : kLeastCosine * kLeastCosine * shape.squared_normals[i];
-    if (!(along > 0.0 && along * along >= least * one.squared_normal)) return false;
+    const double along = dot(new_triangle.normal,
+                             is_free ? shape.sector_normals[shape.sectors[i]] : shape.normals[i]);
+    const double least = is_free ? kMinSliverTurnCosine * kMinSliverTurnCosine
+                                 : kMinTurnCosine * kMinTurnCosine * shape.squared_normals[i];
+    if (!(along > 0.0 && along * along >= least * new_triangle.squared_normal)) return false;
   }
   return true;
 }
 
-std::int32_t find_near(const NewTriangles& made, const Ring& ring, std::size_t spoke,
-                       const Vector3& point, std::size_t hint, double most, double* farthest) {
+std::int32_t find_nearest(const NewTriangles& new_triangles, const Ring& ring, std::size_t spoke,
+                          const Vector3& point, std::size_t hint, double most, double* farthest) {
   const std::size_t before = ring.before(spoke);
   const double accepted = 0.25 * most;
   double least = kInfinity;
   std::size_t best = hint;
-  if (hint != spoke && hint != before) least = made[hint].squared_distance(point);
+  if (hint != spoke && hint != before) least = new_triangles[hint].squared_distance(point);
   for (std::size_t i = 0; i < ring.size && least > accepted; ++i) {
     if (i == spoke || i == before || i == hint) continue;
-    const double squared = made[i].squared_distance(point);
+    const double squared = new_triangles[i].squared_distance(point);
     if (squared < least) {
       least = squared;
       best = i;
@@ -202,19 +205,19 @@ double measure_crossings(const Patch& patch, const Ring& ring, const RingShape& 
       const double gap = std::abs(dot(apart, normal)) / std::sqrt(size);
       if (!(gap <= most)) return -1.0;
       largest = std::max(largest, gap);
-      if (gap > kCrossing) crossings->push_back(from + (along_old / size) * old_side);
+      if (gap > kMinCrossingGap) crossings->push_back(from + (along_old / size) * old_side);
     }
   }
   return largest;
 }
 
-double measure_places(const Patch& patch, const Ring& ring, const NewTriangles& made,
-                      const Collapse& collapse, double most, std::vector<Vector3>* crossings) {
+double measure_samples(const Patch& patch, const Ring& ring, const NewTriangles& new_triangles,
+                       const Collapse& collapse, double most, std::vector<Vector3>* crossings) {
   const std::size_t spoke = collapse.spoke;
   const std::size_t before = ring.before(spoke);
   const Vector3& from = patch.point(collapse.vertex);
   const Vector3& to = patch.point(ring.vertices[spoke]);
-  std::array<MeasuredTriangle, kMostNeighbors> old;
+  std::array<MeasuredTriangle, kMaxNeighbors> old;
   for (std::size_t i = 0; i < ring.size; ++i) {
     old[i] = MeasuredTriangle(from, patch.point(ring.vertices[i]),
                               patch.point(ring.vertices[ring.next(i)]));
@@ -224,10 +227,10 @@ double measure_places(const Patch& patch, const Ring& ring, const NewTriangles& 
     double least = kInfinity;
     for (std::size_t i = 0; i < ring.size; ++i) {
       if (is_old && (i == spoke || i == before)) continue;
-      least = std::min(least, (is_old ? made : old)[i].squared_distance(p));
+      least = std::min(least, (is_old ? new_triangles : old)[i].squared_distance(p));
     }
     largest = std::max(largest, least);
-    if (is_old && least > kCrossing * kCrossing) crossings->push_back(p);
+    if (is_old && least > kMinCrossingGap * kMinCrossingGap) crossings->push_back(p);
     return least <= most * most;
   };
   for (std::size_t i = 0; i < ring.size; ++i) {
@@ -246,17 +249,17 @@ double measure_places(const Patch& patch, const Ring& ring, const NewTriangles& 
   return std::sqrt(largest);
 }
 
-bool stays_near(const Patch& patch, const Ring& ring, const RingShape& shape,
-                const NewTriangles& made, const CreaseOutcome& creases, const Collapse& collapse,
-                Outcome* outcome) {
-  outcome->places.clear();
+bool is_within_tolerance(const Patch& patch, const Ring& ring, const RingShape& shape,
+                         const NewTriangles& new_triangles, const CreaseOutcome& creases,
+                         const Collapse& collapse, CollapseOutcome* outcome) {
+  outcome->placements.clear();
   outcome->added.clear();
   outcome->error = shape.error;
   outcome->deviation = shape.deviation;
   outcome->crease_error = creases.error;
   outcome->adds_points = false;
   const double bound = shape.error + shape.range + creases.moved;
-  if (!shape.has_points && !shape.is_bent && bound <= kAddedUp) {
+  if (!shape.has_points && !shape.is_bent && bound <= kMaxAccumulatedError) {
     outcome->error = bound;
     return true;
   }
@@ -264,31 +267,36 @@ bool stays_near(const Patch& patch, const Ring& ring, const RingShape& shape,
   const std::size_t spoke = collapse.spoke;
   const Vector3& at = patch.point(collapse.vertex);
   double farthest = 0.0;
-  const std::int32_t near = find_near(made, ring, spoke, at, spoke, most * most, &farthest);
+  const std::int32_t near =
+      find_nearest(new_triangles, ring, spoke, at, spoke, most * most, &farthest);
   if (near < 0) return false;
   double gap = measure_crossings(patch, ring, shape, collapse, most, &outcome->added);
   if (gap < 0.0) return false;
-  // Where the ring has no direction from which it is seen as a whole, crossings are not all.
+  // If the ring cannot be projected as a whole, crossings do not bound the distance; sample
+  // instead.
   if (shape.is_bent) {
-    const double other = measure_places(patch, ring, made, collapse, most, &outcome->added);
+    const double other =
+        measure_samples(patch, ring, new_triangles, collapse, most, &outcome->added);
     if (other < 0.0) return false;
     gap = std::max(gap, other);
   }
   if (!shape.has_points) {
-    const double moved = std::max(gap, std::sqrt(made[as_index(near)].squared_distance(at)));
-    if (shape.error + moved <= kAddedUp) {
+    const double moved =
+        std::max(gap, std::sqrt(new_triangles[as_index(near)].squared_distance(at)));
+    if (shape.error + moved <= kMaxAccumulatedError) {
       outcome->error = shape.error + moved;
       return true;
     }
   }
-  if (!place_points(patch, ring, shape, made, collapse, most * most, &farthest, outcome)) {
+  if (!place_points(patch, ring, shape, new_triangles, collapse, most * most, &farthest, outcome)) {
     return false;
   }
-  outcome->deviation = std::min(
-      shape.deviation + gap, std::sqrt(farthest) + rise(ring, shape, made, spoke, patch.spacing));
+  outcome->deviation =
+      std::min(shape.deviation + gap,
+               std::sqrt(farthest) + rise(ring, shape, new_triangles, spoke, patch.spacing));
   if (!(outcome->deviation <= most)) return false;
   outcome->added.push_back(at);
-  outcome->places.push_back({-1, near});
+  outcome->placements.push_back({-1, near});
   outcome->adds_points = true;
   return true;
 }

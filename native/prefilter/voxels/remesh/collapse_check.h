@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Whether a vertex of a patch may be collapsed onto a neighbor.
+// Checks whether a vertex of a patch may be collapsed onto a neighbor.
 #pragma once
 
 #include <array>
@@ -15,67 +15,68 @@
 
 namespace prefilter {
 
-/// A vertex that would go to a neighbor: number `spoke` of its ring. The ring's triangles before
-/// and behind that go as well.
+/// Collapse of a vertex onto neighbor number `spoke` of its ring. The ring's triangles before and
+/// after the neighbor disappear.
 struct Collapse {
   std::int32_t vertex;
   std::size_t spoke;
 };
 
-/// The ring's triangles after a collapse, where they are not gone.
-using NewTriangles = std::array<MeasuredTriangle, kMostNeighbors>;
+/// The ring's triangles after a collapse; the two that disappear are unset.
+using NewTriangles = std::array<MeasuredTriangle, kMaxNeighbors>;
 
-/// Whether what comes out is a two-manifold again, whatever other patches do to the vertices that
-/// they share with this one. `slots` has a place for each vertex, and is left with anything in it.
-bool is_sound(const Patch& patch, const PatchLinks& links, const Ring& ring,
-              const Collapse& collapse, std::vector<std::int32_t>* slots);
+/// Whether the result is a two-manifold, whatever other patches do to shared vertices. `slots` is
+/// scratch space with one entry per vertex.
+bool keeps_manifold(const Patch& patch, const PatchLinks& links, const Ring& ring,
+                    const Collapse& collapse, std::vector<std::int32_t>* slots);
 
-/// What becomes of creases through the vertex.
+/// Effect on creases through the vertex.
 struct CreaseOutcome {
-  bool is_kept = true;  // they do not meet others, turn back, or move by more than the tolerance
+  // they neither meet others, nor turn back, nor move by more than the tolerance
+  bool is_kept = true;
   double error = 0.0;
   double moved = 0.0;
 };
 CreaseOutcome crease_outcome(const Patch& patch, const Ring& ring, const Collapse& collapse);
 
-/// False where a triangle would turn by more than 30 degrees, or be too thin.
+/// Computes the new triangles; false if one would turn by more than 30 degrees or become too thin.
 bool make_triangles(const Patch& patch, const Ring& ring, const RingShape& shape,
-                    const Collapse& collapse, NewTriangles* made);
+                    const Collapse& collapse, NewTriangles* new_triangles);
 
-/// The ring's triangle whose new one is nearest to a point, where its squared distance, which
-/// `farthest` is raised to, is at most `most`; -1 where none is. The one that it was near to,
-/// `hint`, comes first, and will do where it is very near.
-std::int32_t find_near(const NewTriangles& made, const Ring& ring, std::size_t spoke,
-                       const Vector3& point, std::size_t hint, double most, double* farthest);
+/// Index of the new triangle nearest to a point if its squared distance is at most `most`; -1
+/// otherwise. Raises `farthest` to that distance. `hint`, the triangle that the point was near to,
+/// is tested first, and accepted if it is very near.
+std::int32_t find_nearest(const NewTriangles& new_triangles, const Ring& ring, std::size_t spoke,
+                          const Vector3& point, std::size_t hint, double most, double* farthest);
 
-/// The largest distance between old and new edges where they cross; -1 where it is above `most`.
-/// Adds the places on the old ones where it is more than a tenth of the tolerance.
+/// The largest distance between old and new edges where they cross in projection; -1 if it exceeds
+/// `most`. Adds the points of old edges where it exceeds a tenth of the tolerance.
 double measure_crossings(const Patch& patch, const Ring& ring, const RingShape& shape,
                          const Collapse& collapse, double most, std::vector<Vector3>* crossings);
 
-/// The largest distance of places on old triangles from new ones and of new ones from old ones; -1
-/// where it is above `most`. Adds those on old ones as measure_crossings does.
-double measure_places(const Patch& patch, const Ring& ring, const NewTriangles& made,
-                      const Collapse& collapse, double most, std::vector<Vector3>* crossings);
+/// The largest distance of sample points on old triangles from new ones, and vice versa; -1 if it
+/// exceeds `most`. Adds points of old triangles as measure_crossings does.
+double measure_samples(const Patch& patch, const Ring& ring, const NewTriangles& new_triangles,
+                       const Collapse& collapse, double most, std::vector<Vector3>* crossings);
 
-/// What a collapse that may be made does to what is known of the surface given up.
-struct Outcome {
+/// Effect of an allowed collapse on the record of the original surface.
+struct CollapseOutcome {
   double error = 0.0;
   double deviation = 0.0;
   double crease_error = 0.0;
-  /// Points of the surface given up, if they are kept: each goes to a triangle of the ring.
-  struct Place {
+  /// Points of the original surface that are kept, with the triangle of the ring for each.
+  struct Placement {
     std::int32_t point;  // -1: one of `added`, in order
     std::int32_t triangle;
   };
-  std::vector<Place> places;
+  std::vector<Placement> placements;
   std::vector<Vector3> added;
   bool adds_points = false;
 };
 
-/// Whether the surface stays within the tolerance. `made` are as make_triangles leaves them.
-bool stays_near(const Patch& patch, const Ring& ring, const RingShape& shape,
-                const NewTriangles& made, const CreaseOutcome& creases, const Collapse& collapse,
-                Outcome* outcome);
+/// Whether the surface stays within the tolerance. `new_triangles` is the result of make_triangles.
+bool is_within_tolerance(const Patch& patch, const Ring& ring, const RingShape& shape,
+                         const NewTriangles& new_triangles, const CreaseOutcome& creases,
+                         const Collapse& collapse, CollapseOutcome* outcome);
 
 }  // namespace prefilter

@@ -10,12 +10,12 @@ namespace {
 
 constexpr double kCreaseCosine = 0.9659258262890683;  // 15 degrees
 
-// Of a triangle, by its lower and its higher end.
-struct Side {
+// Side of a triangle, by its lower and its higher vertex.
+struct CreaseSide {
   std::int32_t low;
   std::int32_t high;
   std::uint32_t side;
-  bool operator<(const Side& other) const {
+  bool operator<(const CreaseSide& other) const {
     if (low != other.low) return low < other.low;
     return high != other.high ? high < other.high : side < other.side;
   }
@@ -28,13 +28,13 @@ Vector3 unit_normal(const Patch& patch, const PatchTriangle& t) {
   return {n[0] / size, n[1] / size, n[2] / size};
 }
 
-// Those that creases may be at, in order.
-std::vector<Side> sides_of(std::span<const VertexKind> kinds,
-                           std::span<const std::int32_t> vertices, const Patch& patch) {
+// Sides that may be creases, sorted.
+std::vector<CreaseSide> sides_of(std::span<const VertexKind> kinds,
+                                 std::span<const std::int32_t> vertices, const Patch& patch) {
   const auto is_surface = [&](std::int32_t v) {
     return !kinds.empty() && kinds[as_index(vertices[as_index(v)])] == VertexKind::kSurface;
   };
-  std::vector<Side> sides;
+  std::vector<CreaseSide> sides;
   for (std::size_t t = 0; t < patch.triangles.size(); ++t) {
     const auto& corners = patch.triangles[t].corners;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -63,14 +63,14 @@ void keep_corners(std::span<const VertexKind> kinds, std::span<const std::int32_
   }
   for (std::size_t v = 0; v < vertices.size(); ++v) {
     if (kinds[as_index(vertices[v])] != VertexKind::kCorner || counts[v] == 2) continue;
-    patch->flags[v] = static_cast<std::uint8_t>(patch->flags[v] | Patch::kKept);
+    patch->flags[v] = static_cast<std::uint8_t>(patch->flags[v] | Patch::kFixed);
   }
 }
 }  // namespace
 
 PatchVertices number_vertices(const PatchDivision& division, std::size_t patch,
                               std::span<const std::array<std::int32_t, 3>> triangles,
-                              std::vector<std::int32_t>* places) {
+                              std::vector<std::int32_t>* vertex_indices) {
   PatchVertices vertices;
   std::vector<std::int32_t>& all = vertices.all;
   for (const std::uint32_t t : division.triangles(patch)) {
@@ -85,9 +85,9 @@ PatchVertices number_vertices(const PatchDivision& division, std::size_t patch,
   for (const std::uint32_t t : division.triangles(patch)) {
     for (const std::int32_t v : triangles[t]) {
       if (division.owners[as_index(v)] != owner) continue;
-      const auto place = as_index((*places)[as_index(v)]);
+      const auto place = as_index((*vertex_indices)[as_index(v)]);
       if (place < all.size() && place >= vertices.shared && all[place] == v) continue;
-      (*places)[as_index(v)] = static_cast<std::int32_t>(all.size());
+      (*vertex_indices)[as_index(v)] = static_cast<std::int32_t>(all.size());
       all.push_back(v);
     }
   }
@@ -95,36 +95,36 @@ PatchVertices number_vertices(const PatchDivision& division, std::size_t patch,
 }
 
 void take_triangles(const Facets& facets, const PatchDivision& division, std::size_t patch,
-                    const PatchVertices& vertices, const std::vector<std::int32_t>& places,
-                    const PatchFrame& frame, Patch* made) {
+                    const PatchVertices& vertices, const std::vector<std::int32_t>& vertex_indices,
+                    const PatchFrame& frame, Patch* result) {
   const auto shared = std::span(vertices.all).first(vertices.shared);
   const auto number_of = [&](std::int32_t v) {
-    if (division.owners[as_index(v)] != PatchDivision::kShared) return places[as_index(v)];
-    const auto found = std::lower_bound(shared.begin(), shared.end(), v);
-    return static_cast<std::int32_t>(found - shared.begin());
+    if (division.owners[as_index(v)] != PatchDivision::kShared) return vertex_indices[as_index(v)];
+    const auto it = std::lower_bound(shared.begin(), shared.end(), v);
+    return static_cast<std::int32_t>(it - shared.begin());
   };
   const std::span<const std::uint32_t> chosen = division.triangles(patch);
-  made->triangles.resize(chosen.size());
+  result->triangles.resize(chosen.size());
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const std::uint32_t t = chosen[i];
-    PatchTriangle& one = made->triangles[i];
-    for (std::size_t k = 0; k < 3; ++k) one.corners[k] = number_of(facets.triangles[t][k]);
-    if (!facets.labels.empty()) one.label = facets.labels[t];
-    if (!facets.creases.empty()) one.creases = facets.creases[t];
-    if (!facets.errors.empty()) one.error = facets.errors[t];
-    if (!facets.deviations.empty()) one.deviation = facets.deviations[t];
-    if (!facets.crease_errors.empty()) one.crease_errors = facets.crease_errors[t];
+    PatchTriangle& copy = result->triangles[i];
+    for (std::size_t k = 0; k < 3; ++k) copy.corners[k] = number_of(facets.triangles[t][k]);
+    if (!facets.labels.empty()) copy.label = facets.labels[t];
+    if (!facets.creases.empty()) copy.creases = facets.creases[t];
+    if (!facets.errors.empty()) copy.error = facets.errors[t];
+    if (!facets.deviations.empty()) copy.deviation = facets.deviations[t];
+    if (!facets.crease_errors.empty()) copy.crease_errors = facets.crease_errors[t];
     if (facets.point_ends.empty()) continue;
     for (std::uint32_t p = t == 0 ? 0 : facets.point_ends[t - 1]; p < facets.point_ends[t]; ++p) {
-      made->points.push_back({frame.local(facets.points[p]), one.first_point});
-      one.first_point = static_cast<std::int32_t>(made->points.size()) - 1;
+      result->points.push_back({frame.local(facets.points[p]), copy.first_point});
+      copy.first_point = static_cast<std::int32_t>(result->points.size()) - 1;
     }
   }
 }
 
 void find_creases(std::span<const VertexKind> kinds, std::span<const std::int32_t> vertices,
                   Patch* patch) {
-  const std::vector<Side> sides = sides_of(kinds, vertices, *patch);
+  const std::vector<CreaseSide> sides = sides_of(kinds, vertices, *patch);
   for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
     if (sides[i].low != sides[i + 1].low || sides[i].high != sides[i + 1].high) continue;
     const PatchTriangle& a = patch->triangles[sides[i].side / 3];
@@ -142,40 +142,40 @@ void find_creases(std::span<const VertexKind> kinds, std::span<const std::int32_
 
 Facets facets_of(const Patch& patch, std::span<const std::int32_t> vertices,
                  const PatchFrame& frame, bool has_labels, bool has_creases) {
-  Facets made;
+  Facets result;
   for (const PatchTriangle& t : patch.triangles) {
     if (t.corners[0] == t.corners[1]) continue;
-    made.triangles.push_back({vertices[as_index(t.corners[0])], vertices[as_index(t.corners[1])],
-                              vertices[as_index(t.corners[2])]});
-    if (has_labels) made.labels.push_back(t.label);
+    result.triangles.push_back({vertices[as_index(t.corners[0])], vertices[as_index(t.corners[1])],
+                                vertices[as_index(t.corners[2])]});
+    if (has_labels) result.labels.push_back(t.label);
     if (has_creases) {
-      made.creases.push_back(t.creases);
-      made.crease_errors.push_back(t.crease_errors);
+      result.creases.push_back(t.creases);
+      result.crease_errors.push_back(t.crease_errors);
     }
-    made.errors.push_back(t.error);
-    made.deviations.push_back(t.deviation);
+    result.errors.push_back(t.error);
+    result.deviations.push_back(t.deviation);
     for (std::int32_t p = t.first_point; p >= 0; p = patch.points[as_index(p)].next) {
-      made.points.push_back(frame.global(patch.points[as_index(p)].position));
+      result.points.push_back(frame.global(patch.points[as_index(p)].position));
     }
-    made.point_ends.push_back(static_cast<std::uint32_t>(made.points.size()));
+    result.point_ends.push_back(static_cast<std::uint32_t>(result.points.size()));
   }
-  return made;
+  return result;
 }
 
-void append(Facets* some, Facets* all) {
+void append(Facets* facets, Facets* all) {
   const auto add = [](const auto& from, auto* to) {
     to->insert(to->end(), from.begin(), from.end());
   };
   const auto first = static_cast<std::uint32_t>(all->points.size());
-  add(some->triangles, &all->triangles);
-  add(some->labels, &all->labels);
-  add(some->creases, &all->creases);
-  add(some->errors, &all->errors);
-  add(some->deviations, &all->deviations);
-  add(some->crease_errors, &all->crease_errors);
-  add(some->points, &all->points);
-  for (const std::uint32_t end : some->point_ends) all->point_ends.push_back(first + end);
-  *some = {};
+  add(facets->triangles, &all->triangles);
+  add(facets->labels, &all->labels);
+  add(facets->creases, &all->creases);
+  add(facets->errors, &all->errors);
+  add(facets->deviations, &all->deviations);
+  add(facets->crease_errors, &all->crease_errors);
+  add(facets->points, &all->points);
+  for (const std::uint32_t end : facets->point_ends) all->point_ends.push_back(first + end);
+  *facets = {};
 }
 
 }  // namespace prefilter

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Triangles between two times that vertices of patches are removed.
+// Triangles with their simplification history, between two passes over patches.
 #pragma once
 
 #include <array>
@@ -15,7 +15,8 @@
 
 namespace prefilter {
 
-/// Triangles with what Patch knows of them; what is empty is 0 everywhere. Points are the mesh's.
+/// Triangles with the data that Patch stores about them; empty arrays mean 0 everywhere. Points are
+/// in the mesh's coordinates.
 struct Facets {
   std::vector<std::array<std::int32_t, 3>> triangles;
   std::vector<std::int32_t> labels;
@@ -23,11 +24,11 @@ struct Facets {
   std::vector<float> errors;
   std::vector<float> deviations;
   std::vector<std::array<float, 3>> crease_errors;
-  std::vector<std::uint32_t> point_ends;  // of each triangle's points
+  std::vector<std::uint32_t> point_ends;  // end of each triangle's points
   std::vector<Vector3> points;
 };
 
-/// From a mesh's lengths to a patch's, and back.
+/// Converts between the coordinates of a mesh and of a patch.
 struct PatchFrame {
   Vector3 origin;
   double tolerance;
@@ -41,32 +42,33 @@ struct PatchFrame {
   }
 };
 
-/// The mesh's vertices of a patch, those that it shares first, in order.
+/// The mesh vertices of a patch, beginning with the shared ones, sorted.
 struct PatchVertices {
   std::vector<std::int32_t> all;
   std::size_t shared = 0;
 };
 
-/// `places` has one for each vertex of the mesh: those that are the patch's own get their number.
+/// Numbers the vertices of a patch. `vertex_indices` has one entry per vertex of the mesh; those
+/// that the patch owns receive their number.
 PatchVertices number_vertices(const PatchDivision& division, std::size_t patch,
                               std::span<const std::array<std::int32_t, 3>> triangles,
-                              std::vector<std::int32_t>* places);
+                              std::vector<std::int32_t>* vertex_indices);
 
-/// The triangles of a patch, with what is known of them, and its points.
+/// Copies the triangles of a patch, with their history and points.
 void take_triangles(const Facets& facets, const PatchDivision& division, std::size_t patch,
-                    const PatchVertices& vertices, const std::vector<std::int32_t>& places,
-                    const PatchFrame& frame, Patch* made);
+                    const PatchVertices& vertices, const std::vector<std::int32_t>& vertex_indices,
+                    const PatchFrame& frame, Patch* result);
 
-/// Sets the creases of sides whose other triangle is in the patch, and keeps the corners where not
-/// just two creases meet. `kinds` are those of the mesh, or none.
+/// Marks as creases all sides whose other triangle is in the patch too, and fixes corners at which
+/// the number of creases is not two. `kinds` are those of the mesh, or empty.
 void find_creases(std::span<const VertexKind> kinds, std::span<const std::int32_t> vertices,
                   Patch* patch);
 
-/// What is left of a patch.
+/// The remaining triangles of a patch.
 Facets facets_of(const Patch& patch, std::span<const std::int32_t> vertices,
                  const PatchFrame& frame, bool has_labels, bool has_creases);
 
-/// Adds facets, and leaves none.
-void append(Facets* some, Facets* all);
+/// Moves facets to the end of `all`.
+void append(Facets* facets, Facets* all);
 
 }  // namespace prefilter

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Where the normals around a vertex are all within 60 degrees of one of them no edge at it folds:
-// that leaves few vertices, and the edges between these.
+// No edge at a vertex folds if all normals around it are within 60 degrees of one of them. That
+// leaves few vertices, and the edges between these.
 #include "prefilter/voxels/remesh/folds.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 using Flags = std::vector<std::uint8_t>;
 
-// A side of a triangle from one end to a higher one.
+// Side of a triangle, from its lower to its higher vertex.
 struct FoldSide {
   std::uint32_t low;
   std::uint32_t high;
@@ -28,7 +28,7 @@ Vector3 normal_of(const MeshView<std::int32_t>& mesh, std::size_t t) {
 
 using Normal = std::array<float, 3>;
 
-// Of length 1; 0 where there is none.
+// The normal of length 1; 0 for triangles without area.
 Normal unit_normal(const MeshView<std::int32_t>& mesh, std::size_t t) {
   const Vector3 normal = normal_of(mesh, t);
   const double size = std::sqrt(dot(normal, normal));
@@ -38,10 +38,10 @@ Normal unit_normal(const MeshView<std::int32_t>& mesh, std::size_t t) {
           static_cast<float>(scale * normal[2])};
 }
 
-// Those of the vertices at which some normal is more than 60 degrees from the first one.
+// Flags vertices with a normal more than 60 degrees from the first one.
 Flags rough_vertices(const MeshView<std::int32_t>& mesh, std::size_t first, const Flags& is_touched,
                      CancelCheck* cancel_check) {
-  constexpr float kLeast = 0.51F;  // cosine
+  constexpr float kMinSimilarCosine = 0.51F;  // cosine
   std::vector<std::uint32_t> places(mesh.positions.size());
   std::uint32_t count = 0;
   for (std::size_t v = 0; v < places.size(); ++v) {
@@ -61,17 +61,18 @@ Flags rough_vertices(const MeshView<std::int32_t>& mesh, std::size_t first, cons
     for (const std::int32_t corner : corners) {
       const auto v = static_cast<std::size_t>(corner);
       if (is_touched[v] == 0) continue;
-      Normal& one = firsts[places[v]];
-      if (one == Normal{}) one = normal;
-      const float cosine = normal[0] * one[0] + normal[1] * one[1] + normal[2] * one[2];
-      // Also where there is none.
-      if (!(cosine > kLeast)) is_rough[v] = 1;
+      Normal& first_normal = firsts[places[v]];
+      if (first_normal == Normal{}) first_normal = normal;
+      const float cosine =
+          normal[0] * first_normal[0] + normal[1] * first_normal[1] + normal[2] * first_normal[2];
+      // Also true for triangles without a normal.
+      if (!(cosine > kMinSimilarCosine)) is_rough[v] = 1;
     }
   }
   return is_rough;
 }
 
-// Those between two flagged vertices, in the order of their lower ends.
+// Sides between two flagged vertices, in order of their lower ends.
 std::vector<FoldSide> sides_between(const MeshView<std::int32_t>& mesh, std::size_t first,
                                     const Flags& is_flagged, CancelCheck* cancel_check) {
   std::vector<FoldSide> sides;

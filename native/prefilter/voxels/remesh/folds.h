@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Where a mesh is folded.
+// Finds the folds of a mesh.
 #pragma once
 
 #include <array>
@@ -14,11 +14,11 @@
 
 namespace prefilter {
 
-/// The cosine between normals of two triangles at an edge that is a fold: 120 degrees.
+/// Cosine between the normals of adjacent triangles below which their edge is a fold: 120 degrees.
 inline constexpr double kFold = -0.5;
 
-/// The pairs of triangles with such an edge, of all from `first` on, with one suspect at least;
-/// without flags all are. Throws Error(kCancelled).
+/// Pairs of adjacent triangles that are folded, among triangles from `first` on, with at least one
+/// suspect; if there are no flags, all are suspect. Throws Error(kCancelled).
 std::vector<std::array<std::uint32_t, 2>> folded_pairs(const MeshView<std::int32_t>& mesh,
                                                        std::size_t first,
                                                        std::span<const std::uint8_t> is_suspect,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A tree of boxes over the triangles; then pairs of triangles whose boxes meet.
+// Builds a tree of boxes over the triangles, and tests pairs of triangles whose boxes overlap.
 #include "prefilter/voxels/remesh/intersections.h"
 
 #include <algorithm>
@@ -25,16 +25,16 @@ constexpr std::int64_t kLeavesPerTask = 1 << 8;
 using Mesh = MeshView<std::int32_t>;
 using Pair = std::array<std::uint32_t, 2>;
 
-// A triangle by its leaf and its place in that.
+// A triangle, by its leaf and its index in the leaf.
 struct Suspect {
   std::size_t leaf;
-  unsigned place;
+  unsigned slot;
 };
 
-// The sizes of coordinates, and the box of the positions that triangles have.
+// Range of the coordinates' magnitudes, and bounding box.
 struct Extent {
   Box box = kEmptyBox;
-  double smallest = std::numeric_limits<double>::infinity();  // but for 0
+  double smallest = std::numeric_limits<double>::infinity();  // except 0
   double largest = 0.0;
 
   void include(const Vector3& point) {
@@ -52,7 +52,7 @@ struct Extent {
   }
 };
 
-// Of all positions, or of the corners of triangles where that are fewer.
+// Extent of all positions, or of the triangles' corners if these are fewer.
 Extent extent_of(const Mesh& mesh, const Progress& progress, int threads) {
   const bool is_small = 3 * mesh.triangles.size() < mesh.positions.size();
   const auto rows =
@@ -74,7 +74,7 @@ Extent extent_of(const Mesh& mesh, const Progress& progress, int threads) {
   return all;
 }
 
-// Scaled by a power of two, and without what is too small beside the largest.
+// Positions scaled by a power of two, with relatively tiny coordinates set to 0.
 std::vector<Vector3> in_exact_range(std::span<const Vector3> positions, double largest) {
   int exponent = 0;
   std::frexp(largest, &exponent);
@@ -95,26 +95,26 @@ Corners corners_of(const Mesh& mesh, const TriangleLeaf& leaf, std::size_t i) {
           leaf.vertices[i]};
 }
 
-// Those of a suspect with triangles of another leaf, or of its own.
+// Appends the pairs of a suspect with triangles of another leaf, or of its own.
 void find_pairs(const Mesh& mesh, const TriangleTree& tree, const Suspect& suspect,
                 const FloatBox& box, const Corners& corners, std::size_t other_at,
                 std::vector<Pair>* pairs) {
   const auto [at, i] = suspect;
   const TriangleLeaf& leaf = tree.leaves[at];
   const TriangleLeaf& other = tree.leaves[other_at];
-  unsigned met = other.meeting(box) & ~other.degenerate;
-  // Two suspects are a pair of the first one.
-  if (other_at < at) met &= ~other.suspects;
-  if (other_at == at) met &= ~(other.suspects & ((2U << i) - 1U));
-  for (; met != 0; met &= met - 1U) {
-    const auto k = static_cast<std::size_t>(std::countr_zero(met));
+  unsigned hits = other.overlap_mask(box) & ~other.degenerate;
+  // A pair of two suspects is reported for the first one only.
+  if (other_at < at) hits &= ~other.suspects;
+  if (other_at == at) hits &= ~(other.suspects & ((2U << i) - 1U));
+  for (; hits != 0; hits &= hits - 1U) {
+    const auto k = static_cast<std::size_t>(std::countr_zero(hits));
     if (!do_intersect(corners, corners_of(mesh, other, k))) continue;
     const auto [low, high] = std::minmax(leaf.triangles[i], other.triangles[k]);
     pairs->push_back({low, high});
   }
 }
 
-// Those of the suspects of a leaf.
+// Appends the pairs of all suspects of a leaf.
 void find_at(const Mesh& mesh, const TriangleTree& tree, std::size_t at, NearLeaves* near,
              std::vector<Pair>* pairs) {
   const TriangleLeaf& leaf = tree.leaves[at];
@@ -130,8 +130,8 @@ void find_at(const Mesh& mesh, const TriangleTree& tree, std::size_t at, NearLea
     const FloatBox box = leaf.box(i);
     const Corners corners = corners_of(mesh, leaf, i);
     for (std::size_t four = 0; four < near->boxes.size(); ++four) {
-      for (unsigned met = near->boxes[four].meeting(box); met != 0; met &= met - 1U) {
-        const auto k = static_cast<std::size_t>(std::countr_zero(met));
+      for (unsigned hits = near->boxes[four].overlap_mask(box); hits != 0; hits &= hits - 1U) {
+        const auto k = static_cast<std::size_t>(std::countr_zero(hits));
         find_pairs(mesh, tree, {at, i}, box, corners, near->leaves[4 * four + k], pairs);
       }
     }
@@ -141,10 +141,10 @@ void find_at(const Mesh& mesh, const TriangleTree& tree, std::size_t at, NearLea
 std::vector<Pair> find_all(const Mesh& mesh, const TriangleTree& tree, const Progress& progress,
                            int threads) {
   const auto leaves = static_cast<std::int64_t>(tree.leaves.size());
-  std::vector<std::vector<Pair>> found(
+  std::vector<std::vector<Pair>> lists(
       static_cast<std::size_t>(range_count(leaves, kLeavesPerTask)));
   const auto find_some = [&](std::int64_t begin, std::int64_t end) {
-    std::vector<Pair>& pairs = found[static_cast<std::size_t>(begin / kLeavesPerTask)];
+    std::vector<Pair>& pairs = lists[static_cast<std::size_t>(begin / kLeavesPerTask)];
     NearLeaves near;
     for (std::int64_t leaf = begin; leaf < end; ++leaf) {
       find_at(mesh, tree, static_cast<std::size_t>(leaf), &near, &pairs);
@@ -152,7 +152,7 @@ std::vector<Pair> find_all(const Mesh& mesh, const TriangleTree& tree, const Pro
   };
   parallel_ranges(leaves, kLeavesPerTask, threads, progress.part(0.0, 0.95), find_some);
   std::vector<Pair> all;
-  for (const std::vector<Pair>& pairs : found) all.insert(all.end(), pairs.begin(), pairs.end());
+  for (const std::vector<Pair>& pairs : lists) all.insert(all.end(), pairs.begin(), pairs.end());
   sort_in_parallel(&all, progress.part(0.95, 1.0), threads);
   return all;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Where a mesh meets itself.
+// Finds intersecting triangles of a mesh.
 #pragma once
 
 #include <array>
@@ -13,15 +13,15 @@
 
 namespace prefilter {
 
-/// The pairs of triangles, one of them or both suspect, that have more points in common than the
-/// vertices and edges that they share: those that cross, overlap or touch. Vertices are shared by
-/// index, so that those at equal positions touch. A triangle whose corners are on one line makes a
-/// pair with itself, and with no other one. No suspects: all are.
+/// Pairs of triangles, at least one of them suspect, that intersect (cross, overlap or touch)
+/// beyond the vertices and edges that they share. Vertices are shared by index, so distinct
+/// vertices at equal positions count as touching. A triangle with collinear corners pairs with
+/// itself, and with no other. Without flags, all triangles are suspect.
 ///
-/// Decided without rounding errors; only coordinates smaller than 1e-90 times the largest one may
-/// count as 0. Each pair once, the lower index first, in order of the indices; the same for any
-/// number of threads. Time is proportional to the triangles and the pairs whose boxes meet.
-/// Indices must name vertices, and coordinates be finite. Throws Error(kCancelled).
+/// Decided without rounding errors, except that coordinates below 1e-90 times the largest may count
+/// as 0. Each pair appears once, the lower index first, sorted; the result does not depend on the
+/// number of threads. Time is proportional to the number of triangles and of pairs whose boxes
+/// overlap. Indices must be valid and coordinates finite. Throws Error(kCancelled).
 std::vector<std::array<std::uint32_t, 2>> intersecting_triangles(
     const MeshView<std::int32_t>& mesh, std::span<const std::uint8_t> is_suspect,
     const Progress& progress, int threads);

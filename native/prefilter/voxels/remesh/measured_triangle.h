@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Distances from triangles.
+// Distances of points from triangles.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@ inline double squared_distance_to_segment(const Vector3& p, const Vector3& a, co
   return squared_length(p - (a + along * side));
 }
 
-/// A triangle that many points are measured from.
+/// A triangle prepared for distance queries.
 struct MeasuredTriangle {
   Vector3 a, b, c;
   Vector3 normal;

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Cubes with suspects are bits by a hash: where two share one, only more triangles are looked at.
-// Of triangles that follow each other many lie together: these are looked at one by one only where
-// larger cubes around all of them have suspects.
+// Marks cubes with suspects in a hashed bitmap; collisions only cause additional tests. Consecutive
+// triangles are often close together, so runs of them are tested individually only if larger cubes
+// around the whole run contain suspects.
 //
-// Where all normals in a cube are within 60 degrees of one of them a mesh does not meet itself.
-// It came, piece by piece with the same borders, of one that does not: seen along that direction
-// each piece has all of its triangles one way around, so that none covers another. Two sheets that
+// If all normals in a cube are within 60 degrees of one of them, the mesh does not intersect itself
+// there. Proof sketch: the mesh was made, piece by piece with the same borders, from one that does
+// not. Projected along that direction all triangles of a piece have the same orientation, so none
+// covers another. Between two sheets that face the same way lies one that faces the other way, and
+// it is in the cube, too.
 // face the same way have one between them that does not, which is in the cube, too.
 #include "prefilter/voxels/remesh/near_intersections.h"
 
@@ -21,28 +23,28 @@
 namespace prefilter {
 namespace {
 
-constexpr std::size_t kRun = 32;    // triangles
-constexpr double kLargeSide = 4.0;  // of cubes for runs, in sides
+constexpr std::size_t kTrianglesPerRun = 32;  // triangles tested as a run
+constexpr double kLargeCubeSides = 4.0;       // side of the cubes for runs, in sides
 
 using Cube = std::array<std::int64_t, 3>;
 using CornerPoints = std::array<Vector3, 3>;
 
-// Cubes of this side, by a hash of so many bits.
+// Hashes the cubes of a grid to a given number of bits.
 class Cubes {
  public:
-  static constexpr double kMostCubes = 512.0;
+  static constexpr double kMaxCubesPerTriangle = 512.0;  // a triangle in more counts as near all
 
   Cubes(double side, int bits) : per_side_(1.0 / side), shift_(64 - bits) {}
 
-  // Calls visit(hash) for the cubes that a triangle's box overlaps, with a margin of so many sides,
-  // until that returns true. Returns whether it did, or there are too many.
+  // Calls visit(hash) for the cubes that overlap a triangle's box, enlarged by `margin` sides,
+  // until it returns true. Returns whether it did, or whether there are too many cubes.
   template <typename Visit>
   bool any_of(const CornerPoints& corners, const Visit& visit, double margin = 0.0) const {
     Cube low;
     Cube high;
     const double count = find_range(corners, margin, &low, &high);
     if (count == 1.0) return visit(hash_of(low[0], low[1], low[2]));
-    if (!(count <= kMostCubes)) return true;
+    if (!(count <= kMaxCubesPerTriangle)) return true;
     for (std::int64_t x = low[0]; x <= high[0]; ++x) {
       for (std::int64_t y = low[1]; y <= high[1]; ++y) {
         for (std::int64_t z = low[2]; z <= high[2]; ++z) {
@@ -54,9 +56,9 @@ class Cubes {
   }
 
  private:
-  // The cubes that a triangle's box overlaps, and their number.
+  // Range of the cubes that overlap a triangle's box, and their number.
   double find_range(const CornerPoints& corners, double margin, Cube* low, Cube* high) const {
-    constexpr double kMost = 1e15;
+    constexpr double kMost = 1e15;  // exact as integers and as doubles
     double count = 1.0;
     for (std::size_t a = 0; a < 3; ++a) {
       const double least = std::min({corners[0][a], corners[1][a], corners[2][a]});
@@ -98,21 +100,21 @@ class CubeSet {
     });
   }
 
-  bool meets(const CornerPoints& corners) const {
+  bool overlaps(const CornerPoints& corners) const {
     return is_full_ || cubes_.any_of(corners, [&](std::size_t hash) {
       return ((bits_[hash / 64] >> (hash % 64)) & 1U) != 0;
     });
   }
 
  private:
-  static constexpr int kMoreBits = 5;
+  static constexpr int kMoreBits = 5;  // 32 bits per triangle, so that few collide
 
   Cubes cubes_;
   std::vector<std::uint64_t> bits_;
   bool is_full_ = false;
 };
 
-// Cubes, and whether the normals of what is in them are all close to the first one.
+// Records for each cube whether all normals in it are close to the first one.
 class NormalCubes {
  public:
   NormalCubes(double side, std::size_t count)
@@ -120,20 +122,20 @@ class NormalCubes {
         firsts_(std::size_t{1} << bits_for(count, kMoreBits)) {}
 
   void add(const CornerPoints& corners) {
-    constexpr float kLeast = 0.51F;  // cosine
+    constexpr float kMinSimilarCosine = 0.51F;  // cosine
     const Normal n = normal_of(corners);
     has_large_ |= cubes_.any_of(corners, [&](std::size_t hash) {
-      Normal& one = firsts_[hash];
-      if (one == Normal{}) one = n;
-      const float cosine = n[0] * one[0] + n[1] * one[1] + n[2] * one[2];
-      if (!(cosine > kLeast)) one[0] = kRough;
+      Normal& first_normal = firsts_[hash];
+      if (first_normal == Normal{}) first_normal = n;
+      const float cosine = n[0] * first_normal[0] + n[1] * first_normal[1] + n[2] * first_normal[2];
+      if (!(cosine > kMinSimilarCosine)) first_normal[0] = kRough;
       return false;
     });
   }
 
-  // Once all are added.
+  // Call after all triangles were added.
   bool is_rough_at(const CornerPoints& corners) const {
-    // As far as what was between two sheets may have moved since.
+    // Margin for how far a sheet between two others may have moved since.
     constexpr double kMargin = 0.25;
     const auto is_rough = [&](std::size_t hash) { return firsts_[hash][0] == kRough; };
     return has_large_ || cubes_.any_of(corners, is_rough, kMargin);
@@ -144,7 +146,7 @@ class NormalCubes {
   static constexpr float kRough = std::numeric_limits<float>::infinity();
   using Normal = std::array<float, 3>;
 
-  // Of length 1; 0 for what is none.
+  // The normal of length 1; 0 for triangles without area.
   static Normal normal_of(const CornerPoints& corners) {
     const Vector3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
     const double size = length(normal);
@@ -158,8 +160,7 @@ class NormalCubes {
   bool has_large_ = false;
 };
 
-// Three points that have the same box as the triangles from one to another, without those that are
-// gone.
+// Three points with the same bounding box as triangles [begin, end), except removed ones.
 CornerPoints corners_of_box(const MeshView<std::int32_t>& mesh, std::size_t begin,
                             std::size_t end) {
   Box box = kEmptyBox;
@@ -171,15 +172,15 @@ CornerPoints corners_of_box(const MeshView<std::int32_t>& mesh, std::size_t begi
 }
 }  // namespace
 
-std::vector<std::uint8_t> where_rough(const MeshView<std::int32_t>& mesh, std::size_t first,
-                                      std::vector<std::uint8_t> is_suspect, double side,
-                                      const Progress& progress) {
-  // The rest takes about as long as a tenth of the suspects.
-  constexpr std::size_t kFew = 10;
+std::vector<std::uint8_t> keep_rough_suspects(const MeshView<std::int32_t>& mesh, std::size_t first,
+                                              std::vector<std::uint8_t> is_suspect, double side,
+                                              const Progress& progress) {
+  // The filter takes about as long as testing a tenth of the triangles.
+  constexpr std::size_t kTrianglesPerSuspect = 10;
   const auto suspects = static_cast<std::size_t>(
       std::count_if(is_suspect.begin() + static_cast<std::ptrdiff_t>(first), is_suspect.end(),
                     [](std::uint8_t flag) { return flag != 0; }));
-  if (kFew * suspects < mesh.triangles.size() - first) return is_suspect;
+  if (kTrianglesPerSuspect * suspects < mesh.triangles.size() - first) return is_suspect;
   NormalCubes cubes(side, mesh.triangles.size() - first);
   CancelCheck cancel_check(progress);
   const auto visit = [&](const auto& work) {
@@ -204,10 +205,10 @@ NearTriangles near_triangles(const MeshView<std::int32_t>& mesh, std::size_t fir
   }
   NearTriangles near;
   if (count == 0) return near;
-  // Where most are suspect, all are looked at.
+  // If most triangles are suspect, test all.
   const bool is_any = 2 * count > mesh.triangles.size() - first;
   CubeSet cubes(side, is_any ? 0 : count);
-  CubeSet large_cubes(kLargeSide * side, is_any ? 0 : count);
+  CubeSet large_cubes(kLargeCubeSides * side, is_any ? 0 : count);
   CancelCheck cancel_check(progress);
   for (std::size_t t = first; t < mesh.triangles.size() && !is_any; ++t) {
     cancel_check.step();
@@ -215,13 +216,13 @@ NearTriangles near_triangles(const MeshView<std::int32_t>& mesh, std::size_t fir
     cubes.insert(mesh.corners(t));
     large_cubes.insert(mesh.corners(t));
   }
-  for (std::size_t begin = first; begin < mesh.triangles.size(); begin += kRun) {
-    const std::size_t end = std::min(begin + kRun, mesh.triangles.size());
-    if (!is_any && !large_cubes.meets(corners_of_box(mesh, begin, end))) continue;
+  for (std::size_t begin = first; begin < mesh.triangles.size(); begin += kTrianglesPerRun) {
+    const std::size_t end = std::min(begin + kTrianglesPerRun, mesh.triangles.size());
+    if (!is_any && !large_cubes.overlaps(corners_of_box(mesh, begin, end))) continue;
     for (std::size_t t = begin; t < end; ++t) {
       cancel_check.step();
       if (mesh.triangles[t][0] < 0) continue;
-      if (!is_any && is_suspect[t] == 0 && !cubes.meets(mesh.corners(t))) continue;
+      if (!is_any && is_suspect[t] == 0 && !cubes.overlaps(mesh.corners(t))) continue;
       near.numbers.push_back(static_cast<std::uint32_t>(t));
     }
   }

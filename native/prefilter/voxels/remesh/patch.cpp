@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Half-edge collapses, those first that move the surface least by the quadric error of Garland and
-// Heckbert. The quadrics say in which order, and what is not worth a try.
+// Half-edge collapses in order of the quadric error (M. Garland, P. Heckbert, Surface
+// simplification using quadric error metrics, 1997). The quadrics determine the order, and which
+// collapses are not worth checking.
 #include "prefilter/voxels/remesh/patch.h"
 
 #include <algorithm>
@@ -19,14 +20,14 @@
 namespace prefilter {
 namespace {
 
-constexpr int kMostTries = 4;
-// Squared distance from planes, in tolerances: of a thousand collapses that cost more, two may be
-// made.
-constexpr double kLargestCost = 2.0;
+constexpr int kMaxCollapseTries = 4;  // neighbors tried, cheapest first
+// Maximum mean squared distance from planes, in squared tolerances; of a thousand collapses above
+// it, about two would be allowed.
+constexpr double kMaxCollapseCost = 2.0;
 constexpr double kLengthWeight = 1e-6;
-// A vertex whose turn has come waits for others only where its cost has grown by more.
-constexpr double kGrowth = 1.5;
-constexpr double kLeastGrowth = 0.01;
+// A vertex is queued again only if its cost has grown by more than this factor and term.
+constexpr double kMaxCostGrowth = 1.5;
+constexpr double kMinCostGrowth = 0.01;
 constexpr double kNoCost = std::numeric_limits<double>::infinity();
 
 std::vector<Quadric> sum_quadrics(const Patch& patch) {
@@ -43,15 +44,15 @@ std::vector<Quadric> sum_quadrics(const Patch& patch) {
   return quadrics;
 }
 
-// Of a collapse from u onto v. Infinite where there is no point in trying.
+// Cost of collapsing u onto v; infinite if it is not worth checking.
 double cost_of(const Patch& patch, const std::vector<Quadric>& quadrics, std::int32_t u,
                std::int32_t v) {
   const double cost = quadrics[as_index(u)].mean_at(patch.point(v));
-  if (!(cost < kLargestCost)) return kNoCost;
+  if (!(cost < kMaxCollapseCost)) return kNoCost;
   return cost + kLengthWeight * squared_length(patch.point(v) - patch.point(u));
 }
 
-// The vertices that may be removable, the cheapest on top.
+// Vertices that may be removable, the cheapest first.
 class RemovalQueue {
  public:
   struct Entry {
@@ -84,10 +85,10 @@ class RemovalQueue {
   std::vector<std::uint8_t> is_queued_;
 };
 
-// Puts a vertex that is not in the queue there, where it may be removable.
+// Queues a vertex if it may be removable; it must not be queued already.
 void enqueue(const Patch& patch, const PatchLinks& links, const std::vector<Quadric>& quadrics,
              std::int32_t u, RemovalQueue* queue) {
-  if ((patch.flags[as_index(u)] & (Patch::kShared | Patch::kKept)) != 0) return;
+  if ((patch.flags[as_index(u)] & (Patch::kShared | Patch::kFixed)) != 0) return;
   double least = kNoCost;
   links.for_corners(u, [&](std::int32_t t, std::int32_t corner) {
     const std::int32_t v = patch.triangle(t).corners[as_index((corner + 1) % 3)];
@@ -105,40 +106,42 @@ struct Candidate {
   }
 };
 
-// The neighbors that a vertex may go to, of which as many as will be tried are in order. Where it
-// is on a crease, it goes along that.
+// Neighbors onto which a vertex may be collapsed; the ones to try are sorted by cost. A vertex on a
+// crease is only collapsed along it.
 std::span<const Candidate> candidates_of(const Patch& patch, const std::vector<Quadric>& quadrics,
                                          std::int32_t u, const Ring& ring,
-                                         std::array<Candidate, kMostNeighbors>* all) {
+                                         std::array<Candidate, kMaxNeighbors>* all) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < ring.size; ++i) {
     if (ring.crease_count > 0 && (ring.crease_count > 2 || !ring.is_crease[i])) continue;
     const double cost = cost_of(patch, quadrics, u, ring.vertices[i]);
     if (cost < kNoCost) (*all)[count++] = {cost, i};
   }
-  const std::size_t tries = std::min<std::size_t>(count, kMostTries);
+  const std::size_t tries = std::min<std::size_t>(count, kMaxCollapseTries);
   const auto begin = all->begin();
   std::partial_sort(begin, begin + static_cast<std::ptrdiff_t>(tries),
                     begin + static_cast<std::ptrdiff_t>(count));
   return std::span(*all).first(tries);
 }
 
-// What is known of one vertex at a time: no memory is asked for again and again.
+// Scratch space for one vertex at a time.
 struct Workspace {
   Ring ring;
   RingShape shape;
-  NewTriangles made;
-  Outcome outcome;
+  NewTriangles new_triangles;
+  CollapseOutcome outcome;
   std::vector<std::int32_t> slots;
-  std::array<Candidate, kMostNeighbors> candidates;
+  std::array<Candidate, kMaxNeighbors> candidates;
 };
 
-bool may_collapse(const Patch& patch, const PatchLinks& links, const Collapse& which,
-                  Workspace* work) {
+bool check_collapse(const Patch& patch, const PatchLinks& links, const Collapse& which,
+                    Workspace* work) {
   const CreaseOutcome creases = crease_outcome(patch, work->ring, which);
-  return creases.is_kept && make_triangles(patch, work->ring, work->shape, which, &work->made) &&
-         is_sound(patch, links, work->ring, which, &work->slots) &&
-         stays_near(patch, work->ring, work->shape, work->made, creases, which, &work->outcome);
+  return creases.is_kept &&
+         make_triangles(patch, work->ring, work->shape, which, &work->new_triangles) &&
+         keeps_manifold(patch, links, work->ring, which, &work->slots) &&
+         is_within_tolerance(patch, work->ring, work->shape, work->new_triangles, creases, which,
+                             &work->outcome);
 }
 
 void try_to_remove(const RemovalQueue::Entry& entry, Patch* patch, PatchLinks* links,
@@ -150,9 +153,9 @@ void try_to_remove(const RemovalQueue::Entry& entry, Patch* patch, PatchLinks* l
   const std::span<const Candidate> candidates =
       candidates_of(*patch, *quadrics, u, ring, &work->candidates);
   if (candidates.empty()) return;
-  // Its surroundings have changed; others may come before it now.
+  // The surroundings have changed, so other vertices may be cheaper now.
   const double cost = candidates.front().cost;
-  if (!queue->empty() && cost > kGrowth * static_cast<double>(entry.cost) + kLeastGrowth &&
+  if (!queue->empty() && cost > kMaxCostGrowth * static_cast<double>(entry.cost) + kMinCostGrowth &&
       cost > static_cast<double>(queue->least_cost())) {
     queue->push(cost, u);
     return;
@@ -160,7 +163,7 @@ void try_to_remove(const RemovalQueue::Entry& entry, Patch* patch, PatchLinks* l
   measure_ring(*patch, u, ring, &work->shape);
   for (const Candidate& candidate : candidates) {
     const Collapse which = {u, candidate.spoke};
-    if (!may_collapse(*patch, *links, which, work)) continue;
+    if (!check_collapse(*patch, *links, which, work)) continue;
     collapse(ring, which, work->outcome, patch, links);
     (*quadrics)[as_index(ring.vertices[which.spoke])].add((*quadrics)[as_index(u)]);
     for (std::size_t i = 0; i < ring.size; ++i) {
@@ -180,7 +183,7 @@ void simplify_patch(Patch* patch) {
   work.slots.assign(patch->positions.size(), 0);
   patch->targets.assign(patch->positions.size(), -1);
   for (std::size_t v = 0; v < patch->positions.size(); ++v) {
-    if ((patch->flags[v] & Patch::kWaiting) == 0) continue;
+    if ((patch->flags[v] & Patch::kPending) == 0) continue;
     enqueue(*patch, links, quadrics, static_cast<std::int32_t>(v), &queue);
   }
   while (!queue.empty()) try_to_remove(queue.pop(), patch, &links, &quadrics, &queue, &work);

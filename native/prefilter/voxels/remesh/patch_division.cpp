@@ -54,14 +54,14 @@ void find_owners(std::span<const Triangle> triangles, const Progress& progress, 
     const auto owner = static_cast<std::int32_t>(patch);
     for (const std::uint32_t t : division->triangles(static_cast<std::size_t>(patch))) {
       for (const std::int32_t v : triangles[t]) {
-        const std::atomic_ref<std::int32_t> found(division->owners[as_index(v)]);
-        std::int32_t before = found.load(std::memory_order_relaxed);
+        const std::atomic_ref<std::int32_t> vertex_owner(division->owners[as_index(v)]);
+        std::int32_t before = vertex_owner.load(std::memory_order_relaxed);
         if (before == owner || before == PatchDivision::kShared) continue;
         if (before == PatchDivision::kUnowned &&
-            found.compare_exchange_strong(before, owner, std::memory_order_relaxed)) {
+            vertex_owner.compare_exchange_strong(before, owner, std::memory_order_relaxed)) {
           continue;
         }
-        found.store(PatchDivision::kShared, std::memory_order_relaxed);
+        vertex_owner.store(PatchDivision::kShared, std::memory_order_relaxed);
       }
     }
   };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A mesh divided into patches of neighboring triangles.
+// Divides a mesh into patches of neighboring triangles.
 #pragma once
 
 #include <algorithm>
@@ -16,12 +16,13 @@
 namespace prefilter {
 
 struct PatchDivision {
-  static constexpr std::size_t kTriangles = 1U << 14;  // of a patch
+  static constexpr std::size_t kTriangles = 1U << 14;  // per patch
   static constexpr std::int32_t kUnowned = -1;
   static constexpr std::int32_t kShared = -2;
 
-  std::vector<std::uint32_t> order;  // of triangles: those of a patch are together
-  std::vector<std::int32_t> owners;  // of vertices: the patch with all of its triangles, or these
+  std::vector<std::uint32_t> order;  // triangles, grouped by patch
+  // per vertex: the patch with all of its triangles, kUnowned or kShared
+  std::vector<std::int32_t> owners;
 
   std::size_t count() const { return (order.size() + kTriangles - 1) / kTriangles; }
   std::span<const std::uint32_t> triangles(std::size_t patch) const {
@@ -30,8 +31,8 @@ struct PatchDivision {
   }
 };
 
-/// Patches follow the Morton curve through cells that lie elsewhere for each `number`. Throws
-/// Error(kCancelled).
+/// Divides triangles along the Morton curve through a grid of cells that is shifted differently for
+/// each `number`. Throws Error(kCancelled).
 PatchDivision divide_into_patches(std::span<const Vector3> positions,
                                   std::span<const std::array<std::int32_t, 3>> triangles,
                                   int number, const Progress& progress, int threads);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Edges of a part of a mesh collapsed and flipped, so that its triangles get wider angles.
+// Collapses and flips edges of a part of a mesh to widen its triangles' angles.
 #pragma once
 
 #include <array>
@@ -16,64 +16,66 @@
 
 namespace prefilter {
 
-/// A mesh while patches of it change, several at a time, each with the triangles and the vertices
-/// that are its own.
+/// A mesh whose patches are edited, several at a time; each changes only its own triangles and
+/// vertices.
 struct EditedMesh {
-  static constexpr std::uint32_t kNobody = 0xffffffff;
-  static constexpr std::uint32_t kSeveral = 0xfffffffe;
+  static constexpr std::uint32_t kUnowned = 0xffffffff;
+  static constexpr std::uint32_t kShared = 0xfffffffe;
 
-  FacetedMesh mesh;  // a triangle that is gone has no vertices: kGone
+  FacetedMesh mesh;  // removed triangles are kRemoved
   double crease_tolerance = 0.0;
-  double most_height = std::numeric_limits<double>::infinity();  // of a change over what was there
-  std::vector<std::uint32_t> owners;  // of each vertex: the patch with all of its triangles
-  std::vector<std::uint32_t> firsts;  // of the owner's triangles around it
+  // maximum height of a change over the previous surface
+  double max_height = std::numeric_limits<double>::infinity();
+  std::vector<std::uint32_t> owners;  // per vertex: the patch with all of its triangles
+  std::vector<std::uint32_t> firsts;  // index of the first triangle around it, in its owner
   std::vector<std::uint32_t> counts;
-  std::vector<std::uint8_t> is_fixed;  // vertices whose triangles stay as they are; none: no one is
-  std::vector<float> widths;           // of each triangle, as width_of has it
+  std::vector<std::uint8_t> is_fixed;  // vertices whose triangles stay unchanged; empty: none
+  std::vector<float> widths;           // per triangle: see width_of
 
-  bool is_gone(std::size_t triangle) const { return mesh.triangles[triangle][0] < 0; }
+  bool is_removed(std::size_t triangle) const { return mesh.triangles[triangle][0] < 0; }
 };
 
-inline constexpr std::array<std::int32_t, 3> kGone = {-1, -1, -1};
+inline constexpr std::array<std::int32_t, 3> kRemoved = {-1, -1, -1};
 
-/// The square of the sine of a triangle's smallest angle; 0 for one without area.
+/// The squared sine of a triangle's smallest angle; 0 for triangles without area.
 double width_of(const Vector3& a, const Vector3& b, const Vector3& c);
 
-/// Widens the angles of a patch.
+/// Edits one patch after the other.
 class PatchEditor {
  public:
   explicit PatchEditor(EditedMesh* edited) : edited_(*edited) {}
 
-  /// Works on these triangles, in order; `patch` is who owns the vertices that may change.
+  /// Edits these triangles, in order; `patch` is the owner of the vertices that may change.
   void edit(std::uint32_t patch, std::span<const std::uint32_t> triangles);
 
   /// The triangles that remained narrow.
   const std::vector<std::uint32_t>& narrow() const { return narrow_; }
 
  private:
-  // The triangles around a vertex, which `ring` has the other corners of, counter-clockwise.
+  // The triangles around a vertex, with their other corners in counterclockwise order.
   struct Fan {
     std::size_t count = 0;
-    std::array<std::int32_t, kMostAround> ring;
-    std::array<std::uint32_t, kMostAround> triangles;  // with ring[i] and the one behind it
+    std::array<std::int32_t, kMaxRingSize> ring;
+    std::array<std::uint32_t, kMaxRingSize> triangles;  // triangle i has ring[i] and ring[i + 1]
   };
-  // What a vertex or an edge is to be replaced by: triangles with the same border.
+  // A removal or flip: triangles that replace those with the same border.
   struct Change {
-    std::int32_t vertex = -1;  // that is gone; -1: the edge between the first triangles is flipped
+    // removed vertex; -1: the edge between the first two triangles is flipped
+    std::int32_t vertex = -1;
     std::size_t old_count = 0;
-    std::size_t count = 0;  // 0: there is no change
-    std::array<std::uint32_t, kMostAround>
-        places;  // the triangles before, the first ones also after
-    std::array<std::array<std::int32_t, 3>, kMostAround> triangles;
-    std::array<std::int32_t, kMostAround> labels;
-    double fault = 0.0;  // of the triangles that it leaves
-    double gain = 0.0;   // the faults before less those after
-    double area = 0.0;   // as seen from above
-    double depth = 0.0;  // of what it cuts off or fills, as a share of the root of the area
+    std::size_t count = 0;  // 0: no change possible
+    // Triangles before; the first `count` are replaced.
+    std::array<std::uint32_t, kMaxRingSize> old_triangles;
+    std::array<std::array<std::int32_t, 3>, kMaxRingSize> triangles;
+    std::array<std::int32_t, kMaxRingSize> labels;
+    double fault = 0.0;  // sum after the change
+    double gain = 0.0;   // decrease of the sum
+    double area = 0.0;   // projected
+    double depth = 0.0;  // mean depth of the change, relative to the square root of the area
   };
 
-  // In the ring of a vertex, in order.
-  struct CreasePlaces {
+  // Indices in a ring to which creases lead, in order.
+  struct CreaseSpokes {
     std::array<std::size_t, 2> at = {0, 0};
     std::size_t count = 0;  // 0 or 2
   };
@@ -103,30 +105,31 @@ class PatchEditor {
   double fault_around(std::int32_t vertex) const;
   void find_removal(std::int32_t vertex, Change* change) const;
   void find_flip(std::int32_t a, std::int32_t b, Change* change) const;
-  void keep_better();
-  std::optional<CreasePlaces> crease_places(std::int32_t vertex, const Fan& fan) const;
-  bool goes_straight_on(std::int32_t vertex, const Fan& fan, const CreasePlaces& creases) const;
-  bool leaves_manifold(const Fan& fan, const Change& change, std::size_t made) const;
+  void keep_better_change();
+  std::optional<CreaseSpokes> crease_spokes(std::int32_t vertex, const Fan& fan) const;
+  bool is_crease_straight(std::int32_t vertex, const Fan& fan, const CreaseSpokes& creases) const;
+  bool keeps_manifold(const Fan& fan, const Change& change, std::size_t triangle_count) const;
   std::optional<std::int32_t> label_of_all(const Fan& fan, std::size_t begin,
                                            std::size_t count) const;
   double least_cosine(const Fan& fan, std::size_t begin, std::size_t count,
                       const Vector3& direction) const;
-  bool fill(const Fan& fan, std::size_t begin, std::size_t end, std::size_t* made,
+  bool fill(const Fan& fan, std::size_t begin, std::size_t end, std::size_t* triangle_count,
             Change* change) const;
   bool is_edge(std::int32_t a, std::int32_t b) const;
   bool is_crease(std::int32_t a, std::int32_t b, std::uint32_t left, std::uint32_t right) const;
-  bool is_low(std::int32_t vertex, const Change& change, std::size_t made) const;
+  bool is_near_replacement(std::int32_t vertex, const Change& change,
+                           std::size_t triangle_count) const;
   void apply(const Change& change);
-  void leave(std::int32_t vertex, std::uint32_t triangle);
-  void join(std::int32_t vertex, std::uint32_t triangle);
+  void remove_around(std::int32_t vertex, std::uint32_t triangle);
+  void add_around(std::int32_t vertex, std::uint32_t triangle);
 
   EditedMesh& edited_;
   std::uint32_t patch_ = 0;
-  std::vector<std::uint32_t> around_;   // of the vertices, their triangles
-  std::vector<std::uint32_t> waiting_;  // narrow triangles
+  std::vector<std::uint32_t> around_;   // triangles around the vertices
+  std::vector<std::uint32_t> waiting_;  // narrow triangles to widen
   std::vector<std::uint32_t> narrow_;
   Change best_;
-  Change found_;
+  Change candidate_;
 };
 
 }  // namespace prefilter

@@ -50,16 +50,16 @@ void move_corners(std::int32_t from, std::int32_t to, PatchLinks* links) {
 bool find_ring(std::int32_t vertex, std::span<const PatchTriangle> triangles,
                const PatchLinks& links, std::vector<std::int32_t>* slots, Ring* ring) {
   const std::size_t count = links.count(vertex);
-  if (count < 3 || count > kMostNeighbors) return false;
-  std::array<std::int32_t, kMostNeighbors> around;
-  std::array<std::uint8_t, kMostNeighbors> corners;
-  std::size_t found = 0;
+  if (count < 3 || count > kMaxNeighbors) return false;
+  std::array<std::int32_t, kMaxNeighbors> around;
+  std::array<std::uint8_t, kMaxNeighbors> corners;
+  std::size_t filled = 0;
   links.for_corners(vertex, [&](std::int32_t t, std::int32_t corner) {
-    around[found] = t;
-    corners[found] = static_cast<std::uint8_t>(corner);
+    around[filled] = t;
+    corners[filled] = static_cast<std::uint8_t>(corner);
     (*slots)[as_index(triangles[as_index(t)].corners[as_index((corner + 1) % 3)])] =
-        static_cast<std::int32_t>(found);
-    ++found;
+        static_cast<std::int32_t>(filled);
+    ++filled;
   });
   std::size_t at = 0;
   ring->size = count;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Which triangles of a patch are around its vertices.
+// Links from the vertices of a patch to the triangles around them.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace prefilter {
 
-/// The corners of each vertex in a circle: corner 3 t + i is that of triangle t at place i.
+/// Circular lists of the corners at each vertex; corner 3 t + i is corner i of triangle t.
 struct PatchLinks {
   std::vector<std::int32_t> firsts;  // of each vertex; -1: none
   std::vector<std::int32_t> nexts;   // of each corner
@@ -23,7 +23,7 @@ struct PatchLinks {
     return static_cast<std::size_t>(counts[as_index(vertex)]);
   }
 
-  /// Calls visit(triangle, place) for the corners of a vertex that has some.
+  /// Calls visit(triangle, corner) for the corners at a vertex, which must have some.
   template <typename Visit>
   void for_corners(std::int32_t vertex, const Visit& visit) const {
     const std::int32_t first = firsts[as_index(vertex)];
@@ -37,30 +37,30 @@ struct PatchLinks {
 
 PatchLinks link_corners(std::size_t vertex_count, std::span<const PatchTriangle> triangles);
 
-/// Takes the corner that a vertex has of a triangle out of its circle; it has others.
+/// Removes a triangle's corner from the list of a vertex, which must have others.
 void drop_corner(std::int32_t vertex, std::int32_t triangle, PatchLinks* links);
 
-/// The corners of `from` become those of `to`; each has some.
+/// Moves the corners of `from` to `to`; both must have some.
 void move_corners(std::int32_t from, std::int32_t to, PatchLinks* links);
 
-/// Vertices with more neighbors than this stay.
-inline constexpr std::size_t kMostNeighbors = 64;
+/// Vertices with more neighbors are never removed.
+inline constexpr std::size_t kMaxNeighbors = 64;
 
-/// The triangles around a vertex, counter-clockwise: triangle i has the neighbors i and i + 1.
+/// The triangles around a vertex, counterclockwise: triangle i has neighbors i and i + 1.
 struct Ring {
   std::size_t size = 0;
-  std::array<std::int32_t, kMostNeighbors> vertices;
-  std::array<std::int32_t, kMostNeighbors> triangles;
-  std::array<std::uint8_t, kMostNeighbors> corners;  // of the triangles, where the vertex is
-  std::array<bool, kMostNeighbors> is_crease;
+  std::array<std::int32_t, kMaxNeighbors> vertices;
+  std::array<std::int32_t, kMaxNeighbors> triangles;
+  std::array<std::uint8_t, kMaxNeighbors> corners;  // corner of each triangle at the vertex
+  std::array<bool, kMaxNeighbors> is_crease;
   std::size_t crease_count = 0;
 
   std::size_t next(std::size_t i) const { return i + 1 == size ? 0 : i + 1; }
   std::size_t before(std::size_t i) const { return i == 0 ? size - 1 : i - 1; }
 };
 
-/// Returns false where the triangles are not one closed fan, or too many. `slots` has a place for
-/// each vertex, and is left with anything in it.
+/// Returns false if the triangles do not form one closed fan, or are too many. `slots` is scratch
+/// space with one entry per vertex.
 bool find_ring(std::int32_t vertex, std::span<const PatchTriangle> triangles,
                const PatchLinks& links, std::vector<std::int32_t>* slots, Ring* ring);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Floating-point determinants where their error bounds allow it, and else sums of doubles that do
-// not overlap: Shewchuk, Adaptive precision floating-point arithmetic and fast robust geometric
-// predicates (1997).
+// Signs of determinants: evaluates them in floating point if the error bound allows it, and
+// otherwise exactly as nonoverlapping expansions (J. Shewchuk, Adaptive precision floating-point
+// arithmetic and fast robust geometric predicates, 1997).
 #include "prefilter/voxels/remesh/predicates.h"
 
 #include <algorithm>
@@ -13,16 +13,17 @@
 namespace prefilter {
 namespace {
 
-// Each of the six products of a determinant of three differences is off by at most 8 roundings, and
-// each of the two of a determinant of two by 5; the rest is for the bound's own roundings.
-constexpr double kErrorOfThree = 8e-15;
-constexpr double kErrorOfTwo = 2e-15;
-// Bounds below this may have lost digits.
-constexpr double kSmallestBound = 1e-280;
+// Error bounds relative to the product of the largest differences: each of the six products of a
+// 3x3 determinant is off by at most 8 roundings, each of the two of a 2x2 determinant by 5; the
+// remainder covers the bound's own rounding.
+constexpr double kPlaneSideError = 8e-15;
+constexpr double kTurnError = 2e-15;
+// Smaller bounds may be denormal.
+constexpr double kMinPredicateBound = 1e-280;
 
 int sign_of(double value) { return (value > 0.0 ? 1 : 0) - (value < 0.0 ? 1 : 0); }
 
-// A number as the sum of `high`, its nearest double, and `low`.
+// A number as the unevaluated sum of its nearest double, `high`, and the remainder `low`.
 struct Split {
   double high;
   double low;
@@ -35,24 +36,24 @@ Split exact_sum(double a, double b) {
   return {sum, (a - a_part) + (b - b_part)};
 }
 
-// In two parts of 26 digits, whose products are exact: Dekker, A floating-point technique for
-// extending the available precision (1971).
+// Splits a number into two parts of 26 bits, whose products are exact (T. Dekker, A floating-point
+// technique for extending the available precision, 1971).
 Split halves(double a) {
   const double scaled = 134217729.0 * a;  // 2^27 + 1
   const double high = scaled - (scaled - a);
   return {high, a - high};
 }
 
-// Without std::fma, which rounds twice in the C library of Windows.
+// Does not use std::fma, which rounds twice in the C library of Windows.
 Split exact_product(double a, double b) {
   const double product = a * b;
   const Split x = halves(a);
   const Split y = halves(b);
-  const double rest = product - x.high * y.high - x.low * y.high - x.high * y.low;
-  return {product, x.low * y.low - rest};
+  const double error = product - x.high * y.high - x.low * y.high - x.high * y.low;
+  return {product, x.low * y.low - error};
 }
 
-// A sum of doubles, from the smallest to the largest, which do not overlap.
+// A sum of nonoverlapping doubles, in increasing order of magnitude.
 class Expansion {
  public:
   void add(double value) {
@@ -143,8 +144,8 @@ int plane_side(const Vector3& a, const Vector3& b, const Vector3& c, const Vecto
   const double z = largest(u[2], v[2], w[2]);
   if (x == 0.0 || y == 0.0 || z == 0.0) return 0;
   const double determinant = dot(cross(u, v), w);
-  const double bound = kErrorOfThree * x * y * z;
-  if (bound > kSmallestBound && std::abs(determinant) > bound) return sign_of(determinant);
+  const double bound = kPlaneSideError * x * y * z;
+  if (bound > kMinPredicateBound && std::abs(determinant) > bound) return sign_of(determinant);
   return exact_plane_side(a, b, c, d);
 }
 
@@ -157,12 +158,12 @@ int turn_along(int axis, const Vector3& a, const Vector3& b, const Vector3& c) {
   const double y = largest(u[j], v[j]);
   if (x == 0.0 || y == 0.0) return 0;
   const double determinant = u[i] * v[j] - u[j] * v[i];
-  const double bound = kErrorOfTwo * x * y;
-  if (bound > kSmallestBound && std::abs(determinant) > bound) return sign_of(determinant);
+  const double bound = kTurnError * x * y;
+  if (bound > kMinPredicateBound && std::abs(determinant) > bound) return sign_of(determinant);
   return exact_turn(i, j, a, b, c);
 }
 
-bool are_on_one_line(const Vector3& a, const Vector3& b, const Vector3& c) {
+bool are_collinear(const Vector3& a, const Vector3& b, const Vector3& c) {
   for (int axis = 0; axis < 3; ++axis) {
     if (turn_along(axis, a, b, c) != 0) return false;
   }

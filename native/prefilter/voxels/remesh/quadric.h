@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Distances from many planes at once.
+// Quadric error metric: sums of squared distances from planes.
 #pragma once
 
 #include <cmath>
@@ -9,13 +9,13 @@
 
 namespace prefilter {
 
-/// The sum of squared distances from planes, weighted by areas.
+/// Area-weighted sum of squared distances from planes.
 struct Quadric {
   double xx = 0.0, yy = 0.0, zz = 0.0, xy = 0.0, yz = 0.0, zx = 0.0;
   double x = 0.0, y = 0.0, z = 0.0, constant = 0.0;
   double weight = 0.0;
 
-  /// A plane with this unit normal, where dot(unit, p) + offset is 0.
+  /// Adds the plane dot(unit, p) + offset = 0, with a unit normal.
   void add_plane(const Vector3& unit, double offset, double area) {
     const Vector3 n = {area * unit[0], area * unit[1], area * unit[2]};
     xx += n[0] * unit[0];
@@ -43,7 +43,7 @@ struct Quadric {
     constant += other.constant;
     weight += other.weight;
   }
-  /// The mean of the squared distances of a point.
+  /// Mean squared distance of a point from the planes.
   double mean_at(const Vector3& p) const {
     const double rx = xx * p[0] + 2.0 * (xy * p[1] + x);
     const double ry = yy * p[1] + 2.0 * (yz * p[2] + y);

@@ -10,16 +10,17 @@
 namespace prefilter {
 namespace {
 
-constexpr double kSliver = 0.1;       // height over longest side
-constexpr double kLeastHeight = 1.0;  // of triangles, in tolerances
-constexpr double kBentCosine = 0.85;  // 32 degrees
+// minimum height, relative to the longest side, of a triangle that is no sliver
+constexpr double kMaxSliverRatio = 0.1;
+constexpr double kMinTriangleHeight = 1.0;  // in tolerances
+constexpr double kBentCosine = 0.85;        // 32 degrees
 
 void measure_triangles(const Patch& patch, std::int32_t vertex, const Ring& ring,
                        RingShape* shape) {
   shape->error = 0.0;
   shape->deviation = 0.0;
   shape->has_points = false;
-  shape->squared_height = kLeastHeight * kLeastHeight;
+  shape->squared_height = kMinTriangleHeight * kMinTriangleHeight;
   const Vector3& at = patch.point(vertex);
   for (std::size_t i = 0; i < ring.size; ++i) {
     const PatchTriangle& t = patch.triangle(ring.triangles[i]);
@@ -32,13 +33,13 @@ void measure_triangles(const Patch& patch, std::int32_t vertex, const Ring& ring
     const double squared = squared_length(shape->normals[i]);
     shape->squared_normals[i] = squared;
     const double longest = std::max({squared_length(p), squared_length(q), squared_length(q - p)});
-    shape->is_sliver[i] = !(squared > kSliver * kSliver * longest * longest);
+    shape->is_sliver[i] = !(squared > kMaxSliverRatio * kMaxSliverRatio * longest * longest);
     shape->squared_height =
         std::min(shape->squared_height, longest > 0.0 ? squared / longest : 0.0);
   }
 }
 
-// The sides of two creases, with the sum of the normals of each.
+// Assigns triangles to the sectors between two creases, and sums the normals of each sector.
 void divide(const Ring& ring, RingShape* shape) {
   std::size_t start = 0;
   while (start < ring.size && !ring.is_crease[start]) ++start;

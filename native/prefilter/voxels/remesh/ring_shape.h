@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// How the surface around a vertex bends.
+// Measures how the surface around a vertex bends.
 #pragma once
 
 #include <array>
@@ -12,28 +12,29 @@
 
 namespace prefilter {
 
-/// Of the triangles of a ring, before its vertex goes. Two creases divide it into sectors; with any
-/// other number there is one.
+/// Properties of a ring of triangles before its vertex is removed. Two creases divide it into two
+/// sectors; otherwise there is one.
 struct RingShape {
-  std::array<Vector3, kMostNeighbors> normals;  // twice as long as areas
-  std::array<double, kMostNeighbors> squared_normals;
-  std::array<bool, kMostNeighbors> is_sliver;
-  std::array<std::uint8_t, kMostNeighbors> sectors;
-  std::array<Vector3, 2> sector_normals;  // unit; 0 where there is none
-  /// The largest of the triangles'.
+  std::array<Vector3, kMaxNeighbors> normals;  // of length twice the area
+  std::array<double, kMaxNeighbors> squared_normals;
+  std::array<bool, kMaxNeighbors> is_sliver;
+  std::array<std::uint8_t, kMaxNeighbors> sectors;
+  std::array<Vector3, 2> sector_normals;  // unit; 0 if there is none
+  /// Maxima over the triangles.
   double error = 0.0;
   double deviation = 0.0;
   bool has_points = false;
-  /// How high the ring is along the normal of a sector.
+  /// Height of the ring along a sector's normal.
   double range = 0.0;
-  /// A sector is not seen as a whole along its normal, or is far from flat.
+  /// Whether a sector has overlaps in projection along its normal, or is far from flat.
   bool is_bent = false;
-  double squared_height = 0.0;  // the least of a triangle, at most that of one tolerance
+  // the least squared height of a triangle, at most one squared tolerance
+  double squared_height = 0.0;
 };
 
 void measure_ring(const Patch& patch, std::int32_t vertex, const Ring& ring, RingShape* shape);
 
-/// Whether the edges to two neighbors are on one side of a crease.
+/// Whether the edges to two neighbors border on a common sector.
 inline bool share_sector(const Ring& ring, const RingShape& shape, std::size_t i, std::size_t j) {
   if (ring.crease_count < 2) return true;
   const std::uint8_t i_after = shape.sectors[i];

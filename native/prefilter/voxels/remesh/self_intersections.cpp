@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The pairs of intersecting_triangles, for meshes of others.
+// Finds self-intersections of meshes of any index type.
 #include "prefilter/voxels/self_intersections.h"
 
 #include <algorithm>
@@ -30,7 +30,7 @@ std::vector<std::array<std::uint32_t, 2>> self_intersections(const InputMesh& me
         {static_cast<std::int32_t>(a), static_cast<std::int32_t>(b), static_cast<std::int32_t>(c)});
   }
   auto pairs = intersecting_triangles({positions, triangles}, {}, progress, threads);
-  // A triangle without area makes a pair with itself.
+  // intersecting_triangles pairs a triangle without area with itself.
   std::erase_if(pairs, [](const auto& pair) { return pair[0] == pair[1]; });
   return pairs;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// In passes: each divides the mesh into patches of neighboring triangles, which are simplified by
-// themselves, and each divides it elsewhere, so that the vertices that patches share get their
-// turn.
+// Simplifies in passes. Each pass divides the mesh into patches of neighboring triangles and
+// simplifies these separately; the division differs between passes, so that vertices shared by
+// patches get their turn.
 #include "prefilter/voxels/remesh/simplify_facets.h"
 
 #include <algorithm>
@@ -22,43 +22,46 @@
 namespace prefilter {
 namespace {
 
-constexpr std::size_t kMeasuredEdges = 1U << 12;
-constexpr int kMostPasses = 16;
-// Of the tolerance, for the points that are measured; the rest is for what lies between them.
+constexpr std::size_t kMaxMeasuredEdges = 1U << 12;  // to estimate the mean edge length
+constexpr int kMaxPasses = 16;
+// Share of the tolerance for measured points; the remainder is for the surface between them.
 constexpr double kMeasuredShare = 0.78;
-// A pass that removes less than this share of the triangles is the last one.
-constexpr double kLeastRemoved = 0.02;
-// Then patches that still meet others go back to what they were.
-constexpr int kMostRepairs = 4;
+// The last pass is the first that removes less than this share of the triangles.
+constexpr double kMinRemovedShare = 0.02;
+// Rounds after which patches that still intersect others are restored.
+constexpr int kMaxRepairs = 4;
 
-// Of cubes that tell what is near.
-double cube_of(const SimplifyScale& scale) {
-  constexpr double kEdges = 4.0;
+// Side of the grid cubes used to find nearby triangles.
+double cube_side(const SimplifyScale& scale) {
+  constexpr double kEdges = 4.0;  // mean edges per side
   return kEdges * scale.spacing * scale.tolerance;
 }
 
 using Triangle = std::array<std::int32_t, 3>;
 
-// Of each vertex; each patch changes those that are its own.
+// State of each vertex; patches change only their own.
 struct VertexStates {
-  std::vector<std::int32_t> places;      // in its patch
-  std::vector<std::int32_t> targets;     // of those that are gone in this pass
-  std::vector<std::uint8_t> is_waiting;  // surroundings have changed
-  std::vector<std::uint8_t> is_frozen;   // stays, as intersections come of its end
+  std::vector<std::int32_t> local_indices;  // index in its patch
+  std::vector<std::int32_t> targets;     // vertex that it was collapsed onto in this pass; -1: none
+  std::vector<std::uint8_t> is_waiting;  // not tried since its surroundings changed
+  std::vector<std::uint8_t> is_frozen;   // stays, because its removal caused intersections
 
   VertexStates(std::size_t count, std::vector<std::uint8_t> is_kept)
-      : places(count, 0), targets(count, -1), is_waiting(count, 1), is_frozen(std::move(is_kept)) {
+      : local_indices(count, 0),
+        targets(count, -1),
+        is_waiting(count, 1),
+        is_frozen(std::move(is_kept)) {
     is_frozen.resize(count, 0);
   }
 };
 
-// What becomes of a patch.
-struct Part {
+// The result of simplifying a patch.
+struct SimplifiedPatch {
   Facets facets;
-  std::vector<std::uint8_t> is_new;  // of triangles
+  std::vector<std::uint8_t> is_new;  // per triangle
 };
 
-// Positions and flags of a patch. Returns whether any vertex may be removable.
+// Copies the positions and flags of a patch. Returns whether any vertex may be removable.
 bool take_vertices(std::span<const Vector3> positions, const PatchVertices& vertices,
                    const VertexStates& states, const PatchFrame& frame, Patch* patch) {
   bool is_any_waiting = false;
@@ -68,27 +71,28 @@ bool take_vertices(std::span<const Vector3> positions, const PatchVertices& vert
     const std::size_t v = as_index(vertices.all[i]);
     patch->positions.push_back(frame.local(positions[v]));
     unsigned flags = i < vertices.shared ? unsigned{Patch::kShared} : 0U;
-    if (states.is_frozen[v] != 0) flags |= Patch::kKept;
+    if (states.is_frozen[v] != 0) flags |= Patch::kFixed;
     if (states.is_waiting[v] != 0) {
-      flags |= Patch::kWaiting;
-      is_any_waiting = is_any_waiting || flags == Patch::kWaiting;
+      flags |= Patch::kPending;
+      is_any_waiting = is_any_waiting || flags == Patch::kPending;
     }
     patch->flags.push_back(static_cast<std::uint8_t>(flags));
   }
   return is_any_waiting;
 }
 
-Part simplified(const FacetedMesh& mesh, const Facets& facets, const PatchDivision& division,
-                std::size_t number, const SimplifyScale& scale, VertexStates* states) {
+SimplifiedPatch simplified(const FacetedMesh& mesh, const Facets& facets,
+                           const PatchDivision& division, std::size_t number,
+                           const SimplifyScale& scale, VertexStates* states) {
   const PatchVertices vertices =
-      number_vertices(division, number, facets.triangles, &states->places);
+      number_vertices(division, number, facets.triangles, &states->local_indices);
   const PatchFrame frame = {mesh.positions[as_index(vertices.all.front())], scale.tolerance};
   const bool has_labels = !facets.labels.empty();
   const bool has_creases = has_labels || !mesh.kinds.empty();
   Patch patch;
   patch.spacing = scale.spacing;
   const bool is_any_waiting = take_vertices(mesh.positions, vertices, *states, frame, &patch);
-  take_triangles(facets, division, number, vertices, states->places, frame, &patch);
+  take_triangles(facets, division, number, vertices, states->local_indices, frame, &patch);
   if (is_any_waiting) {
     if (has_creases) find_creases(mesh.kinds, vertices.all, &patch);
     simplify_patch(&patch);
@@ -97,14 +101,14 @@ Part simplified(const FacetedMesh& mesh, const Facets& facets, const PatchDivisi
     const std::int32_t target = is_any_waiting ? patch.targets[i] : -1;
     states->targets[as_index(vertices.all[i])] = target < 0 ? -1 : vertices.all[as_index(target)];
   }
-  Part part{facets_of(patch, vertices.all, frame, has_labels, has_creases), {}};
+  SimplifiedPatch part{facets_of(patch, vertices.all, frame, has_labels, has_creases), {}};
   for (const PatchTriangle& t : patch.triangles) {
     if (t.corners[0] != t.corners[1]) part.is_new.push_back(t.is_new ? 1 : 0);
   }
   return part;
 }
 
-// Keeps what was collapsed onto a bad vertex, or all that is the patch's own.
+// Freezes the vertices that were collapsed onto a bad vertex, or all vertices that the patch owns.
 void freeze(const std::vector<Triangle>& triangles, const PatchDivision& division,
             std::size_t patch, const std::vector<std::uint8_t>& is_bad, bool all,
             VertexStates* states) {
@@ -122,16 +126,17 @@ void freeze(const std::vector<Triangle>& triangles, const PatchDivision& divisio
   }
 }
 
-// The patches whose new triangles meet others, or fold, or that these meet, and the vertices of
-// both. Others than those that are flagged are known to be good among themselves.
-struct Meetings {
+// Patches with new triangles that intersect others or fold, and the patches that these intersect,
+// with all vertices involved. Only patches flagged as unknown need to be tested among themselves.
+struct Conflicts {
   std::vector<std::int64_t> patches;
   std::vector<std::uint8_t> is_bad;
 };
 
-Meetings find_meetings(const std::vector<Vector3>& positions, const std::vector<Part>& parts,
-                       const std::vector<std::uint8_t>& is_unknown, double side,
-                       const Progress& progress, int threads) {
+Conflicts find_conflicts(const std::vector<Vector3>& positions,
+                         const std::vector<SimplifiedPatch>& parts,
+                         const std::vector<std::uint8_t>& is_unknown, double side,
+                         const Progress& progress, int threads) {
   std::vector<Triangle> triangles;
   std::vector<std::uint8_t> is_suspect;
   std::vector<std::uint32_t> patches;
@@ -146,74 +151,76 @@ Meetings find_meetings(const std::vector<Vector3>& positions, const std::vector<
     }
     is_suspect.resize(triangles.size(), 0);
   }
-  Meetings found;
+  Conflicts conflicts;
   const NearTriangles near = near_triangles({positions, triangles}, 0, is_suspect, side, progress);
-  if (near.triangles.empty()) return found;
+  if (near.triangles.empty()) return conflicts;
   const MeshView<std::int32_t> view{positions, near.triangles};
   auto pairs = intersecting_triangles(view, near.is_suspect, progress, threads);
   for (auto& pair : pairs) pair = {near.numbers[pair[0]], near.numbers[pair[1]]};
   for (const auto& fold : folded_pairs(view, 0, near.is_suspect, progress)) {
-    // Between regions there are edges of the shape, of any angle.
+    // Edges between regions are edges of the shape, which may have any angle.
     const std::array<std::uint32_t, 2> pair = {near.numbers[fold[0]], near.numbers[fold[1]]};
     if (labels.empty() || labels[pair[0]] == labels[pair[1]]) pairs.push_back(pair);
   }
-  if (pairs.empty()) return found;
-  found.is_bad.assign(positions.size(), 0);
-  std::vector<std::uint8_t> is_again(parts.size(), 0);
+  if (pairs.empty()) return conflicts;
+  conflicts.is_bad.assign(positions.size(), 0);
+  std::vector<std::uint8_t> must_repeat(parts.size(), 0);
   for (const auto& pair : pairs) {
     for (const std::uint32_t t : pair) {
-      is_again[patches[t]] = 1;
-      for (const std::int32_t v : triangles[t]) found.is_bad[as_index(v)] = 1;
+      must_repeat[patches[t]] = 1;
+      for (const std::int32_t v : triangles[t]) conflicts.is_bad[as_index(v)] = 1;
     }
   }
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (is_again[i] != 0) found.patches.push_back(static_cast<std::int64_t>(i));
+    if (must_repeat[i] != 0) conflicts.patches.push_back(static_cast<std::int64_t>(i));
   }
-  return found;
+  return conflicts;
 }
 
-// Where new triangles meet others, the vertices that they come from stay.
+// Freezes the vertices whose removal led to intersections, and simplifies their patches again.
 void repair(const FacetedMesh& mesh, const Facets& facets, const PatchDivision& division,
             const SimplifyScale& scale, const Progress& progress, int threads, VertexStates* states,
-            std::vector<Part>* parts) {
+            std::vector<SimplifiedPatch>* parts) {
   std::vector<std::uint8_t> is_unknown(parts->size(), 1);
   for (int round = 0;; ++round) {
     const double begin = 1.0 - std::ldexp(1.0, -round);
     const Progress step = progress.part(begin, 1.0 - std::ldexp(1.0, -round - 1));
-    const Meetings found = find_meetings(mesh.positions, *parts, is_unknown, cube_of(scale),
-                                         step.part(0.0, 0.5), threads);
-    if (found.patches.empty()) return;
+    const Conflicts conflicts = find_conflicts(mesh.positions, *parts, is_unknown, cube_side(scale),
+                                               step.part(0.0, 0.5), threads);
+    if (conflicts.patches.empty()) return;
     is_unknown.assign(parts->size(), 0);
-    for (const std::int64_t patch : found.patches) is_unknown[static_cast<std::size_t>(patch)] = 1;
+    for (const std::int64_t patch : conflicts.patches)
+      is_unknown[static_cast<std::size_t>(patch)] = 1;
     const auto rerun = [&](std::int64_t i) {
-      const auto patch = static_cast<std::size_t>(found.patches[static_cast<std::size_t>(i)]);
-      freeze(facets.triangles, division, patch, found.is_bad, round >= kMostRepairs, states);
+      const auto patch = static_cast<std::size_t>(conflicts.patches[static_cast<std::size_t>(i)]);
+      freeze(facets.triangles, division, patch, conflicts.is_bad, round >= kMaxRepairs, states);
       (*parts)[patch] = simplified(mesh, facets, division, patch, scale, states);
     };
-    parallel_for(static_cast<std::int64_t>(found.patches.size()), threads, step.part(0.5, 1.0),
+    parallel_for(static_cast<std::int64_t>(conflicts.patches.size()), threads, step.part(0.5, 1.0),
                  rerun);
   }
 }
 
-Facets joined(std::vector<Part>* parts) {
+Facets joined(std::vector<SimplifiedPatch>* parts) {
   Facets all;
   std::size_t triangles = 0;
   std::size_t points = 0;
-  for (const Part& part : *parts) {
+  for (const SimplifiedPatch& part : *parts) {
     triangles += part.facets.triangles.size();
     points += part.facets.points.size();
   }
   all.triangles.reserve(triangles);
   all.point_ends.reserve(triangles);
   all.points.reserve(points);
-  for (Part& part : *parts) {
+  for (SimplifiedPatch& part : *parts) {
     append(&part.facets, &all);
     part = {};
   }
   return all;
 }
 
-// Returns whether another pass is worth while. The mesh has no triangles: these are facets.
+// Runs a pass; returns whether another one is worthwhile. The triangles are in `facets`, not in
+// `mesh`.
 bool run_pass(int number, const FacetedMesh& mesh, const SimplifyScale& scale,
               std::span<const std::uint8_t> is_open, const Progress& progress, int threads,
               Facets* facets, VertexStates* states) {
@@ -223,7 +230,7 @@ bool run_pass(int number, const FacetedMesh& mesh, const SimplifyScale& scale,
   for (std::size_t v = 0; v < is_open.size(); ++v) {
     if (is_open[v] != 0) division.owners[v] = PatchDivision::kShared;
   }
-  std::vector<Part> parts(division.count());
+  std::vector<SimplifiedPatch> parts(division.count());
   const auto run = [&](std::int64_t i) {
     const auto patch = static_cast<std::size_t>(i);
     parts[patch] = simplified(mesh, *facets, division, patch, scale, states);
@@ -236,7 +243,7 @@ bool run_pass(int number, const FacetedMesh& mesh, const SimplifyScale& scale,
   }
   const std::size_t removed = count - facets->triangles.size();
   return division.count() > 1 && (number == 0 || static_cast<double>(removed) >=
-                                                     kLeastRemoved * static_cast<double>(count));
+                                                     kMinRemovedShare * static_cast<double>(count));
 }
 
 }  // namespace
@@ -244,7 +251,7 @@ bool run_pass(int number, const FacetedMesh& mesh, const SimplifyScale& scale,
 SimplifyScale scale_of(std::span<const Vector3> positions,
                        std::span<const std::array<std::int32_t, 3>> triangles, double tolerance) {
   SimplifyScale scale{kMeasuredShare * tolerance, 0.0};
-  const std::size_t step = triangles.size() / kMeasuredEdges + 1;
+  const std::size_t step = triangles.size() / kMaxMeasuredEdges + 1;
   double sum = 0.0;
   std::size_t count = 0;
   for (std::size_t t = 0; t < triangles.size(); t += step) {
@@ -261,7 +268,7 @@ void simplify_facets(const FacetedMesh& mesh, const SimplifyScale& scale, FixedV
                      const Progress& progress, int threads, Facets* facets) {
   VertexStates states(mesh.positions.size(), std::move(fixed.is_kept));
   double begin = 0.0;
-  for (int i = 0; i < kMostPasses; ++i) {
+  for (int i = 0; i < kMaxPasses; ++i) {
     const double end = begin + 0.6 * (1.0 - begin);
     if (!run_pass(i, mesh, scale, fixed.is_open, progress.part(begin, end), threads, facets,
                   &states)) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Vertices of facets removed, pass by pass.
+// Removes vertices of facets, pass by pass.
 #pragma once
 
 #include <array>
@@ -15,22 +15,23 @@
 namespace prefilter {
 
 struct SimplifyScale {
-  double tolerance;  // of what is measured; the rest is for what lies between
+  double tolerance;  // for measured points; the remainder is for the surface between them
   double spacing;    // of vertices, in tolerances
 };
 
-/// For triangles of which there are some, of which none has been simplified.
+/// The scale for a nonempty set of triangles that has not been simplified yet.
 SimplifyScale scale_of(std::span<const Vector3> positions,
                        std::span<const std::array<std::int32_t, 3>> triangles, double tolerance);
 
-/// Vertices that stay; a flag for each, or none.
+/// Flags of vertices that stay; empty: none.
 struct FixedVertices {
-  std::vector<std::uint8_t> is_open = {};  // the triangles around are no closed ring, or not yet
+  // the triangles around it form no closed ring, or are incomplete
+  std::vector<std::uint8_t> is_open = {};
   std::vector<std::uint8_t> is_kept = {};
 };
 
-/// `simplify` for facets of the positions of a mesh, of the same kinds. They may have been
-/// simplified before: what is known of that counts.
+/// Simplifies facets over the positions and kinds of a mesh; see simplify.h. They may have been
+/// simplified before, in which case their errors accumulate.
 void simplify_facets(const FacetedMesh& mesh, const SimplifyScale& scale, FixedVertices fixed,
                      const Progress& progress, int threads, Facets* facets);
 

@@ -17,22 +17,22 @@ namespace {
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 using Neighbors = std::vector<std::array<std::uint32_t, 3>>;
 
-struct Side {
+struct EdgeSide {
   std::uint32_t end;
   std::uint32_t triangle;
 
-  bool operator<(const Side& other) const {
+  bool operator<(const EdgeSide& other) const {
     return end != other.end ? end < other.end : triangle < other.triangle;
   }
 };
 
-// The sides of triangles by their lesser vertex, in lists one after the other.
-struct Sides {
-  std::vector<Side> sides;
-  std::vector<std::size_t> ends;  // of the lists
+// Sides of triangles in consecutive lists, one per lower vertex.
+struct EdgeSides {
+  std::vector<EdgeSide> sides;
+  std::vector<std::size_t> ends;  // ends of the lists
 };
 
-Sides sides_of(const FacetedMesh& mesh) {
+EdgeSides sides_of(const FacetedMesh& mesh) {
   const auto for_each = [&](const auto& take) {
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -42,26 +42,26 @@ Sides sides_of(const FacetedMesh& mesh) {
       }
     }
   };
-  Sides found;
-  found.ends.assign(mesh.positions.size() + 1, 0);
-  for_each([&](std::size_t a, std::uint32_t, std::uint32_t) { ++found.ends[a + 1]; });
-  std::partial_sum(found.ends.begin(), found.ends.end(), found.ends.begin());
-  found.sides.resize(3 * mesh.triangles.size());
+  EdgeSides result;
+  result.ends.assign(mesh.positions.size() + 1, 0);
+  for_each([&](std::size_t a, std::uint32_t, std::uint32_t) { ++result.ends[a + 1]; });
+  std::partial_sum(result.ends.begin(), result.ends.end(), result.ends.begin());
+  result.sides.resize(3 * mesh.triangles.size());
   for_each([&](std::size_t a, std::uint32_t b, std::uint32_t t) {
-    found.sides[found.ends[a]++] = {b, t};
+    result.sides[result.ends[a]++] = {b, t};
   });
-  found.ends.pop_back();
-  return found;
+  result.ends.pop_back();
+  return result;
 }
 
-// The triangles beside each other, two by two where more than two have an edge.
+// The neighbors of triangles; where more than two share an edge, they are paired up.
 Neighbors neighbors_of(const FacetedMesh& mesh) {
-  Sides found = sides_of(mesh);
+  EdgeSides edge_sides = sides_of(mesh);
   Neighbors beside(mesh.triangles.size(), {kNone, kNone, kNone});
   std::vector<std::uint8_t> known(mesh.triangles.size(), 0);
   std::size_t begin = 0;
-  for (const std::size_t end : found.ends) {
-    const std::span<Side> list(found.sides.data() + begin, end - begin);
+  for (const std::size_t end : edge_sides.ends) {
+    const std::span<EdgeSide> list(edge_sides.sides.data() + begin, end - begin);
     std::ranges::sort(list, std::less<>());
     for (std::size_t i = 0; i + 1 < list.size(); ++i) {
       if (list[i].end != list[i + 1].end) continue;

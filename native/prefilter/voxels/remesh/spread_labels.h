@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Labels for all triangles of a mesh.
+// Completes the labels of a mesh.
 #pragma once
 
 #include "prefilter/base/progress.h"
@@ -8,9 +8,9 @@
 
 namespace prefilter {
 
-/// Gives triangles of kNoLabel the label of what they hang together with by edges that are no
-/// creases; parts of the mesh without any get new ones. Returns how many labels there are new,
-/// above `count`, the number of those that were there. Throws Error(kCancelled).
+/// Gives triangles of kNoLabel the label of triangles connected to them by edges; components
+/// without any label get new ones. Returns the number of new labels, which start at `count`, the
+/// number of existing ones. Throws Error(kCancelled).
 int spread_labels(FacetedMesh* mesh, std::int32_t count, const Progress& progress);
 
 }  // namespace prefilter

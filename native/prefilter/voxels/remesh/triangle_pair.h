@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Two triangles in space.
+// Tests two triangles for intersection.
 #pragma once
 
 #include <array>
@@ -10,15 +10,14 @@
 
 namespace prefilter {
 
-/// A triangle as its corners, and the vertices that these are.
+/// A triangle's corners and their vertex indices.
 struct Corners {
   std::array<Vector3, 3> points;
   std::array<std::int32_t, 3> vertices;
 };
 
-/// Whether two triangles have more points in common than the vertices and edges that they share.
-/// Decided without rounding errors, for coordinates as plane_side asks for. The corners of neither
-/// may be on one line.
+/// Whether two triangles intersect beyond the vertices and edges that they share. Decided without
+/// rounding errors, for coordinates as plane_side requires. Neither triangle may be degenerate.
 bool do_intersect(const Corners& a, const Corners& b);
 
 }  // namespace prefilter

@@ -13,35 +13,36 @@ namespace prefilter {
 namespace {
 
 constexpr std::int64_t kRowsPerTask = 1 << 15;
-// Vertices of a part, unless there would be too many of them.
+// Binary logarithm of the vertices per part, unless there would be too many parts.
 constexpr int kPartBits = 14;
-constexpr std::size_t kMostParts = 1 << 10;
+constexpr std::size_t kMaxParts = 1 << 10;
 
 using Triangle = std::array<std::int32_t, 3>;
 
 }  // namespace
 
-std::vector<std::uint32_t> TriangleParts::numbers(std::size_t count, std::uint32_t none) const {
-  std::vector<std::uint32_t> numbers(count, none);
+std::vector<std::uint32_t> TriangleParts::part_numbers(std::size_t count,
+                                                       std::uint32_t none) const {
+  std::vector<std::uint32_t> part_numbers(count, none);
   for (std::size_t i = 0; i + 1 < begins.size(); ++i) {
-    for (const std::uint32_t t : part(i)) numbers[t] = static_cast<std::uint32_t>(i);
+    for (const std::uint32_t t : part(i)) part_numbers[t] = static_cast<std::uint32_t>(i);
   }
-  return numbers;
+  return part_numbers;
 }
 
 TriangleParts parts_along_vertices(std::span<const Triangle> triangles, std::size_t vertex_count,
                                    const Progress& progress, int threads) {
   int bits = kPartBits;
-  while ((vertex_count >> bits) >= kMostParts) ++bits;
+  while ((vertex_count >> bits) >= kMaxParts) ++bits;
   const std::size_t count = (vertex_count >> bits) + 1;
   const auto part_of = [&](std::size_t t) {
     const Triangle& triangle = triangles[t];
     return static_cast<std::size_t>(std::min({triangle[0], triangle[1], triangle[2]})) >> bits;
   };
-  // Where the triangles of a task begin in their parts.
+  // Offset in each part at which the triangles of a task begin.
   const auto rows = static_cast<std::int64_t>(triangles.size());
   const std::int64_t rows_per_task =
-      std::max(kRowsPerTask, rows / static_cast<std::int64_t>(kMostParts));
+      std::max(kRowsPerTask, rows / static_cast<std::int64_t>(kMaxParts));
   const auto tasks = static_cast<std::size_t>(range_count(rows, rows_per_task));
   std::vector<std::size_t> places(tasks * count);
   const auto add_up = [&](std::int64_t begin, std::int64_t end) {
@@ -76,13 +77,13 @@ void find_owners(const TriangleParts& parts, std::span<const Triangle> triangles
     for (const std::uint32_t t : parts.part(part)) {
       for (const std::int32_t vertex : triangles[t]) {
         std::atomic_ref<std::uint32_t> owner((*owners)[static_cast<std::size_t>(vertex)]);
-        std::uint32_t found = owner.load(std::memory_order_relaxed);
-        if (found == part) continue;
-        if (found == EditedMesh::kNobody &&
-            owner.compare_exchange_strong(found, part, std::memory_order_relaxed)) {
+        std::uint32_t previous = owner.load(std::memory_order_relaxed);
+        if (previous == part) continue;
+        if (previous == EditedMesh::kUnowned &&
+            owner.compare_exchange_strong(previous, part, std::memory_order_relaxed)) {
           continue;
         }
-        if (found != part) owner.store(EditedMesh::kSeveral, std::memory_order_relaxed);
+        if (previous != part) owner.store(EditedMesh::kShared, std::memory_order_relaxed);
       }
     }
   };
@@ -93,7 +94,7 @@ TriangleParts parts_by_inner_vertices(std::span<const Triangle> triangles,
                                       std::span<const std::uint32_t> chosen,
                                       const std::vector<std::uint8_t>& is_inner,
                                       std::vector<std::uint32_t>* parents) {
-  // Each inner vertex to one of lower number in its part.
+  // Union-find: maps each inner vertex to a lower one in its part.
   std::vector<std::uint32_t>& above = *parents;
   for (const std::uint32_t t : chosen) {
     for (const std::int32_t v : triangles[t]) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Triangles of a mesh in parts that can change at the same time.
+// Divides triangles into parts that can be edited concurrently.
 #pragma once
 
 #include <array>
@@ -13,31 +13,31 @@
 
 namespace prefilter {
 
-/// Lists of triangles, one behind the other.
+/// Consecutive lists of triangles.
 struct TriangleParts {
   std::vector<std::uint32_t> triangles;
-  std::vector<std::size_t> begins = {0};  // and the end
+  std::vector<std::size_t> begins = {0};  // and the end of the last
 
   std::size_t count() const { return begins.size() - 1; }
   std::span<const std::uint32_t> part(std::size_t i) const {
     return std::span(triangles).subspan(begins[i], begins[i + 1] - begins[i]);
   }
-  /// Of each of `count` triangles, its part; `none` where it has none.
-  std::vector<std::uint32_t> numbers(std::size_t count, std::uint32_t none) const;
+  /// The part of each of `count` triangles; `none` for those in no part.
+  std::vector<std::uint32_t> part_numbers(std::size_t count, std::uint32_t none) const;
 };
 
-/// All triangles, in order within a part, by their first vertices: those that follow each other
-/// are near each other, as far as the mesh comes from a contour. Throws Error(kCancelled).
+/// Divides all triangles by their lowest vertices, in order within a part. In meshes from contours,
+/// nearby vertex indices are near each other. Throws Error(kCancelled).
 TriangleParts parts_along_vertices(std::span<const std::array<std::int32_t, 3>> triangles,
                                    std::size_t vertex_count, const Progress& progress, int threads);
 
-/// Of the vertices of each part: the part with all of their triangles, or EditedMesh::kSeveral.
-/// What no part has stays as it is. Throws Error(kCancelled).
+/// Sets the owner of each part's vertices: the part with all of their triangles, or
+/// EditedMesh::kShared. Vertices in no part are unchanged. Throws Error(kCancelled).
 void find_owners(const TriangleParts& parts, std::span<const std::array<std::int32_t, 3>> triangles,
                  const Progress& progress, int threads, std::vector<std::uint32_t>* owners);
 
-/// These triangles, in parts that have no vertex that is inner in common; each has one at least.
-/// `parents` has a place for each vertex, and is left with anything in it.
+/// Divides the chosen triangles into parts that share no inner vertex; each triangle must have at
+/// least one. `parents` is scratch space with one entry per vertex.
 TriangleParts parts_by_inner_vertices(std::span<const std::array<std::int32_t, 3>> triangles,
                                       std::span<const std::uint32_t> chosen,
                                       const std::vector<std::uint8_t>& is_inner,

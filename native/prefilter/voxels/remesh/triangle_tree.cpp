@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Built along a Morton curve (C. Lauterbach and others, Fast BVH construction on GPUs, 2009), with
+// the triangles grouped by size first.
 #include "prefilter/voxels/remesh/triangle_tree.h"
 
 #include <bit>
@@ -17,7 +19,7 @@ constexpr std::int64_t kTrianglesPerTask = 1 << 13;
 
 using Mesh = MeshView<std::int32_t>;
 
-// The box of the mesh in which positions become floats from 0 to 1.
+// Maps positions to floats in [0, 1] relative to the mesh's box.
 struct Frame {
   Vector3 low;
   double factor;
@@ -37,7 +39,7 @@ float size_of(const FloatBox& box) {
   return std::max({box.high[0] - box.low[0], box.high[1] - box.low[1], box.high[2] - box.low[2]});
 }
 
-// The larger ones apart, in four classes; then the Morton curve.
+// Sort key: one of four size classes, then the index along the Morton curve.
 std::uint64_t key_of(const FloatBox& box, float mean) {
   constexpr int kBits = 10;
   std::uint64_t key = 0;
@@ -51,7 +53,7 @@ std::uint64_t key_of(const FloatBox& box, float mean) {
   return key;
 }
 
-// In the lower half the triangle, in the upper one its place along the curve.
+// Sorted keys, with the key in the upper half of each number and the triangle in the lower.
 std::vector<std::uint64_t> sorted_keys(const Mesh& mesh, const Frame& frame,
                                        const Progress& progress, int threads) {
   const auto rows = static_cast<std::int64_t>(mesh.triangles.size());
@@ -95,7 +97,7 @@ void make_leaf(const Mesh& mesh, std::span<const std::uint8_t> is_suspect, const
     leaf->triangles[i] = triangle;
     leaf->vertices[i] = mesh.triangles[triangle];
     if (is_suspect.empty() || is_suspect[triangle] != 0) leaf->suspects |= 1U << i;
-    if (are_on_one_line(corners[0], corners[1], corners[2])) leaf->degenerate |= 1U << i;
+    if (are_collinear(corners[0], corners[1], corners[2])) leaf->degenerate |= 1U << i;
     ++leaf->count;
   }
 }
@@ -175,7 +177,7 @@ void find_near(const TriangleTree& tree, std::size_t leaf, NearLeaves* near) {
     std::size_t level;
     std::size_t four;
   };
-  // Four on each level: 2^32 triangles have at most 16 levels.
+  // At most four per level, and 16 levels for 2^32 triangles.
   std::array<Waiting, 64> waiting;
   std::size_t count = 0;
   waiting[count++] = {tree.levels.size() - 1, 0};
@@ -183,8 +185,8 @@ void find_near(const TriangleTree& tree, std::size_t leaf, NearLeaves* near) {
     const auto [at, four] = waiting[--count];
     const TriangleLevel& level = tree.levels[at];
     const FourBoxes& boxes = level.boxes[four];
-    for (unsigned met = boxes.meeting(box); met != 0; met &= met - 1U) {
-      const auto k = static_cast<std::size_t>(std::countr_zero(met));
+    for (unsigned hits = boxes.overlap_mask(box); hits != 0; hits &= hits - 1U) {
+      const auto k = static_cast<std::size_t>(std::countr_zero(hits));
       const std::size_t node = four * TriangleTree::kChildren + k;
       if (level.has_others[node] == 0 && ((node + 1) << (2 * at)) <= leaf) continue;
       if (at == 0) {

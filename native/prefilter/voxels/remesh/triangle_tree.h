@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A tree of boxes over triangles, four at a time.
+// A bounding volume hierarchy over triangles, with four children per node.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 
 namespace prefilter {
 
-/// Positions rounded to floats keep their order, so that boxes which meet still do.
+/// Rounding positions to floats is monotonic, so boxes that overlap still do.
 struct FloatBox {
   std::array<float, 3> low = {kInfinity, kInfinity, kInfinity};
   std::array<float, 3> high = {-kInfinity, -kInfinity, -kInfinity};
@@ -32,7 +32,7 @@ struct FloatBox {
   }
 };
 
-/// Four boxes that are compared with another one at once.
+/// Four boxes that are tested at once.
 struct FourBoxes {
   using Four = Vector<float, 4>;
 
@@ -48,16 +48,16 @@ struct FourBoxes {
   FloatBox box(std::size_t i) const {
     return {{lows[0][i], lows[1][i], lows[2][i]}, {highs[0][i], highs[1][i], highs[2][i]}};
   }
-  // A bit for each that meets the other one.
-  unsigned meeting(const FloatBox& other) const {
-    const auto meets = (lows[0] <= other.high[0]) & (highs[0] >= other.low[0]) &
-                       (lows[1] <= other.high[1]) & (highs[1] >= other.low[1]) &
-                       (lows[2] <= other.high[2]) & (highs[2] >= other.low[2]);
+  // Bit i: box i overlaps the other box.
+  unsigned overlap_mask(const FloatBox& other) const {
+    const auto overlaps = (lows[0] <= other.high[0]) & (highs[0] >= other.low[0]) &
+                          (lows[1] <= other.high[1]) & (highs[1] >= other.low[1]) &
+                          (lows[2] <= other.high[2]) & (highs[2] >= other.low[2]);
 #if defined(PREFILTER_SSE4_1)
-    return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<__m128>(meets)));
+    return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<__m128>(overlaps)));
 #else
-    return (meets[0] != 0 ? 1U : 0U) | (meets[1] != 0 ? 2U : 0U) | (meets[2] != 0 ? 4U : 0U) |
-           (meets[3] != 0 ? 8U : 0U);
+    return (overlaps[0] != 0 ? 1U : 0U) | (overlaps[1] != 0 ? 2U : 0U) |
+           (overlaps[2] != 0 ? 4U : 0U) | (overlaps[3] != 0 ? 8U : 0U);
 #endif
   }
 };
@@ -68,40 +68,42 @@ struct TriangleLeaf {
   std::array<FourBoxes, kTriangles / 4> boxes;
   std::array<std::uint32_t, kTriangles> triangles;
   std::array<std::array<std::int32_t, 3>, kTriangles> vertices;
-  unsigned suspects = 0;    // a bit each
-  unsigned degenerate = 0;  // on one line
+  unsigned suspects = 0;    // bit mask
+  unsigned degenerate = 0;  // bit mask: corners are collinear
   unsigned count = 0;
 
   FloatBox box(std::size_t i) const { return boxes[i / 4].box(i % 4); }
-  unsigned meeting(const FloatBox& other) const {
-    return boxes[0].meeting(other) | boxes[1].meeting(other) << 4U;
+  unsigned overlap_mask(const FloatBox& other) const {
+    return boxes[0].overlap_mask(other) | boxes[1].overlap_mask(other) << 4U;
   }
 };
 
-/// Nodes of a tree, each above four of the level below; the lowest ones are leaves.
+/// Nodes of one level, each the parent of four nodes of the level below; the lowest nodes are
+/// leaves.
 struct TriangleLevel {
-  std::vector<FourBoxes> boxes;          // of four nodes that are below the same one
-  std::vector<std::uint8_t> has_others;  // of each node: triangles that are not suspect
+  std::vector<FourBoxes> boxes;  // of four siblings
+  // per node: whether it contains triangles that are not suspect
+  std::vector<std::uint8_t> has_others;
 };
 
 struct TriangleTree {
   static constexpr std::size_t kChildren = 4;
 
   std::vector<TriangleLeaf> leaves;
-  std::vector<TriangleLevel> levels;  // that of leaves first
+  std::vector<TriangleLevel> levels;  // leaves first
 
   FloatBox box(std::size_t leaf) const {
     return levels[0].boxes[leaf / kChildren].box(leaf % kChildren);
   }
 };
 
-/// Triangles in the order of the Morton curve, those much larger than most by themselves. Suspects
-/// as intersecting_triangles has them; `box` is that of the positions. Throws Error(kCancelled).
+/// Sorts triangles along the Morton curve, with much larger ones in separate leaves. `is_suspect`
+/// is as in intersecting_triangles; `box` is the positions' bounding box. Throws Error(kCancelled).
 TriangleTree build_tree(const MeshView<std::int32_t>& mesh,
                         std::span<const std::uint8_t> is_suspect, const Box& box,
                         const Progress& progress, int threads);
 
-/// Leaves with their boxes, four at a time.
+/// Leaves and their boxes, four at a time.
 struct NearLeaves {
   std::vector<std::size_t> leaves;
   std::vector<FourBoxes> boxes;
@@ -121,8 +123,8 @@ struct NearLeaves {
   }
 };
 
-/// The leaves that meet this one, but for those before it without triangles that are not suspect:
-/// they have found this one.
+/// Collects the leaves that overlap a given one, except earlier leaves that contain only suspects,
+/// since these have found the pair already.
 void find_near(const TriangleTree& tree, std::size_t leaf, NearLeaves* near);
 
 }  // namespace prefilter

@@ -19,8 +19,8 @@
 namespace prefilter {
 namespace {
 
-// The share of a part's faces, by area, against which it has to be turned to count as mixed.
-constexpr double kMixed = 0.1;
+// A part is mixed if more than this share of its area had to be turned to make it consistent.
+constexpr double kMixedShare = 0.1;
 
 void check_length(const char* name, double value, bool may_be_zero) {
   if (std::isfinite(value) && (value > 0.0 || (may_be_zero && value == 0.0))) return;
@@ -51,7 +51,7 @@ WorkMesh work_mesh(const InputMesh& mesh) {
   return work;
 }
 
-// Turns the triangles of closed patches that are inside out. Returns how many patches there were.
+// Turns closed patches that are inside out, and returns their number.
 std::size_t turn_closed_patches(const Patches& patches, WorkMesh* mesh, const Progress& progress,
                                 int threads) {
   std::vector<ClosedPart> parts;
@@ -66,7 +66,7 @@ std::size_t turn_closed_patches(const Patches& patches, WorkMesh* mesh, const Pr
     part_of_patch[p] = is_part(patch) ? static_cast<std::uint32_t>(parts.size()) : count;
     if (is_part(patch)) {
       parts.push_back({patch.volume, patch.area, patch.triangles, 0, first[p],
-                       patch.turned_area > kMixed * patch.area, patch.box});
+                       patch.turned_area > kMixedShare * patch.area, patch.box});
     }
   }
   std::vector<std::uint32_t> part_of(mesh->triangles.size());
@@ -128,12 +128,13 @@ Solid as_solid(const InputMesh& mesh, const SolidOptions& options) {
   }
   report.turned_parts =
       turn_closed_patches(patches, &work, progress.part(0.65, 0.7), options.threads);
-  const bool is_mended = mend_open_parts(patches, options, progress.part(0.7, 1.0), &work, &report);
+  const bool is_mended =
+      repair_open_parts(patches, options, progress.part(0.7, 1.0), &work, &report);
   progress.report(1.0);
   const bool is_other = is_mended || report.welded_vertices + report.duplicate_faces +
                                              report.turned_faces + report.turned_parts >
                                          0;
-  // Vertices at one place count as one for voxels as they are.
+  // Voxels do not distinguish vertices with equal positions, so welding these is no change.
   if (!is_other) {
     unchanged.report = report;
     return unchanged;

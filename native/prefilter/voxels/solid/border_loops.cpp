@@ -13,20 +13,20 @@ namespace {
 constexpr std::size_t kNowhere = static_cast<std::size_t>(-1);
 constexpr std::size_t kRowsPerReport = 1U << 18U;
 
-// A run from one vertex to another.
-struct Run {
+// A directed edge.
+struct HalfEdge {
   std::uint32_t from;
   std::uint32_t to;
 
-  bool operator<(const Run& other) const {
+  bool operator<(const HalfEdge& other) const {
     return from != other.from ? from < other.from : to < other.to;
   }
-  bool operator==(const Run& other) const { return from == other.from && to == other.to; }
+  bool operator==(const HalfEdge& other) const { return from == other.from && to == other.to; }
 };
 
-// For each vertex, the first of those at its place.
-std::vector<std::uint32_t> weld(const PositionView& positions, const Progress& progress,
-                                int threads) {
+// For each vertex, the first one with the same position.
+std::vector<std::uint32_t> weld_equal_positions(const PositionView& positions,
+                                                const Progress& progress, int threads) {
   std::vector<std::uint32_t> order(positions.size());
   std::iota(order.begin(), order.end(), 0U);
   sort_in_parallel(&order, progress, threads, [&](std::uint32_t a, std::uint32_t b) {
@@ -40,10 +40,12 @@ std::vector<std::uint32_t> weld(const PositionView& positions, const Progress& p
   return welded;
 }
 
-// The runs that the mesh lacks: for each edge as many as there are more in the other direction.
-std::vector<Run> missing_runs(const InputMesh& mesh, const std::vector<std::uint32_t>& welded,
-                              const Progress& progress, int threads, std::size_t* open_edges) {
-  // Edge and direction in one number: the direction in the lowest bit.
+// The half-edges that the mesh lacks: for each edge, the difference between its two directions.
+std::vector<HalfEdge> missing_half_edges(const InputMesh& mesh,
+                                         const std::vector<std::uint32_t>& welded,
+                                         const Progress& progress, int threads,
+                                         std::size_t* open_edges) {
+  // Edge and direction in one integer: the direction is in the lowest bit.
   std::vector<std::uint64_t> edges;
   edges.reserve(3 * mesh.triangles.size());
   for (const auto& triangle : mesh.triangles) {
@@ -56,7 +58,7 @@ std::vector<Run> missing_runs(const InputMesh& mesh, const std::vector<std::uint
     }
   }
   sort_in_parallel(&edges, progress.part(0.0, 0.7), threads);
-  std::vector<Run> runs;
+  std::vector<HalfEdge> half_edges;
   *open_edges = 0;
   for (std::size_t i = 0; i < edges.size();) {
     const std::uint64_t edge = edges[i] >> 1U;
@@ -67,51 +69,52 @@ std::vector<Run> missing_runs(const InputMesh& mesh, const std::vector<std::uint
     const auto low = static_cast<std::uint32_t>(edge >> 32U);
     const auto high = static_cast<std::uint32_t>(edge & 0xFFFFFFFFU);
     if (excess != 0) ++*open_edges;
-    for (; excess > 0; --excess) runs.push_back({high, low});
-    for (; excess < 0; ++excess) runs.push_back({low, high});
+    for (; excess > 0; --excess) half_edges.push_back({high, low});
+    for (; excess < 0; ++excess) half_edges.push_back({low, high});
   }
-  sort_in_parallel(&runs, progress.part(0.7, 1.0), threads);
-  return runs;
+  sort_in_parallel(&half_edges, progress.part(0.7, 1.0), threads);
+  return half_edges;
 }
 
-// For each vertex the first of the runs that lead away from it.
-std::vector<std::size_t> first_runs(std::size_t vertices, const std::vector<Run>& runs) {
+// For each vertex the index of its first outgoing half-edge.
+std::vector<std::size_t> first_half_edges(std::size_t vertices,
+                                          const std::vector<HalfEdge>& half_edges) {
   std::vector<std::size_t> first(vertices, kNowhere);
-  for (std::size_t i = runs.size(); i-- > 0;) first[runs[i].from] = i;
+  for (std::size_t i = half_edges.size(); i-- > 0;) first[half_edges[i].from] = i;
   return first;
 }
 
-// The faces on the other side of the runs; kNone where there are several.
+// The face across each half-edge; kNone where there are several.
 std::vector<std::uint32_t> faces_of(const InputMesh& mesh, const std::vector<std::uint32_t>& welded,
-                                    const std::vector<Run>& runs,
+                                    const std::vector<HalfEdge>& half_edges,
                                     const std::vector<std::size_t>& first,
                                     const Progress& progress) {
-  std::vector<std::uint32_t> faces(runs.size(), BorderLoops::kNone);
-  std::vector<unsigned char> has_face(runs.size(), 0);
+  std::vector<std::uint32_t> faces(half_edges.size(), BorderLoops::kNone);
+  std::vector<unsigned char> has_face(half_edges.size(), 0);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (t % kRowsPerReport == 0) {
       progress.report(static_cast<double>(t) / static_cast<double>(mesh.triangles.size()));
     }
     const auto& triangle = mesh.triangles[t];
     for (std::size_t i = 0; i < 3; ++i) {
-      // The run goes the other way.
-      const Run run{welded[static_cast<std::size_t>(triangle[(i + 1) % 3])],
-                    welded[static_cast<std::size_t>(triangle[i])]};
-      if (first[run.from] == kNowhere) continue;
-      const auto found = std::lower_bound(runs.begin(), runs.end(), run);
-      if (found == runs.end() || !(*found == run)) continue;
-      const auto r = static_cast<std::size_t>(found - runs.begin());
+      // A half-edge runs opposite to its face's edge.
+      const HalfEdge half_edge{welded[static_cast<std::size_t>(triangle[(i + 1) % 3])],
+                               welded[static_cast<std::size_t>(triangle[i])]};
+      if (first[half_edge.from] == kNowhere) continue;
+      const auto it = std::lower_bound(half_edges.begin(), half_edges.end(), half_edge);
+      if (it == half_edges.end() || !(*it == half_edge)) continue;
+      const auto r = static_cast<std::size_t>(it - half_edges.begin());
       faces[r] = has_face[r] != 0 ? BorderLoops::kNone : static_cast<std::uint32_t>(t);
       has_face[r] = 1;
     }
   }
-  for (std::size_t r = 1; r < runs.size(); ++r) {
-    if (runs[r] == runs[r - 1]) faces[r] = faces[r - 1] = BorderLoops::kNone;
+  for (std::size_t r = 1; r < half_edges.size(); ++r) {
+    if (half_edges[r] == half_edges[r - 1]) faces[r] = faces[r - 1] = BorderLoops::kNone;
   }
   return faces;
 }
 
-// For each vertex one of those that triangles join it with, the same for all of these.
+// Component of each vertex, named by its lowest vertex: components are connected by triangles.
 std::vector<std::uint32_t> parts_of(const InputMesh& mesh, const std::vector<std::uint32_t>& welded,
                                     const Progress& progress) {
   std::vector<std::uint32_t> parts = welded;
@@ -134,39 +137,41 @@ std::vector<std::uint32_t> parts_of(const InputMesh& mesh, const std::vector<std
   return parts;
 }
 
-// Walks along the runs, each once. As many lead to a vertex as away from it, so a walk ends where
-// it began; where it comes to a vertex again, it has closed a loop.
-void walk_along(const std::vector<Run>& runs, const std::vector<std::uint32_t>& faces,
+// Walks along each half-edge once. Every vertex has as many incoming as outgoing ones, so a walk
+// ends where it began; when it reaches a vertex again, it has closed a loop.
+void walk_along(const std::vector<HalfEdge>& half_edges, const std::vector<std::uint32_t>& faces,
                 std::vector<std::size_t> next, const Progress& progress, BorderLoops* loops) {
-  std::vector<std::size_t> places(next.size(), kNowhere);  // in the walk
+  std::vector<std::size_t> indices(next.size(), kNowhere);  // index in the walk
   std::vector<std::uint32_t> walk;
   std::vector<std::uint32_t> beside;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (i % 4096 == 0) progress.report(static_cast<double>(i) / static_cast<double>(runs.size()));
-    if (next[runs[i].from] == kNowhere) continue;
-    walk.push_back(runs[i].from);
-    places[runs[i].from] = 0;
+  for (std::size_t i = 0; i < half_edges.size(); ++i) {
+    if (i % 4096 == 0)
+      progress.report(static_cast<double>(i) / static_cast<double>(half_edges.size()));
+    if (next[half_edges[i].from] == kNowhere) continue;
+    walk.push_back(half_edges[i].from);
+    indices[half_edges[i].from] = 0;
     while (!walk.empty() && next[walk.back()] != kNowhere) {
-      const std::size_t run = next[walk.back()];
-      const bool has_more = run + 1 < runs.size() && runs[run + 1].from == walk.back();
-      next[walk.back()] = has_more ? run + 1 : kNowhere;
-      beside.push_back(faces[run]);
-      const std::uint32_t vertex = runs[run].to;
-      if (places[vertex] == kNowhere) {
-        places[vertex] = walk.size();
+      const std::size_t half_edge = next[walk.back()];
+      const bool has_more =
+          half_edge + 1 < half_edges.size() && half_edges[half_edge + 1].from == walk.back();
+      next[walk.back()] = has_more ? half_edge + 1 : kNowhere;
+      beside.push_back(faces[half_edge]);
+      const std::uint32_t vertex = half_edges[half_edge].to;
+      if (indices[vertex] == kNowhere) {
+        indices[vertex] = walk.size();
         walk.push_back(vertex);
         continue;
       }
-      const std::size_t begin = places[vertex];
+      const std::size_t begin = indices[vertex];
       const auto from = static_cast<std::ptrdiff_t>(begin);
       loops->vertices.insert(loops->vertices.end(), walk.begin() + from, walk.end());
       loops->faces.insert(loops->faces.end(), beside.begin() + from, beside.end());
       loops->begins.push_back(loops->vertices.size());
-      for (std::size_t k = begin + 1; k < walk.size(); ++k) places[walk[k]] = kNowhere;
+      for (std::size_t k = begin + 1; k < walk.size(); ++k) indices[walk[k]] = kNowhere;
       walk.resize(begin + 1);
       beside.resize(begin);
     }
-    for (const std::uint32_t vertex : walk) places[vertex] = kNowhere;
+    for (const std::uint32_t vertex : walk) indices[vertex] = kNowhere;
     walk.clear();
     beside.clear();
   }
@@ -176,15 +181,16 @@ void walk_along(const std::vector<Run>& runs, const std::vector<std::uint32_t>& 
 
 BorderLoops border_loops(const InputMesh& mesh, const Progress& progress, int threads) {
   BorderLoops loops;
-  const std::vector<std::uint32_t> welded = weld(mesh.positions, progress.part(0.0, 0.4), threads);
-  const std::vector<Run> runs =
-      missing_runs(mesh, welded, progress.part(0.4, 0.7), threads, &loops.open_edges);
-  if (!runs.empty()) {
-    std::vector<std::size_t> first = first_runs(mesh.positions.size(), runs);
+  const std::vector<std::uint32_t> welded =
+      weld_equal_positions(mesh.positions, progress.part(0.0, 0.4), threads);
+  const std::vector<HalfEdge> half_edges =
+      missing_half_edges(mesh, welded, progress.part(0.4, 0.7), threads, &loops.open_edges);
+  if (!half_edges.empty()) {
+    std::vector<std::size_t> first = first_half_edges(mesh.positions.size(), half_edges);
     const std::vector<std::uint32_t> faces =
-        faces_of(mesh, welded, runs, first, progress.part(0.7, 0.8));
+        faces_of(mesh, welded, half_edges, first, progress.part(0.7, 0.8));
     loops.parts = parts_of(mesh, welded, progress.part(0.8, 0.9));
-    walk_along(runs, faces, std::move(first), progress.part(0.9, 1.0), &loops);
+    walk_along(half_edges, faces, std::move(first), progress.part(0.9, 1.0), &loops);
   }
   progress.report(1.0);
   return loops;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The borders of a mesh, as loops.
+// Extracts the boundary loops of a mesh.
 #pragma once
 
 #include <cstddef>
@@ -13,16 +13,17 @@
 
 namespace prefilter {
 
-/// Loops of edges that a mesh lacks, so that with them each edge is traversed as often one way as
-/// the other. Vertices at one place count as one: the first of them.
+/// Loops of the edges that a mesh lacks for each edge to be traversed as often in one direction as
+/// in the other. Vertices with equal positions are represented by the first of them.
 struct BorderLoops {
   static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
 
   std::size_t open_edges = 0;             // unbalanced: traversed more often in one direction
-  std::vector<std::size_t> begins = {0};  // of the loops in the lists below, and their end
-  std::vector<std::uint32_t> vertices;    // a loop's, none twice
-  std::vector<std::uint32_t> faces;  // beside the edge from a vertex to the next; kNone if several
-  std::vector<std::uint32_t> parts;  // of each vertex of the mesh: equal where triangles join them
+  std::vector<std::size_t> begins = {0};  // offset of each loop in the lists below, and their end
+  std::vector<std::uint32_t> vertices;    // vertices of the loops, unique within a loop
+  // face at the edge from each vertex to the next; kNone if there are several
+  std::vector<std::uint32_t> faces;
+  std::vector<std::uint32_t> parts;  // component of each vertex of the mesh, connected by triangles
 
   std::size_t size() const { return begins.size() - 1; }
   std::span<const std::uint32_t> loop(std::size_t i) const {
@@ -33,8 +34,8 @@ struct BorderLoops {
   }
 };
 
-/// The mesh has been checked. `parts` is empty where there are no loops. The same for any number of
-/// threads. Throws Error(kCancelled).
+/// Finds the loops of a mesh that passed check_mesh. `parts` is empty if there are no loops. The
+/// result does not depend on the number of threads. Throws Error(kCancelled).
 BorderLoops border_loops(const InputMesh& mesh, const Progress& progress, int threads);
 
 }  // namespace prefilter

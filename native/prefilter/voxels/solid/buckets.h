@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Items put together by what they have in common, in parallel.
+// Groups numbers by a key, in parallel.
 #pragma once
 
 #include <algorithm>
@@ -14,13 +14,13 @@
 
 namespace prefilter {
 
-/// Numbers in buckets; those of a bucket are in order.
+/// Numbers grouped into buckets, sorted within each.
 class Buckets {
  public:
   Buckets() = default;
 
-  /// Puts in some numbers: `for_items(begin, end, put)` calls put(bucket, number) for what the rows
-  /// [begin, end) of `rows` have, the same whenever it is called.
+  /// Fills the buckets: `for_items(begin, end, put)` must call put(bucket, number) for each item of
+  /// rows [begin, end). It is called twice per range, and must make the same calls both times.
   template <typename ForItems>
   Buckets(std::size_t buckets, std::size_t rows, const ForItems& for_items,
           const Progress& progress, int threads);
@@ -62,7 +62,7 @@ Buckets::Buckets(std::size_t buckets, std::size_t rows, const ForItems& for_item
                                 numbers_[next(bucket)] = number;
                               });
                   });
-  // Each start has become the next one's.
+  // By now each entry holds the start of the next bucket.
   for (std::size_t bucket = buckets; bucket > 0; --bucket) starts_[bucket] = starts_[bucket - 1];
   starts_[0] = 0;
   parallel_ranges(static_cast<std::int64_t>(buckets), kRowsPerTask, threads,

@@ -12,12 +12,12 @@
 namespace prefilter {
 namespace {
 
-constexpr double kWindingLoss = 0.2;      // what a cap may take away from what is inside
-constexpr double kTurned = -0.25;         // the winding number at a cap that is inside out
-constexpr std::size_t kMostSamples = 16;  // of a cap
-constexpr std::size_t kAllSamples = 200000;
+constexpr double kMaxWindingLoss = 0.2;  // mean decrease of the winding number that a cap may cause
+constexpr double kMinCapWinding = -0.25;  // mean winding number below which a cap is inside out
+constexpr std::size_t kMaxSamplesPerCap = 16;  // per cap
+constexpr std::size_t kMaxCapSamples = 200000;
 
-// Points on a cap, in the frame: in the middle of triangles, evenly by area.
+// Points on a cap, in the frame: centers of triangles, evenly distributed by area.
 std::vector<Vector3> samples_on(const PositionView& positions, std::span<const std::uint32_t> loop,
                                 const LoopCap& cap, const UnitFrame& frame, std::size_t most) {
   std::vector<double> sums = {0.0};
@@ -43,7 +43,7 @@ std::vector<Vector3> samples_on(const PositionView& positions, std::span<const s
 std::vector<Vector3> framed(const PositionView& positions, const UnitFrame& frame) {
   std::vector<Vector3> result;
   result.reserve(positions.size());
-  // Vertices that no triangle has may be anywhere.
+  // Vertices that no triangle uses may be anywhere.
   for (const Vector3& p : positions) {
     Vector3 q = frame.to(p);
     for (double& x : q) x = std::clamp(x, -2.0, 2.0);
@@ -52,7 +52,7 @@ std::vector<Vector3> framed(const PositionView& positions, const UnitFrame& fram
   return result;
 }
 
-// The winding numbers of a mesh and of its caps.
+// Winding numbers of a mesh and of its caps at some points.
 struct Windings {
   std::vector<double> of_mesh;
   std::vector<double> of_caps;
@@ -72,10 +72,10 @@ Windings windings_at(std::span<const Vector3> points, const InputMesh& mesh, con
 
 }  // namespace
 
-void leave_losses(const InputMesh& mesh, const BorderLoops& loops, std::span<const LoopCap> caps,
-                  const CappedSolids& solids, const Progress& progress, int threads,
-                  std::span<unsigned char> is_kept) {
-  // What is alone, and turned outwards, cannot lose.
+void drop_canceling_caps(const InputMesh& mesh, const BorderLoops& loops,
+                         std::span<const LoopCap> caps, const CappedSolids& solids,
+                         const Progress& progress, int threads, std::span<unsigned char> is_kept) {
+  // The caps of a single, outward part cannot cancel anything.
   if (solids.loops.empty() || !solids.has_others) return;
   Caps kept;
   for (std::size_t i = 0; i < loops.size(); ++i) {
@@ -84,9 +84,9 @@ void leave_losses(const InputMesh& mesh, const BorderLoops& loops, std::span<con
   if (kept.triangles.empty()) return;
   const UnitFrame frame = frame_of(mesh);
   const std::size_t most =
-      std::clamp<std::size_t>(kAllSamples / solids.loops.size(), 1, kMostSamples);
+      std::clamp<std::size_t>(kMaxCapSamples / solids.loops.size(), 1, kMaxSamplesPerCap);
   std::vector<Vector3> points;
-  std::vector<std::size_t> ends;  // of the points of each loop
+  std::vector<std::size_t> ends;  // end of the points of each loop
   for (const std::size_t i : solids.loops) {
     for (const Vector3& point : samples_on(mesh.positions, loops.loop(i), caps[i], frame, most)) {
       points.push_back(point);
@@ -103,7 +103,8 @@ void leave_losses(const InputMesh& mesh, const BorderLoops& loops, std::span<con
       sum += sign * (windings.of_mesh[p] + windings.of_caps[p]);
     }
     const auto count = static_cast<double>(ends[k] - begin);
-    if (change < -kWindingLoss * count || sum < kTurned * count) is_kept[solids.loops[k]] = 0;
+    if (change < -kMaxWindingLoss * count || sum < kMinCapWinding * count)
+      is_kept[solids.loops[k]] = 0;
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Caps that would take away from what a mesh encloses.
+// Finds caps that would reduce the volume that a mesh encloses.
 #pragma once
 
 #include <span>
@@ -13,11 +13,11 @@
 
 namespace prefilter {
 
-/// Of the loops of solid parts drops those whose caps would cancel the surface: where other parts
-/// close them already, as what is behind the cap is inside without it, and where the cap is inside
-/// out. `is_kept` has an entry for each loop.
-void leave_losses(const InputMesh& mesh, const BorderLoops& loops, std::span<const LoopCap> caps,
-                  const CappedSolids& solids, const Progress& progress, int threads,
-                  std::span<unsigned char> is_kept);
+/// Clears `is_kept` for loops of solid parts whose caps would cancel the surface: because other
+/// parts close them already, so that the region behind the cap is inside without it, or because the
+/// cap is inside out. `is_kept` has one entry per loop.
+void drop_canceling_caps(const InputMesh& mesh, const BorderLoops& loops,
+                         std::span<const LoopCap> caps, const CappedSolids& solids,
+                         const Progress& progress, int threads, std::span<unsigned char> is_kept);
 
 }  // namespace prefilter

@@ -19,17 +19,17 @@ Caps close_holes(const InputMesh& mesh, const CloseHolesOptions& options) {
   result.open_edges = loops.open_edges;
   result.holes = loops.size();
   std::vector<unsigned char> is_kept(loops.size(), 1);
-  if (options.leaves_losses) leave_single_faces(loops, is_kept);
+  if (options.leaves_losses) drop_single_face_loops(loops, is_kept);
   std::vector<LoopCap> caps =
       first_caps(mesh, loops, is_kept, options.method, part(0.4, 0.5), options.threads);
   CappedSolids solids;
   if (options.leaves_losses) {
-    solids = leave_sheets(mesh, loops, caps, part(0.5, 0.55), is_kept);
+    solids = drop_sheet_loops(mesh, loops, caps, part(0.5, 0.55), is_kept);
   }
   if (options.method == HoleMethod::kSmooth) {
     smooth_caps(mesh, loops, is_kept, part(0.55, 0.9), options.threads, &caps);
   }
-  leave_losses(mesh, loops, caps, solids, part(0.9, 0.99), options.threads, is_kept);
+  drop_canceling_caps(mesh, loops, caps, solids, part(0.9, 0.99), options.threads, is_kept);
   for (std::size_t i = 0; i < loops.size(); ++i) {
     if (is_kept[i] != 0) {
       append_cap(mesh.positions.size(), loops.loop(i), caps[i], &result);

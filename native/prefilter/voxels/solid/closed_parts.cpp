@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::int64_t kRowsPerTask = 1 << 14;
 
-// What hangs together by vertices: of each, the first one.
+// Component of each vertex, named by its lowest vertex: components are connected by triangles.
 std::vector<std::uint32_t> first_vertices(const InputMesh& mesh, const Progress& progress) {
   DisjointSets<std::uint32_t> parts(mesh.positions.size());
   CancelCheck cancel_check(progress);
@@ -37,7 +37,7 @@ bool may_be_the_same(const ClosedPart& a, const ClosedPart& b) {
   return a.triangles == b.triangles && a.box.low == b.box.low && a.box.high == b.box.high;
 }
 
-// Whether two parts may be copies of each other.
+// Whether any two parts could be copies of each other.
 bool has_copies(std::vector<ClosedPart> parts) {
   std::sort(parts.begin(), parts.end(), [](const ClosedPart& a, const ClosedPart& b) {
     return std::tie(a.triangles, a.box.low, a.box.high) <
@@ -50,7 +50,7 @@ bool is_thin(double volume, double area, double thickness) {
   return 2.0 * volume < thickness * area;
 }
 
-// Of the sum of several volumes, which cavities take from.
+// Whether a part, or all parts together including cavities, is thin.
 bool has_thin_part(const std::vector<ClosedPart>& parts, double thickness) {
   double volume = 0.0;
   double area = 0.0;
@@ -87,7 +87,8 @@ bool is_solid(const InputMesh& mesh, double thickness, const Progress& progress,
   const Progress counting = progress.part(0.3, 0.6);
   const std::vector<std::uint32_t> part_of = first_vertices(mesh, counting);
   std::vector<ClosedPart> parts;
-  std::vector<std::uint32_t> numbers(mesh.positions.size(), 0);  // at the first vertex of each part
+  // part of each component, at its lowest vertex
+  std::vector<std::uint32_t> numbers(mesh.positions.size(), 0);
   std::vector<bool> is_seen(mesh.positions.size(), false);
   std::vector<std::uint32_t> number_of(mesh.triangles.size());
   const Progress summing = progress.part(0.6, 0.8);
@@ -113,13 +114,13 @@ bool is_solid(const InputMesh& mesh, double thickness, const Progress& progress,
       if (!is_seen[v]) ++part.vertices;
       is_seen[v] = true;
     }
-    // The root itself may be met later.
+    // The root is a vertex of the part, but may not have been visited yet.
     if (!is_seen[root]) ++part.vertices;
     is_seen[root] = true;
   }
   *part_count = parts.size();
   for (const ClosedPart& part : parts) {
-    // A closed surface has about half as many vertices as triangles; one that is there twice, a
+    // A closed surface has about half as many vertices as triangles; a duplicated one has a
     // quarter.
     if (part.vertices * 3 < part.triangles) return false;
   }

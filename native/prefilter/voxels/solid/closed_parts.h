@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Whether a mesh is a solid as it is.
+// Checks whether a mesh is a solid without any repair.
 #pragma once
 
 #include <cstddef>
@@ -10,14 +10,13 @@
 
 namespace prefilter {
 
-/// Whether each edge is run through as often one way as the other: by sums that are 0 then, and
-/// otherwise with a chance of 2^-128. Holds nothing. Precondition: check_mesh.
+/// Whether each edge is traversed as often in one direction as in the other, by hashing: false
+/// positives have a probability of 2^-128. Uses constant memory. Precondition: check_mesh.
 bool is_balanced(const InputMesh& mesh, const Progress& progress, int threads);
 
-/// Whether each edge is run through as often one way as the other, no triangle is there twice the
-/// same way, no part (what hangs together by vertices) is the same as another, each is right side
-/// out or a cavity of one that is, and none is thinner than `thickness` on average. Sets the number
-/// of parts. Precondition: check_mesh.
+/// Whether edges are balanced, no triangle is duplicated, no part (connected by vertices) equals
+/// another, each part is oriented outward or is a cavity of one that is, and none is thinner than
+/// `thickness` on average. Sets the number of parts. Precondition: check_mesh.
 bool is_solid(const InputMesh& mesh, double thickness, const Progress& progress, int threads,
               std::size_t* part_count);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Whether edges are run through as often one way as the other, by sums.
+// Checks by hashing whether edges are traversed equally often in both directions.
 #pragma once
 
 #include <algorithm>
@@ -8,9 +8,8 @@
 
 namespace prefilter {
 
-/// Two numbers of an edge that are as good as drawn at random, negative for the way down. Those of
-/// edges that are run through as often one way as the other sum up to 0, others with a chance of
-/// 2^-128.
+/// Two pseudorandom numbers per edge, negated for descending vertex order. For balanced edges the
+/// sums are 0; for others they are 0 with a probability of 2^-128.
 struct EdgeHash {
   std::uint64_t first = 0;
   std::uint64_t second = 0;
@@ -24,7 +23,7 @@ struct EdgeHash {
     return from < to ? hash : EdgeHash{0 - hash.first, 0 - hash.second};
   }
 
-  /// The sum of a triangle's edges.
+  /// Sum over the edges of a triangle.
   static EdgeHash of(std::int64_t a, std::int64_t b, std::int64_t c) {
     EdgeHash sum = of(a, b);
     sum += of(b, c);

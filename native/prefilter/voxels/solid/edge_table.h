@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The edges of a mesh, and the triangles on them.
+// The edges of a mesh and the triangles at each.
 #pragma once
 
 #include <array>
@@ -13,13 +13,13 @@
 
 namespace prefilter {
 
-/// A triangle on an edge.
+/// The use of an edge by a triangle.
 struct EdgeUse {
   std::uint32_t triangle;
-  bool is_down;  // it runs along the edge from the vertex with the higher number to the other one
+  bool is_down;  // whether the triangle traverses it from the higher vertex index to the lower
 };
 
-/// The uses of all edges of a mesh with valid indices. Edges from a vertex to itself are left out.
+/// All edge uses of a mesh with valid indices. Degenerate edges are left out.
 class EdgeTable {
  public:
   template <typename Mesh>
@@ -40,8 +40,8 @@ class EdgeTable {
 
   std::size_t vertex_count() const { return uses_.size(); }
 
-  /// Calls visit(high, uses) for the edges from this vertex to those with higher numbers; `uses` is
-  /// a span of numbers that `use` reads.
+  /// Calls visit(high, uses) for the edges from vertex `low` to higher vertices; decode each
+  /// element of `uses` with `use`.
   template <typename Visit>
   void for_edges_from(std::size_t low, const Visit& visit) const {
     const std::span<const std::uint64_t> all = uses_[low];

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Refinement: P. Liepa, Filling holes in meshes (2003). What is fair: the integral of the squared
-// mean curvature (Willmore), which spheres minimize among all surfaces with their border and their
-// tangents there. It is minimized over the points, with the cotangent formula for the mean
-// curvature; the tangents come in as the flux of the coordinates through the border, so the
-// triangles beyond it do not matter. Without the change of the metric the energy is quadratic (M.
-// Botsch, L. Kobbelt, An intuitive framework for real-time freeform modeling, 2004): that is where
-// it starts, and the same system then scales the steps along the exact gradient.
+// Refinement follows P. Liepa, Filling holes in meshes (2003). Fairing minimizes the integral of
+// the squared mean curvature (Willmore energy), which spheres minimize among all surfaces with the
+// same border and tangents, over the positions of the points. The mean curvature is the cotangent
+// formula's; the tangents enter as a flux of the coordinates through the border, so the result does
+// not depend on the triangles beyond it. In a fixed metric the energy is quadratic (M. Botsch, L.
+// Kobbelt, An intuitive framework for real-time freeform modeling, 2004); its minimum is the
+// initial value, and the same linear system preconditions descent along the exact gradient. it
+// starts, and the same system then scales the steps along the exact gradient.
 #include "prefilter/voxels/solid/fair_patch.h"
 
 #include <algorithm>
@@ -22,31 +23,32 @@
 namespace prefilter {
 namespace {
 
-constexpr std::size_t kMostPoints = 20000;
-// How much larger triangles may become for each unit of length away from the border, where there
-// would be too many; tried in turn.
-constexpr std::array kGrowths = {0.0, 0.05, 0.1, 0.2, 0.4, 0.8};
-constexpr double kLargestSize = 0.1;       // of these triangles
+constexpr std::size_t kMaxInteriorPoints = 20000;
+// Increase of the target triangle size per unit of distance from the border; the first value that
+// yields at most kMaxInteriorPoints is used.
+constexpr std::array kSizeGrowths = {0.0, 0.05, 0.1, 0.2, 0.4, 0.8};
+constexpr double kMaxTriangleSize = 0.1;   // upper limit of the size
 constexpr double kCreaseCosine = 0.2588;   // 75 degrees
-constexpr double kSimilarCosine = 0.7071;  // normals that are averaged differ by less than 45
-constexpr std::size_t kAveraged = 3;       // edges on either side
+constexpr double kSimilarCosine = 0.7071;  // maximum angle, 45 degrees, between averaged normals
+constexpr std::size_t kAveragedEdges = 3;  // edges on either side over which normals are averaged
 constexpr std::size_t kAveragedAngles = 8;
 constexpr int kFilmSteps = 3;
 constexpr int kFilmRings = 8;
-constexpr int kMostSteps = 16;
+constexpr int kMaxDescentSteps = 16;
 constexpr int kStepsPerMetric = 8;
-constexpr double kLeastGain = 1e-5;  // of the energy, in a step
-// How far from the border's box a patch may bulge, as a share of the box's diagonal.
-constexpr double kFarthest = 1.0;
+constexpr double kMinRelativeGain = 1e-5;  // minimum decrease of the energy per step
+// Maximum distance of a patch from the border's box, relative to the box's diagonal.
+constexpr double kMaxBulge = 1.0;
 
 Vector3 unit(const Vector3& v) {
   const double size = plain_length(v);
   return size > 0.0 ? (1.0 / size) * v : Vector3{};
 }
 
-// Sizes that triangles should have around points.
-std::optional<HolePatch> refined(const HolePatch& whole, std::size_t border, double growth,
-                                 const Progress& progress) {
+// The patch, refined to the size of the border's edges, plus `growth` per distance from it; none if
+// it has too many points.
+std::optional<HolePatch> refined_patch(const HolePatch& whole, std::size_t border, double growth,
+                                       const Progress& progress) {
   HolePatch patch = whole;
   std::vector<double> sizes(border);
   for (std::size_t i = 0; i < border; ++i) {
@@ -63,7 +65,7 @@ std::optional<HolePatch> refined(const HolePatch& whole, std::size_t border, dou
       const auto corners = patch.triangles()[t].corners;
       Vector3 middle{};
       for (const std::uint32_t c : corners) middle = middle + (1.0 / 3.0) * patch.points()[c];
-      double size = growth > 0.0 ? kLargestSize : 0.0;
+      double size = growth > 0.0 ? kMaxTriangleSize : 0.0;
       for (const std::uint32_t c : corners) {
         if (growth > 0.0) {
           size = std::min(size, sizes[c] + growth * plain_length(patch.points()[c] - middle));
@@ -82,7 +84,8 @@ std::optional<HolePatch> refined(const HolePatch& whole, std::size_t border, dou
       changed.push_back(static_cast<std::uint32_t>(patch.triangles().size() + 1));
       patch.divide(t, middle);
       sizes.push_back(size);
-      if (patch.points().size() > border + kMostPoints && growth < kGrowths.back()) return {};
+      if (patch.points().size() > border + kMaxInteriorPoints && growth < kSizeGrowths.back())
+        return {};
     }
     if (changed.empty()) return patch;
     patch.flip(changed, true, progress.part(0.0, 0.0));
@@ -90,11 +93,11 @@ std::optional<HolePatch> refined(const HolePatch& whole, std::size_t border, dou
   }
 }
 
-// The patch in its present metric.
+// The discrete curvature of a patch with fixed connectivity.
 class Metric {
  public:
-  // `clamped`: for each border edge the unit direction in which the patch goes on across it, away
-  // from its inside; zero for a crease.
+  // `clamped` holds for each border edge the unit direction in which the patch continues across it,
+  // pointing out of the patch; zero at creases.
   Metric(const HolePatch& patch, std::span<const Vector3> clamped)
       : patch_(patch),
         border_(clamped.size()),
@@ -111,7 +114,7 @@ class Metric {
     }
   }
 
-  // The mean curvature's normals at points, times their areas: the change of the area as they move.
+  // Area gradients at points, which are the mean curvature normals times the points' areas.
   struct Curvature {
     std::vector<Vector3> normals;
     std::vector<double> areas;
@@ -145,7 +148,7 @@ class Metric {
     return result;
   }
 
-  // Half the gradient of the energy, along the normals of the points.
+  // Half the energy gradient, restricted to the points' normals.
   std::vector<Vector3> half_gradient(std::span<const Vector3> x, const Curvature& curvature) const {
     std::vector<Vector3> y(x.size());
     for (std::size_t i = 0; i < x.size(); ++i) {
@@ -161,7 +164,7 @@ class Metric {
       const double size = plain_length(doubled);
       if (!(size > 0.0)) continue;
       const Vector3 normal = (1.0 / size) * doubled;
-      // As all points move by y.
+      // Change of the area vector if all points move by y.
       const Vector3 change = cross(y[b] - y[a], ac) + cross(ab, y[c] - y[a]);
       const Vector3 turn = (1.0 / size) * (change - dot(normal, change) * normal);
       const double squares = (dot(y[a], y[a]) + dot(y[b], y[b]) + dot(y[c], y[c])) / 6.0;
@@ -183,8 +186,8 @@ class Metric {
     return gradient;
   }
 
-  // The rows of the curvature's normals as products with the points: for each point, its neighbors
-  // and what they count. Rows begin with the point itself.
+  // Rows of the cotangent Laplacian: for each point, its neighbors and their weights, beginning
+  // with the point itself.
   struct Row {
     std::vector<std::pair<std::uint32_t, double>> weights;
   };
@@ -229,8 +232,8 @@ class Metric {
   std::vector<unsigned char> has_row_;
 };
 
-// Points within the border that make the area smallest, in the present metric.
-bool to_soap_film(HolePatch* patch, std::size_t border, const Progress& progress) {
+// Moves interior points to minimize the area, with fixed cotangent weights.
+bool minimize_area(HolePatch* patch, std::size_t border, const Progress& progress) {
   const std::vector<Vector3> none(border);
   std::vector<Vector3> x(patch->points().begin(), patch->points().end());
   const std::vector<Metric::Row> rows = Metric(*patch, none).rows(x);
@@ -257,7 +260,7 @@ bool to_soap_film(HolePatch* patch, std::size_t border, const Progress& progress
 // The quadratic form of the energy in a fixed metric.
 struct Plate {
   SparseFactors factors;
-  std::vector<Vector3> right;  // for the points within the border
+  std::vector<Vector3> right;  // for the interior points
 };
 
 Plate plate_of(const Metric& metric, std::span<const Vector3> x, const Progress& progress) {
@@ -286,7 +289,7 @@ Plate plate_of(const Metric& metric, std::span<const Vector3> x, const Progress&
   return {SparseFactors(std::move(entries), x.subspan(border), progress), std::move(right)};
 }
 
-// Means over the edges around whose normals are similar, by their lengths.
+// Weighted sums over nearby border edges with similar normals.
 template <typename Value, typename Weighed>
 std::vector<Value> averaged(std::span<const Vector3> normals, std::span<const double> lengths,
                             std::size_t most, const Weighed& weighed) {
@@ -303,15 +306,17 @@ std::vector<Value> averaged(std::span<const Vector3> normals, std::span<const do
   return result;
 }
 
-// For each border edge the direction in which the patch has to go on beyond it; zero at creases.
-std::vector<Vector3> continued(std::span<const Vector3> normals, const HolePatch& patch) {
+// For each border edge the direction in which the patch must continue; zero at creases.
+std::vector<Vector3> continuation_directions(std::span<const Vector3> normals,
+                                             const HolePatch& patch) {
   const std::size_t count = normals.size();
   const auto points = patch.points();
   std::vector<double> lengths(count);
   for (std::size_t i = 0; i < count; ++i) {
     lengths[i] = plain_length(points[(i + 1) % count] - points[i]);
   }
-  // The film's normals over a few rings of triangles: it follows each tooth of a jagged border.
+  // Averages the area-minimizing patch's normals over several rings, since it follows every tooth
+  // of a jagged border.
   std::vector<Vector3> film(points.size());
   for (std::uint32_t t = 0; t < patch.triangles().size(); ++t) {
     const Vector3 normal = patch.normal(t);
@@ -327,7 +332,7 @@ std::vector<Vector3> continued(std::span<const Vector3> normals, const HolePatch
     film = std::move(wider);
   }
   std::vector<Vector3> surface =
-      averaged<Vector3>(normals, lengths, kAveraged,
+      averaged<Vector3>(normals, lengths, kAveragedEdges,
                         [&](std::size_t i, double length) { return length * normals[i]; });
   for (Vector3& normal : surface) normal = unit(normal);
   const auto cosines =
@@ -344,15 +349,16 @@ std::vector<Vector3> continued(std::span<const Vector3> normals, const HolePatch
 bool stays_near(std::span<const Vector3> x, std::size_t border) {
   Box box = kEmptyBox;
   for (std::size_t i = 0; i < border; ++i) box.include(x[i]);
-  const double farthest = kFarthest * plain_length(box.high - box.low);
-  // Comparisons that what is no number fails.
+  const double farthest = kMaxBulge * plain_length(box.high - box.low);
+  // Written so that NaN fails the comparison.
   return std::all_of(x.begin(), x.end(), [&](const Vector3& p) {
     return box.squared_distance(p) <= farthest * farthest;
   });
 }
 
-// Moves points within the border; false where that led nowhere.
-bool bend(std::span<const Vector3> clamped, HolePatch* patch, const Progress& progress) {
+// Moves interior points to minimize the bending energy; returns false on failure.
+bool minimize_bending(std::span<const Vector3> clamped, HolePatch* patch,
+                      const Progress& progress) {
   const std::size_t border = clamped.size();
   const auto within = static_cast<std::ptrdiff_t>(border);
   {
@@ -366,8 +372,8 @@ bool bend(std::span<const Vector3> clamped, HolePatch* patch, const Progress& pr
     patch->move_to(std::move(x));
   }
   std::optional<Plate> plate;
-  for (int step = 0; step < kMostSteps; ++step) {
-    progress.report(0.3 + 0.7 * step / kMostSteps);
+  for (int step = 0; step < kMaxDescentSteps; ++step) {
+    progress.report(0.3 + 0.7 * step / kMaxDescentSteps);
     if (step % kStepsPerMetric == 0) {
       patch->flip_all(true, progress.part(0.3, 0.3));
       plate = plate_of(Metric(*patch, clamped), patch->points(), progress.part(0.3, 0.3));
@@ -390,7 +396,7 @@ bool bend(std::span<const Vector3> clamped, HolePatch* patch, const Progress& pr
       gain = before.energy - energy;
       if (is_less) patch->move_to(std::move(moved));
     }
-    if (!is_less || gain < kLeastGain * before.energy) {
+    if (!is_less || gain < kMinRelativeGain * before.energy) {
       if (step % kStepsPerMetric == 0) break;
       step += kStepsPerMetric - 1 - step % kStepsPerMetric;
     }
@@ -402,9 +408,9 @@ bool bend(std::span<const Vector3> clamped, HolePatch* patch, const Progress& pr
 
 void refine_patch(HolePatch* patch, const Progress& progress) {
   const std::size_t border = patch->points().size();
-  for (const double growth : kGrowths) {
-    if (std::optional<HolePatch> found = refined(*patch, border, growth, progress)) {
-      *patch = std::move(*found);
+  for (const double growth : kSizeGrowths) {
+    if (std::optional<HolePatch> refined = refined_patch(*patch, border, growth, progress)) {
+      *patch = std::move(*refined);
       break;
     }
   }
@@ -415,15 +421,15 @@ void fair_patch(std::span<const Vector3> normals, HolePatch* patch, const Progre
   const std::size_t border = normals.size();
   if (patch->points().size() == border) return;
   for (int step = 0; step < kFilmSteps; ++step) {
-    if (!to_soap_film(patch, border, progress.part(0.0, 0.2))) return;
+    if (!minimize_area(patch, border, progress.part(0.0, 0.2))) return;
     patch->flip_all(true, progress.part(0.2, 0.2));
   }
-  const std::vector<Vector3> clamped = continued(normals, *patch);
+  const std::vector<Vector3> clamped = continuation_directions(normals, *patch);
   const bool is_clamped =
       std::any_of(clamped.begin(), clamped.end(), [](const Vector3& v) { return dot(v, v) > 0.0; });
   if (!is_clamped) return;
   const HolePatch film = *patch;
-  if (!bend(clamped, patch, progress.part(0.2, 1.0))) *patch = film;
+  if (!minimize_bending(clamped, patch, progress.part(0.2, 1.0))) *patch = film;
 }
 
 }  // namespace prefilter

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A patch that continues the surface around it.
+// Refines and fairs a patch so that it continues the surface around it.
 #pragma once
 
 #include <span>
@@ -11,14 +11,14 @@
 
 namespace prefilter {
 
-/// Divides triangles until they are about as large as the edges of the border near them, or larger
-/// further away from it where there would be more than about 20000 points.
+/// Divides triangles until they are about as large as the nearby border edges, or larger toward the
+/// middle where there would be more than about 20000 points.
 void refine_patch(HolePatch* patch, const Progress& progress);
 
-/// Moves the points within the border. Where the patch meets the surface at less than 75 degrees,
-/// it leaves the border in the surface's plane, and within bends as little as it can: parts of
-/// planes and of spheres are continued as such. At the rest of the border it meets the surface at a
-/// crease, as a soap film does. `normals` as for span_loop. Throws Error(kCancelled).
+/// Moves the interior points. Where the patch meets the surface at less than 75 degrees, it leaves
+/// the border tangentially and bends as little as possible inside, so parts of planes and spheres
+/// are continued exactly. Along the rest of the border it meets the surface at a crease and
+/// minimizes its area. `normals` are those of span_loop. Throws Error(kCancelled).
 void fair_patch(std::span<const Vector3> normals, HolePatch* patch, const Progress& progress);
 
 }  // namespace prefilter

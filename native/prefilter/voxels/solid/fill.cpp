@@ -15,24 +15,24 @@
 namespace prefilter {
 namespace {
 
-constexpr double kLeastSlope = 1e-4;
+constexpr double kMinPlaneSlope = 1e-4;  // avoids division by 0
 
-// The plane of triangles within a cell; in cells, with the cell's low corner for the origin.
+// The mean plane of the triangles in a cell, in cells from the cell's low corner.
 struct CellPlane {
-  Vector3 normal{};  // away from what is filled; the sum of area vectors
-  Vector3 middle{};  // times the area
+  Vector3 normal{};  // points out of the filled region; sum of area vectors
+  Vector3 middle{};  // area-weighted center
   double area = 0.0;
 
-  // The share of the cell that is behind it: the simplex that the plane cuts off the octant, less
-  // what of it is beyond the sides, by inclusion and exclusion.
+  // The share of the cell behind the plane: the volume of the tetrahedron that the plane cuts off
+  // the octant, minus the parts beyond the cell's sides, by inclusion and exclusion.
   float share() const {
     const double across = std::abs(normal[0]) + std::abs(normal[1]) + std::abs(normal[2]);
     if (!(across > 0.0)) return 0.5F;
     Vector3 slopes;
     double offset = 0.0;
     for (std::size_t a = 0; a < 3; ++a) {
-      // Mirrored so that all are positive; none so small that the quotient loses its digits.
-      slopes[a] = std::max(std::abs(normal[a]) / across, kLeastSlope);
+      // Mirror the axes so that all slopes are positive, and clamp them to avoid cancellation.
+      slopes[a] = std::max(std::abs(normal[a]) / across, kMinPlaneSlope);
       const double at = middle[a] / area;
       offset += slopes[a] * (normal[a] < 0.0 ? 1.0 - at : at);
     }
@@ -48,21 +48,21 @@ struct CellPlane {
   }
 };
 
-void add_piece(const std::array<int, 3>& cell, const CellPolygon& piece, double way,
+void add_piece(const std::array<int, 3>& cell, const CellPolygon& piece, double sign,
                CellPlane* plane) {
   for (int i = 1; i + 1 < piece.count; ++i) {
     const std::array<Vector3, 3> p = {piece.corners[0], piece.corners[i], piece.corners[i + 1]};
     const Vector3 doubled = cross(p[1] - p[0], p[2] - p[0]);
     const double area = length(doubled) / 2.0;
     for (std::size_t a = 0; a < 3; ++a) {
-      plane->normal[a] += way * doubled[a] / 2.0;
+      plane->normal[a] += sign * doubled[a] / 2.0;
       plane->middle[a] += area * ((p[0][a] + p[1][a] + p[2][a]) / 3.0 - cell[a]);
     }
     plane->area += area;
   }
 }
 
-// Those of the triangles that have such a region on one side only, by cell.
+// Planes, per cell, of the triangles with a filled region on exactly one side.
 using CellPlanes = std::unordered_map<std::size_t, CellPlane>;
 CellPlanes planes_of(const MeshView<std::int32_t>& mesh, const ReachGrid& grid,
                      const std::vector<bool>& is_filled, const Progress& progress) {
@@ -89,8 +89,8 @@ CellPlanes planes_of(const MeshView<std::int32_t>& mesh, const ReachGrid& grid,
         for (std::size_t a = 0; a < 3; ++a) middle[a] += piece.corners[i][a] / piece.count;
       }
       for (std::size_t a = 0; a < 3; ++a) middle[a] = grid.origin()[a] + middle[a] * grid.cell();
-      const bool is_front = is_filled[grid.along(middle, normal)];
-      const bool is_back = is_filled[grid.along(middle, back)];
+      const bool is_front = is_filled[grid.first_beyond_surface(middle, normal)];
+      const bool is_back = is_filled[grid.first_beyond_surface(middle, back)];
       if (is_front == is_back) return;
       add_piece(cell, piece, is_back ? 1.0 : -1.0, &planes[grid.index(cell[0], cell[1], cell[2])]);
     });
@@ -98,8 +98,7 @@ CellPlanes planes_of(const MeshView<std::int32_t>& mesh, const ReachGrid& grid,
   return planes;
 }
 
-// Whether a cell of the mesh is a wall within filled regions; the grid has a margin, so that there
-// are cells all around.
+// Whether a surface cell is a wall inside filled regions. The grid's margin guarantees neighbors.
 bool is_inner_wall(int x, int y, int z, const ReachGrid& grid, const std::vector<bool>& is_filled) {
   bool is_within = true;
   bool is_beside = false;
@@ -107,13 +106,13 @@ bool is_inner_wall(int x, int y, int z, const ReachGrid& grid, const std::vector
        {grid.index(x - 1, y, z), grid.index(x + 1, y, z), grid.index(x, y - 1, z),
         grid.index(x, y + 1, z), grid.index(x, y, z - 1), grid.index(x, y, z + 1)}) {
     const ReachGrid::Label label = grid.labels()[next];
-    is_within = is_within && (label == ReachGrid::kMet || is_filled[label]);
+    is_within = is_within && (label == ReachGrid::kSurface || is_filled[label]);
     is_beside = is_beside || is_filled[label];
   }
   return is_within && is_beside;
 }
 
-// How much of each cell is filled.
+// Filled share of each cell.
 std::vector<float> filled_cells(const ReachGrid& grid, const std::vector<bool>& is_filled,
                                 const CellPlanes& planes) {
   const std::vector<ReachGrid::Label>& labels = grid.labels();
@@ -123,7 +122,7 @@ std::vector<float> filled_cells(const ReachGrid& grid, const std::vector<bool>& 
     for (int y = 0; y < ny; ++y) {
       for (int z = 0; z < nz; ++z) {
         const std::size_t i = grid.index(x, y, z);
-        if (labels[i] != ReachGrid::kMet) {
+        if (labels[i] != ReachGrid::kSurface) {
           values[i] = is_filled[labels[i]] ? 1.0F : 0.0F;
           continue;
         }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Surfaces of what the outside does not reach.
+// Contours the regions that the outside does not reach.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace prefilter {
 
-/// The closed surface of some regions of a grid: in cells with triangles that have such a region on
-/// one side only, along the mean plane of these. `is_filled` has an entry for each label.
+/// Closed surface of some regions of a grid. In cells with triangles that have such a region on one
+/// side only, it follows their mean plane. `is_filled` has one entry per label.
 TriangleMesh filled_regions(const MeshView<std::int32_t>& mesh, const ReachGrid& grid,
                             const std::vector<bool>& is_filled, const Progress& progress,
                             int threads);

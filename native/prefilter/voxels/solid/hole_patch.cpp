@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Local optimization by edge flips (C. Lawson, Software for C1 surface interpolation, 1977).
 #include "prefilter/voxels/solid/hole_patch.h"
 
 #include <algorithm>
@@ -10,22 +11,22 @@
 namespace prefilter {
 namespace {
 
-// Areas that differ by less than this share are the same.
-constexpr double kSameArea = 1e-7;
-// How many flips there may be for each triangle; as areas and angles both count, flips could go on
-// for ever.
-constexpr std::size_t kMostFlips = 12;
-// The cosine of the angle between the normals of triangles that count as folded.
-constexpr double kFolded = -0.866;
+// Areas that differ by a smaller share count as equal.
+constexpr double kSameAreaTolerance = 1e-7;
+// Maximum number of flips per triangle; since areas and angles both count, flipping may not
+// terminate otherwise.
+constexpr std::size_t kMaxFlipsPerTriangle = 12;
+// Cosine between the normals of triangles below which they are folded.
+constexpr double kFoldCosine = -0.866;
 constexpr double kFoldWeight = 2.0;
 constexpr std::size_t kFlipsPerReport = 1U << 14U;
 
-// Twice the area; coordinates are about 1 here.
+// Area vector times 2; coordinates are about 1 here.
 Vector3 doubled_area(const Vector3& a, const Vector3& b, const Vector3& c) {
   return cross(b - a, c - a);
 }
 
-// The cotangent of the angle at a of triangle abc.
+// Cotangent of the angle at a in triangle abc.
 double cotangent(const Vector3& a, const Vector3& b, const Vector3& c) {
   const Vector3 u = b - a;
   const Vector3 v = c - a;
@@ -37,7 +38,7 @@ double cotangent(const Vector3& a, const Vector3& b, const Vector3& c) {
 double fold_cost(const Vector3& doubled, const Vector3& other) {
   const double size = plain_length(doubled);
   const double other_size = plain_length(other);
-  return dot(doubled, other) < kFolded * size * other_size
+  return dot(doubled, other) < kFoldCosine * size * other_size
              ? kFoldWeight / 2.0 * std::min(size, other_size)
              : 0.0;
 }
@@ -83,7 +84,7 @@ int HolePatch::edge_to(std::uint32_t triangle, std::uint32_t other) const {
   return beyond[0] == other ? 0 : beyond[1] == other ? 1 : 2;
 }
 
-// Says to the triangle across an edge that `triangle` is now where `was` was.
+// Links `triangle` to its neighbor `other`, which so far was linked to triangle `was`.
 void HolePatch::link(std::uint32_t triangle, int edge, std::uint32_t other, std::uint32_t was) {
   triangles_[triangle].beyond[static_cast<std::size_t>(edge)] = other;
   if (other == kBorder) return;
@@ -117,10 +118,10 @@ void HolePatch::divide_border(std::uint32_t triangle, int edge, std::uint32_t po
   link(added, 1, old.beyond[j], triangle);
 }
 
-// Whether an edge joins a triangle's corner to another point.
+// Whether an edge connects a triangle's corner to another point.
 bool HolePatch::has_edge(std::uint32_t triangle, int corner, std::uint32_t other) const {
   const std::uint32_t center = triangles_[triangle].corners[static_cast<std::size_t>(corner)];
-  // Around the corner one way, and from the border the other way.
+  // Walk around the corner in one direction, and from the border in the other.
   for (const bool is_forward : {true, false}) {
     std::uint32_t at = triangle;
     int i = corner;
@@ -134,32 +135,32 @@ bool HolePatch::has_edge(std::uint32_t triangle, int corner, std::uint32_t other
       at = triangles_[at].beyond[static_cast<std::size_t>(edge)];
       if (at == triangle) return false;
       if (at == kBorder) break;
-      const auto& found = triangles_[at].corners;
-      i = found[0] == center ? 0 : found[1] == center ? 1 : 2;
+      const auto& next = triangles_[at].corners;
+      i = next[0] == center ? 0 : next[1] == center ? 1 : 2;
     }
   }
   return false;
 }
 
-// That of a triangle with this area and normal beside what is beyond an edge.
+// Fold cost of a triangle with the given area vector and the neighbor across an edge.
 double HolePatch::fold_cost(std::uint32_t triangle, int edge, const Vector3& doubled) const {
   const Triangle& own = triangles_[triangle];
   const std::uint32_t other = own.beyond[static_cast<std::size_t>(edge)];
   if (other != kBorder) return prefilter::fold_cost(doubled, normal(other));
-  // The surface is as large as the triangle.
+  // At the border, the adjacent surface counts as equally large.
   const Vector3& outer = normals_[own.corners[static_cast<std::size_t>(edge)]];
   const double size = plain_length(doubled);
   return prefilter::fold_cost(doubled, {size * outer[0], size * outer[1], size * outer[2]});
 }
 
 bool HolePatch::is_better_flipped(std::uint32_t triangle, int edge, bool bends) const {
-  const Triangle& one = triangles_[triangle];
-  const std::uint32_t other = one.beyond[static_cast<std::size_t>(edge)];
+  const Triangle& first_triangle = triangles_[triangle];
+  const std::uint32_t other = first_triangle.beyond[static_cast<std::size_t>(edge)];
   if (other == kBorder) return false;
   const int back = edge_to(other, triangle);
-  const Vector3& a = points_[one.corners[static_cast<std::size_t>(edge)]];
-  const Vector3& b = points_[one.corners[static_cast<std::size_t>(next_corner(edge))]];
-  const std::uint32_t tip = one.corners[static_cast<std::size_t>(previous_corner(edge))];
+  const Vector3& a = points_[first_triangle.corners[static_cast<std::size_t>(edge)]];
+  const Vector3& b = points_[first_triangle.corners[static_cast<std::size_t>(next_corner(edge))]];
+  const std::uint32_t tip = first_triangle.corners[static_cast<std::size_t>(previous_corner(edge))];
   const std::uint32_t far =
       triangles_[other].corners[static_cast<std::size_t>(previous_corner(back))];
   if (tip == far) return false;
@@ -187,12 +188,13 @@ bool HolePatch::is_better_flipped(std::uint32_t triangle, int edge, bool bends) 
     is_better = angles < -1e-6 &&
                 dot(first, second) > 0.5 * plain_length(first) * plain_length(second) &&
                 dot(third, fourth) > 0.0 && after < 1.1 * before;
-    // Folds are always flipped open.
+    // Unfolding flips are always allowed.
     is_better = is_better || (dot(first, second) < 0.0 && after < 0.999 * before);
-  } else if (after < (1.0 - kSameArea) * before) {
+  } else if (after < (1.0 - kSameAreaTolerance) * before) {
     is_better = true;
   } else {
-    is_better = after < (1.0 + kSameArea) * before && angles < -1e-6 && dot(third, fourth) > 0.0;
+    is_better =
+        after < (1.0 + kSameAreaTolerance) * before && angles < -1e-6 && dot(third, fourth) > 0.0;
   }
   return is_better && !has_edge(triangle, previous_corner(edge), far);
 }
@@ -200,33 +202,33 @@ bool HolePatch::is_better_flipped(std::uint32_t triangle, int edge, bool bends) 
 void HolePatch::flip_edge(std::uint32_t triangle, int edge) {
   const std::uint32_t other = triangles_[triangle].beyond[static_cast<std::size_t>(edge)];
   const int back = edge_to(other, triangle);
-  const Triangle one = triangles_[triangle];
+  const Triangle first_triangle = triangles_[triangle];
   const Triangle two = triangles_[other];
   const auto i = static_cast<std::size_t>(edge);
   const auto j = static_cast<std::size_t>(next_corner(edge));
   const auto k = static_cast<std::size_t>(previous_corner(edge));
   const auto m = static_cast<std::size_t>(next_corner(back));
   const auto n = static_cast<std::size_t>(previous_corner(back));
-  const std::uint32_t a = one.corners[i];
-  const std::uint32_t b = one.corners[j];
-  const std::uint32_t c = one.corners[k];
+  const std::uint32_t a = first_triangle.corners[i];
+  const std::uint32_t b = first_triangle.corners[j];
+  const std::uint32_t c = first_triangle.corners[k];
   const std::uint32_t d = two.corners[n];
   triangles_[triangle].corners = {a, d, c};
   triangles_[other].corners = {d, b, c};
-  triangles_[triangle].beyond = {kBorder, other, one.beyond[k]};
+  triangles_[triangle].beyond = {kBorder, other, first_triangle.beyond[k]};
   triangles_[other].beyond = {two.beyond[n], kBorder, triangle};
   link(triangle, 0, two.beyond[m], other);
-  link(other, 1, one.beyond[j], triangle);
+  link(other, 1, first_triangle.beyond[j], triangle);
 }
 
 void HolePatch::flip(std::span<const std::uint32_t> first, bool bends, const Progress& progress) {
   std::vector<std::uint32_t> waiting(first.rbegin(), first.rend());
-  std::size_t left = kMostFlips * triangles_.size();
-  std::size_t looked = 0;
+  std::size_t left = kMaxFlipsPerTriangle * triangles_.size();
+  std::size_t visited = 0;
   while (!waiting.empty() && left > 0) {
     const std::uint32_t triangle = waiting.back();
     waiting.pop_back();
-    if (++looked % kFlipsPerReport == 0) progress.report(0.5);
+    if (++visited % kFlipsPerReport == 0) progress.report(0.5);
     for (int edge = 0; edge < 3; ++edge) {
       if (!is_better_flipped(triangle, edge, bends)) continue;
       const std::uint32_t other = triangles_[triangle].beyond[static_cast<std::size_t>(edge)];

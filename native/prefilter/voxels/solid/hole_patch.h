@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A patch over a hole: a disc of triangles that can be divided and flipped.
+// A triangulated disk over a hole that supports refinement and edge flips.
 #pragma once
 
 #include <array>
@@ -14,9 +14,8 @@
 
 namespace prefilter {
 
-/// Triangles over a loop, with what is beyond their edges. Edge i of a triangle runs from its
-/// corner i to the next one. The first points are those of the loop, in its order, and the border
-/// runs along it.
+/// Triangles over a loop, with adjacency. Edge i of a triangle runs from corner i to the next one.
+/// The first points are those of the loop, in order, and form the border.
 class HolePatch {
  public:
   static constexpr std::uint32_t kBorder = 0xFFFFFFFFU;
@@ -26,8 +25,8 @@ class HolePatch {
     std::array<std::uint32_t, 3> beyond;  // the triangle across an edge, or kBorder
   };
 
-  /// Of triangles that together are a disc. `normals`: the unit normals of the surface at each edge
-  /// of the loop, zero where there is none.
+  /// The triangles must form a disk. `normals` holds the unit normals of the surface at the loop's
+  /// edges, zero where there is none.
   HolePatch(std::vector<Vector3> points, std::span<const std::array<std::uint32_t, 3>> triangles,
             std::vector<Vector3> normals);
 
@@ -35,20 +34,20 @@ class HolePatch {
   std::span<const Triangle> triangles() const { return triangles_; }
   void move_to(std::vector<Vector3> points) { points_ = std::move(points); }
 
-  /// Twice the area, along the normal.
+  /// Area vector times 2.
   Vector3 normal(std::uint32_t triangle) const;
 
-  /// Adds a point and divides a triangle into the three around it.
+  /// Adds a point and divides a triangle into three around it.
   std::uint32_t divide(std::uint32_t triangle, const Vector3& point);
 
-  /// Divides the triangle at a border edge; `point` is one that no triangle has yet.
+  /// Divides the triangle at a border edge by `point`, which must not be used by any triangle yet.
   void divide_border(std::uint32_t triangle, int edge, std::uint32_t point);
 
-  /// Makes triangles smaller, until no flip makes the two at an edge smaller; and among those of
-  /// the same area flips to the greater smallest angle (Delaunay). What is folded back onto its
-  /// neighbor, or onto the surface around, counts as larger. With `bends`, only by the
-  /// angles, and across an edge where the patch bends by more than 60 degrees only if it is folded
-  /// there. Looks at the edges of these triangles first, or at all of them.
+  /// Flips edges until no flip reduces the area of the two triangles at an edge; at equal area,
+  /// flips to the larger smallest angle (Delaunay). Triangles folded back onto a neighbor, or onto
+  /// the surface around, count as larger. With `bends`, only angles count, and edges where the
+  /// patch bends by more than 60 degrees are only flipped to remove folds. Starts with the edges of
+  /// the given triangles, or with all.
   void flip(std::span<const std::uint32_t> first, bool bends, const Progress& progress);
   void flip_all(bool bends, const Progress& progress);
 
@@ -66,11 +65,11 @@ class HolePatch {
   std::vector<Triangle> triangles_;
 };
 
-/// What a triangle beside another one counts more, if both are folded onto each other; both by
-/// twice their areas along their normals.
+/// Additional cost of two adjacent triangles that are folded onto each other, given their area
+/// vectors times 2.
 double fold_cost(const Vector3& doubled, const Vector3& other);
 
-/// The corner of a triangle after one, in its order.
+/// The next corner of a triangle in its order.
 constexpr int next_corner(int corner) { return corner == 2 ? 0 : corner + 1; }
 constexpr int previous_corner(int corner) { return corner == 0 ? 2 : corner - 1; }
 

@@ -9,11 +9,11 @@
 namespace prefilter {
 namespace {
 
-// Of a region: winding numbers fill it from this share on.
-constexpr double kLeastFilling = 0.9;
-constexpr std::size_t kMostSamples = 1U << 16;
+// Share of a region from which winding numbers are considered to fill it.
+constexpr double kMinFilledShare = 0.9;
+constexpr std::size_t kMaxRegionSamples = 1U << 16;
 
-// Middles of cells of regions, evenly chosen, and their labels.
+// Evenly chosen centers of region cells, and their labels.
 struct RegionSamples {
   std::vector<Vector3> points;
   std::vector<ReachGrid::Label> labels;
@@ -23,7 +23,7 @@ RegionSamples samples_of_regions(const ReachGrid& grid) {
   const auto& labels = grid.labels();
   const auto cells = static_cast<std::size_t>(std::count_if(
       labels.begin(), labels.end(), [](auto l) { return l >= ReachGrid::kFirstRegion; }));
-  const std::size_t step = cells / kMostSamples + 1;
+  const std::size_t step = cells / kMaxRegionSamples + 1;
   RegionSamples samples;
   std::size_t place = 0;
   const auto& [nx, ny, nz] = grid.size();
@@ -69,7 +69,7 @@ std::vector<bool> hollow_regions(const Patches& patches, std::span<const double>
   }
   std::vector<bool> is_hollow(labels, false);
   for (std::size_t r = ReachGrid::kFirstRegion; r < labels; ++r) {
-    is_hollow[r] = open[r] > closed[r] && filled_shares[r] < kLeastFilling;
+    is_hollow[r] = open[r] > closed[r] && filled_shares[r] < kMinFilledShare;
   }
   return is_hollow;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Regions that the outside does not reach, and that winding numbers leave empty.
+// Finds regions that the outside does not reach, but whose winding number is 0.
 #pragma once
 
 #include <span>
@@ -13,16 +13,16 @@
 
 namespace prefilter {
 
-/// The share of each region, by its label, that is inside; 0 for other labels.
+/// Share of each region, by label, that is inside the octree's shape; 0 for other labels.
 std::vector<double> filled_shares(const ReachGrid& grid, const Octree& octree, int threads);
 
-/// Which regions, by label, are bounded by open parts for the most, and not filled all the same.
+/// Flags the regions, by label, that are mostly bounded by open parts and not filled.
 std::vector<bool> hollow_regions(const Patches& patches, std::span<const double> areas,
                                  std::span<const TriangleSides> sides,
                                  std::span<const double> filled_shares);
 
-/// The open parts that have one of these regions on one side of at least half of their area, and
-/// the outside on the other.
+/// The open parts with one of the flagged regions on one side, and the outside on the other, over
+/// at least half of their area.
 std::vector<std::size_t> parts_around(const Patches& patches, std::span<const double> areas,
                                       std::span<const TriangleSides> sides,
                                       const std::vector<bool>& is_hollow);

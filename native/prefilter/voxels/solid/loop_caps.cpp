@@ -14,15 +14,15 @@
 namespace prefilter {
 namespace {
 
-constexpr std::size_t kMostFanned = 6;    // edges
-constexpr std::size_t kMostFaired = 400;  // points of a border that a patch is made smooth over
-constexpr std::size_t kFewEdges = 64;     // of loops that are quick to close
+constexpr std::size_t kMaxFanEdges = 6;         // edges of a loop that is closed by a fan
+constexpr std::size_t kMaxFairedPoints = 400;   // points of a border over which a patch is faired
+constexpr std::size_t kMaxShortLoopEdges = 64;  // edges of loops that are fast to close
 constexpr std::int64_t kLoopsPerTask = 16;
 
-// Over long loops between some of their points, with the others put in at the end.
+// A smooth patch over a loop. Long loops are simplified first, and the other points inserted later.
 HolePatch smooth_patch(const std::vector<Vector3>& loop, std::span<const Vector3> normals,
                        const Progress& progress) {
-  const std::vector<std::uint32_t> kept = outline(loop, kMostFaired);
+  const std::vector<std::uint32_t> kept = simplify_loop(loop, kMaxFairedPoints);
   std::vector<Vector3> points;
   for (const std::uint32_t i : kept) points.push_back(loop[i]);
   const std::vector<Vector3> beside = mean_normals(normals, kept);
@@ -42,7 +42,7 @@ HolePatch smooth_patch(const std::vector<Vector3>& loop, std::span<const Vector3
   points = loop;
   points.insert(points.end(), within.begin(), within.end());
   HolePatch whole(std::move(points), triangles, {normals.begin(), normals.end()});
-  put_in(loop, true, &whole, progress.part(0.9, 1.0));
+  insert_points(loop, true, &whole, progress.part(0.9, 1.0));
   return whole;
 }
 
@@ -51,7 +51,7 @@ bool is_fanned(const BorderLoops& loops, HoleMethod method, std::size_t i) {
   const auto faces = loops.faces_beside(i);
   const bool is_double = std::all_of(faces.begin(), faces.end(),
                                      [](std::uint32_t face) { return face == BorderLoops::kNone; });
-  return is_double || (method == HoleMethod::kSmooth && faces.size() <= kMostFanned);
+  return is_double || (method == HoleMethod::kSmooth && faces.size() <= kMaxFanEdges);
 }
 
 UnitFrame frame_of_loop(const InputMesh& mesh, std::span<const std::uint32_t> loop) {
@@ -60,7 +60,7 @@ UnitFrame frame_of_loop(const InputMesh& mesh, std::span<const std::uint32_t> lo
   return UnitFrame(box);
 }
 
-// The unit normals of the faces beside a loop's edges; zero where there is none.
+// Unit normals of the faces at a loop's edges; zero where there is none.
 std::vector<Vector3> normals_beside(const InputMesh& mesh, std::span<const std::uint32_t> faces,
                                     const UnitFrame& frame) {
   std::vector<Vector3> normals;
@@ -78,7 +78,7 @@ std::vector<Vector3> normals_beside(const InputMesh& mesh, std::span<const std::
   return normals;
 }
 
-// A cap by make_patch(points, normals), in coordinates of about 1.
+// A cap built by make_patch(points, normals) in normalized coordinates.
 template <typename MakePatch>
 LoopCap patch_over(const InputMesh& mesh, const BorderLoops& loops, std::size_t i,
                    const UnitFrame& frame, const MakePatch& make_patch) {
@@ -94,22 +94,23 @@ LoopCap patch_over(const InputMesh& mesh, const BorderLoops& loops, std::size_t 
   return cap;
 }
 
-// Calls close(loop, progress) for each that is kept: many short ones at once, then long ones one by
-// one.
+// Calls close(loop, progress) for each loop that is kept: short ones in parallel, then long ones in
+// sequence.
 template <typename Close>
-void for_kept(const BorderLoops& loops, std::span<const unsigned char> is_kept,
-              const Progress& progress, int threads, const Close& close) {
+void for_capped_loops(const BorderLoops& loops, std::span<const unsigned char> is_kept,
+                      const Progress& progress, int threads, const Close& close) {
   parallel_ranges(static_cast<std::int64_t>(loops.size()), kLoopsPerTask, threads,
                   progress.part(0.0, 0.5), [&](std::int64_t begin, std::int64_t end) {
                     for (std::int64_t i = begin; i < end; ++i) {
                       const auto loop = static_cast<std::size_t>(i);
-                      if (is_kept[loop] == 0 || loops.loop(loop).size() > kFewEdges) continue;
+                      if (is_kept[loop] == 0 || loops.loop(loop).size() > kMaxShortLoopEdges)
+                        continue;
                       close(loop, Progress());
                     }
                   });
   const double all = static_cast<double>(loops.vertices.size());
   for (std::size_t i = 0; i < loops.size(); ++i) {
-    if (is_kept[i] == 0 || loops.loop(i).size() <= kFewEdges) continue;
+    if (is_kept[i] == 0 || loops.loop(i).size() <= kMaxShortLoopEdges) continue;
     close(i, progress.part(0.5 + 0.5 * static_cast<double>(loops.begins[i]) / all,
                            0.5 + 0.5 * static_cast<double>(loops.begins[i + 1]) / all));
   }
@@ -135,7 +136,7 @@ LoopCap fan_over(const PositionView& positions, std::span<const std::uint32_t> l
     cap.triangles.push_back({0, 1, 2});
     return cap;
   }
-  // The middle of the line, not of its vertices, which may crowd together.
+  // Center of the border line rather than of its vertices, whose density may vary.
   Vector3 middle{};
   double around = 0.0;
   for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -157,7 +158,7 @@ std::vector<LoopCap> first_caps(const InputMesh& mesh, const BorderLoops& loops,
                                 std::span<const unsigned char> is_kept, HoleMethod method,
                                 const Progress& progress, int threads) {
   std::vector<LoopCap> caps(loops.size());
-  for_kept(loops, is_kept, progress, threads, [&](std::size_t i, const Progress& own) {
+  for_capped_loops(loops, is_kept, progress, threads, [&](std::size_t i, const Progress& own) {
     const UnitFrame frame = frame_of_loop(mesh, loops.loop(i));
     if (is_fanned(loops, method, i) || !frame.has_size()) {
       caps[i] = fan_over(mesh.positions, loops.loop(i));
@@ -173,7 +174,7 @@ std::vector<LoopCap> first_caps(const InputMesh& mesh, const BorderLoops& loops,
 void smooth_caps(const InputMesh& mesh, const BorderLoops& loops,
                  std::span<const unsigned char> is_kept, const Progress& progress, int threads,
                  std::vector<LoopCap>* caps) {
-  for_kept(loops, is_kept, progress, threads, [&](std::size_t i, const Progress& own) {
+  for_capped_loops(loops, is_kept, progress, threads, [&](std::size_t i, const Progress& own) {
     const UnitFrame frame = frame_of_loop(mesh, loops.loop(i));
     if (is_fanned(loops, HoleMethod::kSmooth, i) || !frame.has_size()) return;
     (*caps)[i] = patch_over(mesh, loops, i, frame, [&](const auto& points, const auto& normals) {

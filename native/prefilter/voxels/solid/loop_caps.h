@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Triangles over the loops of a mesh's border.
+// Triangulates the boundary loops of a mesh.
 #pragma once
 
 #include <array>
@@ -16,32 +16,32 @@
 
 namespace prefilter {
 
-/// The triangles over a loop. Its vertices have the first numbers, those that are added the next.
+/// Triangles over a loop. The loop's vertices come first in the numbering, then the added ones.
 struct LoopCap {
   std::vector<Vector3> added;
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// The corners of a triangle of a cap.
+/// Corner positions of a cap's triangle.
 std::array<Vector3, 3> cap_corners(const PositionView& positions,
                                    std::span<const std::uint32_t> loop, const LoopCap& cap,
                                    std::size_t triangle);
 
-/// A triangle over three vertices, and triangles to the middle of the line over more.
+/// A single triangle over three vertices; otherwise triangles to the center of the border.
 LoopCap fan_over(const PositionView& positions, std::span<const std::uint32_t> loop);
 
-/// Fans over the loops that `method` closes so, and patches of about the smallest area over the
-/// others. `is_kept` has an entry for each loop; those of 0 get no cap.
+/// Caps all loops that `is_kept` marks: with fans where `method` or the loop requires them, and
+/// otherwise with patches of about the smallest area. `is_kept` has one entry per loop.
 std::vector<LoopCap> first_caps(const InputMesh& mesh, const BorderLoops& loops,
                                 std::span<const unsigned char> is_kept, HoleMethod method,
                                 const Progress& progress, int threads);
 
-/// Replaces those patches by others that continue the surface.
+/// Replaces these patches by ones that continue the surface.
 void smooth_caps(const InputMesh& mesh, const BorderLoops& loops,
                  std::span<const unsigned char> is_kept, const Progress& progress, int threads,
                  std::vector<LoopCap>* caps);
 
-/// Appends a cap to those of a mesh of so many vertices.
+/// Appends a cap for a mesh of `vertex_count` vertices.
 void append_cap(std::size_t vertex_count, std::span<const std::uint32_t> loop, const LoopCap& cap,
                 Caps* caps);
 

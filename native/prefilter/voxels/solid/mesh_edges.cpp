@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::int64_t kVerticesPerTask = 1 << 13;
 
-// The corner of a triangle from which an edge runs.
+// Index of the corner at which a triangle's use of an edge begins.
 std::size_t corner_of(const TriangleView& triangles, const EdgeUse& use, std::size_t low,
                       std::size_t high) {
   const auto corners = triangles[use.triangle];
@@ -25,7 +25,7 @@ std::size_t corner_of(const TriangleView& triangles, const EdgeUse& use, std::si
   return 3 * std::size_t{use.triangle} + i;
 }
 
-// For each vertex the number of its first edge to vertices with higher numbers; at the end, of all.
+// For each vertex the number of its first edge to a higher vertex; the last entry is the total.
 std::vector<std::int32_t> first_edges(const EdgeTable& table, const Progress& progress,
                                       int threads) {
   const auto count = static_cast<std::int64_t>(table.vertex_count());

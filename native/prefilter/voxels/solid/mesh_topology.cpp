@@ -25,10 +25,10 @@ constexpr std::int64_t kTrianglesPerTask = 1 << 14;
 
 using Corners = std::array<std::uint32_t, 3>;
 
-// Triangles by the names of their vertices.
+// Triangles in terms of welded vertices.
 struct NamedTriangles {
   const TriangleView& triangles;
-  const std::vector<std::int32_t>& names;  // empty: the vertices' own
+  const std::vector<std::int32_t>& names;  // welded vertex of each vertex; empty: no welding
 
   Corners operator[](std::size_t t) const {
     Corners corners;
@@ -47,7 +47,7 @@ bool is_flat(const Corners& corners) {
   return a == b || b == c || c == a;
 }
 
-// The triangles at each vertex, but for those that name one twice.
+// Triangles at each vertex, except those with repeated vertices.
 struct TrianglesAt {
   std::vector<std::uint32_t> starts;
   std::vector<std::uint32_t> triangles;
@@ -79,7 +79,7 @@ struct TrianglesAt {
     triangles.resize(sum);
     for_corners(progress.part(0.4, 1.0),
                 [&](std::uint32_t v, std::uint32_t t) { triangles[next(v)] = t; });
-    // Each start has become the next one's.
+    // By now each entry holds the start of the next vertex.
     for (std::size_t v = vertices; v > 0; --v) starts[v] = starts[v - 1];
     starts[0] = 0;
   }
@@ -89,28 +89,28 @@ std::uint64_t edge_of(std::uint64_t v, std::uint64_t w) {
   return (std::min(v, w) << 32U) | std::max(v, w);
 }
 
-// What is counted at vertices.
-struct Counts {
-  std::int64_t fans = 0;  // triangles around a vertex that hang together there
+// Counts at vertices.
+struct FanCounts {
+  std::int64_t fans = 0;  // groups of triangles around a vertex connected by edges
   std::int64_t edges = 0;
-  bool is_crowded = false;                            // more than two at an edge
-  std::vector<std::array<std::uint64_t, 2>> borders;  // edges, joined by a fan
+  bool is_nonmanifold = false;                        // more than two triangles at an edge
+  std::vector<std::array<std::uint64_t, 2>> borders;  // pairs of boundary edges at a fan's ends
 
-  void add(Counts&& other) {
+  void add(FanCounts&& other) {
     fans += other.fans;
     edges += other.edges;
-    is_crowded = is_crowded || other.is_crowded;
+    is_nonmanifold = is_nonmanifold || other.is_nonmanifold;
     borders.insert(borders.end(), other.borders.begin(), other.borders.end());
   }
 };
 
-// Counts what is at one vertex after another, and joins the triangles at its edges.
-class Fans {
+// Counts fans vertex by vertex, and joins the triangles at their edges.
+class FanCounter {
  public:
-  Fans(const NamedTriangles& mesh, DisjointSets<std::uint32_t>* parts)
+  FanCounter(const NamedTriangles& mesh, DisjointSets<std::uint32_t>* parts)
       : mesh_(mesh), parts_(parts) {}
 
-  Counts counts;
+  FanCounts counts;
 
   void visit(std::uint32_t v, std::span<const std::uint32_t> triangles) {
     uses_.clear();
@@ -133,7 +133,7 @@ class Fans {
         if (v < w) parts_->join_from_threads(triangles[first], triangles[other]);
       }
       if (v < w) ++counts.edges;
-      counts.is_crowded = counts.is_crowded || end - i > 2;
+      counts.is_nonmanifold = counts.is_nonmanifold || end - i > 2;
       if (end - i == 1) borders_.push_back({first, edge_of(v, w)});
       i = end;
     }
@@ -155,25 +155,25 @@ class Fans {
     const std::uint32_t a = root(i);
     const std::uint32_t b = root(j);
     fan_of_[std::max(a, b)] = std::min(a, b);
-    // Around a vertex of many triangles, so that paths stay short.
+    // Shortens paths, for vertices with many triangles.
     fan_of_[j] = fan_of_[i] = std::min(a, b);
   }
 
   NamedTriangles mesh_;
   DisjointSets<std::uint32_t>* parts_;
-  std::vector<std::uint64_t> uses_;  // other end of an edge, triangle here
+  std::vector<std::uint64_t> uses_;  // other end of an edge, index of the triangle here
   std::vector<std::uint32_t> fan_of_;
   std::vector<std::pair<std::uint32_t, std::uint64_t>> borders_;  // fan, edge
 };
 
-Counts count_all(const NamedTriangles& mesh, const TrianglesAt& at, const Progress& progress,
-                 int threads, DisjointSets<std::uint32_t>* parts) {
+FanCounts count_all(const NamedTriangles& mesh, const TrianglesAt& at, const Progress& progress,
+                    int threads, DisjointSets<std::uint32_t>* parts) {
   std::mutex mutex;
-  Counts all;
+  FanCounts all;
   parallel_ranges(
       static_cast<std::int64_t>(at.starts.size()) - 1, kFansPerTask, threads, progress,
       [&](std::int64_t begin, std::int64_t end) {
-        Fans fans(mesh, parts);
+        FanCounter fans(mesh, parts);
         for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v) {
           const std::span all_triangles(at.triangles);
           fans.visit(static_cast<std::uint32_t>(v),
@@ -185,8 +185,8 @@ Counts count_all(const NamedTriangles& mesh, const TrianglesAt& at, const Progre
   return all;
 }
 
-// The edges of borders, in order.
-std::vector<std::uint64_t> border_edges(const Counts& counts) {
+// Unique boundary edges, sorted.
+std::vector<std::uint64_t> border_edges(const FanCounts& counts) {
   std::vector<std::uint64_t> edges;
   edges.reserve(counts.borders.size());
   for (const auto& [one, other] : counts.borders) edges.push_back(other);
@@ -195,8 +195,8 @@ std::vector<std::uint64_t> border_edges(const Counts& counts) {
   return edges;
 }
 
-// How many loops edges make that fans join.
-std::size_t count_loops(const std::vector<std::uint64_t>& edges, const Counts& counts) {
+// Number of loops that boundary edges form, connected by fans.
+std::size_t count_loops(const std::vector<std::uint64_t>& edges, const FanCounts& counts) {
   DisjointSets<std::uint32_t> loops(edges.size());
   const auto number = [&](std::uint64_t edge) {
     return static_cast<std::uint32_t>(std::lower_bound(edges.begin(), edges.end(), edge) -
@@ -208,9 +208,9 @@ std::size_t count_loops(const std::vector<std::uint64_t>& edges, const Counts& c
   return count;
 }
 
-// For each vertex the first of a border that is at its place; itself for those of no border. Empty
-// where that is so of all.
-std::vector<std::int32_t> welded_borders(const PositionView& positions, const Counts& counts,
+// For each vertex the first boundary vertex at its position, or itself if it is not on a boundary.
+// Empty if no two boundary vertices coincide.
+std::vector<std::int32_t> welded_borders(const PositionView& positions, const FanCounts& counts,
                                          const Progress& progress, int threads) {
   std::vector<std::uint32_t> ends;
   for (const auto& [one, other] : counts.borders) {
@@ -222,7 +222,7 @@ std::vector<std::int32_t> welded_borders(const PositionView& positions, const Co
   std::vector<Vector3> places;
   places.reserve(ends.size());
   for (const std::uint32_t v : ends) places.push_back(positions[v]);
-  const std::vector<std::int32_t> firsts = first_at_each_place(places, progress, threads);
+  const std::vector<std::int32_t> firsts = first_at_position(places, progress, threads);
   bool is_same = true;
   for (std::size_t i = 0; i < firsts.size(); ++i) {
     is_same = is_same && firsts[i] == static_cast<std::int32_t>(i);
@@ -236,25 +236,25 @@ std::vector<std::int32_t> welded_borders(const PositionView& positions, const Co
   return names;
 }
 
-// How many parts are closed, with faces that agree on a side, and inside out.
+// Number of parts that are closed, consistently oriented and inside out.
 std::size_t count_cavities(const InputMesh& mesh, const NamedTriangles& named,
-                           const MeshTopology& found) {
-  constexpr double kLeast = 1e-9;  // of the area to the power of 3/2: sheets have no volume
+                           const MeshTopology& topology) {
+  constexpr double kMinVolumeRatio = 1e-9;  // relative to area^(3/2); sheets have no volume
   struct Part {
     EdgeHash edges;
     Vector3 origin{};
     double volume = 0.0;
     double area = 0.0;
   };
-  std::vector<Part> parts(found.parts);
+  std::vector<Part> parts(topology.parts);
   double size = 0.0;
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     const Vector3 p = mesh.positions[v];
     for (const double x : p) size = std::max(size, std::abs(x));
   }
-  for (std::size_t t = 0; t < found.part_of.size(); ++t) {
-    if (found.part_of[t] < 0) continue;
-    Part& part = parts[static_cast<std::size_t>(found.part_of[t])];
+  for (std::size_t t = 0; t < topology.part_of.size(); ++t) {
+    if (topology.part_of[t] < 0) continue;
+    Part& part = parts[static_cast<std::size_t>(topology.part_of[t])];
     const auto [a, b, c] = named[t];
     part.edges += EdgeHash::of(a, b, c);
     std::array<Vector3, 3> p = mesh.corners(t);
@@ -266,11 +266,12 @@ std::size_t count_cavities(const InputMesh& mesh, const NamedTriangles& named,
     part.area += length(cross(p[1] - p[0], p[2] - p[0])) / 2.0;
   }
   return static_cast<std::size_t>(std::count_if(parts.begin(), parts.end(), [](const Part& part) {
-    return part.edges.is_zero() && part.volume < -kLeast * part.area * std::sqrt(part.area);
+    return part.edges.is_zero() &&
+           part.volume < -kMinVolumeRatio * part.area * std::sqrt(part.area);
   }));
 }
 
-MeshTopology topology_of(const NamedTriangles& mesh, const Counts& counts,
+MeshTopology topology_of(const NamedTriangles& mesh, const FanCounts& counts,
                          DisjointSets<std::uint32_t>&& parts) {
   MeshTopology result;
   const std::vector<std::uint32_t> roots = std::move(parts).roots();
@@ -278,7 +279,7 @@ MeshTopology topology_of(const NamedTriangles& mesh, const Counts& counts,
   std::int64_t faces = 0;
   for (std::size_t t = 0; t < roots.size(); ++t) {
     if (is_flat(mesh[t])) continue;
-    // The root is the first of its part.
+    // The root is the lowest triangle of its part.
     const bool is_first = roots[t] == t;
     result.part_of[t] =
         is_first ? static_cast<std::int32_t>(result.parts++) : result.part_of[roots[t]];
@@ -293,7 +294,7 @@ MeshTopology topology_of(const NamedTriangles& mesh, const Counts& counts,
   const std::int64_t euler = counts.fans - counts.edges + faces;
   const std::int64_t twice = 2 * static_cast<std::int64_t>(result.parts) -
                              static_cast<std::int64_t>(result.borders) - euler;
-  if (!counts.is_crowded && twice % 2 == 0) result.genus = static_cast<std::size_t>(twice / 2);
+  if (!counts.is_nonmanifold && twice % 2 == 0) result.genus = static_cast<std::size_t>(twice / 2);
   return result;
 }
 
@@ -313,7 +314,7 @@ MeshTopology mesh_topology(const InputMesh& mesh, bool welds, const Progress& pr
     return count_all(named, at, part.part(0.5, 1.0), threads, parts);
   };
   DisjointSets<std::uint32_t> parts(count);
-  Counts counts = counted(&parts, progress.part(0.0, 0.5));
+  FanCounts counts = counted(&parts, progress.part(0.0, 0.5));
   if (welds && !counts.borders.empty()) {
     names = welded_borders(mesh.positions, counts, progress.part(0.5, 0.6), threads);
     if (!names.empty()) {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+// Winding numbers from solid angles (A. Van Oosterom, J. Strackee, The solid angle of a plane
+// triangle, 1983).
 #include "prefilter/voxels/solid/nesting.h"
 
 #include <array>
@@ -13,9 +15,9 @@ namespace prefilter {
 namespace {
 
 constexpr std::int64_t kRowsOfTask = 1 << 14;
-constexpr std::size_t kPoints = 24;  // that are asked of a mixed part
+constexpr std::size_t kPointsPerMixedPart = 24;  // number of points tested per mixed part
 
-// The solid angle of a triangle seen from a point, over 4 pi: positive from behind it.
+// Solid angle of a triangle seen from a point, divided by 4 pi; positive from behind.
 double winding_of(const std::array<Vector3, 3>& corners, const Vector3& point) {
   const Vector3 a = corners[0] - point;
   const Vector3 b = corners[1] - point;
@@ -28,7 +30,7 @@ double winding_of(const std::array<Vector3, 3>& corners, const Vector3& point) {
   return elementary::atan2(over, under) / (2.0 * std::numbers::pi);
 }
 
-// The sum of all parts' winding numbers, each times its factor.
+// Sum of all parts' winding numbers, each times its factor.
 double winding_around(const InputMesh& mesh, std::span<const std::uint32_t> part_of,
                       std::span<const double> factors, const Vector3& point,
                       const Progress& progress, int threads) {
@@ -46,10 +48,10 @@ double winding_around(const InputMesh& mesh, std::span<const std::uint32_t> part
   return all;
 }
 
-// Middles of up to `count` triangles of a part.
+// Centers of up to `count` triangles of a part.
 std::vector<Vector3> points_of(const InputMesh& mesh, std::span<const std::uint32_t> part_of,
                                std::size_t part, const ClosedPart& closed, std::size_t count) {
-  // Odd, as meshes that were subdivided come in powers of two.
+  // Odd steps, because subdivided meshes have triangles in groups of powers of two.
   const std::size_t step = closed.triangles / count | 1U;
   std::vector<Vector3> points;
   std::size_t place = 0;
@@ -65,8 +67,7 @@ std::vector<Vector3> points_of(const InputMesh& mesh, std::span<const std::uint3
   return points;
 }
 
-// The factors of those other parts whose boxes hold a point, 0 for all others; none where no box
-// does.
+// Factors of the other parts whose boxes contain a point, 0 for the rest; empty if there are none.
 std::vector<double> factors_around(std::span<const ClosedPart> parts,
                                    std::span<const double> factors, std::size_t part,
                                    const Vector3& point) {
@@ -88,35 +89,37 @@ std::vector<bool> parts_to_turn(const InputMesh& mesh, std::span<const ClosedPar
                                 int threads) {
   double sum = 0.0;
   for (const ClosedPart& part : parts) sum += part.is_mixed ? 0.0 : part.volume;
-  // What a part's winding numbers count: as they will be, and as if all were right side out.
-  std::vector<double> ways(parts.size());
+  // Signs of the parts' winding numbers: as they will be, and as if all were oriented outward.
+  std::vector<double> signs(parts.size());
   std::vector<double> outward(parts.size());
   for (std::size_t p = 0; p < parts.size(); ++p) {
     outward[p] = parts[p].volume < 0.0 ? -1.0 : 1.0;
-    ways[p] = parts[p].is_mixed ? outward[p] : (sum < 0.0 ? -1.0 : 1.0);
+    signs[p] = parts[p].is_mixed ? outward[p] : (sum < 0.0 ? -1.0 : 1.0);
   }
   std::vector<bool> is_turned(parts.size());
   for (std::size_t p = 0; p < parts.size(); ++p) {
     const bool is_mixed = parts[p].is_mixed;
-    is_turned[p] = ways[p] < 0.0;
-    if (!is_mixed && ways[p] * parts[p].volume >= 0.0) continue;
+    is_turned[p] = signs[p] < 0.0;
+    if (!is_mixed && signs[p] * parts[p].volume >= 0.0) continue;
     const Progress part =
         progress.part(static_cast<double>(p) / static_cast<double>(parts.size()),
                       static_cast<double>(p + 1) / static_cast<double>(parts.size()));
-    bool is_held = true;
-    for (const Vector3& point : points_of(mesh, part_of, p, parts[p], is_mixed ? kPoints : 1)) {
-      const std::vector<double> around = factors_around(parts, is_mixed ? outward : ways, p, point);
+    bool is_enclosed = true;
+    for (const Vector3& point :
+         points_of(mesh, part_of, p, parts[p], is_mixed ? kPointsPerMixedPart : 1)) {
+      const std::vector<double> around =
+          factors_around(parts, is_mixed ? outward : signs, p, point);
       if (around.empty()) {
-        is_held = false;
+        is_enclosed = false;
         break;
       }
       const double winding = winding_around(mesh, part_of, around, point, part, threads);
       const bool is_odd = static_cast<std::int64_t>(std::floor(winding + 0.5)) % 2 != 0;
-      is_held = is_mixed ? is_odd : winding >= 0.5;
-      if (!is_held) break;
+      is_enclosed = is_mixed ? is_odd : winding >= 0.5;
+      if (!is_enclosed) break;
     }
-    // Mixed parts are right side out by now, the others inside out.
-    if (is_held == is_mixed) is_turned[p] = !is_turned[p];
+    // At this point mixed parts are oriented outward, the others inward.
+    if (is_enclosed == is_mixed) is_turned[p] = !is_turned[p];
   }
   progress.report(1.0);
   return is_turned;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Closed surfaces inside of others.
+// Finds closed parts of a mesh nested in others.
 #pragma once
 
 #include <cstddef>
@@ -20,16 +20,17 @@ struct ClosedPart {
   std::size_t triangles = 0;
   std::size_t vertices = 0;
   std::size_t first_triangle = 0;
-  bool is_mixed = false;  // its faces did not agree on which side is out: it is no cavity
+  // its faces were not consistently oriented, so orientation does not mark cavities
+  bool is_mixed = false;
   Box box = kEmptyBox;
 };
 
-/// Which parts are to be turned for each to be right side out or a cavity of others. `part_of` has
-/// the part of each triangle, or parts.size() where it has none.
+/// Returns the parts to turn, so that each is oriented outward or is a cavity of others. `part_of`
+/// is the part of each triangle, or parts.size() for none.
 ///
-/// Where the volumes sum up to less than 0 all are turned first. Parts of negative volume are then
-/// turned where the others do not wind around them. Mixed parts are cavities where they lie in an
-/// odd number of others. Throws Error(kCancelled).
+/// If the total volume is negative, all parts are turned first. Parts of negative volume are then
+/// turned unless the others wind around them. Mixed parts are cavities if an odd number of others
+/// contain them. Throws Error(kCancelled).
 std::vector<bool> parts_to_turn(const InputMesh& mesh, std::span<const ClosedPart> parts,
                                 std::span<const std::uint32_t> part_of, const Progress& progress,
                                 int threads);

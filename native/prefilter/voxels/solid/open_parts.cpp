@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Each part gets the least that keeps it. What winding numbers make of the mesh, with its holes
-// closed, is looked up in the cells that it is going to have; parts that leave no contour there are
-// replaced, and the rest is looked at again, since their caps are gone.
+// Applies the least change that preserves each part. The mesh is voxelized with its holes closed,
+// in the cells that it will be voxelized in. Parts that leave no contour there are replaced; the
+// others are then evaluated again, since the replaced parts' caps are gone.
 #include "prefilter/voxels/solid/open_parts.h"
 
 #include <algorithm>
@@ -15,11 +15,11 @@
 
 #include "prefilter/voxels/close_holes.h"
 #include "prefilter/voxels/solid/border_loops.h"
+#include "prefilter/voxels/solid/contour_coverage.h"
 #include "prefilter/voxels/solid/fill.h"
 #include "prefilter/voxels/solid/hollow_regions.h"
-#include "prefilter/voxels/solid/kept.h"
 #include "prefilter/voxels/solid/loop_caps.h"
-#include "prefilter/voxels/solid/part_fates.h"
+#include "prefilter/voxels/solid/part_actions.h"
 #include "prefilter/voxels/solid/reach.h"
 #include "prefilter/voxels/solid/sheets.h"
 #include "prefilter/voxels/solid/shell.h"
@@ -30,14 +30,14 @@
 namespace prefilter {
 namespace {
 
-constexpr int kRounds = 3;
-// Of a part that counts as closed: the square of the length of its border over its area.
-constexpr double kLargestHole = 0.02;
+constexpr int kDecisionRounds = 3;  // each decision changes the voxels that others depend on
+// A part counts as closed if the squared length of its border, relative to its area, is below this.
+constexpr double kMaxHoleRatio = 0.02;
 
 using Edge = std::array<std::uint32_t, 2>;
 
-bool is_partly_thickened(const PartFate& part) {
-  return part.fate == Fate::kWound && part.is_thickened;
+bool is_partly_thickened(const PartDecision& part) {
+  return part.action == PartAction::kKeepWinding && part.is_thickened;
 }
 
 double area_of(const std::array<Vector3, 3>& p) {
@@ -50,31 +50,33 @@ std::vector<double> areas_of(const WorkMesh& mesh) {
   return areas;
 }
 
-// Parts with small holes alone are wound around as they are.
+// Whether a patch is open; small holes in an enclosing patch do not make it so.
 bool is_open(const FacePatch& patch, double cell) {
   const bool is_nearly_closed = patch.is_orientable && patch.turned_area == 0.0 &&
-                                patch.border * patch.border < kLargestHole * patch.area &&
+                                patch.border * patch.border < kMaxHoleRatio * patch.area &&
                                 patch.volume > cell * patch.area;
   return !patch.is_closed() && !is_nearly_closed;
 }
 
-// The triangles that stay, with what they were among all; without those of some parts.
-WorkMesh wound_parts(const WorkMesh& mesh, const Patches& patches, std::span<const PartFate> fates,
-                     std::span<const std::size_t> without = {}) {
-  std::vector<bool> is_wound(fates.size());
-  for (std::size_t p = 0; p < fates.size(); ++p) is_wound[p] = fates[p].fate == Fate::kWound;
-  for (const std::size_t p : without) is_wound[p] = false;
+// The triangles of the parts that keep their winding, except the parts in `without`.
+WorkMesh winding_parts(const WorkMesh& mesh, const Patches& patches,
+                       std::span<const PartDecision> decisions,
+                       std::span<const std::size_t> without = {}) {
+  std::vector<bool> keeps_winding(decisions.size());
+  for (std::size_t p = 0; p < decisions.size(); ++p)
+    keeps_winding[p] = decisions[p].action == PartAction::kKeepWinding;
+  for (const std::size_t p : without) keeps_winding[p] = false;
   WorkMesh result;
   result.positions = mesh.positions;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (!is_wound[patches.patch_of[t]]) continue;
+    if (!keeps_winding[patches.patch_of[t]]) continue;
     result.triangles.push_back(mesh.triangles[t]);
     result.origins.push_back(mesh.origins[t]);
   }
   return result;
 }
 
-// The occupancies of a mesh, with its holes closed, in cells around all of the patches.
+// Voxelizes a mesh with its holes closed, in a root around all patches.
 Octree voxels_of(const WorkMesh& mesh, const Patches& patches, double cell,
                  const Progress& progress, int threads) {
   Box box = kEmptyBox;
@@ -87,7 +89,7 @@ Octree voxels_of(const WorkMesh& mesh, const Patches& patches, double cell,
   if (!has_area) return octree;
   CloseHolesOptions holes;
   holes.method = HoleMethod::kFan;
-  // So that sheets are lost, and get a thickness.
+  // Close sheets too, so that they leave no contour and get thickened.
   holes.leaves_losses = false;
   holes.progress = progress.part(0.0, 0.3);
   holes.threads = threads;
@@ -107,32 +109,35 @@ Octree voxels_of(const WorkMesh& mesh, const Patches& patches, double cell,
   return voxelize({positions, triangles}, options);
 }
 
-// Lets the parts around regions that winding numbers leave empty be filled. Returns these regions,
-// by label; none where no part is.
+// Marks the parts around regions that winding numbers leave empty to be filled. Returns flags of
+// these regions, by label; empty if there are no such parts.
 std::vector<bool> fill_hollow(const Patches& patches, std::span<const double> areas,
                               std::span<const TriangleSides> sides, const ReachGrid& grid,
-                              const Octree& octree, int threads, std::span<PartFate> fates) {
+                              const Octree& octree, int threads,
+                              std::span<PartDecision> decisions) {
   std::vector<bool> is_hollow =
       hollow_regions(patches, areas, sides, filled_shares(grid, octree, threads));
   const std::vector<std::size_t> parts = parts_around(patches, areas, sides, is_hollow);
-  for (const std::size_t p : parts) fates[p].fate = Fate::kFilled;
+  for (const std::size_t p : parts) decisions[p].action = PartAction::kReplaceByRegion;
   if (parts.empty()) is_hollow.clear();
   return is_hollow;
 }
 
 // The triangles that get a shell.
-std::vector<std::uint32_t> thin_triangles(const Patches& patches, std::span<const float> kept,
-                                          std::span<const PartFate> fates, float most_kept) {
+std::vector<std::uint32_t> thin_triangles(const Patches& patches, std::span<const float> coverage,
+                                          std::span<const PartDecision> decisions,
+                                          float max_coverage) {
   std::vector<std::uint32_t> thin;
-  for (std::size_t t = 0; t < kept.size(); ++t) {
-    const auto& [fate, is_thickened] = fates[patches.patch_of[t]];
-    const bool is_lost = is_thickened && kept[t] < most_kept;
-    if (fate == Fate::kSheet || is_lost) thin.push_back(static_cast<std::uint32_t>(t));
+  for (std::size_t t = 0; t < coverage.size(); ++t) {
+    const auto& [action, is_thickened] = decisions[patches.patch_of[t]];
+    const bool is_lost = is_thickened && coverage[t] < max_coverage;
+    if (action == PartAction::kReplaceByShell || is_lost)
+      thin.push_back(static_cast<std::uint32_t>(t));
   }
   return thin;
 }
 
-// Both sides of triangles, but for those of closed parts, which have them.
+// Adds each triangle a second time, reversed; closed parts are left alone.
 void add_faces(const WorkMesh& mesh, const Patches& patches, std::span<const std::uint32_t> thin,
                WorkMesh* result) {
   for (const std::uint32_t t : thin) {
@@ -144,14 +149,14 @@ void add_faces(const WorkMesh& mesh, const Patches& patches, std::span<const std
   }
 }
 
-// The edges of loops that stay open where a mesh's holes are closed, in order.
+// Edges of loops that stay open when a mesh's holes are closed, sorted.
 std::vector<Edge> open_edges(const WorkMesh& mesh, const Progress& progress, int threads) {
   const InputMesh input{mesh.positions, mesh.triangles};
   const BorderLoops loops = border_loops(input, progress.part(0.0, 0.5), threads);
   std::vector<unsigned char> is_kept(loops.size(), 1);
   const std::vector<LoopCap> caps =
       first_caps(input, loops, is_kept, HoleMethod::kFlat, progress.part(0.5, 0.9), threads);
-  leave_sheets(input, loops, caps, progress.part(0.9, 1.0), is_kept);
+  drop_sheet_loops(input, loops, caps, progress.part(0.9, 1.0), is_kept);
   std::vector<Edge> edges;
   for (std::size_t i = 0; i < loops.size(); ++i) {
     if (is_kept[i] != 0) continue;
@@ -165,22 +170,22 @@ std::vector<Edge> open_edges(const WorkMesh& mesh, const Progress& progress, int
   return edges;
 }
 
-// Lets parts be sheets as a whole that are thickened in places, and whose borders stay open then,
-// as those of sheets do: winding numbers have them half inside. Returns whether there are any.
-bool become_sheets(const WorkMesh& mesh, const WorkMesh& result, const Patches& patches,
-                   const Progress& progress, int threads, std::span<PartFate> fates) {
-  if (std::none_of(fates.begin(), fates.end(), is_partly_thickened)) return false;
+// Turns parts into sheets if they are thickened in places and their borders would stay open like a
+// sheet's, which leaves their winding number at 1/2. Returns whether there are any.
+bool turn_into_sheets(const WorkMesh& mesh, const WorkMesh& result, const Patches& patches,
+                      const Progress& progress, int threads, std::span<PartDecision> decisions) {
+  if (std::none_of(decisions.begin(), decisions.end(), is_partly_thickened)) return false;
   const std::vector<Edge> edges = open_edges(result, progress, threads);
   bool has_changed = false;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const std::size_t p = patches.patch_of[t];
-    if (!is_partly_thickened(fates[p]) || patches.patches[p].is_closed()) continue;
+    if (!is_partly_thickened(decisions[p]) || patches.patches[p].is_closed()) continue;
     for (std::size_t k = 0; k < 3; ++k) {
       const auto a = static_cast<std::uint32_t>(mesh.triangles[t][k]);
       const auto b = static_cast<std::uint32_t>(mesh.triangles[t][(k + 1) % 3]);
       const Edge edge = {std::min(a, b), std::max(a, b)};
       if (!std::binary_search(edges.begin(), edges.end(), edge)) continue;
-      fates[p].fate = Fate::kSheet;
+      decisions[p].action = PartAction::kReplaceByShell;
       has_changed = true;
       break;
     }
@@ -197,76 +202,80 @@ void append(const TriangleMesh& surface, WorkMesh* mesh) {
   mesh->origins.resize(mesh->triangles.size(), -1);
 }
 
-void count_fates(std::span<const PartFate> fates, SolidReport* report) {
-  for (const auto& [fate, is_thickened] : fates) {
-    if (fate == Fate::kSheet || is_thickened) ++report->thickened_parts;
-    if (fate == Fate::kFilled) ++report->filled_parts;
+void count_decisions(std::span<const PartDecision> decisions, SolidReport* report) {
+  for (const auto& [action, is_thickened] : decisions) {
+    if (action == PartAction::kReplaceByShell || is_thickened) ++report->thickened_parts;
+    if (action == PartAction::kReplaceByRegion) ++report->filled_parts;
   }
 }
 
-// An eye in its socket: the back of an open part is inside of others, where there is no contour,
-// and nothing to be thickened.
-void keep_covered(const WorkMesh& mesh, const Patches& patches, std::span<const std::size_t> parts,
-                  std::span<const PartFate> fates, const Octree& octree, double cell,
-                  const Progress& progress, int threads, std::span<float> kept) {
-  const WorkMesh others = wound_parts(mesh, patches, fates, parts);
+// Counts triangles as covered if both of their sides are inside other parts, such as the back of an
+// eye in its socket: there is no contour, but nothing needs to be thickened.
+void add_coverage_by_others(const WorkMesh& mesh, const Patches& patches,
+                            std::span<const std::size_t> parts,
+                            std::span<const PartDecision> decisions, const Octree& octree,
+                            double cell, const Progress& progress, int threads,
+                            std::span<float> coverage) {
+  const WorkMesh others = winding_parts(mesh, patches, decisions, parts);
   if (parts.empty() || others.triangles.empty()) return;
   std::vector<bool> may_be_covered(mesh.triangles.size());
   for (std::size_t t = 0; t < may_be_covered.size(); ++t) {
     may_be_covered[t] = std::binary_search(parts.begin(), parts.end(), patches.patch_of[t]);
   }
   const Octree without = voxels_of(others, patches, cell, progress.part(0.0, 0.8), threads);
-  add_covered(mesh.view(), octree, without, may_be_covered, progress.part(0.8, 1.0), threads, kept);
+  add_covered(mesh.view(), octree, without, may_be_covered, progress.part(0.8, 1.0), threads,
+              coverage);
 }
 
-// What becomes of the parts, and what of their triangles is kept in the cells.
-struct Verdict {
-  std::vector<PartFate> fates;
-  std::vector<float> kept;      // shares of the triangles
-  std::vector<bool> is_filled;  // of the regions, by label; none where no part is
+// Decisions on all parts.
+struct PartDecisions {
+  std::vector<PartDecision> decisions;
+  std::vector<float> coverage;  // of the triangles
+  std::vector<bool> is_filled;  // by region label; empty: none
 
-  bool is_wound() const {
-    return std::all_of(fates.begin(), fates.end(),
-                       [](const PartFate& part) { return part.fate == Fate::kWound; });
+  bool keeps_winding() const {
+    return std::all_of(decisions.begin(), decisions.end(), [](const PartDecision& part) {
+      return part.action == PartAction::kKeepWinding;
+    });
   }
 };
 
-// `grid` and `sides` are there only where parts are open.
-Verdict judge(const WorkMesh& mesh, const Patches& patches, std::span<const double> areas,
-              const ReachGrid* grid, std::span<const TriangleSides> sides,
-              const SolidOptions& options, const Progress& progress) {
-  Verdict verdict;
-  verdict.fates.resize(patches.patches.size());
-  for (int round = 0; round < kRounds; ++round) {
-    const Progress part = progress.part(static_cast<double>(round) / kRounds,
-                                        static_cast<double>(round + 1) / kRounds);
-    const WorkMesh wound = wound_parts(mesh, patches, verdict.fates);
-    if (wound.triangles.empty()) break;
+// `grid` and `sides` are only set if there are open parts.
+PartDecisions decide(const WorkMesh& mesh, const Patches& patches, std::span<const double> areas,
+                     const ReachGrid* grid, std::span<const TriangleSides> sides,
+                     const SolidOptions& options, const Progress& progress) {
+  PartDecisions plan;
+  plan.decisions.resize(patches.patches.size());
+  for (int round = 0; round < kDecisionRounds; ++round) {
+    const Progress part = progress.part(static_cast<double>(round) / kDecisionRounds,
+                                        static_cast<double>(round + 1) / kDecisionRounds);
+    const WorkMesh winding = winding_parts(mesh, patches, plan.decisions);
+    if (winding.triangles.empty()) break;
     const Octree octree =
-        voxels_of(wound, patches, options.cell, part.part(0.0, 0.5), options.threads);
+        voxels_of(winding, patches, options.cell, part.part(0.0, 0.5), options.threads);
     const double thickness = options.thickness * options.cell;
-    verdict.kept = kept_shares(mesh.view(), octree, part.part(0.5, 0.6), options.threads);
+    plan.coverage = contour_coverage(mesh.view(), octree, part.part(0.5, 0.6), options.threads);
     const std::vector<std::size_t> parts = parts_to_cover(
-        patches, part_areas(patches, areas, verdict.kept, sides), thickness, verdict.fates);
-    keep_covered(mesh, patches, parts, verdict.fates, octree, options.cell, part.part(0.6, 0.9),
-                 options.threads, verdict.kept);
+        patches, part_areas(patches, areas, plan.coverage, sides), thickness, plan.decisions);
+    add_coverage_by_others(mesh, patches, parts, plan.decisions, octree, options.cell,
+                           part.part(0.6, 0.9), options.threads, plan.coverage);
     bool has_changed = false;
     if (round == 0 && grid != nullptr && options.gap > 0.0) {
-      verdict.is_filled =
-          fill_hollow(patches, areas, sides, *grid, octree, options.threads, verdict.fates);
-      has_changed = !verdict.is_filled.empty();
+      plan.is_filled =
+          fill_hollow(patches, areas, sides, *grid, octree, options.threads, plan.decisions);
+      has_changed = !plan.is_filled.empty();
     }
-    has_changed |= judge_parts(patches, part_areas(patches, areas, verdict.kept, sides), thickness,
-                               verdict.fates);
+    has_changed |= decide_parts(patches, part_areas(patches, areas, plan.coverage, sides),
+                                thickness, plan.decisions);
     if (!has_changed) break;
   }
-  return verdict;
+  return plan;
 }
 
 }  // namespace
 
-bool mend_open_parts(const Patches& patches, const SolidOptions& options, const Progress& progress,
-                     WorkMesh* mesh, SolidReport* report) {
+bool repair_open_parts(const Patches& patches, const SolidOptions& options,
+                       const Progress& progress, WorkMesh* mesh, SolidReport* report) {
   const auto& all = patches.patches;
   const double cell = options.cell;
   const double thickness = options.thickness * cell;
@@ -287,18 +296,17 @@ bool mend_open_parts(const Patches& patches, const SolidOptions& options, const 
     report->turned_parts += turned.parts;
     report->turned_faces += turned.faces;
   }
-  Verdict verdict = judge(*mesh, patches, areas, grid ? &*grid : nullptr, sides, options,
-                          progress.part(0.3, 0.8));
+  PartDecisions plan = decide(*mesh, patches, areas, grid ? &*grid : nullptr, sides, options,
+                              progress.part(0.3, 0.8));
   const auto thin_now = [&] {
-    return thin_triangles(patches, verdict.kept, verdict.fates,
+    return thin_triangles(patches, plan.coverage, plan.decisions,
                           options.sheets == SheetMethod::kFaces ? 0.5F : 1.0F);
   };
   std::vector<std::uint32_t> thin = thin_now();
   const auto make = [&](const Progress& part) {
-    WorkMesh result = wound_parts(*mesh, patches, verdict.fates);
-    if (!verdict.is_filled.empty()) {
-      append(filled_regions(mesh->view(), *grid, verdict.is_filled, part, options.threads),
-             &result);
+    WorkMesh result = winding_parts(*mesh, patches, plan.decisions);
+    if (!plan.is_filled.empty()) {
+      append(filled_regions(mesh->view(), *grid, plan.is_filled, part, options.threads), &result);
     }
     if (options.sheets == SheetMethod::kFaces) {
       add_faces(*mesh, patches, thin, &result);
@@ -307,18 +315,18 @@ bool mend_open_parts(const Patches& patches, const SolidOptions& options, const 
     }
     return result;
   };
-  const bool is_same = thin.empty() && verdict.is_wound();
+  const bool is_same = thin.empty() && plan.keeps_winding();
   if (!is_same) {
     WorkMesh result = make(progress.part(0.8, 0.9));
     if (options.sheets == SheetMethod::kFaces &&
-        become_sheets(*mesh, result, patches, progress.part(0.9, 0.95), options.threads,
-                      verdict.fates)) {
+        turn_into_sheets(*mesh, result, patches, progress.part(0.9, 0.95), options.threads,
+                         plan.decisions)) {
       thin = thin_now();
       result = make(progress.part(0.95, 1.0));
     }
     std::swap(*mesh, result);
   }
-  count_fates(verdict.fates, report);
+  count_decisions(plan.decisions, report);
   progress.report(1.0);
   return !is_same || turned.any();
 }

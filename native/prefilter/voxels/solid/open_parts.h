@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What becomes of patches that are not closed, or too thin.
+// Repairs patches that are open or too thin.
 #pragma once
 
 #include "prefilter/base/progress.h"
@@ -10,11 +10,10 @@
 
 namespace prefilter {
 
-/// Turns patches so that they have their outside where the outside is, and replaces those that wind
-/// around nothing: by the surface of what the outside does not reach, or by shells. The triangles
-/// of `mesh` are those that `patches` were found of, turned as they say. Returns whether anything
-/// changed.
-bool mend_open_parts(const Patches& patches, const SolidOptions& options, const Progress& progress,
-                     WorkMesh* mesh, SolidReport* report);
+/// Orients open patches toward the outside, and replaces those that enclose nothing by the surface
+/// of a region that the outside does not reach, or by shells. The triangles of `mesh` must be those
+/// of `patches`, oriented as found. Returns whether anything changed.
+bool repair_open_parts(const Patches& patches, const SolidOptions& options,
+                       const Progress& progress, WorkMesh* mesh, SolidReport* report);
 
 }  // namespace prefilter

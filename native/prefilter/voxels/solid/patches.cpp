@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-// For each triangle's side i, from its corner i to the next, the triangle across; kNone where there
-// is not just one.
+// The neighbor across each side i of a triangle, from corner i to the next; kNone where the edge
+// does not have exactly two triangles.
 std::vector<std::array<std::uint32_t, 3>> neighbors_of(const MeshView<std::int32_t>& mesh,
                                                        const EdgeTable& edges) {
   std::vector<std::array<std::uint32_t, 3>> neighbors(mesh.triangles.size(), {kNone, kNone, kNone});
@@ -44,7 +44,7 @@ double area_of(const std::array<Vector3, 3>& corners) {
   return length(cross(corners[1] - corners[0], corners[2] - corners[0])) / 2.0;
 }
 
-// Whether both triangles run along the edge the same way.
+// Whether a triangle traverses an edge in this direction.
 bool runs_along(const std::array<std::int32_t, 3>& triangle, std::int32_t from, std::int32_t to) {
   for (std::size_t i = 0; i < 3; ++i) {
     if (triangle[i] == from && triangle[(i + 1) % 3] == to) return true;
@@ -57,7 +57,7 @@ class PatchWalk {
   PatchWalk(const MeshView<std::int32_t>& mesh, const EdgeTable& edges, Patches* result)
       : mesh_(mesh), neighbors_(neighbors_of(mesh, edges)), result_(result) {}
 
-  // The patch of a triangle that is in none yet.
+  // Collects the patch of a triangle that is in none yet.
   void walk(std::uint32_t seed) {
     const auto number = static_cast<std::uint32_t>(result_->patches.size());
     FacePatch patch;
@@ -105,7 +105,7 @@ class PatchWalk {
   std::vector<std::uint32_t> members_;
 };
 
-// Adds the lengths of the edges that a patch runs along more often one way.
+// Adds the lengths of the edges that a patch does not traverse equally in both directions.
 void add_borders(const MeshView<std::int32_t>& mesh, const EdgeTable& edges, Patches* result) {
   struct Balance {
     std::uint32_t patch;

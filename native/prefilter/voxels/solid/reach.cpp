@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The mesh's cells are widened by half of the gap; the outside, and what else is left, is flooded
-// and grown back by as much, side by side, so that in a gap the two meet halfway.
+// Dilates the surface cells by half of the gap, flood-fills the outside and the remaining regions,
+// and grows these back simultaneously by the same amount, so that they meet in the middle of gaps.
 #include "prefilter/voxels/solid/reach.h"
 
 #include <algorithm>
@@ -16,18 +16,18 @@
 namespace prefilter {
 namespace {
 
-constexpr double kMostCells = 256.0;
+constexpr double kMostCells = 256.0;  // along the longest axis
 constexpr std::int64_t kRowsPerTask = 1 << 10;
 
-// Where a value is found first from one cell up to another, or that.
+// Index of the first cell with a value in [begin, end), or `end`.
 std::size_t first_of(int value, const std::vector<std::uint8_t>& cells, std::size_t begin,
                      std::size_t end) {
-  const void* found = std::memchr(cells.data() + begin, value, end - begin);
-  if (found == nullptr) return end;
-  return static_cast<std::size_t>(static_cast<const std::uint8_t*>(found) - cells.data());
+  const void* match = std::memchr(cells.data() + begin, value, end - begin);
+  if (match == nullptr) return end;
+  return static_cast<std::size_t>(static_cast<const std::uint8_t*>(match) - cells.data());
 }
 
-// The cells within `radius` of those that are set, along each axis.
+// Dilates the set cells by `radius` along each axis.
 std::vector<std::uint8_t> widened(std::vector<std::uint8_t> cells, const std::array<int, 3>& size,
                                   int radius, int threads) {
   std::vector<std::uint8_t> other(cells.size());
@@ -37,7 +37,7 @@ std::vector<std::uint8_t> widened(std::vector<std::uint8_t> cells, const std::ar
   const auto include = [](const std::uint8_t* from, std::size_t count, std::uint8_t* to) {
     for (std::size_t i = 0; i < count; ++i) to[i] |= from[i];
   };
-  // Axis by axis, in strips that are one behind the other along it.
+  // One pass per axis, over contiguous strips.
   const auto pass = [&](std::size_t axis, std::int64_t x) {
     const std::uint8_t* const from = cells.data();
     const std::size_t begin = static_cast<std::size_t>(x) * plane;
@@ -92,7 +92,7 @@ ReachGrid::ReachGrid(const MeshView<std::int32_t>& mesh, double cell, double gap
   }
   const double longest = std::max({box.size(0), box.size(1), box.size(2)});
   cell_ = std::max(cell, longest / kMostCells);
-  // A gap of a cell is closed as it is: the cells in it are met.
+  // A gap of one cell is closed anyway, as triangles cross its cells.
   const int radius = std::max(0, static_cast<int>(std::ceil((gap / cell_ - 1.0) / 2.0)));
   const int margin = radius + 2;
   for (int a = 0; a < 3; ++a) {
@@ -100,11 +100,11 @@ ReachGrid::ReachGrid(const MeshView<std::int32_t>& mesh, double cell, double gap
     origin_[a] = box.low[a] + box.size(a) / 2.0 - size_[a] * cell_ / 2.0;
   }
   labels_.assign(index(size_[0] - 1, size_[1] - 1, size_[2] - 1) + 1, kUnset);
-  mark_met(mesh, progress.part(0.0, 0.5), threads);
+  mark_surface(mesh, progress.part(0.0, 0.5), threads);
 
-  std::vector<std::uint8_t> is_met(labels_.size());
-  for (std::size_t i = 0; i < labels_.size(); ++i) is_met[i] = labels_[i] == kMet ? 1 : 0;
-  std::vector<std::uint8_t> is_free = widened(std::move(is_met), size_, radius, threads);
+  std::vector<std::uint8_t> is_surface(labels_.size());
+  for (std::size_t i = 0; i < labels_.size(); ++i) is_surface[i] = labels_[i] == kSurface ? 1 : 0;
+  std::vector<std::uint8_t> is_free = widened(std::move(is_surface), size_, radius, threads);
   for (std::uint8_t& flag : is_free) flag ^= 1U;
   progress.report(0.6);
   flood(0, kOutside, &is_free);
@@ -121,8 +121,8 @@ ReachGrid::ReachGrid(const MeshView<std::int32_t>& mesh, double cell, double gap
   progress.report(1.0);
 }
 
-void ReachGrid::mark_met(const MeshView<std::int32_t>& mesh, const Progress& progress,
-                         int threads) {
+void ReachGrid::mark_surface(const MeshView<std::int32_t>& mesh, const Progress& progress,
+                             int threads) {
   const CellBox all = {{0, 0, 0}, size_};
   parallel_ranges(static_cast<std::int64_t>(mesh.triangles.size()), kRowsPerTask, threads, progress,
                   [&](std::int64_t begin, std::int64_t end) {
@@ -137,7 +137,7 @@ void ReachGrid::mark_met(const MeshView<std::int32_t>& mesh, const Progress& pro
                       cut_polygon(polygon, all,
                                   [&](const std::array<int, 3>& cell, const CellPolygon&) {
                                     std::atomic_ref(labels_[index(cell[0], cell[1], cell[2])])
-                                        .store(kMet, std::memory_order_relaxed);
+                                        .store(kSurface, std::memory_order_relaxed);
                                   });
                     }
                   });
@@ -148,7 +148,7 @@ void ReachGrid::flood(std::size_t seed, Label label, std::vector<std::uint8_t>* 
   const auto rows = static_cast<std::size_t>(size_[1]);
   const auto row = static_cast<std::size_t>(size_[2]);
   const std::size_t plane = rows * row;
-  // Run by run along z; of each run beside one, a cell is put on the stack.
+  // Fills runs along z, and pushes one cell of each adjacent run onto the stack.
   stack_.assign(1, seed);
   while (!stack_.empty()) {
     std::size_t begin = stack_.back();
@@ -161,17 +161,17 @@ void ReachGrid::flood(std::size_t seed, Label label, std::vector<std::uint8_t>* 
     std::fill_n(free.begin() + static_cast<std::ptrdiff_t>(begin), end - begin, std::uint8_t{0});
     const std::size_t y = first / row % rows;
     const std::size_t x = first / plane;
-    const auto look_from = [&](std::size_t from) {
+    const auto push_runs = [&](std::size_t from) {
       const std::size_t to = from + (end - begin);
       while ((from = first_of(1, free, from, to)) < to) {
         stack_.push_back(from);
         from = first_of(0, free, from, to);
       }
     };
-    if (y > 0) look_from(begin - row);
-    if (y + 1 < rows) look_from(begin + row);
-    if (x > 0) look_from(begin - plane);
-    if (x + 1 < static_cast<std::size_t>(size_[0])) look_from(begin + plane);
+    if (y > 0) push_runs(begin - row);
+    if (y + 1 < rows) push_runs(begin + row);
+    if (x > 0) push_runs(begin - plane);
+    if (x + 1 < static_cast<std::size_t>(size_[0])) push_runs(begin + plane);
   }
 }
 
@@ -191,7 +191,7 @@ void ReachGrid::grow(int steps) {
     for (const std::size_t cell : waiting) {
       Label label = kUnset;
       for_neighbors(cell, [&](std::size_t next) {
-        if (labels_[next] != kMet) label = std::min(label, labels_[next]);
+        if (labels_[next] != kSurface) label = std::min(label, labels_[next]);
       });
       if (label != kUnset) {
         grown.push_back({cell, label});
@@ -207,22 +207,23 @@ void ReachGrid::grow(int steps) {
 ReachGrid::Label ReachGrid::at(const Vector3& point) const {
   std::array<int, 3> cell;
   for (std::size_t a = 0; a < 3; ++a) {
-    const double along = (point[a] - origin_[a]) / cell_;
-    if (!(along >= 0.0) || along >= size_[a]) return kOutside;
-    cell[a] = static_cast<int>(along);
+    const double first_beyond_surface = (point[a] - origin_[a]) / cell_;
+    if (!(first_beyond_surface >= 0.0) || first_beyond_surface >= size_[a]) return kOutside;
+    cell[a] = static_cast<int>(first_beyond_surface);
   }
   return labels_[index(cell[0], cell[1], cell[2])];
 }
 
-ReachGrid::Label ReachGrid::along(const Vector3& point, const Vector3& direction) const {
-  constexpr double kStep = 0.5;
-  for (double distance = kStep; distance <= kFarthest; distance += kStep) {
+ReachGrid::Label ReachGrid::first_beyond_surface(const Vector3& point,
+                                                 const Vector3& direction) const {
+  constexpr double kStep = 0.5;  // cells
+  for (double distance = kStep; distance <= kMaxRayCells; distance += kStep) {
     Vector3 there;
     for (std::size_t a = 0; a < 3; ++a) there[a] = point[a] + direction[a] * distance * cell_;
     const Label label = at(there);
-    if (label != kMet) return label;
+    if (label != kSurface) return label;
   }
-  return kMet;
+  return kSurface;
 }
 
 }  // namespace prefilter

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What the outside reaches, cell by cell.
+// Labels the cells that the outside can reach.
 #pragma once
 
 #include <array>
@@ -13,18 +13,18 @@
 
 namespace prefilter {
 
-/// The cells of a grid around a mesh, by what they belong to: the mesh, the outside, or a region
-/// that the outside does not reach through gaps of up to some width.
+/// Labels the cells of a grid around a mesh: surface, outside, or a region that the outside does
+/// not reach through gaps of up to some width.
 class ReachGrid {
  public:
   using Label = std::uint16_t;
-  static constexpr Label kMet = 0;  // a triangle passes through the cell
+  static constexpr Label kSurface = 0;  // a triangle crosses the cell
   static constexpr Label kOutside = 1;
-  static constexpr Label kPocket = 2;  // too narrow to tell
+  static constexpr Label kPocket = 2;  // too narrow to belong to either
   static constexpr Label kFirstRegion = 3;
 
-  /// Cells are of side `cell`, or larger where there would be more than 256 along an axis; `gap` is
-  /// a length. Throws Error(kCancelled).
+  /// Cells have side `cell`, or larger where there would be more than 256 along an axis; `gap` is a
+  /// length. Throws Error(kCancelled).
   ReachGrid(const MeshView<std::int32_t>& mesh, double cell, double gap, const Progress& progress,
             int threads);
 
@@ -32,7 +32,7 @@ class ReachGrid {
   const Vector3& origin() const { return origin_; }
   const std::array<int, 3>& size() const { return size_; }
   const std::vector<Label>& labels() const { return labels_; }
-  /// Regions have the numbers from kFirstRegion up to this one, without it.
+  /// End of the labels of regions, which start at kFirstRegion.
   Label region_end() const { return region_end_; }
 
   std::size_t index(int x, int y, int z) const {
@@ -41,18 +41,18 @@ class ReachGrid {
                static_cast<std::size_t>(size_[2]) +
            static_cast<std::size_t>(z);
   }
-  /// Of the cell that holds a point; the outside beyond the grid.
+  /// Label of the cell that contains a point; kOutside beyond the grid.
   Label at(const Vector3& point) const;
-  /// The first cell that is none of the mesh's on the way from a point along a direction of length
-  /// 1; kMet where there is none within `kFarthest` cells.
-  Label along(const Vector3& point, const Vector3& direction) const;
+  /// Label of the first cell that is not surface on the ray from a point along a unit direction;
+  /// kSurface if there is none within kMaxRayCells cells.
+  Label first_beyond_surface(const Vector3& point, const Vector3& direction) const;
 
  private:
-  static constexpr double kFarthest = 4.0;
+  static constexpr double kMaxRayCells = 4.0;
   static constexpr Label kUnset = 0xFFFF;
 
-  void mark_met(const MeshView<std::int32_t>& mesh, const Progress& progress, int threads);
-  // Of the cells that are free, those that hang together with one; they are so no more.
+  void mark_surface(const MeshView<std::int32_t>& mesh, const Progress& progress, int threads);
+  // Labels the connected component of free cells around `seed`, and marks them as no longer free.
   void flood(std::size_t seed, Label label, std::vector<std::uint8_t>* is_free);
   void grow(int steps);
   template <typename Visit>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Parts of a mesh that have two sides and no inside.
+// Finds sheets: parts of a mesh with two sides but no inside.
 #pragma once
 
 #include <cstddef>
@@ -14,21 +14,21 @@
 
 namespace prefilter {
 
-/// The parts of a mesh that are no sheets, once they have their caps.
+/// The parts that are not sheets once capped.
 struct CappedSolids {
-  std::vector<std::size_t> loops;  // theirs, in order
+  std::vector<std::size_t> loops;  // their loops, in order
   bool has_others = false;         // whether the mesh has more than one part
-  bool is_turned = false;          // whether it is inside out, in all
+  bool is_turned = false;          // whether the mesh as a whole is inside out
 };
 
-/// Drops the loops around triangles by themselves, whose caps would be the same, turned over.
-void leave_single_faces(const BorderLoops& loops, std::span<unsigned char> is_kept);
+/// Clears `is_kept` for loops around single triangles, whose caps would be the reversed triangles.
+void drop_single_face_loops(const BorderLoops& loops, std::span<unsigned char> is_kept);
 
-/// Finds the parts with loops that enclose nothing even with their caps, which have no more than
-/// 3 % of their width as thickness (12 % where the mesh is inside out). Drops their loops, but for
-/// holes of up to a quarter of their area. `is_kept` has an entry for each loop.
-CappedSolids leave_sheets(const InputMesh& mesh, const BorderLoops& loops,
-                          std::span<const LoopCap> caps, const Progress& progress,
-                          std::span<unsigned char> is_kept);
+/// Finds parts that enclose nothing even with their caps: their thickness is at most 3 % of their
+/// width (12 % where the mesh is inside out). Clears `is_kept` for their loops, except for holes of
+/// up to a quarter of their area. `is_kept` has one entry per loop.
+CappedSolids drop_sheet_loops(const InputMesh& mesh, const BorderLoops& loops,
+                              std::span<const LoopCap> caps, const Progress& progress,
+                              std::span<unsigned char> is_kept);
 
 }  // namespace prefilter

@@ -11,23 +11,23 @@
 namespace prefilter {
 namespace {
 
-// Mitres are cut off at this many times the thickness.
-constexpr double kLongestMitre = 2.0;
-// Of the thickness, that a prism must have at each of its corners.
-constexpr double kLeastShare = 0.5;
+// Maximum miter length, in thicknesses.
+constexpr double kMaxMiterRatio = 2.0;
+// Minimum thickness of a prism at its corners, as a share of the full thickness.
+constexpr double kMinThicknessShare = 0.5;
 
 Vector3 area_vector(const std::array<Vector3, 3>& p) {
   return 0.5 * cross(p[1] - p[0], p[2] - p[0]);
 }
 
-// A vertex of the sheet, and its two copies.
+// A vertex of the sheet and its two offset copies.
 struct SheetVertex {
   std::size_t vertex = 0;
-  Vector3 normal{};        // the sum of area vectors, all on one side of the sheet
-  double area = 0.0;       // their sum
-  double along = 0.0;      // the sum of their parts along the normal
-  Vector3 offset{};        // from the middle to the first copy; the second is opposite
-  std::int32_t first = 0;  // number of the first copy; the second is the next one
+  Vector3 normal{};        // sum of area vectors, flipped to the same side of the sheet
+  double area = 0.0;       // sum of areas
+  double along = 0.0;      // sum of area components along the normal
+  Vector3 offset{};        // from the vertex to the first copy; the second is opposite
+  std::int32_t first = 0;  // index of the first copy; the second follows
 };
 
 class Shell {
@@ -45,7 +45,7 @@ class Shell {
   }
 
  private:
-  // A side of a prism, that the prism across may cancel.
+  // A triangle on the side of a prism, which the adjacent prism may cancel.
   struct Wall {
     std::array<std::int32_t, 3> sorted;
     std::array<std::int32_t, 3> corners;
@@ -58,13 +58,13 @@ class Shell {
   };
 
   SheetVertex& vertex_of(std::int32_t vertex) {
-    const auto [found, is_new] =
+    const auto [it, is_new] =
         numbers_.try_emplace(vertex, static_cast<std::uint32_t>(vertices_.size()));
     if (is_new) {
       vertices_.emplace_back();
       vertices_.back().vertex = static_cast<std::size_t>(vertex);
     }
-    return vertices_[found->second];
+    return vertices_[it->second];
   }
 
   void collect(std::uint32_t t) {
@@ -88,8 +88,8 @@ class Shell {
   void place(SheetVertex* vertex) {
     const double size = length(vertex->normal);
     if (size > 0.0) {
-      const double mitre = std::min(vertex->area / vertex->along, kLongestMitre);
-      vertex->offset = (half_ * mitre / size) * vertex->normal;
+      const double miter = std::min(vertex->area / vertex->along, kMaxMiterRatio);
+      vertex->offset = (half_ * miter / size) * vertex->normal;
     }
     const Vector3& middle = mesh_.positions[vertex->vertex];
     vertex->first = add_position(middle + vertex->offset);
@@ -112,8 +112,8 @@ class Shell {
     walls_.push_back(wall);
   }
 
-  // The four corners of a wall go around; `from` and `to` are vertices of the sheet. The diagonal
-  // is the same from both sides.
+  // Adds the four corners of a side in order; `from` and `to` are the same sheet vertices from
+  // either prism, and so is the diagonal.
   void add_side(std::int32_t from, std::int32_t to, std::int32_t to_top, std::int32_t from_top,
                 bool is_first, std::int64_t origin) {
     if (is_first) {
@@ -135,18 +135,18 @@ class Shell {
     std::array<std::int32_t, 3> bottom{};
     std::array<Vector3, 3> high{};
     std::array<Vector3, 3> low{};
-    bool is_fit = true;
+    bool fits = true;
     for (std::size_t i = 0; i < 3; ++i) {
       const SheetVertex& vertex = vertex_of(mesh_.triangles[t][i]);
       const double along = dot(vertex.offset, normal);
-      is_fit = is_fit && std::abs(along) >= kLeastShare * half_;
+      fits = fits && std::abs(along) >= kMinThicknessShare * half_;
       top[i] = along < 0.0 ? vertex.first + 1 : vertex.first;
       bottom[i] = along < 0.0 ? vertex.first : vertex.first + 1;
       high[i] = target_->positions[static_cast<std::size_t>(top[i])];
       low[i] = target_->positions[static_cast<std::size_t>(bottom[i])];
     }
-    is_fit = is_fit && dot(area_vector(high), normal) > 0.0 && dot(area_vector(low), normal) > 0.0;
-    if (!is_fit) {
+    fits = fits && dot(area_vector(high), normal) > 0.0 && dot(area_vector(low), normal) > 0.0;
+    if (!fits) {
       for (std::size_t i = 0; i < 3; ++i) {
         top[i] = add_position(corners[i] + half_ * normal);
         bottom[i] = add_position(corners[i] - half_ * normal);
@@ -157,13 +157,13 @@ class Shell {
     add_triangle(bottom[0], bottom[2], bottom[1], origin);
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t j = (i + 1) % 3;
-      // Of the two diagonals the one with the lowest number.
+      // The diagonal with the lowest vertex index.
       const bool is_first = std::min(bottom[i], top[j]) < std::min(bottom[j], top[i]);
       add_side(bottom[i], bottom[j], top[j], top[i], is_first, origin);
     }
   }
 
-  // Those that no other one cancels.
+  // Adds the walls that are not canceled.
   void add_walls() {
     std::stable_sort(walls_.begin(), walls_.end());
     for (std::size_t i = 0; i < walls_.size();) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Sheets with a thickness.
+// Thickens sheets.
 #pragma once
 
 #include <cstddef>
@@ -11,12 +11,11 @@
 
 namespace prefilter {
 
-/// Adds a closed shell around some triangles of `mesh` to `target`: what is within `half` of them
-/// along their normals, either way. Which way around they are does not matter. `target` gets its
-/// own vertices.
+/// Adds to `target` a closed shell around triangles of `mesh`: all points within `half` along their
+/// normals, on both sides. The triangles' orientation does not matter. `target` gets new vertices.
 ///
-/// Each triangle becomes a prism, whose walls cancel where the next one goes on. Corners are moved
-/// along the mean normal around them; where that would fold a prism over, along its own triangle's.
+/// Each triangle becomes a prism; walls shared by adjacent prisms cancel. Corners are offset along
+/// the mean normal around them, or along the triangle's own where the prism would fold over.
 void add_shell(const MeshView<std::int32_t>& mesh, std::span<const std::int64_t> origins,
                std::span<const std::uint32_t> triangles, double half, WorkMesh* target);
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The smallest triangulation by dynamic programming: G. Barequet, M. Sharir, Filling gaps in the
-// boundary of a polyhedron (1995); that it heeds the angles to its neighbors as well: P. Liepa,
-// Filling holes in meshes (2003). Points are left out and put in again by their distance from a
-// chord: D. Douglas, T. Peucker (1973).
+// Computes the triangulation of smallest area by dynamic programming (G. Barequet, M. Sharir,
+// Filling gaps in the boundary of a polyhedron, 1995), with a penalty for angles (P. Liepa, Filling
+// holes in meshes, 2003). Long loops are simplified, and their points inserted again, by the
+// distance from a chord (D. Douglas, T. Peucker, 1973).
 #include "prefilter/voxels/solid/span_loop.h"
 
 #include <algorithm>
@@ -15,14 +15,14 @@
 namespace prefilter {
 namespace {
 
-constexpr std::size_t kMostSpanned = 400;
-// How far from the middle of a chain, as a share of it, the point may lie that divides it: so no
-// chain is divided more often than its length allows.
-constexpr double kFromMiddle = 0.3;
-// What the squared length of a chord counts beside the squared distance from it.
-constexpr double kLengthRank = 0.003;
-// Larger than any triangle: the surface around.
-constexpr double kLarge = 1e6;
+constexpr std::size_t kMaxSpannedPoints = 400;  // longer loops are simplified: O(n^3)
+// Maximum distance of the dividing point from the middle of a chain, as a share of the chain's
+// length; bounds the depth of the division.
+constexpr double kMaxOffCenter = 0.3;
+// Weight of a chord's squared length against the squared distance from it.
+constexpr double kLengthWeight = 0.003;
+// Area assigned to the surface around the loop, larger than any triangle.
+constexpr double kSurroundingArea = 1e6;
 
 Vector3 direction_of(const Vector3& v) {
   const double size = plain_length(v);
@@ -30,13 +30,13 @@ Vector3 direction_of(const Vector3& v) {
   return {v[0] / size, v[1] / size, v[2] / size};
 }
 
-// The points of a loop between two of them.
+// The points of a loop from one index to another.
 struct Chain {
   std::size_t from;
-  std::size_t to;  // behind `from`; may be beyond the end of the loop
+  std::size_t to;  // greater than `from`; may exceed the loop's size
   std::size_t middle;
-  double deviation;   // of the middle, squared; -1 where there is nothing between
-  double rank = 0.0;  // the greater, the sooner it is divided
+  double deviation;   // squared, of the middle; -1 where there are no points between
+  double rank = 0.0;  // higher ranks are divided first
 
   bool operator<(const Chain& other) const {
     return rank != other.rank ? rank < other.rank : from > other.from;
@@ -52,11 +52,11 @@ double squared_distance_to_segment(const Vector3& p, const Vector3& a, const Vec
   return dot(rest, rest);
 }
 
-// The point that is farthest from the chord, of those about the middle.
+// Divides a chain at the point farthest from the chord, among the points near the middle.
 Chain chain_between(std::span<const Vector3> loop, std::size_t from, std::size_t to) {
   Chain chain{from, to, 0, -1.0};
   const auto length = static_cast<double>(to - from);
-  const auto margin = static_cast<std::size_t>((0.5 - kFromMiddle) * length);
+  const auto margin = static_cast<std::size_t>((0.5 - kMaxOffCenter) * length);
   const Vector3& a = loop[from % loop.size()];
   const Vector3& b = loop[to % loop.size()];
   for (std::size_t i = from + std::max<std::size_t>(margin, 1); i < to && i + margin <= to; ++i) {
@@ -66,9 +66,9 @@ Chain chain_between(std::span<const Vector3> loop, std::size_t from, std::size_t
       chain.middle = i;
     }
   }
-  // Points on the chord: the one in the middle.
+  // All points are on the chord: use the middle one.
   if (chain.deviation >= 0.0 && chain.deviation < 1e-24) chain.middle = from + (to - from) / 2;
-  chain.rank = chain.deviation < 0.0 ? -1.0 : chain.deviation + kLengthRank * dot(b - a, b - a);
+  chain.rank = chain.deviation < 0.0 ? -1.0 : chain.deviation + kLengthWeight * dot(b - a, b - a);
   return chain;
 }
 
@@ -78,31 +78,32 @@ std::vector<std::array<std::uint32_t, 3>> smallest_span(std::span<const Vector3>
   const std::size_t count = points.size();
   struct Best {
     double cost = 0.0;
-    Vector3 doubled{};  // twice the area of the triangle at the chord, along its normal
+    Vector3 doubled{};  // area vector, times 2, of the triangle at the chord
     std::uint32_t tip = 0;
   };
-  // The best over the points from one to another, with the chord between them.
+  // Best triangulation over the points from i to k and the chord between them.
   std::vector<Best> bests(count * count);
   const auto best = [&](std::size_t i, std::size_t k) -> Best& { return bests[i * count + k]; };
-  for (std::size_t i = 0; i + 1 < count; ++i) best(i, i + 1).doubled = kLarge * normals[i];
+  for (std::size_t i = 0; i + 1 < count; ++i)
+    best(i, i + 1).doubled = kSurroundingArea * normals[i];
   for (std::size_t length = 2; length < count; ++length) {
     progress.report(static_cast<double>(length) / static_cast<double>(count));
     for (std::size_t i = 0; i + length < count; ++i) {
       const std::size_t k = i + length;
-      Best found;
-      found.cost = std::numeric_limits<double>::infinity();
+      Best cheapest;
+      cheapest.cost = std::numeric_limits<double>::infinity();
       for (std::size_t j = i + 1; j < k; ++j) {
         const Best& low = best(i, j);
         const Best& high = best(j, k);
-        if (low.cost + high.cost >= found.cost) continue;
+        if (low.cost + high.cost >= cheapest.cost) continue;
         const Vector3 doubled = cross(points[j] - points[i], points[k] - points[i]);
         double cost = low.cost + high.cost + plain_length(doubled) / 2.0;
-        if (cost >= found.cost) continue;
+        if (cost >= cheapest.cost) continue;
         cost += fold_cost(doubled, low.doubled) + fold_cost(doubled, high.doubled);
-        if (length + 1 == count) cost += fold_cost(doubled, kLarge * normals[count - 1]);
-        if (cost < found.cost) found = {cost, doubled, static_cast<std::uint32_t>(j)};
+        if (length + 1 == count) cost += fold_cost(doubled, kSurroundingArea * normals[count - 1]);
+        if (cost < cheapest.cost) cheapest = {cost, doubled, static_cast<std::uint32_t>(j)};
       }
-      best(i, k) = found;
+      best(i, k) = cheapest;
     }
   }
   std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -122,7 +123,7 @@ std::vector<std::array<std::uint32_t, 3>> smallest_span(std::span<const Vector3>
 
 }  // namespace
 
-std::vector<std::uint32_t> outline(std::span<const Vector3> loop, std::size_t most) {
+std::vector<std::uint32_t> simplify_loop(std::span<const Vector3> loop, std::size_t most) {
   std::vector<std::uint32_t> kept;
   if (loop.size() <= most) {
     for (std::uint32_t i = 0; i < loop.size(); ++i) kept.push_back(i);
@@ -144,7 +145,8 @@ std::vector<std::uint32_t> outline(std::span<const Vector3> loop, std::size_t mo
   return kept;
 }
 
-void put_in(std::span<const Vector3> loop, bool bends, HolePatch* patch, const Progress& progress) {
+void insert_points(std::span<const Vector3> loop, bool bends, HolePatch* patch,
+                   const Progress& progress) {
   const auto count = static_cast<std::uint32_t>(loop.size());
   std::vector<std::uint32_t> changed;
   do {
@@ -184,7 +186,7 @@ std::vector<Vector3> mean_normals(std::span<const Vector3> normals,
 
 HolePatch span_loop(std::span<const Vector3> loop, std::span<const Vector3> normals,
                     const Progress& progress) {
-  const std::vector<std::uint32_t> kept = outline(loop, kMostSpanned);
+  const std::vector<std::uint32_t> kept = simplify_loop(loop, kMaxSpannedPoints);
   std::vector<Vector3> points;
   for (const std::uint32_t i : kept) points.push_back(loop[i]);
   std::vector<std::array<std::uint32_t, 3>> triangles =
@@ -193,7 +195,7 @@ HolePatch span_loop(std::span<const Vector3> loop, std::span<const Vector3> norm
     for (std::uint32_t& corner : triangle) corner = kept[corner];
   }
   HolePatch patch({loop.begin(), loop.end()}, triangles, {normals.begin(), normals.end()});
-  put_in(loop, false, &patch, progress.part(0.5, 0.9));
+  insert_points(loop, false, &patch, progress.part(0.5, 0.9));
   patch.flip_all(false, progress.part(0.9, 1.0));
   return patch;
 }

@@ -8,13 +8,13 @@
 #include <cstdint>
 
 #include "prefilter/base/parallel.h"
-#include "prefilter/voxels/solid/kept.h"
+#include "prefilter/voxels/solid/contour_coverage.h"
 
 namespace prefilter {
 namespace {
 
 constexpr std::int64_t kSidesPerTask = 1 << 10;
-constexpr double kSampleCells = 2.0;
+constexpr double kSampleCells = 2.0;  // distance between samples
 
 bool is_region(ReachGrid::Label label) { return label >= ReachGrid::kFirstRegion; }
 bool is_outside(ReachGrid::Label label) { return label == ReachGrid::kOutside; }
@@ -29,8 +29,8 @@ TriangleSides sides_of(const std::array<Vector3, 3>& corners, const ReachGrid& g
   float samples = 0.0F;
   for_samples(corners, kSampleCells * grid.cell(), [&](const Vector3& point) {
     samples += 1.0F;
-    const ReachGrid::Label in_front = grid.along(point, normal);
-    const ReachGrid::Label behind = grid.along(point, back);
+    const ReachGrid::Label in_front = grid.first_beyond_surface(point, normal);
+    const ReachGrid::Label behind = grid.first_beyond_surface(point, back);
     if (is_outside(in_front) && is_outside(behind)) sides.outside_both += 1.0F;
     if (is_region(in_front) && is_region(behind)) sides.inside_both += 1.0F;
     if (is_outside(in_front) && is_region(behind)) sides.outside_front += 1.0F;

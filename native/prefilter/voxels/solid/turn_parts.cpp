@@ -10,17 +10,16 @@
 namespace prefilter {
 namespace {
 
-// A part that was of one mind is turned against it only where this many times more of it is seen
-// from the other side.
-constexpr double kAgainstItself = 4.0;
-// Shares of a part's area: the least that is seen from behind of one that is turned, and the most
-// that the outside has on both sides of one that is turned by what is seen.
-constexpr double kLeastSeen = 0.1;
-constexpr double kMostOpen = 0.5;
-// In cells: the least volume over its area of a part that encloses something.
-constexpr double kBulkyCells = 1.0;
+// Ratio of back to front visibility from which a consistently oriented part is turned.
+constexpr double kMinBackToFront = 4.0;
+// Shares of a part's area: the least visible from behind for a part to be turned, and the most with
+// the outside on both sides for visibility to decide.
+constexpr double kMinSeenShare = 0.1;
+constexpr double kMaxOpenShare = 0.5;
+// In cells: least ratio of volume to area for a part to enclose something.
+constexpr double kMinBulkCells = 1.0;
 
-// Areas of a patch by what is on its sides, and its volume with a fan over the border.
+// Areas of a patch by the labels on its sides, and its volume with a fan over its border.
 struct PatchSides {
   double front = 0.0;
   double back = 0.0;
@@ -45,12 +44,13 @@ std::vector<PatchSides> sides_of_patches(const Patches& patches, std::span<const
   return sums;
 }
 
-bool is_to_turn(const FacePatch& patch, const PatchSides& sides, double cell) {
+bool must_turn(const FacePatch& patch, const PatchSides& sides, double cell) {
   if (patch.is_closed() || !patch.is_orientable) return false;
-  // The outside reaches both sides of what is open wide: as with closed parts, by the volume.
-  if (sides.both > kMostOpen * patch.area) return -sides.volume > kBulkyCells * cell * patch.area;
-  const double limit = patch.turned_area > 0.0 || patch.triangles == 1 ? 1.0 : kAgainstItself;
-  return sides.back > limit * sides.front && sides.back > kLeastSeen * patch.area;
+  // Wide open parts have the outside on both sides, so their volume decides, as for closed ones.
+  if (sides.both > kMaxOpenShare * patch.area)
+    return -sides.volume > kMinBulkCells * cell * patch.area;
+  const double limit = patch.turned_area > 0.0 || patch.triangles == 1 ? 1.0 : kMinBackToFront;
+  return sides.back > limit * sides.front && sides.back > kMinSeenShare * patch.area;
 }
 
 }  // namespace
@@ -61,7 +61,7 @@ TurnedParts turn_open_parts(const Patches& patches, std::span<const double> area
   TurnedParts turned;
   std::vector<bool> is_turned(sums.size());
   for (std::size_t p = 0; p < sums.size(); ++p) {
-    is_turned[p] = is_to_turn(patches.patches[p], sums[p], cell);
+    is_turned[p] = must_turn(patches.patches[p], sums[p], cell);
     if (is_turned[p]) ++turned.parts;
   }
   for (std::size_t t = 0; t < sides.size(); ++t) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Open parts turned so that the outside is in front of them.
+// Orients open parts toward the outside.
 #pragma once
 
 #include <cstddef>
@@ -12,18 +12,18 @@
 
 namespace prefilter {
 
-/// How much was turned.
+/// Number of parts and faces turned.
 struct TurnedParts {
   std::size_t parts = 0;  // as a whole
-  std::size_t faces = 0;  // one by one
+  std::size_t faces = 0;  // individually
 
   bool any() const { return parts + faces > 0; }
 };
 
-/// Turns open patches as a whole, and single triangles of those that cannot be oriented, with their
-/// sides. A patch that the outside reaches on both sides is turned if it encloses a negative volume
-/// of more than a `cell` times its area, a cone over its border added. `areas` are those of the
-/// triangles.
+/// Turns open patches as a whole, and individual triangles of those that are not orientable, along
+/// with their `sides`. A patch with the outside on both sides is turned if it encloses a negative
+/// volume, with a cone over its border, of more than `cell` times its area. `areas` are those of
+/// the triangles.
 TurnedParts turn_open_parts(const Patches& patches, std::span<const double> areas, double cell,
                             WorkMesh* mesh, std::span<TriangleSides> sides);
 

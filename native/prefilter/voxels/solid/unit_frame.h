@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Coordinates of about 1.
+// Normalizes coordinates to about 1.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 
 namespace prefilter {
 
-/// To coordinates in which a box reaches from -1 to 1 along its longest side, and back. The scale
-/// of a box without a size is 0.
+/// Maps to coordinates in which a box spans [-1, 1] along its longest side, and back. The scale of
+/// a box of size 0 is 0.
 struct UnitFrame {
   Vector3 middle{};
   double scale = 0.0;
@@ -36,7 +36,7 @@ struct UnitFrame {
   }
 };
 
-/// That of the vertices that triangles have.
+/// The frame around all vertices that triangles use.
 inline UnitFrame frame_of(const InputMesh& mesh) {
   Box box = kEmptyBox;
   for (const auto& triangle : mesh.triangles) {

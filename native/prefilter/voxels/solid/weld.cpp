@@ -18,8 +18,9 @@ namespace prefilter {
 namespace {
 
 constexpr std::int64_t kSlotsPerTask = 1 << 14;
-// Welding must leave triangles their corners: of the shortest edge at a vertex.
-constexpr double kShareOfEdge = 1.0 / 3.0;
+// Maximum welding distance, as a share of the shortest edge at a vertex, so that no triangle
+// collapses.
+constexpr double kMaxShareOfEdge = 1.0 / 3.0;
 
 std::uint64_t mixed(std::uint64_t x) {
   x ^= x >> 30U;
@@ -29,14 +30,14 @@ std::uint64_t mixed(std::uint64_t x) {
   return x ^ (x >> 31U);
 }
 
-// The same for positions that are equal; 0 and -0 are.
+// Equal for equal positions, including 0 and -0.
 std::uint64_t hash_of(const Vector3& p) {
   std::uint64_t hash = 0;
   for (const double x : p) hash = mixed(hash + std::bit_cast<std::uint64_t>(x + 0.0));
   return hash;
 }
 
-// Renames the corners of all triangles. Returns how many vertices that were named are renamed.
+// Renames the corners of all triangles. Returns the number of used vertices that were renamed.
 std::size_t rename(const std::vector<std::int32_t>& names, WorkMesh* mesh) {
   std::vector<bool> is_renamed(names.size(), false);
   std::size_t count = 0;
@@ -52,7 +53,7 @@ std::size_t rename(const std::vector<std::int32_t>& names, WorkMesh* mesh) {
   return count;
 }
 
-// Points put into cells of a grid as they come, to be found by others nearby.
+// Points in a hash grid, added incrementally, for neighbor queries.
 class NearbyPoints {
  public:
   NearbyPoints(std::size_t count, double distance)
@@ -64,7 +65,7 @@ class NearbyPoints {
     heads_[slot] = item;
   }
 
-  /// Visits at least all items within the distance, some perhaps twice.
+  /// Visits at least all items within the distance, possibly some twice.
   template <typename Visit>
   void visit(const Vector3& p, const Visit& visit_item) const {
     Vector3 near;
@@ -90,7 +91,7 @@ class NearbyPoints {
   std::vector<std::uint32_t> next_;
 };
 
-// An edge with a single triangle, as this runs along it.
+// An edge with a single triangle, in the direction in which the triangle traverses it.
 struct BorderEdge {
   std::uint32_t triangle;
   std::uint32_t from;
@@ -99,19 +100,19 @@ struct BorderEdge {
 
 std::vector<BorderEdge> border_edges(const WorkMesh& mesh, const Progress& progress, int threads) {
   const EdgeTable edges(mesh.view(), progress, threads);
-  std::vector<BorderEdge> found;
+  std::vector<BorderEdge> result;
   for (std::size_t low = 0; low < edges.vertex_count(); ++low) {
     edges.for_edges_from(low, [&](std::size_t high, std::span<const std::uint64_t> uses) {
       if (uses.size() != 1) return;
       const EdgeUse use = EdgeTable::use(uses[0]);
-      found.push_back({use.triangle, static_cast<std::uint32_t>(use.is_down ? high : low),
-                       static_cast<std::uint32_t>(use.is_down ? low : high)});
+      result.push_back({use.triangle, static_cast<std::uint32_t>(use.is_down ? high : low),
+                        static_cast<std::uint32_t>(use.is_down ? low : high)});
     });
   }
-  return found;
+  return result;
 }
 
-// The ends of edges, in order.
+// The ends of edges, sorted and unique.
 std::vector<std::uint32_t> ends_of(const std::vector<BorderEdge>& edges, std::size_t vertex_count) {
   std::vector<bool> is_end(vertex_count, false);
   for (const BorderEdge& edge : edges) {
@@ -125,7 +126,7 @@ std::vector<std::uint32_t> ends_of(const std::vector<BorderEdge>& edges, std::si
   return vertices;
 }
 
-// A vertex on a side of a triangle, from its corner `side` on.
+// A vertex on a side of a triangle; `side` is the corner at which the side begins.
 struct SplitPoint {
   std::uint32_t triangle;
   std::uint32_t side;
@@ -138,7 +139,7 @@ struct SplitPoint {
   }
 };
 
-// Replaces a triangle by those between the vertices on its sides.
+// Replaces a triangle by triangles between the vertices on its sides.
 void split_triangle(std::uint32_t t, std::span<const SplitPoint> points, WorkMesh* mesh) {
   const std::array<std::int32_t, 3> whole = mesh->triangles[t];
   const std::int64_t origin = mesh->origins[t];
@@ -152,7 +153,7 @@ void split_triangle(std::uint32_t t, std::span<const SplitPoint> points, WorkMes
     }
     is_first = false;
   };
-  // The vertices of a side, both ends included.
+  // The vertices of a side, including both ends.
   const auto side = [&](std::uint32_t i) {
     std::vector<std::int32_t> vertices = {whole[i]};
     for (const SplitPoint& point : points) {
@@ -164,7 +165,7 @@ void split_triangle(std::uint32_t t, std::span<const SplitPoint> points, WorkMes
   const auto fan = [&](const std::vector<std::int32_t>& vertices, std::int32_t tip) {
     for (std::size_t k = 0; k + 1 < vertices.size(); ++k) add(tip, vertices[k], vertices[k + 1]);
   };
-  // A fan over the first side that is split; its outer triangles have the other two sides.
+  // A fan over the first split side; its outer triangles absorb the other two sides.
   const std::uint32_t i = points.front().side;
   const std::vector<std::int32_t> base = side(i);
   for (std::size_t k = 1; k + 2 < base.size(); ++k) {
@@ -188,8 +189,8 @@ Corners sorted(Corners corners) {
   return corners;
 }
 
-// Whether the corners, from the lowest one on, go up.
-bool goes_up(const Corners& corners) {
+// Whether the corners ascend when starting at the lowest.
+bool is_ascending(const Corners& corners) {
   const auto& [a, b, c] = corners;
   return (a < b) + (b < c) + (c < a) == 2;
 }
@@ -202,8 +203,8 @@ struct Face {
   }
 };
 
-// Marks, of triangles with the same three corners, the first of the direction that more of them
-// have; the first of all, where as many have either. `faces` is for use within.
+// Marks, among triangles with the same three corners, the first of the more frequent direction, or
+// the first of all in case of a tie. `faces` is scratch space.
 void keep_one_of_each(const std::vector<Corners>& triangles,
                       std::span<const std::uint64_t> candidates, std::vector<Face>* faces,
                       std::vector<std::uint8_t>* is_kept) {
@@ -212,14 +213,14 @@ void keep_one_of_each(const std::vector<Corners>& triangles,
   std::sort(faces->begin(), faces->end());
   for (auto first = faces->begin(); first != faces->end();) {
     std::array<std::size_t, 2> counts{};
-    std::array<std::uint64_t, 2> firsts{};  // that goes down, that goes up
+    std::array<std::uint64_t, 2> firsts{};  // of the descending and of the ascending direction
     auto face = first;
     for (; face != faces->end() && face->corners == first->corners; ++face) {
-      const std::size_t way = goes_up(triangles[face->triangle]) ? 1 : 0;
+      const std::size_t way = is_ascending(triangles[face->triangle]) ? 1 : 0;
       if (counts[way]++ == 0) firsts[way] = face->triangle;
     }
     const bool is_up =
-        counts[0] != counts[1] ? counts[1] > counts[0] : goes_up(triangles[first->triangle]);
+        counts[0] != counts[1] ? counts[1] > counts[0] : is_ascending(triangles[first->triangle]);
     (*is_kept)[firsts[is_up ? 1 : 0]] = 1;
     first = face;
   }
@@ -227,8 +228,8 @@ void keep_one_of_each(const std::vector<Corners>& triangles,
 
 }  // namespace
 
-std::vector<std::int32_t> first_at_each_place(const PositionView& positions,
-                                              const Progress& progress, int threads) {
+std::vector<std::int32_t> first_at_position(const PositionView& positions, const Progress& progress,
+                                            int threads) {
   const std::size_t slots = std::bit_ceil(positions.size() / 2 + 1);
   const Buckets buckets(
       slots, positions.size(),
@@ -254,7 +255,7 @@ std::vector<std::int32_t> first_at_each_place(const PositionView& positions,
 
 std::size_t weld_equal(WorkMesh* mesh, const Progress& progress, int threads) {
   const std::size_t count =
-      rename(first_at_each_place(mesh->positions, progress.part(0.0, 0.9), threads), mesh);
+      rename(first_at_position(mesh->positions, progress.part(0.0, 0.9), threads), mesh);
   progress.report(1.0);
   return count;
 }
@@ -264,14 +265,14 @@ std::size_t weld_borders(WorkMesh* mesh, double distance, const Progress& progre
   const std::vector<std::uint32_t> vertices =
       ends_of(border_edges(*mesh, progress.part(0.0, 0.5), threads), positions.size());
   if (vertices.empty()) return 0;
-  // Of each vertex, the square of how far it may be from what it is welded with.
+  // Squared welding distance of each vertex.
   std::vector<double> reaches(positions.size(), distance * distance);
   for (const auto& triangle : mesh->triangles) {
     for (std::size_t i = 0; i < 3; ++i) {
       const auto a = static_cast<std::size_t>(triangle[i]);
       const auto b = static_cast<std::size_t>(triangle[(i + 1) % 3]);
       const double reach =
-          kShareOfEdge * kShareOfEdge * squared_length(positions[b] - positions[a]);
+          kMaxShareOfEdge * kMaxShareOfEdge * squared_length(positions[b] - positions[a]);
       reaches[a] = std::min(reaches[a], reach);
       reaches[b] = std::min(reaches[b], reach);
     }
@@ -313,7 +314,7 @@ std::size_t split_borders(WorkMesh* mesh, double distance, const Progress& progr
   NearbyPoints points(vertices.size(), reach);
   for (std::uint32_t i = 0; i < vertices.size(); ++i) points.add(i, positions[vertices[i]]);
   const Progress splitting = progress.part(0.5, 0.9);
-  std::vector<SplitPoint> found;
+  std::vector<SplitPoint> splits;
   for (std::size_t e = 0; e < edges.size(); ++e) {
     if (e % 4096 == 0) splitting.report(static_cast<double>(e) / static_cast<double>(edges.size()));
     const auto& [t, from, to] = edges[e];
@@ -337,23 +338,23 @@ std::size_t split_borders(WorkMesh* mesh, double distance, const Progress& progr
         const double from_end = std::min(along, 1.0 - along);
         const double limit = distance * distance;
         if (off_line > limit || from_end * from_end * squared <= limit) return;
-        found.push_back({t, side, along, static_cast<std::int32_t>(v)});
+        splits.push_back({t, side, along, static_cast<std::int32_t>(v)});
       });
     }
   }
-  std::sort(found.begin(), found.end());
+  std::sort(splits.begin(), splits.end());
   const auto is_same = [](const SplitPoint& a, const SplitPoint& b) {
     return a.triangle == b.triangle && a.side == b.side && a.vertex == b.vertex;
   };
-  found.erase(std::unique(found.begin(), found.end(), is_same), found.end());
-  for (std::size_t i = 0; i < found.size();) {
+  splits.erase(std::unique(splits.begin(), splits.end(), is_same), splits.end());
+  for (std::size_t i = 0; i < splits.size();) {
     std::size_t end = i + 1;
-    while (end < found.size() && found[end].triangle == found[i].triangle) ++end;
-    split_triangle(found[i].triangle, std::span(found).subspan(i, end - i), mesh);
+    while (end < splits.size() && splits[end].triangle == splits[i].triangle) ++end;
+    split_triangle(splits[i].triangle, std::span(splits).subspan(i, end - i), mesh);
     i = end;
   }
   progress.report(1.0);
-  return found.size();
+  return splits.size();
 }
 
 std::size_t drop_duplicates(WorkMesh* mesh, const Progress& progress, int threads) {

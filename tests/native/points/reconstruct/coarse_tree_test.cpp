@@ -16,21 +16,21 @@ namespace {
 constexpr int kDepth = 6;
 constexpr int kTop = 4;
 
-TEST(CoarseTree, LeavesOutliersOutAndTellsTheirWeight) {
+TEST(CoarseTree, ExcludesOutliersAndReturnsTheirWeight) {
   testing::CloudStore store(testing::stray_cloud(), kDepth, kDepth - kTop);
   Slabs slabs(&store, kDepth, kTop, 0, true, 1);
-  find_whole(0, Progress(), 1, &slabs);
-  const double left_out = find_coarse_tree(Progress(), 1, &slabs);
+  compute_whole_samples(0, Progress(), 1, &slabs);
+  const double left_out = build_coarse_tree(Progress(), 1, &slabs);
   EXPECT_NEAR(left_out, 6.0, 1e-6);
 }
 
-TEST(CoarseTree, GoesOnInTheSlabs) {
+TEST(CoarseTree, ContinuesInTheSlabs) {
   testing::CloudStore store(testing::sphere_cloud(20000), kDepth, kDepth - kTop);
   Slabs slabs(&store, kDepth, kTop, 0, true, 1);
-  find_whole(0, Progress(), 1, &slabs);
-  find_coarse_tree(Progress(), 1, &slabs);
+  compute_whole_samples(0, Progress(), 1, &slabs);
+  build_coarse_tree(Progress(), 1, &slabs);
   ASSERT_EQ(slabs.coarse.tree.levels.size(), static_cast<std::size_t>(kTop));
-  // The split cells of all slabs along one curve, each with its number in its slab.
+  // The split cells of all slabs in order along the curve, and the index of each within its slab.
   std::vector<std::uint64_t> places;
   for (int s = 0; s < slabs.count(); ++s) {
     const std::vector<std::uint64_t>& own = slabs.tree(s)->levels.front().places;
@@ -45,13 +45,13 @@ TEST(CoarseTree, GoesOnInTheSlabs) {
   }
 }
 
-TEST(CoarseTree, IsBelowZeroWhereNormalsPointInward) {
+TEST(CoarseTree, IsNegativeForInwardNormals) {
   testing::TestCloud cloud = testing::sphere_cloud(20000);
   for (Vector3& normal : cloud.normals) normal = Vector3{} - normal;
   testing::CloudStore store(cloud, kDepth, kDepth - kTop);
   Slabs slabs(&store, kDepth, kTop, 0, true, 1);
-  find_whole(0, Progress(), 1, &slabs);
-  find_coarse_tree(Progress(), 1, &slabs);
+  compute_whole_samples(0, Progress(), 1, &slabs);
+  build_coarse_tree(Progress(), 1, &slabs);
   EXPECT_NEAR(slabs.coarse.root, -4.0 / 3.0 * 3.14159265 * 0.35 * 0.35 * 0.35, 0.005);
 }
 

@@ -19,7 +19,7 @@ namespace {
 constexpr int kDepth = 6;
 constexpr int kTop = 4;
 
-// The parents of cells and of all their neighbors, of which there are 26.
+// The parents of the cells and of their 26 neighbors each.
 std::set<std::uint64_t> parents_of(const std::vector<CellPosition>& cells, int depth, int low,
                                    int high) {
   std::set<std::uint64_t> places;
@@ -56,12 +56,12 @@ class D4Trees : public ::testing::Test {
   D4Trees()
       : store_(testing::uneven_sphere_cloud(), kDepth, kDepth - kTop),
         slabs_(&store_, kDepth, kTop, 0, true, 1) {
-    find_whole(0, Progress(), 1, &slabs_);
-    slabs_.bring(0, slabs_.count(), SlabStage::kLeaves);
+    compute_whole_samples(0, Progress(), 1, &slabs_);
+    slabs_.advance_to(0, slabs_.count(), SlabStage::kLeaves);
     for (int s = 0; s < slabs_.count(); ++s) leaves_.push_back(find_slab_leaves(slabs_, s));
   }
 
-  // The cells of a depth that hold leaves of at least that depth.
+  // The cells of depth k that contain leaves of depth k or deeper.
   std::vector<CellPosition> cells_with_leaves(int k) const {
     std::set<CellPosition> cells;
     for (int s = 0; s < slabs_.count(); ++s) {
@@ -94,7 +94,7 @@ TEST_F(D4Trees, SlabsAreSplitAroundLeaves) {
       const NodeLevel& level = tree.levels[static_cast<std::size_t>(k - kTop - 1)];
       EXPECT_EQ(level.places, std::vector<std::uint64_t>(expected.begin(), expected.end()));
       if (!expected.empty()) depths.insert(k);
-      // An octant is split where the next level has it.
+      // An octant is split if and only if the next level has a block for it.
       for (std::size_t b = 0; b < level.places.size(); ++b) {
         for (unsigned o = 0; o < 8; ++o) {
           const bool is_split = (level.blocks.split[b] >> o & 1U) != 0;
@@ -110,7 +110,7 @@ TEST_F(D4Trees, SlabsAreSplitAroundLeaves) {
   EXPECT_EQ(depths.size(), static_cast<std::size_t>(kDepth - kTop));
 }
 
-TEST_F(D4Trees, TheWholeIsSplitAroundLeaves) {
+TEST_F(D4Trees, TheCoarseTreeIsSplitAroundLeaves) {
   std::vector<FluxTree> trees;
   std::size_t firsts = 0;
   for (int s = 0; s < slabs_.count(); ++s) {
@@ -131,7 +131,7 @@ TEST_F(D4Trees, TheWholeIsSplitAroundLeaves) {
   }
 }
 
-TEST_F(D4Trees, AreasAreThoseOfTheLeaves) {
+TEST_F(D4Trees, AreasSumUpToTheSphere) {
   double weight = 0.0;
   double area = 0.0;
   for (int s = 0; s < slabs_.count(); ++s) {
@@ -145,22 +145,22 @@ TEST_F(D4Trees, AreasAreThoseOfTheLeaves) {
       }
       EXPECT_GT(leaves.area[i], 0.0F);
       weight += static_cast<double>(cells[i].weight);
-      // In sides of finest cells squared.
+      // In squares of a finest cell's side.
       area += std::ldexp(static_cast<double>(leaves.area[i] * cells[i].weight),
                          2 * (kDepth - leaves.leaf[i]));
     }
   }
   EXPECT_NEAR(weight, static_cast<double>(testing::uneven_sphere_cloud().points.size()), 1e-3);
   const double radius = 0.35 * 64.0;
-  // Areas are taken over cells two depths up, which the border of the thin half runs through.
+  // Areas are sums over cells two depths up, some of which the border of the sparse half crosses.
   EXPECT_NEAR(area, 4.0 * 3.14159265 * radius * radius, 0.12 * 4.0 * 3.14159265 * radius * radius);
 }
 
-TEST(D4Leaves, LeaveOutliersOut) {
+TEST(D4Leaves, ExcludeOutliers) {
   testing::CloudStore store(testing::stray_cloud(), kDepth, kDepth - kTop);
   Slabs slabs(&store, kDepth, kTop, 0, true, 1);
-  find_whole(0, Progress(), 1, &slabs);
-  slabs.bring(0, slabs.count(), SlabStage::kLeaves);
+  compute_whole_samples(0, Progress(), 1, &slabs);
+  slabs.advance_to(0, slabs.count(), SlabStage::kLeaves);
   double left_out = 0.0;
   for (int s = 0; s < slabs.count(); ++s) left_out += find_slab_leaves(slabs, s).left_out;
   EXPECT_NEAR(left_out, 6.0, 1e-6);

@@ -19,7 +19,7 @@ struct Sample {
   Vector3 normal;
 };
 
-// The cells of samples, by key.
+// The samples gathered into cells, in order of their keys.
 SampleLevel level_of(const std::vector<Sample>& samples) {
   std::map<CellKey, SampleCell> cells;
   for (const Sample& sample : samples) {
@@ -55,7 +55,7 @@ Vector3 random_direction(std::mt19937* random) {
   return n;
 }
 
-TEST(LocalSurface, OfAPlaneIsThePlane) {
+TEST(LocalSurface, ReproducesAPlane) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform;
   int lines = 0;
@@ -89,11 +89,11 @@ TEST(LocalSurface, OfAPlaneIsThePlane) {
       }
     }
   }
-  // Of 30 places, where the plane passes along a row of cells.
+  // At most 2 of 30 queries find a line instead, where the plane runs along a row of cells.
   EXPECT_LE(lines, 2);
 }
 
-TEST(LocalSurface, OfASphereIsNearIt) {
+TEST(LocalSurface, ApproximatesASphere) {
   constexpr double kRadius = 12.0;
   const Vector3 middle = {16.1, 15.9, 16.2};
   std::mt19937 random(2);
@@ -119,19 +119,19 @@ TEST(LocalSurface, OfASphereIsNearIt) {
     EXPECT_NEAR(surface->distance, distance, 0.02);
     EXPECT_GT(dot(surface->normal, n), 0.999);
     sum += surface->distance - distance;
-    // Few cells are as near, and their means may be on a line.
+    // Few cells are this close, and their mean positions may lie on a line.
     const auto of_positions = local_surface(index, point, 0.0);
     if (!of_positions) continue;
     sum_of_positions += of_positions->distance - distance;
     ++found;
   }
   EXPECT_GT(found, kCount * 3 / 4);
-  // The plane through the samples' mean, which is inside of the sphere, is off by more.
+  // The plane fitted to mean positions, which lie inside the sphere, has the larger error.
   EXPECT_LT(std::abs(sum / kCount), 0.75 * std::abs(sum_of_positions / found)) << sum / kCount;
   EXPECT_NEAR(sum_of_positions / found, 1.0 / (8.0 * kRadius), 0.01);
 }
 
-TEST(LocalSurface, IsNoneWithoutSamplesOrASide) {
+TEST(LocalSurface, IsNoneWithoutSamplesOrDirection) {
   const SampleLevel none = level_of({});
   EXPECT_FALSE(local_surface(index_of(none), {3.0, 3.0, 3.0}, 1.0));
   const SampleLevel level =

@@ -25,7 +25,7 @@ struct Plane {
   double distance(const Vector3& p) const { return dot(p - middle, normal); }
 };
 
-// A tree of cells of one size, with values that fall from 1 to 0 across a plane.
+// A tree of cells of one size whose values fall from 1 to 0 across a plane.
 CellTree tree_of(const Plane& plane, double shift) {
   CellTree tree;
   tree.levels.resize(kDepth);
@@ -53,7 +53,7 @@ CellTree tree_of(const Plane& plane, double shift) {
   return tree;
 }
 
-// Samples on a plane, as far from it as `noise`, by cells.
+// One sample per cell the plane crosses, off the plane by normal noise of this deviation.
 SampleLevel level_of(const Plane& plane, double noise) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(1.0, kSide - 1.0);
@@ -101,7 +101,7 @@ class FitValues : public testing::Test {
     return tree;
   }
 
-  // Root mean square of the contour's distances from the plane, away from the root's border.
+  // Root mean square distance of the contour from the plane, away from the root's border.
   double error(const CellTree& tree) const {
     const ContourSlab contour = contour_slab(tree, kIsovalue, Interpolant::kLinear, {0, kSide});
     double sum = 0.0;
@@ -121,22 +121,22 @@ class FitValues : public testing::Test {
   SampleIndex index_{kDepth, 0, kSide};
 };
 
-TEST_F(FitValues, PutThePlaneWhereItsSamplesAre) {
+TEST_F(FitValues, MovesThePlaneToItsSamples) {
   take(0.0);
   EXPECT_NEAR(error(tree_of(plane_, kShift)), kShift, 0.01);
   EXPECT_LT(error(fitted({0, kSide}, {})), 0.01);
 }
 
-TEST_F(FitValues, StayWhereSamplesContradictEachOther) {
+TEST_F(FitValues, FollowNoiseOnlyPartly) {
   constexpr double kNoise = 0.5;
   take(kNoise);
   const double followed = error(fitted({0, kSide}, {kNoise, 1.0, 1.0}));
-  // Of the shift some is left, of the noise little is taken over.
+  // The fit may keep a part of the shift, and follows little of the noise.
   EXPECT_LT(followed, 1.2 * kShift);
   EXPECT_GT(followed, 0.3 * kShift);
 }
 
-TEST_F(FitValues, AreTheSameForTheSlabsOnBothSides) {
+TEST_F(FitValues, AgreesBetweenNeighboringSlabs) {
   take(0.1);
   const SampleNoise noise = {0.1, 1.0, 1.0};
   const CellTree whole = fitted({0, kSide}, noise);
@@ -149,7 +149,7 @@ TEST_F(FitValues, AreTheSameForTheSlabsOnBothSides) {
   EXPECT_EQ(contour(whole, {16, kSide}), contour(above, {16, kSide}));
 }
 
-TEST_F(FitValues, LargerLeavesStay) {
+TEST_F(FitValues, KeepsLargerLeaves) {
   take(0.0);
   const CellTree before = tree_of(plane_, kShift);
   EXPECT_EQ(fitted({0, kSide}, {}, 0).levels.back().blocks, before.levels.back().blocks);

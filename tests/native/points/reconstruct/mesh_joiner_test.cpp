@@ -18,7 +18,7 @@ constexpr int kDepth = 5;
 constexpr int kSide = 1 << kDepth;
 constexpr Box kUnitCube = {{0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}};
 
-// Corners from the least on, in order.
+// The corners of a triangle, rotated so that the smallest comes first.
 using Corners = std::array<Vector3, 3>;
 
 std::vector<Corners> sorted_corners(const std::vector<Vector3>& positions,
@@ -42,7 +42,7 @@ struct Joined {
   std::vector<float> attributes;
 };
 
-// The surface in slabs of some height; vertices for which is_trimmed is true are left out.
+// The surface joined from slabs of this height, without vertices for which is_trimmed is true.
 template <typename IsTrimmed>
 Joined join_slabs(const CellTree& tree, Interpolant interpolant, int height,
                   const IsTrimmed& is_trimmed) {
@@ -68,7 +68,7 @@ Joined join_slabs(const CellTree& tree, Interpolant interpolant, int height,
   return joined;
 }
 
-TEST(MeshJoiner, SlabsAreTheWhole) {
+TEST(MeshJoiner, JoinedSlabsEqualTheWholeMesh) {
   for (const Interpolant interpolant : {Interpolant::kLinear, Interpolant::kOccupancy}) {
     for (unsigned seed = 0; seed < 4; ++seed) {
       const CellTree tree = random_tree(seed, kDepth);
@@ -95,7 +95,7 @@ TEST(MeshJoiner, SlabsAreTheWhole) {
   }
 }
 
-TEST(MeshJoiner, LeavesOutTrianglesOfTrimmedVertices) {
+TEST(MeshJoiner, OmitsTrianglesOfTrimmedVertices) {
   const CellTree tree = random_tree(3, kDepth);
   const TriangleMesh whole = contour_slab(tree, 0.5F, Interpolant::kLinear, {0, kSide + 1}).mesh;
   const auto is_trimmed = [](const Vector3& p) { return p[0] + p[2] > 0.7; };
@@ -111,7 +111,7 @@ TEST(MeshJoiner, LeavesOutTrianglesOfTrimmedVertices) {
   const Joined joined = join_slabs(tree, Interpolant::kLinear, 8, is_trimmed);
   EXPECT_EQ(sorted_corners(joined.positions, joined.triangles),
             sorted_corners(whole.positions, kept));
-  // No vertex is without a triangle.
+  // Every vertex belongs to a triangle.
   std::vector<bool> is_used(joined.positions.size());
   for (const auto& t : joined.triangles) {
     for (const std::int32_t v : t) is_used[static_cast<std::size_t>(v)] = true;

@@ -18,8 +18,8 @@ namespace {
 constexpr int kDepth = 3;
 constexpr int kSide = 1 << kDepth;
 
-// Of the part of the unit cube (or square, for two of the numbers) where n p < d: a sum over its
-// corners, for n > 0.
+// Volume of the part of the unit cube (unit square for two components) where n p < d: a sum over
+// its corners, for n > 0.
 double volume_below(const std::vector<double>& n, double d) {
   double sum = 0.0;
   double scale = 1.0;
@@ -37,11 +37,11 @@ double volume_below(const std::vector<double>& n, double d) {
   return sum / scale;
 }
 
-// By the divergence theorem, from what the plane n p = d leaves of the cube and of its faces.
+// Boundary flux of the plane n p = d in the unit cube, by the divergence theorem.
 BoundaryFlux flux_of_plane(const Vector3& normal, double d) {
   Vector3 n = normal;
   for (double& x : n) {
-    // Mirrored, where it is negative.
+    // Mirror axes along which the normal is negative.
     if (x < 0.0) d -= x;
     x = std::abs(x);
   }
@@ -61,7 +61,7 @@ BoundaryFlux flux_of_plane(const Vector3& normal, double d) {
   return flux;
 }
 
-// Some points of the plane in a cell; none where it takes too long to hit one.
+// Random points of the plane in a cell; none if none is hit within the allowed tries.
 std::optional<SampleCell> samples_in(const CellPosition& at, const Vector3& n, double d,
                                      std::mt19937* random) {
   std::uniform_real_distribution<double> uniform;
@@ -88,7 +88,7 @@ std::optional<SampleCell> samples_in(const CellPosition& at, const Vector3& n, d
   return cell;
 }
 
-// Cells with samples, in slabs of two cells' height.
+// Cells with samples of the plane, in slabs two cells high.
 std::array<SampleLevel, kSide / 2> sampled_plane(const Vector3& n, double d, double missing,
                                                  unsigned seed) {
   std::mt19937 random(seed);
@@ -129,8 +129,8 @@ std::map<std::uint64_t, BoundaryFlux> patches_of(const std::array<SampleLevel, k
   return found;
 }
 
-// Cells of the plane without samples come from those next to them, across slabs, too.
-TEST(PlanePatches, AreThePlaneInEveryCell) {
+// Cells on the plane without samples get patches from their neighbors, across slabs as well.
+TEST(PlanePatches, ReproduceThePlaneInEveryCell) {
   const std::array<Vector3, 4> directions = {
       {{0.3, 0.5, 0.8}, {-0.7, 0.4, 0.6}, {0.3, -0.4, -0.5}, {-0.5, -0.5, -0.2}}};
   for (std::size_t i = 0; i < directions.size(); ++i) {
@@ -161,7 +161,7 @@ TEST(PlanePatches, AreThePlaneInEveryCell) {
   }
 }
 
-TEST(PlanePatches, OfAPlaneAcrossAnAxisAreWholeFaces) {
+TEST(PlanePatches, CoverWholeFacesForAnAxisAlignedPlane) {
   const auto found = patches_of(sampled_plane({0.0, 0.0, -1.0}, -3.25, 0.0, 1));
   EXPECT_EQ(found.size(), static_cast<std::size_t>(kSide * kSide));
   for (const auto& [place, flux] : found) {
@@ -173,7 +173,7 @@ TEST(PlanePatches, OfAPlaneAcrossAnAxisAreWholeFaces) {
   }
 }
 
-TEST(PlanePatches, CellsThatAreNotMetOrWhoseNormalsCancelGiveNone) {
+TEST(PlanePatches, NeedACrossedCellAndNormalsThatDoNotCancel) {
   std::array<SampleLevel, kSide / 2> slabs = sampled_plane({0.0, 0.0, 1.0}, 3.25, 0.0, 1);
   for (std::uint8_t& is_leaf : slabs[1].is_leaf) is_leaf = 0;
   EXPECT_TRUE(patches_of(slabs).empty());

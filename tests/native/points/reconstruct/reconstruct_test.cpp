@@ -69,8 +69,8 @@ void add(const Vector3& point, Cloud* cloud) {
   cloud->attributes.push_back(0.0F);
 }
 
-// A few points far away change nothing but the report.
-TEST(Reconstruct, LeavesOutStrays) {
+// A few points far away change only the report.
+TEST(Reconstruct, ExcludesFarOutliers) {
   Cloud near = ball(5000);
   for (Vector3& p : near.points) p = p + Vector3{4e5, 5e6, 100.0};
   for (const WaveletBasis basis : {WaveletBasis::kHaar, WaveletBasis::kD4}) {
@@ -90,7 +90,7 @@ TEST(Reconstruct, LeavesOutStrays) {
       for (const int threads : {1, 3}) {
         options.threads = threads;
         const Result found = surface_of(cloud, options);
-        // Huge coordinates have a name of their own.
+        // Huge coordinates are counted separately.
         const std::size_t huge = strays[0][0] > 1e30 ? 1 : 0;
         EXPECT_EQ(found.report.dropped.huge, huge);
         EXPECT_EQ(found.report.strays + huge, strays.size()) << strays[0][1];
@@ -104,7 +104,7 @@ TEST(Reconstruct, LeavesOutStrays) {
   }
 }
 
-TEST(Reconstruct, StraysAreFewAndFar) {
+TEST(Reconstruct, OutliersAreFewAndFar) {
   ReconstructOptions options;
   options.depth = 4;
   const auto strays_with = [&](int count, double distance, int more) {
@@ -120,13 +120,13 @@ TEST(Reconstruct, StraysAreFewAndFar) {
   EXPECT_EQ(strays_with(900, 100.0, 1), 0U);
   EXPECT_EQ(strays_with(500'000, 8.0, 5), 5U);
   EXPECT_EQ(strays_with(500'000, 8.0, 6), 0U);
-  // A tail of points, each less than twice as far away as the one before, is none.
+  // A tail of points, each less than twice as far out as the one before, has no outliers.
   Cloud cloud = ball(5000);
   for (double distance = 1.5; distance < 10.0; distance *= 1.5) add({0.0, distance, 0.0}, &cloud);
   EXPECT_EQ(surface_of(cloud, options).report.strays, 0U);
 }
 
-TEST(Reconstruct, OfABallIsClosedAndNear) {
+TEST(Reconstruct, BallIsClosedAndAccurate) {
   const Cloud cloud = ball(10000);
   for (const WaveletBasis basis : {WaveletBasis::kHaar, WaveletBasis::kD4}) {
     for (const int depth : {1, 4, 6}) {
@@ -187,14 +187,14 @@ TEST(Reconstruct, FlipsNormalsThatMayPointInward) {
   }
 }
 
-TEST(Reconstruct, CellsAreAsLargeAsTheyMayBe) {
+TEST(Reconstruct, CellsAreTheLargestAllowed) {
   const Cloud cloud = ball(1000);
   for (int depth = 2; depth < 7; ++depth) {
     ReconstructOptions options;
     options.depth = depth;
     const double cell = surface_of(cloud, options).report.cell;
     options.depth = 1;  // does not count
-    // Rounded as sizes in single precision are, and by what is more than that.
+    // A size that is smaller by no more than rounding in single precision gives the same cells.
     for (const double size : {cell, (1.0 - 5e-7) * cell, 1.9 * cell}) {
       options.cell_size = size;
       EXPECT_EQ(surface_of(cloud, options).report.cell, cell) << depth;
@@ -222,11 +222,11 @@ TEST(Reconstruct, RefusesCellsThatAreTooSmall) {
   const std::string least = message(1e-6);
   const std::string use = "use ";
   ASSERT_NE(least.find(use), std::string::npos);
-  // The length that the message names is taken.
+  // The length suggested by the message is accepted.
   EXPECT_EQ(message(std::stod(least.substr(least.find(use) + use.size()))), "");
 }
 
-TEST(Reconstruct, RefusesWhatIsOutOfRange) {
+TEST(Reconstruct, RefusesValuesOutOfRange) {
   const Cloud cloud = ball(100);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
@@ -265,7 +265,7 @@ TEST(Reconstruct, RefusesWhatIsOutOfRange) {
   EXPECT_TRUE(message({}, {}).starts_with("points: none"));
 }
 
-TEST(Reconstruct, OfPointsThatBoundNothingIsClosed) {
+TEST(Reconstruct, IsFiniteForDegeneratePoints) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> uniform;
   for (const Vector3& size :
@@ -295,7 +295,7 @@ TEST(Reconstruct, OfPointsThatBoundNothingIsClosed) {
       try {
         EXPECT_LE(surface_of(cloud, options).mesh.triangles.size(), result.mesh.triangles.size());
       } catch (const Error& error) {
-        // Nothing may be left.
+        // Trimming may remove the whole surface.
         EXPECT_EQ(std::string(error.what()).find("trim: 2 cells"), 0U) << error.what();
       }
     }

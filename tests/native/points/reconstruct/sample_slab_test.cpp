@@ -26,7 +26,7 @@ SampleCells cells_at(const std::set<CellKey>& keys) {
   return cells;
 }
 
-// Cells of a depth; a share of those between two heights.
+// Random cells of a depth: each cell between two heights is taken with probability `share`.
 std::set<CellKey> random_keys(int depth, int low, int high, double share, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform;
@@ -54,7 +54,7 @@ int neighbors_of(const CellPosition& at, const std::set<CellPosition>& cells) {
   return count;
 }
 
-TEST(SampleSlab, CellsAreMetWhereThreeNeighborsHaveSamples) {
+TEST(SampleSlab, CellsAreCrossedIfThreeNeighborsHaveSamples) {
   constexpr int kDepth = 4;
   constexpr int kTop = 2;
   constexpr int kHeight = 1 << (kDepth - kTop);
@@ -63,7 +63,7 @@ TEST(SampleSlab, CellsAreMetWhereThreeNeighborsHaveSamples) {
     std::vector<SampleSlab> slabs;
     std::vector<std::set<CellPosition>> all(kDepth + 1);
     for (int s = 0; s < 3; ++s) {
-      // The middle one is empty once.
+      // For one seed the middle slab is empty.
       const double own = seed == 2 && s == 1 ? 0.0 : share;
       const std::set<CellKey> keys =
           random_keys(kDepth, s * kHeight, (s + 1) * kHeight, own, 10 * seed + s);
@@ -77,8 +77,8 @@ TEST(SampleSlab, CellsAreMetWhereThreeNeighborsHaveSamples) {
       }
     }
     for (std::size_t s = 0; s < 3; ++s) {
-      find_met_cells(s > 0 ? &slabs[s - 1] : nullptr, s < 2 ? &slabs[s + 1] : nullptr, 1.0,
-                     &slabs[s]);
+      find_crossed_cells(s > 0 ? &slabs[s - 1] : nullptr, s < 2 ? &slabs[s + 1] : nullptr, 1.0,
+                         &slabs[s]);
       for (int k = kTop; k <= kDepth; ++k) {
         const SampleLevel& level = slabs[s].at(k);
         ASSERT_EQ(level.occupied.size(), level.size());
@@ -86,20 +86,20 @@ TEST(SampleSlab, CellsAreMetWhereThreeNeighborsHaveSamples) {
           const CellPosition at = cell_position(level.samples.cells[i].key);
           const int neighbors = neighbors_of(at, all[static_cast<std::size_t>(k)]);
           ASSERT_EQ(level.occupied[i], neighbors + 1) << seed << " " << s << " " << k;
-          ASSERT_EQ(level.is_met(i), neighbors >= 3) << seed << " " << s << " " << k;
+          ASSERT_EQ(level.is_crossed(i), neighbors >= 3) << seed << " " << s << " " << k;
         }
       }
     }
   }
 }
 
-TEST(SampleSlab, CoarserCellsHoldTheSameSamples) {
+TEST(SampleSlab, CoarserCellsContainTheSameSamples) {
   constexpr int kDepth = 5;
   const std::set<CellKey> keys = random_keys(kDepth, 0, 1 << kDepth, 0.02, 4);
   SampleSlab slab = make_sample_slab(cells_at(keys), kDepth, 0, 0);
   ASSERT_EQ(slab.at(0).size(), 1U);
   for (int k = kDepth; k >= 0; --k) {
-    // Sums in coordinates of the root.
+    // Sums in coordinates of the root cell.
     double weight = 0.0;
     Vector3 position{};
     double flux = 0.0;

@@ -21,7 +21,7 @@ constexpr int kSlabBits = 3;
 constexpr std::size_t kAttributes = 2;
 constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
 
-// Whole numbers, of which sums are exact in any order.
+// Runs of random cells; with whole numbers, sums are exact in any order.
 std::vector<SampleCells> random_runs(int count, bool are_whole) {
   std::mt19937 random(3);
   std::uniform_int_distribution<std::int32_t> place(0, (1 << kDepth) - 1);
@@ -33,7 +33,7 @@ std::vector<SampleCells> random_runs(int count, bool are_whole) {
   for (int r = 0; r < count; ++r) {
     std::map<CellKey, SampleCell> cells;
     for (int i = length(random); i > 0; --i) {
-      // Slabs in the middle get none.
+      // The middle slabs stay empty.
       std::int32_t z = place(random);
       if (z >> kSlabBits == 1) z = 0;
       SampleCell cell;
@@ -68,7 +68,7 @@ std::vector<float> numbers_of(const SampleCell& cell) {
   return numbers;
 }
 
-TEST(SampleStore, SumsAreThoseOfAMap) {
+TEST(SampleStore, SumsEqualThoseOfAMap) {
   const std::vector<SampleCells> runs = random_runs(40, true);
   std::map<CellKey, std::vector<float>> wanted;
   for (const SampleCells& run : runs) {
@@ -127,7 +127,7 @@ TEST(SampleStore, MemoryAndThreadsChangeNoBit) {
   }
 }
 
-TEST(SampleStore, HasSlabsWithoutCells) {
+TEST(SampleStore, MayHaveEmptySlabs) {
   SampleStore store(kDepth, kSlabBits, 0, 0, "");
   store.add({});
   store.finish(1);
@@ -137,7 +137,7 @@ TEST(SampleStore, HasSlabsWithoutCells) {
   EXPECT_EQ(store.take(3).size(), 0U);
 }
 
-// Those of three clouds, the second of which is in few slabs.
+// Runs of three clouds, the second of which reaches only a few slabs.
 std::vector<std::vector<SampleCells>> random_clouds() {
   const std::vector<SampleCells> runs = random_runs(30, false);
   std::vector<std::vector<SampleCells>> clouds(3);
@@ -146,7 +146,7 @@ std::vector<std::vector<SampleCells>> random_clouds() {
   return clouds;
 }
 
-TEST(SampleStore, CloudsThatWereCountedApartHaveTheSameSums) {
+TEST(SampleStore, SeparatelyGatheredCloudsHaveTheSameSums) {
   const std::vector<std::vector<SampleCells>> clouds = random_clouds();
   const TestFolder folder;
   const ArchiveMark mark = {"counts", "test"};
@@ -168,7 +168,7 @@ TEST(SampleStore, CloudsThatWereCountedApartHaveTheSameSums) {
     const std::unique_ptr<SampleStore> merged = opened(0)->empty_copy(kNoLimit - limit, "");
     for (std::size_t k = 0; k < clouds.size(); ++k) {
       const std::unique_ptr<SampleStore> own = opened(k);
-      ASSERT_TRUE(own->is_like(*merged));
+      ASSERT_TRUE(own->has_shape_of(*merged));
       for (int s = 0; s < own->slab_count(); ++s) merged->add(own->slab(s));
       merged->end_cloud();
     }

@@ -22,7 +22,7 @@ namespace {
 constexpr int kLevels = 3;
 constexpr int kSide = 1 << kLevels;
 
-// A grid of cells as a tree, and what each cell holds of a surface.
+// A regular grid of cells as a tree, with the samples of each cell.
 struct Grid {
   CellTree tree;
   std::vector<NodeLevel> levels{kLevels};
@@ -69,7 +69,7 @@ void for_cells(const Visit& visit) {
   }
 }
 
-// By the definition: sums over faces between cells and over cells with samples.
+// The energy by its definition: sums over faces between cells and over cells with samples.
 double energy(Grid* grid, double middle) {
   constexpr double kScreening = 2.0;
   double sum = 0.0;
@@ -103,8 +103,8 @@ double energy(Grid* grid, double middle) {
   return sum;
 }
 
-// A plane through the grid, told cell by cell with errors.
-void tell_plane(double noise, std::mt19937* random, Grid* grid) {
+// Adds samples of a plane through the grid, with noise, cell by cell.
+void add_plane_samples(double noise, std::mt19937* random, Grid* grid) {
   std::normal_distribution<double> normal;
   constexpr double kHeight = 4.3;
   for_cells([&](const std::array<int, 3>& cell) {
@@ -120,11 +120,11 @@ void tell_plane(double noise, std::mt19937* random, Grid* grid) {
   });
 }
 
-TEST(ScreenedSolve, LeavesWhatAgrees) {
+TEST(ScreenedSolve, KeepsAConsistentSolution) {
   Grid grid;
   std::mt19937 random(3);
-  tell_plane(0.0, &random, &grid);
-  // Below the plane the function is 1; at the mean of two cells whose values it has, 1/2.
+  add_plane_samples(0.0, &random, &grid);
+  // The function is 1 below the plane, and at the mean of two known neighbors it is 1/2.
   const auto expected = [](int z) { return z < 4 ? 1.0F : z == 4 ? 0.3F : 0.0F; };
   for_cells([&](const std::array<int, 3>& cell) { grid.value(cell) = expected(cell[2]); });
   const double before = energy(&grid, 0.5);
@@ -135,12 +135,12 @@ TEST(ScreenedSolve, LeavesWhatAgrees) {
   });
 }
 
-// The least squares are least where no step in any direction leads further down.
-TEST(ScreenedSolve, ComesNearTheLeastSquares) {
+// The energy is minimal where no step along any coordinate lowers it.
+TEST(ScreenedSolve, ApproachesTheLeastSquaresMinimum) {
   for (const float middle : {0.5F, -0.5F}) {
     Grid grid;
     std::mt19937 random(5);
-    tell_plane(0.4, &random, &grid);
+    add_plane_samples(0.4, &random, &grid);
     for_cells([&](const std::array<int, 3>& cell) {
       grid.value(cell) = cell[2] < 4 ? 0.5F + middle : middle - 0.5F;
     });
@@ -148,7 +148,7 @@ TEST(ScreenedSolve, ComesNearTheLeastSquares) {
     solve_screened(grid.sources(), kLevels - 1, middle, &grid.tree);
     const double found = energy(&grid, static_cast<double>(middle));
     EXPECT_LT(found, before);
-    // Descent by one coordinate at a time: the energy is a parabola along each.
+    // Coordinate descent: the energy is a parabola along each coordinate.
     Grid best = grid;
     for (int round = 0; round < 2; ++round) {
       for_cells([&](const std::array<int, 3>& cell) {
@@ -166,17 +166,17 @@ TEST(ScreenedSolve, ComesNearTheLeastSquares) {
   }
 }
 
-// Scans that are off tell of more surface than there is, and of differences that contradict.
-TEST(ScreenedSolve, IsHalfAtSamplesOfScansThatAreOff) {
+// Misaligned scans add surface that does not exist, and their differences contradict each other.
+TEST(ScreenedSolve, IsOneHalfAtSamplesOfMisalignedScans) {
   constexpr int kDepth = 6;
   testing::TestCloud cloud = testing::sphere_cloud(40000);
   for (std::size_t i = 0; i < cloud.points.size(); i += 2) cloud.points[i][0] += 0.8 / 64.0;
   testing::CloudStore store(cloud, kDepth, 3);
   Slabs slabs(&store, kDepth, kDepth - 3, 0, true, 1);
-  find_whole(0, Progress(), 1, &slabs);
-  find_coarse_tree(Progress(), 1, &slabs);
+  compute_whole_samples(0, Progress(), 1, &slabs);
+  build_coarse_tree(Progress(), 1, &slabs);
   const auto off_at_samples = [&](SlabStage stage) {
-    slabs.bring(0, slabs.count(), stage);
+    slabs.advance_to(0, slabs.count(), stage);
     double sum = 0.0;
     double count = 0.0;
     for (int s = 0; s < slabs.count(); ++s) {
@@ -190,7 +190,7 @@ TEST(ScreenedSolve, IsHalfAtSamplesOfScansThatAreOff) {
     return sum / count;
   };
   const double before = off_at_samples(SlabStage::kValues);
-  slabs.middle = 0.5F;
+  slabs.target = 0.5F;
   EXPECT_LT(off_at_samples(SlabStage::kSolved), 0.9 * before);
 }
 

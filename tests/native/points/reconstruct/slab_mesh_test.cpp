@@ -21,16 +21,16 @@ namespace {
 constexpr int kDepth = 6;
 constexpr int kTop = 3;
 
-// With the leaves of all slabs.
+// A sphere's samples in slabs, with the leaves of all slabs computed.
 class Sphere {
  public:
   explicit Sphere(testing::TestCloud points = testing::sphere_cloud(5000))
       : cloud(std::move(points)),
         store(cloud, kDepth, kDepth - kTop),
         slabs(&store, kDepth, kTop, 0, true, 1) {
-    largest = find_whole(0, Progress(), 1, &slabs);
-    find_coarse_tree(Progress(), 1, &slabs);
-    slabs.bring(0, slabs.count(), SlabStage::kValues);
+    largest = compute_whole_samples(0, Progress(), 1, &slabs);
+    build_coarse_tree(Progress(), 1, &slabs);
+    slabs.advance_to(0, slabs.count(), SlabStage::kValues);
   }
 
   testing::TestCloud cloud;
@@ -39,7 +39,7 @@ class Sphere {
   int largest;
 };
 
-TEST(SlabMesh, SamplesAroundASlabAreThoseWithinTheMargin) {
+TEST(SlabMesh, SamplesAroundASlabIncludeTheMargin) {
   const Sphere sphere;
   for (const int s : {0, 3, 7}) {
     for (const int k : {2, 3, 4, 6}) {
@@ -49,7 +49,7 @@ TEST(SlabMesh, SamplesAroundASlabAreThoseWithinTheMargin) {
       int low = s * height - kMargin;
       int high = (s + 1) * height + kMargin;
       if (k < kTop) low = 0, high = 1 << k;
-      // No farther than the slabs next to it.
+      // Only neighboring slabs contribute.
       if (k >= kTop) low = std::max(low, (s - 1) * height), high = std::min(high, (s + 2) * height);
       std::set<std::tuple<int, int, int>> expected;
       for (const Vector3& p : sphere.cloud.points) {
@@ -72,8 +72,8 @@ TEST(SlabMesh, SamplesAroundASlabAreThoseWithinTheMargin) {
   }
 }
 
-// Vertices at random places: marked are those farther from all points than the limit, but for as
-// much as the mean of the points in a cell is off from each.
+// Vertices at random places are marked if they are farther from all points than the limit, up to
+// the distance between points and the mean of their cell.
 TEST(SlabMesh, MarksVerticesFarFromAllSamples) {
   const Sphere sphere;
   std::mt19937 random(5);
@@ -96,7 +96,7 @@ TEST(SlabMesh, MarksVerticesFarFromAllSamples) {
                                 64.0 * p[2] - slab.contour.mesh.positions[v][2]};
         least = std::min(least, length(offset));
       }
-      // Cells of the samples are up to twice as large as an eighth of the limit.
+      // Cells of the samples have a side of up to a quarter of the limit.
       const double margin = 1.8 * std::max(1.0, limit / 4.0);
       if (std::abs(least - limit) > margin) {
         EXPECT_EQ(slab.is_trimmed[v], least > limit ? 1 : 0) << limit << " " << least;
@@ -107,7 +107,7 @@ TEST(SlabMesh, MarksVerticesFarFromAllSamples) {
   }
 }
 
-TEST(SlabMesh, NoiseIsThatOfTheSamples) {
+TEST(SlabMesh, EstimatesTheNoiseOfSamples) {
   testing::TestCloud cloud = testing::sphere_cloud(8000);
   std::mt19937 random(3);
   constexpr double kNoise = 0.3;  // cells
@@ -118,11 +118,11 @@ TEST(SlabMesh, NoiseIsThatOfTheSamples) {
   }
   testing::CloudStore store(cloud, kDepth, kDepth - kTop);
   Slabs slabs(&store, kDepth, kTop, 0, true, 1);
-  const int largest = find_whole(0, Progress(), 1, &slabs);
+  const int largest = compute_whole_samples(0, Progress(), 1, &slabs);
   EXPECT_NEAR(find_noise(largest, &slabs).distance, kNoise, 0.3 * kNoise);
 }
 
-TEST(SlabMesh, IsThePartOfTheSphereInTheSlab) {
+TEST(SlabMesh, IsThePartOfTheSurfaceInTheSlab) {
   Sphere sphere(testing::sphere_cloud(20000));
   ReconstructOptions options;
   options.depth = kDepth;
@@ -144,7 +144,7 @@ TEST(SlabMesh, IsThePartOfTheSphereInTheSlab) {
   EXPECT_GT(vertices, 5000U);
 }
 
-// The mean of the distances of vertices from the sphere's middle, in cells.
+// Mean distance of the vertices from the center of the sphere, in cells.
 double mean_radius(const Sphere& sphere, const ReconstructOptions& options,
                    const SurfaceLevel& level) {
   const SurfaceSamples surface = {sphere.slabs, 0, {}};
@@ -170,14 +170,14 @@ TEST(SlabMesh, GrowsAsTheLevelFalls) {
     const double high = mean_radius(sphere, options, {1.0F, 0.6F});
     EXPECT_GT(low, middle + 0.05) << smooth;
     EXPECT_GT(middle, high + 0.05) << smooth;
-    // By the scale as by the level.
+    // Changing the scale has the same effect as changing the level.
     if (smooth) {
       EXPECT_NEAR(mean_radius(sphere, options, {1.25F, 0.5F}), low, 1e-3);
     }
   }
 }
 
-TEST(SlabMesh, FollowsThinSamplesToo) {
+TEST(SlabMesh, FollowsSparseSamplesToo) {
   const Sphere sphere(testing::uneven_sphere_cloud());
   const SurfaceSamples surface = {sphere.slabs, 0, {}};
   const ReconstructOptions options;

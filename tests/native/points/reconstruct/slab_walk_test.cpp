@@ -22,7 +22,7 @@ Slabs slabs_of(SampleStore* store, bool keeps_all) {
   return Slabs(store, kDepth, kDepth - kSlabBits, 0, keeps_all, 1);
 }
 
-// The stages that a walk from nothing takes each slab through.
+// Number of stages that a slab passes through up to `stage`.
 std::size_t stages_up_to(SlabStage stage) { return static_cast<std::size_t>(stage); }
 
 TEST(SlabWalk, VisitsAllInOrder) {
@@ -33,7 +33,7 @@ TEST(SlabWalk, VisitsAllInOrder) {
     std::vector<int> visits(kSlabs);
     std::vector<int> joined;
     for_slabs(
-        {SlabStage::kMet}, Progress(), threads, &slabs,
+        {SlabStage::kCrossedCells}, Progress(), threads, &slabs,
         [&](int s) { ++visits[static_cast<std::size_t>(s)]; }, [&](int s) { joined.push_back(s); });
     std::vector<int> all;
     for (int s = 0; s < kSlabs; ++s) all.push_back(s);
@@ -42,16 +42,16 @@ TEST(SlabWalk, VisitsAllInOrder) {
   }
 }
 
-// Each walk makes each slab once, although it forgets those that it has left behind.
-TEST(SlabWalk, MakesNothingTwice) {
+// A walk computes each slab once, although it frees slabs it has passed.
+TEST(SlabWalk, ComputesEachStageOnce) {
   const testing::TestCloud cloud = testing::sphere_cloud(5000);
   for (const int threads : {1, 2, 3}) {
     testing::CloudStore store(cloud, kDepth, kSlabBits);
     Slabs slabs = slabs_of(&store, false);
-    find_whole(0, Progress(), threads, &slabs);
-    std::size_t expected = kSlabs * stages_up_to(SlabStage::kMet);
+    compute_whole_samples(0, Progress(), threads, &slabs);
+    std::size_t expected = kSlabs * stages_up_to(SlabStage::kCrossedCells);
     EXPECT_EQ(slabs.steps(), expected) << threads;
-    find_coarse_tree(Progress(), threads, &slabs);
+    build_coarse_tree(Progress(), threads, &slabs);
     expected += kSlabs * stages_up_to(SlabStage::kCoefficients);
     EXPECT_EQ(slabs.steps(), expected) << threads;
     for_slabs(
@@ -61,12 +61,12 @@ TEST(SlabWalk, MakesNothingTwice) {
   }
 }
 
-TEST(SlabWalk, ForgetsWhatNoSlabNeedsAnyMore) {
+TEST(SlabWalk, FreesSlabsThatAreNoLongerNeeded) {
   const testing::TestCloud cloud = testing::sphere_cloud(5000);
   testing::CloudStore store(cloud, kDepth, kSlabBits);
   Slabs slabs = slabs_of(&store, false);
-  find_whole(0, Progress(), 1, &slabs);
-  find_coarse_tree(Progress(), 1, &slabs);
+  compute_whole_samples(0, Progress(), 1, &slabs);
+  build_coarse_tree(Progress(), 1, &slabs);
   const auto is_there = [&](int s) { return !slabs.samples(s)->levels.empty(); };
   for_slabs(
       {SlabStage::kValues, 1, true}, Progress(), 1, &slabs, [](int) {},
@@ -79,12 +79,12 @@ TEST(SlabWalk, ForgetsWhatNoSlabNeedsAnyMore) {
   for (int s = 0; s < kSlabs; ++s) EXPECT_FALSE(is_there(s));
 }
 
-TEST(SlabWalk, KeepsAllWhereToldTo) {
+TEST(SlabWalk, KeepsAllSlabsOnRequest) {
   const testing::TestCloud cloud = testing::sphere_cloud(5000);
   testing::CloudStore store(cloud, kDepth, kSlabBits);
   Slabs slabs = slabs_of(&store, true);
-  find_whole(0, Progress(), 2, &slabs);
-  find_coarse_tree(Progress(), 2, &slabs);
+  compute_whole_samples(0, Progress(), 2, &slabs);
+  build_coarse_tree(Progress(), 2, &slabs);
   for_slabs(
       {SlabStage::kValues, 1, true}, Progress(), 2, &slabs, [](int) {}, [](int) {});
   EXPECT_EQ(slabs.steps(), kSlabs * stages_up_to(SlabStage::kValues));

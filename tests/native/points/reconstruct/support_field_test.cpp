@@ -26,10 +26,10 @@ class Leaves {
       : cloud(std::move(points)),
         store(cloud, kDepth, kDepth - kTop),
         slabs(&store, kDepth, kTop, 0, true, 1) {
-    find_whole(0, Progress(), 1, &slabs);
-    slabs.bring(0, slabs.count(), SlabStage::kLeaves);
+    compute_whole_samples(0, Progress(), 1, &slabs);
+    slabs.advance_to(0, slabs.count(), SlabStage::kLeaves);
   }
-  // From the nearest point, in finest cells.
+  // Distance from the nearest point, in finest cells.
   double distance(const Vector3& p) const {
     double least = 1e9;
     for (const Vector3& q : cloud.points) least = std::min(least, length(64.0 * q - p));
@@ -41,8 +41,8 @@ class Leaves {
   Slabs slabs;
 };
 
-// All distances, in cells, which are as large as spacings are or larger.
-TEST(SupportField, TellsHowFarSamplesAre) {
+// Distances in cells as large as the spacing of the samples or larger.
+TEST(SupportField, MeasuresDistancesFromSamples) {
   const Leaves leaves(testing::sphere_cloud(20000));
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(0.0, 64.0);
@@ -57,15 +57,15 @@ TEST(SupportField, TellsHowFarSamplesAre) {
   }
 }
 
-TEST(SupportField, IsMeasuredByTheSpacingOfSamples) {
-  // Sixteen times thinner above.
+TEST(SupportField, IsInUnitsOfTheSampleSpacing) {
+  // The upper half has a sixteenth of the density.
   const Leaves leaves(testing::uneven_sphere_cloud());
   SupportField low(leaves.slabs, 1.0, 1);
   SupportField high(leaves.slabs, 1.0, 6);
   const auto at = [](double height, double away) {
     const double z = height - 32.0;
     const double radius = std::sqrt(22.4 * 22.4 - z * z);
-    return FacingPoint{{32.0 + radius + away, 32.0, height}, {1.0, 0.0, 0.0}};
+    return OrientedPoint{{32.0 + radius + away, 32.0, height}, {1.0, 0.0, 0.0}};
   };
   const Support dense = low.at(at(13.0, 4.0), kDepth);
   const Support thin = high.at(at(50.0, 4.0), kDepth);
@@ -76,19 +76,19 @@ TEST(SupportField, IsMeasuredByTheSpacingOfSamples) {
   EXPECT_NEAR(static_cast<double>(dense.spacing), std::sqrt(per_point), 0.1);
 }
 
-TEST(SupportField, SamplesSupportWhatFacesAsTheyDo) {
+TEST(SupportField, SamplesSupportSurfacesWithTheirNormal) {
   const Leaves leaves(testing::sphere_cloud(20000));
   for (const double sign : {1.0, -1.0}) {
     SupportField field(leaves.slabs, sign, 3);
     const Vector3 p = {32.0 + 22.4, 32.0, 30.0};
     EXPECT_LT(field.at({p, {sign, 0.0, 0.0}}, kDepth).distance, 1.0F);
-    // A sharp edge faces so; regions as near as this are not cut.
+    // A sharp edge turns the normal this far; a region this close to samples is not cut.
     EXPECT_LT(field.at({p, {0.0, 1.0, 0.0}}, kDepth).distance, 2.0F);
     EXPECT_GE(field.at({p, {-sign, 0.0, 0.0}}, kDepth).distance, 4.0F);
   }
 }
 
-TEST(SupportField, WhatIsTurnedIsFartherFromSamples) {
+TEST(SupportField, DistanceGrowsWithTheAngleOfNormals) {
   const Leaves leaves(testing::sphere_cloud(20000));
   SupportField field(leaves.slabs, 1.0, 3);
   const auto at_angle = [&](double away, double degrees) {
@@ -98,14 +98,15 @@ TEST(SupportField, WhatIsTurnedIsFartherFromSamples) {
   };
   const float facing = at_angle(1.0, 0.0);
   EXPECT_EQ(at_angle(1.0, 30.0), facing);
-  // By cosines: 1 + 2 * (0.7 - 0.5), and 1 + 2 * 0.7. Samples beside may face it more.
+  // Factors from the cosines: 1 + 2 * (0.7 - 0.5), and 1 + 2 * 0.7. Neighboring samples may reduce
+  // them.
   EXPECT_NEAR(at_angle(1.0, 60.0), 1.4F * facing, 0.1F * facing);
   EXPECT_NEAR(at_angle(1.0, 90.0), 2.4F * facing, 0.3F * facing);
-  // What is far enough to be cut is no farther for it.
+  // Angles do not add to distances that are cut anyway.
   EXPECT_EQ(at_angle(3.2, 90.0), at_angle(3.2, 0.0));
 }
 
-TEST(SupportField, StraysSupportNothing) {
+TEST(SupportField, OutliersSupportNothing) {
   const Leaves leaves(testing::stray_cloud());
   SupportField field(leaves.slabs, 1.0, 0);
   EXPECT_GE(field.at({{32.0, 3.2, 1.3}, {0.0, 0.0, 1.0}}, kDepth).distance, 4.0F);

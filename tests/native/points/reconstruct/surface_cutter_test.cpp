@@ -18,7 +18,7 @@ namespace {
 constexpr int kSide = 40;
 constexpr std::size_t kWidth = 3;  // x, and the support
 
-// How far the points of a square are from samples.
+// Distance of a point of the square from the samples.
 using Field = double (*)(const Vector3&);
 
 double around_a_hole(const Vector3& p) {
@@ -37,10 +37,10 @@ struct Cut {
 
 std::int64_t number(int x, int y) { return y * (kSide + 1) + x; }
 
-// A square of unit cells, in parts of some rows each.
+// A square of unit cells, added in parts of some rows each.
 Cut cut_square(Field field, int rows, const TrimOptions& options,
                std::uint64_t memory = std::numeric_limits<std::uint64_t>::max(),
-               const std::vector<FarPlace<std::int64_t>>& far = {}) {
+               const std::vector<FarMidpoint<std::int64_t>>& far = {}) {
   SurfaceCutter cutter(options, kWidth, 1.0, true, memory, "");
   for (int low = 0; low < kSide; low += rows) {
     const int high = std::min(low + rows, kSide);
@@ -65,7 +65,7 @@ Cut cut_square(Field field, int rows, const TrimOptions& options,
     }
     cutter.add_vertices(std::move(positions), std::move(attributes));
     cutter.add_triangles(std::move(triangles));
-    cutter.add_far_places(far);
+    cutter.add_far_midpoints(far);
     cutter.end_part(shared);
   }
   ArraySink sink;
@@ -94,7 +94,8 @@ double area(const Cut& cut) {
   return sum;
 }
 
-// Of positions, which are all different: the same for any numbering.
+// Triangles by their positions, which are unique, so that the numbering of vertices does not
+// matter.
 std::set<std::array<Vector3, 3>> triangles_of(const Cut& cut) {
   std::set<std::array<Vector3, 3>> found;
   for (const auto& [a, b, c] : cut.triangles) {
@@ -113,7 +114,7 @@ std::map<std::pair<std::int32_t, std::int32_t>, int> edges_of(const Cut& cut) {
   return edges;
 }
 
-TEST(SurfaceCutter, CutsAlongTheLine) {
+TEST(SurfaceCutter, CutsAlongTheIsoline) {
   const Cut cut = cut_square(around_a_hole, kSide, TrimOptions());
   constexpr double kRadius = 12.0 - 1.5;
   const double hole = 3.14159265358979 * kRadius * kRadius;
@@ -136,10 +137,10 @@ TEST(SurfaceCutter, CutsAlongTheLine) {
   }
 }
 
-TEST(SurfaceCutter, PartsAreTheWhole) {
-  // An edge that parts have in common, its ends near, and a triangle.
-  const std::vector<FarPlace<std::int64_t>> far = {{number(3, 5), number(4, 5), 9.0F, 1.0F}};
-  for (const auto& places : {std::vector<FarPlace<std::int64_t>>(), far}) {
+TEST(SurfaceCutter, PartsGiveTheSameSurface) {
+  // An edge shared by two parts, with vertices nearby, and a triangle.
+  const std::vector<FarMidpoint<std::int64_t>> far = {{number(3, 5), number(4, 5), 9.0F, 1.0F}};
+  for (const auto& places : {std::vector<FarMidpoint<std::int64_t>>(), far}) {
     const TrimOptions options = {1.5, places.empty() ? 4.0 : 0.2, 0.0};
     const Cut whole = cut_square(around_a_hole, kSide, options,
                                  std::numeric_limits<std::uint64_t>::max(), places);
@@ -160,8 +161,8 @@ TEST(SurfaceCutter, PartsAreTheWhole) {
   }
 }
 
-TEST(SurfaceCutter, NothingChangesWhereNothingIsCut) {
-  const std::vector<FarPlace<std::int64_t>> far = {{number(3, 5), number(4, 5), 3.0F, 1.0F}};
+TEST(SurfaceCutter, KeepsAllIfNothingIsCut) {
+  const std::vector<FarMidpoint<std::int64_t>> far = {{number(3, 5), number(4, 5), 3.0F, 1.0F}};
   const TrimOptions deep = {1.5, 13.0, 64.0};
   for (const Cut& cut :
        {cut_square(nowhere, 7, TrimOptions(), 0, far), cut_square(around_a_hole, 7, deep)}) {
@@ -172,8 +173,8 @@ TEST(SurfaceCutter, NothingChangesWhereNothingIsCut) {
   }
 }
 
-TEST(SurfaceCutter, SmallPartsGoWhereSomethingIsCut) {
-  // A ring is cut; what is inside is 3 wide.
+TEST(SurfaceCutter, DropsSmallPartsOnlyIfSomethingIsCut) {
+  // A ring is cut; the disk inside has a diameter of 3.
   const Field ring = [](const Vector3& p) {
     return std::max(0.0, 6.0 - std::abs(std::hypot(p[0] - 20.0, p[1] - 20.0) - 6.0));
   };

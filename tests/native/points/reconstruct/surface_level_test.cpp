@@ -18,7 +18,7 @@ namespace {
 constexpr int kDepth = 6;
 constexpr int kTop = 4;
 
-TEST(SurfaceLevel, OfAMeanMakesItOneHalfWhereTheSurfaceIsClosed) {
+TEST(SurfaceLevel, MeanIsOneHalfForAClosedSurface) {
   for (const bool is_flipped : {false, true}) {
     const float sign = is_flipped ? -1.0F : 1.0F;
     for (const double mean : {0.2, 0.45, 0.6}) {
@@ -35,14 +35,14 @@ TEST(SurfaceLevel, OfAMeanMakesItOneHalfWhereTheSurfaceIsClosed) {
   }
 }
 
-TEST(SurfaceLevel, OfARoomHasWallsOnAllSides) {
+TEST(SurfaceLevel, RoomHasWallsOnAllSides) {
   EXPECT_TRUE(is_room({-0.5, {0.0, 0.1, -0.3}}));
   EXPECT_FALSE(is_room({-0.5, {0.0, 0.1, 0.6}}));
   EXPECT_FALSE(is_room({-0.1, {0.0, 0.0, 0.0}}));
   EXPECT_FALSE(is_room({0.5, {0.0, 0.0, 0.0}}));
 }
 
-TEST(SurfaceLevel, IsThatOfTheOptions) {
+TEST(SurfaceLevel, CanBeSetByTheOptions) {
   testing::CloudStore store(testing::sphere_cloud(2000), kDepth, kDepth - kTop);
   Slabs slabs(&store, kDepth, kTop, 0, true, 1);
   ReconstructOptions options;
@@ -54,14 +54,14 @@ TEST(SurfaceLevel, IsThatOfTheOptions) {
   EXPECT_EQ(find_surface_level(options, false, Progress(), &slabs).isovalue, 0.3F);
 }
 
-// Halfway up at the samples, about 1 inside and 0 outside: the Haar functions of a sphere's samples
-// make up its indicator function.
-TEST(SurfaceLevel, OfASphereIsOneHalf) {
+// The function is 1/2 at the samples, about 1 inside and 0 outside: the Haar functions of a
+// sphere's samples add up to its indicator function.
+TEST(SurfaceLevel, IsOneHalfForASphere) {
   testing::CloudStore store(testing::sphere_cloud(20000), kDepth, kDepth - kTop);
   Slabs slabs(&store, kDepth, kTop, 0, true, 1);
   slabs.mean_weight = 1.0;
-  find_whole(0, Progress(), 1, &slabs);
-  EXPECT_EQ(find_coarse_tree(Progress(), 1, &slabs), 0.0);
+  compute_whole_samples(0, Progress(), 1, &slabs);
+  EXPECT_EQ(build_coarse_tree(Progress(), 1, &slabs), 0.0);
   EXPECT_NEAR(slabs.coarse.root, 4.0 / 3.0 * 3.14159265 * std::pow(0.35, 3.0), 0.005);
   ReconstructOptions options;
   const SurfaceLevel level = find_surface_level(options, false, Progress(), &slabs);
@@ -81,9 +81,9 @@ TEST(SurfaceLevel, OfASphereIsOneHalf) {
   }
 }
 
-TEST(SurfaceLevel, LeafValuesAreThoseOfTheTree) {
+TEST(SurfaceLevel, LeafValuesEqualTheTrees) {
   const CellTree tree = random_tree(1, 5);
-  // All cells of depth 5, from the root down.
+  // All cells of depth 5, found by descending from the root.
   const auto expected = [&](const CellPosition& at) {
     std::size_t block = 0;
     for (int k = 0;; ++k) {

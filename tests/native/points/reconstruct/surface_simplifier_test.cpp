@@ -22,7 +22,7 @@ using Triangle = std::array<std::int32_t, 3>;
 
 double flat(const Vector3&) { return 0.0; }
 double hilly(const Vector3& p) { return 3.0 * std::sin(0.2 * p[0]) * std::cos(0.15 * p[1]); }
-// How far the points of a square are from samples.
+// Distance of a point of the square from the samples.
 double nowhere(const Vector3&) { return 0.5; }
 double in_a_hole(const Vector3& p) {
   return std::max(0.5, 8.0 - std::hypot(p[0] - 20.0, p[1] - 22.0));
@@ -111,7 +111,7 @@ double largest_distance(const Mesh& from, const Mesh& to) {
   return largest;
 }
 
-// How often there are edges, each in its direction.
+// The directed edges, each at most once.
 std::set<std::pair<std::int32_t, std::int32_t>> directed_edges(const Mesh& mesh) {
   std::set<std::pair<std::int32_t, std::int32_t>> edges;
   for (const Triangle& t : mesh.triangles) {
@@ -122,8 +122,8 @@ std::set<std::pair<std::int32_t, std::int32_t>> directed_edges(const Mesh& mesh)
   return edges;
 }
 
-// The vertices of a square are those where it has been, with what was told of them; at its border
-// all are left, and nothing else ends.
+// Vertices stay on the square and keep their attributes; all border vertices are kept, and there
+// are no other borders.
 void expect_same_square(const Mesh& mesh, const Square& square) {
   const auto edges = directed_edges(mesh);
   int ends = 0;
@@ -160,8 +160,8 @@ TEST(SurfaceSimplifier, StaysWithinTheToleranceInAnyParts) {
   }
 }
 
-TEST(SurfaceSimplifier, LeavesNoRowsBetweenParts) {
-  // The border keeps its vertices, each with a triangle or two.
+TEST(SurfaceSimplifier, SimplifiesAcrossParts) {
+  // All border vertices are kept, and each belongs to one or two triangles.
   constexpr std::size_t kBorder = 4 * kSide;
   for (const int rows : {kSide, 16, 8}) {
     const Mesh mesh = simplified({.rows = rows});
@@ -170,12 +170,12 @@ TEST(SurfaceSimplifier, LeavesNoRowsBetweenParts) {
   }
 }
 
-TEST(SurfaceSimplifier, LaterPartsMayNameWhatIsShared) {
+TEST(SurfaceSimplifier, LaterPartsMayUseSharedVertices) {
   const Square square{.height = hilly, .tolerance = 0.1, .rows = 4, .lag = 9};
   expect_same_square(simplified(square), square);
 }
 
-TEST(SurfaceSimplifier, KeepsWhatCanBeCutAfterward) {
+TEST(SurfaceSimplifier, KeepsPartsThatCanStillBeCut) {
   Square square{.distance = in_a_hole, .rows = 16};
   const auto far_count = [&](const Mesh& mesh) {
     std::size_t count = 0;
@@ -199,8 +199,8 @@ TEST(SurfaceSimplifier, IsTheSameForAnyThreads) {
   EXPECT_EQ(one.triangles, other.triangles);
 }
 
-TEST(SurfaceSimplifier, TakesWhatIsNoManifold) {
-  // Three squares at one edge, and a triangle twice: what is there stays, as it is at an end.
+TEST(SurfaceSimplifier, AcceptsNonManifoldMeshes) {
+  // Three squares at one edge and a duplicate triangle: non-manifold parts are kept unchanged.
   ArraySink sink;
   SurfaceSimplifier simplifier({1.0, 0, false, 1, Progress()}, &sink);
   simplifier.add_vertices({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}}, {});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Samples of a sphere in slabs, for tests of what is made of these.
+// Samples of spheres in slabs, for tests of the reconstruction.
 #pragma once
 
 #include <cmath>
@@ -26,7 +26,7 @@ struct TestCloud {
   ArraySource source() const { return {points, normals, {}, {}, {}}; }
 };
 
-/// Of a sphere around the middle.
+/// Random points of a sphere around the center of the unit cube.
 inline TestCloud sphere_cloud(int count, double radius = 0.35) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal;
@@ -41,7 +41,8 @@ inline TestCloud sphere_cloud(int count, double radius = 0.35) {
   return cloud;
 }
 
-/// A dense lower half and a thin upper one, so that leaves have several depths, also above slabs.
+/// A dense lower half and a sparse upper one, so that leaves have several depths, some above the
+/// slabs' depth.
 inline TestCloud uneven_sphere_cloud() {
   const TestCloud all = sphere_cloud(20000);
   TestCloud cloud;
@@ -53,7 +54,7 @@ inline TestCloud uneven_sphere_cloud() {
   return cloud;
 }
 
-/// A dense sphere, and six points that lie far from all others.
+/// A dense sphere and six points far from all others.
 inline TestCloud stray_cloud() {
   TestCloud cloud = sphere_cloud(20000);
   for (const double x : {0.05, 0.5, 0.95}) {
@@ -65,7 +66,7 @@ inline TestCloud stray_cloud() {
   return cloud;
 }
 
-/// The cells of the unit cube.
+/// The grid over the unit cube.
 inline SampleGrid unit_grid(int depth) {
   SampleGrid grid;
   grid.depth = depth;
@@ -73,7 +74,7 @@ inline SampleGrid unit_grid(int depth) {
   return grid;
 }
 
-/// The cloud's samples in cells of that cube, in slabs of 2^slab_bits of them.
+/// The cloud's samples in cells of unit_grid(), in slabs of 2^slab_bits cells.
 class CloudStore : public SampleStore {
  public:
   CloudStore(const TestCloud& cloud, int depth, int slab_bits)

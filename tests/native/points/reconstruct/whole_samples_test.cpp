@@ -17,36 +17,38 @@ TEST(WholeSamples, LeastLeafIsOneAboveTheMedian) {
   EXPECT_EQ(least_leaf_depth({0, 0, 0, 0, 0, 0, 1}), 5);
   EXPECT_EQ(least_leaf_depth({0, 0, 0, 0, 0, 1, 0.9}), 4);
   EXPECT_EQ(least_leaf_depth({0, 0, 0, 0, 0, 0.9, 1}), 5);
-  // Half of the weight is enough.
+  // A depth with at least half of the weight is chosen.
   EXPECT_EQ(least_leaf_depth({0, 0, 0, 0, 0, 1, 1}), 4);
   EXPECT_EQ(least_leaf_depth({9, 0, 0, 1}), 0);
   EXPECT_EQ(least_leaf_depth({0, 0}), 0);
 }
 
-// By the definition: the deepest cell that holds a finest one and is met, but for the levels above.
-TEST(WholeSamples, WeightsAreThoseOfTheDeepestMetCells) {
+// Expected weights by definition: each finest cell's weight belongs to the deepest crossed cell
+// around it, at or below depth kTop.
+TEST(WholeSamples, WeightsBelongToTheDeepestCrossedCells) {
   constexpr int kDepth = 6;
   constexpr int kBits = 3;
   constexpr int kTop = kDepth - kBits;
   testing::CloudStore store(testing::sphere_cloud(3000), kDepth, kBits);
   Slabs slabs(&store, kDepth, kTop, 0, true, 1);
-  slabs.bring(0, slabs.count(), SlabStage::kMet);
+  slabs.advance_to(0, slabs.count(), SlabStage::kCrossedCells);
   std::vector<double> found(kDepth + 1);
   std::vector<double> expected(kDepth + 1);
   double all = 0.0;
   for (int s = 0; s < slabs.count(); ++s) {
     const SampleSlab& slab = *slabs.samples(s);
     weigh_leaves(slab, &found);
-    std::map<std::pair<int, CellKey>, bool> is_met;
+    std::map<std::pair<int, CellKey>, bool> is_crossed;
     for (int k = kTop; k <= kDepth; ++k) {
       for (std::size_t i = 0; i < slab.at(k).size(); ++i) {
-        is_met[{k, slab.at(k).samples.cells[i].key}] = slab.at(k).is_met(i);
+        is_crossed[{k, slab.at(k).samples.cells[i].key}] = slab.at(k).is_crossed(i);
       }
     }
     for (const SampleCell& cell : slab.at(kDepth).samples.cells) {
       CellPosition at = cell_position(cell.key);
       int k = kDepth;
-      for (; k > kTop && !is_met.at({k, cell_key(at)}); --k) at = {at[0] / 2, at[1] / 2, at[2] / 2};
+      for (; k > kTop && !is_crossed.at({k, cell_key(at)}); --k)
+        at = {at[0] / 2, at[1] / 2, at[2] / 2};
       expected[static_cast<std::size_t>(k)] += static_cast<double>(cell.weight);
       all += static_cast<double>(cell.weight);
     }
@@ -56,13 +58,13 @@ TEST(WholeSamples, WeightsAreThoseOfTheDeepestMetCells) {
   EXPECT_GT(*std::max_element(found.begin(), found.end() - 1), 0.0);
 }
 
-TEST(WholeSamples, AreTheSlabsTogether) {
+TEST(WholeSamples, CombineAllSlabs) {
   constexpr int kDepth = 6;
   constexpr int kTop = 4;
   const testing::TestCloud cloud = testing::sphere_cloud(5000);
   testing::CloudStore store(cloud, kDepth, kDepth - kTop);
   Slabs slabs(&store, kDepth, kTop, 0, true, 1);
-  const int largest = find_whole(0, Progress(), 1, &slabs);
+  const int largest = compute_whole_samples(0, Progress(), 1, &slabs);
   ASSERT_EQ(slabs.offsets.size(), 1U << kTop);
   std::size_t most = 0;
   std::size_t count = 0;

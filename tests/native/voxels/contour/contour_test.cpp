@@ -56,7 +56,7 @@ TEST(EdgeCrossing, IsExactForLines) {
   }
 }
 
-TEST(EdgeCrossing, OfFullAndEmptyCellsIsBetweenThem) {
+TEST(EdgeCrossing, IsBetweenFullAndEmptyCells) {
   EXPECT_EQ(occupancy_crossing(0.0F, 1.0F), 0.5F);
   EXPECT_EQ(occupancy_crossing(1.0F, 0.0F), 0.5F);
   EXPECT_EQ(occupancy_crossing(0.0F, 0.5F), 1.0F);
@@ -104,7 +104,7 @@ TEST(MarchingCases, AllLoopsAreTriangulatedWithoutDiagonalsInFaces) {
   }
 }
 
-// All pairs of cubes that share a face, and more: grids of every kind of corner.
+// All pairs of cubes that share a face occur, and grids of many sizes.
 TEST(ContourGrid, RandomSamplesGiveClosedManifolds) {
   std::mt19937 random(2);
   std::uniform_real_distribution<float> uniform(0.0F, 1.0F);
@@ -135,7 +135,7 @@ std::vector<Vector3> sorted_positions(const TriangleMesh& mesh, int low) {
   return positions;
 }
 
-// Whether one of some sorted positions is here, to rounding.
+// Whether one of the sorted positions equals p up to rounding.
 bool has_near(const std::vector<Vector3>& sorted, const Vector3& p) {
   constexpr double kNear = 1e-5;
   auto at = std::lower_bound(sorted.begin(), sorted.end(),
@@ -146,7 +146,7 @@ bool has_near(const std::vector<Vector3>& sorted, const Vector3& p) {
   return false;
 }
 
-// Samples that are equal in blocks, wherever these begin, are samples still.
+// Repeating each sample in a block leaves a grid whose contour moves with the blocks.
 TEST(ContourGrid, MovesWithItsSamples) {
   constexpr int kBlock = 4;
   constexpr int kBlocks = 3;
@@ -185,9 +185,9 @@ TEST(ContourGrid, MovesWithItsSamples) {
   }
 }
 
-TEST(ContourGrid, FullBoxesLoseTheirEdgesAlone) {
-  // Cut off by planes through the middles between samples: 1/8 of a cell along each edge, and 5/48
-  // at each corner.
+TEST(ContourGrid, FullBoxesLoseOnlyTheirEdges) {
+  // Planes through the middles between samples cut off 1/8 of a cell along each edge, and 5/48 at
+  // each corner.
   for (const auto& [low, side, size] : std::vector<std::array<int, 3>>{
            {0, 4, 8}, {4, 4, 16}, {4, 8, 16}, {8, 16, 32}, {3, 4, 9}, {0, 5, 5}}) {
     std::vector<float> values(static_cast<std::size_t>(size) * size * size);
@@ -205,7 +205,7 @@ TEST(ContourGrid, FullBoxesLoseTheirEdgesAlone) {
   }
 }
 
-// Functions with a sign: what pads a grid to a cube is outside of them, too.
+// For functions with a sign, the values that pad a grid to a cube must be outside as well.
 TEST(ContourGrid, TakesIsoValuesOfZeroAndBelow) {
   for (const int size : {16, 20}) {
     for (const float isovalue : {0.0F, -0.5F}) {
@@ -222,7 +222,7 @@ TEST(ContourGrid, TakesIsoValuesOfZeroAndBelow) {
       EXPECT_EQ(fault_of(mesh), "");
       const double radius = 5.0 - static_cast<double>(isovalue);
       EXPECT_NEAR(volume_of(mesh) / (4.18879 * radius * radius * radius), 1.0, 0.025);
-      // All inside: the surface is around the grid, and finite.
+      // With all samples inside, the surface runs around the grid and is finite.
       options.isovalue = -100.0F;
       const TriangleMesh all = contour_grid({values.data(), {size, size, size}}, {}, options);
       EXPECT_EQ(fault_of(all), "");
@@ -259,7 +259,7 @@ TEST(ContourOccupancies, NeverCrossesItself) {
   }
 }
 
-// The most that two triangles with a side in common turn there, as a cosine.
+// Cosine of the largest angle between two adjacent triangles.
 double least_cosine(const TriangleMesh& mesh) {
   std::map<std::pair<std::int32_t, std::int32_t>, Vector3> normals;
   for (const auto& t : mesh.triangles) {
@@ -275,7 +275,7 @@ double least_cosine(const TriangleMesh& mesh) {
   return least;
 }
 
-// Between cells at random are all kinds of gaps.
+// Cells with random values have all kinds of gaps between them.
 TEST(ContourOccupancies, NeverFolds) {
   for (unsigned seed = 0; seed < 40; ++seed) {
     const CellTree tree = random_tree(seed, 2 + static_cast<int>(seed % 4));
@@ -293,7 +293,8 @@ TEST(ContourTree, HasNoZeroAreaFarFromTheOrigin) {
   EXPECT_EQ(fault_of(contour_tree(tree, root, options_of(Interpolant::kOccupancy))), "");
 }
 
-// Rounded to floats, as files and Blender keep them, positions relative to the root remain apart.
+// Positions relative to the root stay distinct when rounded to floats, as files and Blender store
+// them.
 TEST(ContourTree, HasNoZeroAreaInFloats) {
   for (const double low : {0.0, -0.5}) {
     const CellTree tree = random_tree(12, 6);
@@ -306,8 +307,8 @@ TEST(ContourTree, HasNoZeroAreaInFloats) {
   }
 }
 
-// Clean Up sees the positions that come out, so that they decide which triangles it changes.
-TEST(ContourTree, IsSoundWhereverItsRootIsWithCleanUp) {
+// Clean Up works on the final positions, so that these decide which triangles change.
+TEST(ContourTree, IsManifoldForAnyRootWithCleanUp) {
   const CellTree tree = random_tree(9, 4);
   ContourOptions options = options_of(Interpolant::kPlane);
   const double raw = static_cast<double>(contour_tree(tree, kUnitBox, options).triangles.size());
@@ -324,8 +325,8 @@ TEST(ContourTree, IsSoundWhereverItsRootIsWithCleanUp) {
   }
 }
 
-// Far from the origin and at any scale, the surface is the same, as long as doubles there tell
-// vertices apart from samples as well as elsewhere.
+// The surface is the same far from the origin and at any scale, while doubles there are precise
+// enough to separate vertices from samples.
 TEST(ContourTree, MovesWithItsRoot) {
   const CellTree tree = random_tree(9, 4);
   for (const Interpolant interpolant : kInterpolants) {
@@ -367,8 +368,8 @@ TEST(ContourTree, ThreadsDoNotChangeTheResult) {
   }
 }
 
-// As the package does.
-TEST(ContourOptions, StandForSharpOctreesAndOccupanciesOfGrids) {
+// The package uses the options in this way.
+TEST(ContourOptions, DefaultToSharpForTreesAndOccupancyForGrids) {
   const CellTree tree = random_tree(4, 4);
   ContourOptions sharp = options_of(Interpolant::kSharp);
   sharp.clean_up = true;
@@ -387,14 +388,14 @@ TEST(ContourTree, FullAndEmptyRoots) {
   tree.root = 1.0F;
   const TriangleMesh cube = contour_tree(tree, kUnitBox, options_of(Interpolant::kOccupancy));
   EXPECT_EQ(fault_of(cube), "");
-  // The root's faces, and what is cut off at its edges and corners.
+  // The faces of the root, minus the parts cut off at its edges and corners.
   EXPECT_NEAR(volume_of(cube), 17.0 / 24.0, 1e-6);
   ContourOptions stop;
   stop.progress = Progress([](double) { return false; });
   EXPECT_THROW(contour_tree(tree, kUnitBox, stop), Error);
 }
 
-// The share of the unit cell below the plane n . p = d, n >= 0, by inclusion and exclusion.
+// Share of the unit cell below the plane n . p = d, for n >= 0, by inclusion and exclusion.
 double share_below(const Vector3& n, double d) {
   if (d <= 0.0) return 0.0;
   if (d >= n[0] + n[1] + n[2]) return 1.0;
@@ -466,7 +467,7 @@ TEST(HeightCrossing, IsOfFourthOrderAcrossAParabola) {
   for (int i = 0; i < kSize * kSize * kSize; ++i) {
     const int x = i / (kSize * kSize);
     const int z = i % kSize;
-    // Between full and empty cells only the mean of the column counts.
+    // Between full and empty cells only the sum of the column counts.
     values[static_cast<std::size_t>(i)] =
         static_cast<float>(std::clamp(mean_height(x - 7.5) - z, 0.0, 1.0));
   }
@@ -479,14 +480,14 @@ TEST(HeightCrossing, IsOfFourthOrderAcrossAParabola) {
   }
 }
 
-TEST(HeightCrossing, SaysWhereItKnowsNothing) {
+TEST(HeightCrossing, IsNoneWithoutData) {
   std::vector<float> values(16 * 16 * 16, 0.4F);
   values[7 * 256 + 8 * 16 + 8] = 0.6F;
   const std::array<std::ptrdiff_t, 3> strides = {256, 16, 1};
   EXPECT_FALSE(height_crossing(values.data() + 7 * 256 + 8 * 16 + 8, strides, 1));
 }
 
-TEST(ContourGrid, NamesWhatIsWrong) {
+TEST(ContourGrid, ReportsInvalidArguments) {
   std::vector<float> values(8, 0.5F);
   values[3] = std::numeric_limits<float>::quiet_NaN();
   EXPECT_THROW(contour_grid({values.data(), {2, 2, 2}}, {}, {}), Error);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The shares of cells that half-planes cover.
+// Shares of cells covered by half-planes.
 #pragma once
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 
 namespace prefilter::testing {
 
-// The share of the unit cell with its low corner at (x, y) that is below the line a x + b y = c, by
-// the trapezoidal rule on the pieces on which its height over the cell is linear.
+// Share of the unit cell with its low corner at (x, y) that lies below the line a x + b y = c, by
+// the trapezoidal rule on the intervals where its height over the cell is linear.
 inline double share_below(double x, double y, double a, double b, double c) {
   if (b == 0.0) return std::clamp((a > 0.0 ? c / a - x : x + 1.0 - c / a), 0.0, 1.0);
   std::vector<double> cuts = {x, x + 1.0};

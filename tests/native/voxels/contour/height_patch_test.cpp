@@ -11,14 +11,14 @@
 namespace prefilter {
 namespace {
 
-// a + b s + c t + d s s + e t t + f s t
+// Coefficients of a + b s + c t + d s s + e t t + f s t.
 using Quadratic = std::array<double, 6>;
 
 double value_of(const Quadratic& q, double s, double t) {
   return q[0] + q[1] * s + q[2] * t + q[3] * s * s + q[4] * t * t + q[5] * s * t;
 }
 
-// The mean over a unit square around (s, t), by Simpson's rule, which is exact.
+// Mean over the unit square around (s, t) by Simpson's rule, which is exact here.
 double mean_of(const Quadratic& q, double s, double t) {
   double sum = 0.0;
   for (int i = -1; i <= 1; ++i) {
@@ -48,7 +48,7 @@ HeightPatch patch_along(int axis, bool is_up) {
   return patch;
 }
 
-TEST(HeightPatch, IsTheQuadraticThatHasTheMeans) {
+TEST(HeightPatch, FitsQuadraticsExactly) {
   std::mt19937 random(8);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   for (int round = 0; round < 100; ++round) {
@@ -65,7 +65,7 @@ TEST(HeightPatch, IsTheQuadraticThatHasTheMeans) {
       Vector3 gradient;
       const double above = patch.above(point, &gradient);
       EXPECT_NEAR(above, up * offset[0] - value_of(q, offset[1], offset[2]), 1e-12);
-      for (int a = 0; a < 3; ++a) {  // by differences, of a quadratic exact
+      for (int a = 0; a < 3; ++a) {  // by central differences, which are exact here
         Vector3 step{};
         step[a] = 0.5;
         EXPECT_NEAR(gradient[a],
@@ -77,22 +77,22 @@ TEST(HeightPatch, IsTheQuadraticThatHasTheMeans) {
     }
     EXPECT_NEAR(length(patch.normal()), 1.0, 1e-12);
     EXPECT_GT(up * patch.normal()[patch.axis], 0.0);
-    // Its foot has the mean height of the middle column.
+    // The foot has the mean height of the middle column.
     EXPECT_NEAR(up * (patch.foot()[patch.axis] - patch.center[patch.axis]), mean_of(q, 0.0, 0.0),
                 1e-12);
   }
 }
 
-TEST(HeightPatch, IsNoneOfWhatIsCurvedOrRough) {
+TEST(HeightPatch, IsNoneForCurvedOrRoughSurfaces) {
   HeightPatch patch = patch_along(2, true);
   EXPECT_TRUE(fit_heights(heights_of({0.0, 0.0, 0.0, 0.059, 0.0, 0.0}), &patch));
   EXPECT_FALSE(fit_heights(heights_of({0.0, 0.0, 0.0, 0.061, 0.0, 0.0}), &patch));
   EXPECT_FALSE(fit_heights(heights_of({0.0, 0.0, 0.0, 0.0, -0.061, 0.0}), &patch));
   EXPECT_FALSE(fit_heights(heights_of({0.0, 0.0, 0.0, 0.0, 0.0, 0.121}), &patch));
-  // Across a slope of 45 degrees a curvature is less, by the root of 8.
+  // Across a slope of 45 degrees, the same second derivative is a curvature smaller by sqrt(8).
   EXPECT_TRUE(fit_heights(heights_of({0.0, 1.0, 0.0, 0.169, 0.0, 0.0}), &patch));
   EXPECT_FALSE(fit_heights(heights_of({0.0, 1.0, 0.0, 0.171, 0.0, 0.0}), &patch));
-  // The middle height off by h: its weight in the fit there is 5 / 9, which leaves 4 h / 9.
+  // The middle height is off by h: its weight in the fit is 5/9, so that the residual is 4 h / 9.
   for (const auto& [off, is_fitted] : {std::pair{0.0089, true}, {0.0091, false}}) {
     auto heights = heights_of({0.2, 0.1, -0.1, 0.01, 0.02, 0.0});
     heights[1][1] += off;

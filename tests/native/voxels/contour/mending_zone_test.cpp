@@ -17,8 +17,8 @@ using Flags = std::vector<std::uint8_t>;
 constexpr std::int32_t kSide = 40;
 constexpr double kCell = 0.5;
 
-// Square loops of a cell in a plane, each linked to its four neighbors; a triangle far from edges
-// for each even one, and one near them for each third.
+// A plane of square loops, one per cell, each linked to its four neighbors. Every even loop has a
+// triangle far from edges, every third one a triangle near them.
 struct Sheet {
   LinkedLoops loops;
   LayeredMesh layered;
@@ -78,7 +78,7 @@ double distance_along_axes(const Vector3& a, const Vector3& b) {
   return std::max({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
 }
 
-TEST(MendingZone, HasAllThatIsNearWhatHasChanged) {
+TEST(MendingZone, ContainsTheSurroundingsOfChanges) {
   Sheet sheet;
   const std::size_t loop = 3 * kSide + 5;
   const std::size_t moved = 20 * (kSide + 1) + 30;
@@ -96,7 +96,7 @@ TEST(MendingZone, HasAllThatIsNearWhatHasChanged) {
   const MendingZone zone =
       finder.enter(sheet.loops, sheet.states, &sheet.changes, &sheet.layered).value();
   EXPECT_EQ(zone.layered.mesh.positions, positions);
-  // Cubes of four cells: two of them around, one of them inside.
+  // In cubes of four cells: the zone reaches two cubes beyond the change, its inner part one cube.
   std::size_t at = 0;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const bool is_here = at < zone.numbers.size() && zone.numbers[at] == i;
@@ -123,7 +123,7 @@ TEST(MendingZone, HasAllThatIsNearWhatHasChanged) {
   EXPECT_EQ(at, zone.numbers.size());
 }
 
-TEST(MendingZone, HasTheTrianglesAroundInOrder) {
+TEST(MendingZone, ContainsTrianglesInOrder) {
   Sheet sheet;
   sheet.changes.loops[0] = 1;
   const LayeredMesh before = sheet.layered;
@@ -135,7 +135,7 @@ TEST(MendingZone, HasTheTrianglesAroundInOrder) {
     for (std::size_t t = begin; t < end; ++t) {
       const auto v = static_cast<std::size_t>(before.mesh.triangles[t][0]);
       const Vector3& p = before.mesh.positions[v];
-      // The changed loop is in the first cube of three along each axis.
+      // Along each axis, the changed loop is in the first of three cubes.
       if (std::max(p[0], p[1]) < 12.0 * kCell) labels.push_back(before.mesh.labels[t]);
     }
     return labels;
@@ -147,7 +147,7 @@ TEST(MendingZone, HasTheTrianglesAroundInOrder) {
   EXPECT_EQ(zone.layered.loops, labels.size());
 }
 
-TEST(MendingZone, GivesBackWhatItTookAndWhatChangedInside) {
+TEST(MendingZone, ReturnsItsTrianglesAndInnerChanges) {
   Sheet sheet;
   const std::size_t loop = 20 * kSide + 20;
   sheet.changes.loops[loop] = 1;
@@ -181,7 +181,7 @@ TEST(MendingZone, GivesBackWhatItTookAndWhatChangedInside) {
   }
 }
 
-TEST(MendingZone, IsForFewChanges) {
+TEST(MendingZone, RequiresFewChanges) {
   Sheet sheet;
   EXPECT_FALSE(ZoneFinder::are_most(sheet.changes));
   for (std::size_t i = 0; i < sheet.changes.loops.size(); ++i) {
@@ -190,9 +190,9 @@ TEST(MendingZone, IsForFewChanges) {
   EXPECT_TRUE(ZoneFinder::are_most(sheet.changes));
 }
 
-TEST(MendingZone, IsNoneWhereItWouldHaveMostTriangles) {
+TEST(MendingZone, IsNoneIfItWouldHaveMostTriangles) {
   const Sheet unchanged;
-  // Of many loops all over, and of four whose surroundings are more than half of the sheet.
+  // Many loops all over the sheet, then loops whose surroundings make up more than half of it.
   for (const std::vector<std::size_t>& places :
        {std::vector<std::size_t>{2, 6, 10, 14, 18, 22, 26, 30, 34, 38}, {10, 30}}) {
     Sheet sheet;

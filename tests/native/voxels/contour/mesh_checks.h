@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What a contour has to be.
+// Checks of contours.
 #pragma once
 
 #include <algorithm>
@@ -16,8 +16,8 @@
 
 namespace prefilter::testing {
 
-/// Empty for a closed two-manifold without triangles of zero area and unused vertices: every edge
-/// is there once in each direction, and the triangles around a vertex are one fan.
+/// Empty for a closed two-manifold without triangles of zero area or unused vertices: every edge
+/// occurs once in each direction, and the triangles around each vertex form one fan.
 inline std::string fault_of(const TriangleMesh& mesh) {
   std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> thirds;
   std::vector<std::size_t> counts(mesh.positions.size());

@@ -42,18 +42,18 @@ TEST(ContourOutlines, OutlinesAreClosedAndExactForHalfPlanes) {
         EXPECT_NEAR(a * p[0] + b * p[1], c, 2e-5);
       }
     }
-    EXPECT_GT(area, 0.0);  // the inside to the left
+    EXPECT_GT(area, 0.0);  // the inside is on the left
   }
 }
 
-TEST(ContourOutlines, CheckersAreApart) {
+TEST(ContourOutlines, DiagonalCellsAreSeparate) {
   const std::vector<float> values = {1.0F, 0.0F, 0.0F, 1.0F};
   EXPECT_EQ(contour_outlines({values.data(), {2, 2}}, {}, {}).size(), 2U);
   const std::vector<float> none(4, 0.0F);
   EXPECT_TRUE(contour_outlines({none.data(), {2, 2}}, {}, {}).empty());
 }
 
-TEST(ContourOutlines, LieWhereTheCellsAre) {
+TEST(ContourOutlines, FollowTheBounds) {
   const std::vector<float> one = {1.0F};
   const double far = 1e7;
   const double tiny = 1e-3;
@@ -72,7 +72,7 @@ TEST(ContourOutlines, LieWhereTheCellsAre) {
   EXPECT_NEAR(area, tiny * tiny, 1e-4 * tiny * tiny);  // half of a cell
 }
 
-TEST(ContourOutlines, NameWhatIsWrong) {
+TEST(ContourOutlines, ReportInvalidArguments) {
   const std::vector<float> nan = {std::numeric_limits<float>::quiet_NaN()};
   const std::vector<float> one = {1.0F};
   EXPECT_THROW(contour_outlines({nan.data(), {1, 1}}, {}, {}), Error);

@@ -52,7 +52,7 @@ std::string fault_of(const QuadMesh& mesh) {
   return "";
 }
 
-// Those of one depth, each full or empty by chance.
+// A tree with leaves at one depth, each full or empty at random.
 CellTree uniform_tree(unsigned seed, int depth) {
   std::mt19937 random(seed);
   CellTree tree;
@@ -72,7 +72,7 @@ CellTree uniform_tree(unsigned seed, int depth) {
   return tree;
 }
 
-TEST(QuadContour, IsManifoldWhateverTheCells) {
+TEST(QuadContour, IsManifoldForAnyCells) {
   for (unsigned seed = 0; seed < 40; ++seed) {
     for (const Interpolant interpolant : {Interpolant::kOccupancy, Interpolant::kPlane,
                                           Interpolant::kLinear, Interpolant::kSharp}) {
@@ -85,7 +85,7 @@ TEST(QuadContour, IsManifoldWhateverTheCells) {
   }
 }
 
-TEST(QuadContour, IsManifoldWhateverTheTree) {
+TEST(QuadContour, IsManifoldForAnyTree) {
   for (unsigned seed = 0; seed < 60; ++seed) {
     for (const Interpolant interpolant : {Interpolant::kPlane, Interpolant::kOccupancy}) {
       ContourOptions options;
@@ -96,7 +96,7 @@ TEST(QuadContour, IsManifoldWhateverTheTree) {
   }
 }
 
-TEST(QuadContour, OfOneCellIsACube) {
+TEST(QuadContour, IsACubeForOneCell) {
   CellTree tree;
   tree.root = 1.0F;
   ContourOptions options;
@@ -106,13 +106,13 @@ TEST(QuadContour, OfOneCellIsACube) {
   EXPECT_EQ(mesh.positions.size(), mesh.quads.size() + 2);
 }
 
-TEST(QuadContour, TakesNoOtherIsovalue) {
+TEST(QuadContour, RefusesOtherIsovalues) {
   ContourOptions options;
   options.isovalue = 0.4F;
   EXPECT_THROW(contour_quads(uniform_tree(1, 2), kUnit, options), Error);
 }
 
-// What lets one face be cut otherwise without a look at the others.
+// Guarantees that one face can be cut the other way without looking at the others.
 TEST(MarchingCases, OnlyCasesOfOneAmbiguousFaceHaveALoopThatPassesItTwice) {
   std::set<unsigned> found;
   for (unsigned inside = 0; inside < 256; ++inside) {

@@ -23,7 +23,7 @@ std::int32_t number(int i, int j) {
   return static_cast<std::int32_t>(wrapped(i, kAround) * kAcross + wrapped(j, kAcross));
 }
 
-// A torus around z, by steps around it and across its tube.
+// A point of a torus around z, in steps around the axis and across the tube.
 struct Place {
   double around;
   double across;
@@ -44,7 +44,7 @@ double distance(const Vector3& p) {
   return std::abs(std::hypot(std::hypot(p[0], p[1]) - kRadius, p[2]) - kTube);
 }
 
-// Loops of four vertices each, in rows around a torus, which are off by chance.
+// Loops of four vertices each, in rows around a torus, with random offsets.
 struct Torus {
   DualLoops loops;
   std::vector<Vector3> positions;
@@ -81,13 +81,13 @@ struct Torus {
     places.is_corner.assign(places.positions.size(), 0);
   }
 
-  // Of the corners of a loop.
+  // Mean of the corners of a loop.
   Place middle(int i, int j) const {
     Place sum = {0.0, 0.0};
     for (const auto& [a, b] :
          {std::pair(0, 0), std::pair(1, 0), std::pair(1, 1), std::pair(0, 1)}) {
       const Place& corner = corners[static_cast<std::size_t>(number(i + a, j + b))];
-      // The last ones go on with the first ones.
+      // Indices wrap around.
       sum.around += 0.25 * (corner.around + (i + a == kAround ? kAround : 0));
       sum.across += 0.25 * (corner.across + (j + b == kAcross ? kAcross : 0));
     }
@@ -98,8 +98,8 @@ struct Torus {
     relax_places(loops, positions, normals, Progress(), threads, &places);
   }
 
-  // How far vertices are along the surface from the middle of those beside them, on average, in
-  // steps across the tube.
+  // Mean distance, along the surface, of vertices from the mean of their neighbors, in steps across
+  // the tube.
   double unevenness() const {
     double sum = 0.0;
     for (int i = 0; i < kAround; ++i) {
@@ -128,13 +128,13 @@ TEST(RelaxPlaces, EvensOutAndStaysOnTheSurface) {
   const double before = torus.unevenness();
   torus.relax();
   EXPECT_LT(torus.unevenness(), 0.25 * before);
-  // The chord of a step across the tube is this far from it at most.
+  // Largest distance of the chord of one step across the tube from the tube.
   const double step = 2.0 * kPi / kAcross;
   const double chord = kTube * (1.0 - std::cos(0.5 * step));
   EXPECT_LT(torus.farthest(), 0.05 * chord);
 }
 
-TEST(RelaxPlaces, LeavesSharpVertices) {
+TEST(RelaxPlaces, KeepsSharpVertices) {
   Torus torus(2);
   const std::vector<Vector3> before = torus.places.positions;
   for (std::size_t i = 0; i < before.size(); i += 7) torus.places.is_sharp[i] = 1;
@@ -150,7 +150,7 @@ TEST(RelaxPlaces, LeavesSharpVertices) {
   EXPECT_EQ(moved, before.size() - (before.size() + 6) / 7);
 }
 
-TEST(RelaxPlaces, LeavesLoopsThatAreSteepOrTurnBack) {
+TEST(RelaxPlaces, KeepsSteepLoopsAndLoopsThatTurnBack) {
   Torus torus(3);
   const std::vector<Vector3> before = torus.places.positions;
   const auto steep = static_cast<std::size_t>(number(5, 5));
@@ -162,7 +162,7 @@ TEST(RelaxPlaces, LeavesLoopsThatAreSteepOrTurnBack) {
   EXPECT_EQ(torus.places.positions[turned], before[turned]);
 }
 
-// One vertex that all beside it pull on stays within its loop.
+// A vertex that all its neighbors pull in one direction stays within its loop.
 TEST(RelaxPlaces, KeepsVerticesWithinTheirLoops) {
   Torus torus(4);
   torus.places.is_sharp.assign(torus.places.is_sharp.size(), 1);

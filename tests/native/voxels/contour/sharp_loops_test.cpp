@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What becomes of loops that edges cross, phase by phase.
+// Tests each phase of the treatment of loops crossed by edges.
 
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ using Triangle = std::array<std::int32_t, 3>;
 using Flags = std::vector<std::uint8_t>;
 using Pairs = std::vector<std::array<std::uint32_t, 2>>;
 
-// The planes z = 0 and x = 0, which meet in the y axis; labels 0 and 1.
+// The planes z = 0 and x = 0, labeled 0 and 1, which intersect in the y axis.
 class Wedge final : public FeatureSurface {
  public:
   double cell() const override { return 1.0; }
@@ -52,7 +52,7 @@ class Wedge final : public FeatureSurface {
   FeatureCorner corner(std::size_t) const override { return {}; }
 };
 
-// Each vertex has a sample of its own label.
+// Gives each vertex a sample with its own label.
 VertexSamples samples_of(const std::vector<Vector3>& positions, bool is_sampled = true) {
   VertexSamples samples;
   for (std::size_t v = 0; v < positions.size(); ++v) {
@@ -112,10 +112,10 @@ std::vector<std::size_t> own(std::size_t count) {
   return merged;
 }
 
-TEST(LinkedLoops, AreJoinedAcrossTheOneSideThatTheyShare) {
+TEST(LinkedLoops, AreLinkedAcrossTheirSharedSide) {
   const LoopedCube cube(1.0);
   for (std::size_t i = 0; i < 6; ++i) {
-    // By trying all loops: the one that has the side the other way round.
+    // Brute force: find the loop that contains the side in the opposite direction.
     for (std::size_t k = 0; k < 4; ++k) {
       std::int32_t expected = -1;
       for (std::size_t j = 0; j < 6; ++j) {
@@ -133,7 +133,7 @@ TEST(LinkedLoops, AreJoinedAcrossTheOneSideThatTheyShare) {
   EXPECT_EQ(cube.loops.joined(0, Flags{1, 1, 1, 1, 0, 1}).size(), 3U);
 }
 
-TEST(LinkedLoops, AreNotJoinedAcrossTwoSidesNorWhereNothingDivides) {
+TEST(LinkedLoops, AreNotLinkedAcrossTwoSidesOrWithoutAnEdge) {
   std::vector<Vector3> positions(5);
   const std::vector<SharpLoop> twice = {loop_of({0, 1, 2, 3}), loop_of({2, 1, 0, 4})};
   const LinkedLoops loops = link_loops(twice, Wedge(), samples_of(positions), Progress(), 1);
@@ -144,7 +144,7 @@ TEST(LinkedLoops, AreNotJoinedAcrossTwoSidesNorWhereNothingDivides) {
   EXPECT_EQ(link_loops(pair, Wedge(), samples, Progress(), 1).sides[0][0].other, 1);
   samples.index[0] = -1;
   EXPECT_FALSE(link_loops(pair, Wedge(), samples, Progress(), 1).sides[0][0].is_divided);
-  // Of one label: where the normals differ and an edge of the region is near.
+  // With one label: divided where the normals differ and an edge of the region is near.
   samples = samples_of(positions);
   for (SourcePoint& sample : samples.samples) sample.label = 0;
   EXPECT_FALSE(are_divided(Wedge(), samples, 0, 1));
@@ -152,7 +152,7 @@ TEST(LinkedLoops, AreNotJoinedAcrossTwoSidesNorWhereNothingDivides) {
   EXPECT_TRUE(are_divided(Wedge(), samples, 0, 1));
 }
 
-TEST(MergedLoops, AreThoseWithinATwentiethOfACell) {
+TEST(MergedLoops, AreWithinATenthOfACell) {
   LoopedCube cube(1.0);
   const auto merged = [&](const Flags& is_sharp, const Flags& is_single) {
     return merged_loops(cube.loops, cube.features, is_sharp, is_single, 2.0);
@@ -160,7 +160,7 @@ TEST(MergedLoops, AreThoseWithinATwentiethOfACell) {
   const Flags all(6, 1);
   const Flags none(6, 0);
   EXPECT_EQ(merged(all, none), own(6));
-  // Loops 0 and 2 are joined, 0 and 1 are not.
+  // Loops 0 and 2 are merged, 0 and 1 are not.
   cube.features[2].position = cube.features[0].position + Vector3{0.099, 0.0, 0.0};
   cube.features[1].position = cube.features[0].position;
   EXPECT_EQ(merged(all, none), (std::vector<std::size_t>{0, 0, 0, 3, 4, 5}));  // by way of 2
@@ -180,7 +180,7 @@ TEST(MergedLoops, ChangeTogether) {
   EXPECT_EQ(changed, (Flags{0, 0, 1, 1, 0}));
 }
 
-TEST(LoopTriangles, CloseTheMeshWhicheverLoopsAreSharp) {
+TEST(LoopTriangles, CloseTheMeshForAnySharpLoops) {
   for (const double tip : {1.0, 2.0}) {
     LoopedCube cube(tip);
     for (unsigned set = 0; set < 64; ++set) {
@@ -193,23 +193,23 @@ TEST(LoopTriangles, CloseTheMeshWhicheverLoopsAreSharp) {
       const int sharp = std::popcount(set);
       EXPECT_EQ(mesh.triangles.size(), 12U + 2U * static_cast<unsigned>(sharp));  // of a sphere
       EXPECT_EQ(made.owners.size(), mesh.triangles.size());
-      // Tips at 2 make a rhombic dodecahedron: edges and flipped ones are in one plane.
+      // Tips at 2 make a rhombic dodecahedron: flipped edges stay in its planes.
       if (tip == 2.0) {
         EXPECT_NEAR(volume_of({mesh.positions, mesh.triangles}), 8.0 + sharp * 4.0 / 3.0, 1e-12);
       }
     }
     FacetedMesh mesh = cube.mesh();
     add_loops(cube.loops, cube.plain, cube.features, Flags(6, 1), own(6), cube.samples, &mesh);
-    // Flipping takes a tetrahedron of a third off each edge of the cube.
+    // Each flip cuts a tetrahedron of volume 1/3 off an edge of the cube.
     if (tip == 1.0) {
       EXPECT_NEAR(volume_of({mesh.positions, mesh.triangles}), 4.0, 1e-12);
     }
-    // Loops have four neighbors each, so their vertices are corners.
+    // Each loop has four neighbors, so its vertex is a corner.
     EXPECT_EQ(mesh.kinds[8], VertexKind::kCorner);
   }
 }
 
-TEST(LoopTriangles, KnowTheirLoopsAndLabels) {
+TEST(LoopTriangles, HaveLoopsAndLabels) {
   const LoopedCube cube(1.0);
   const Flags is_sharp = {1, 0, 1, 1, 0, 0};  // loop 0 has two neighbors, which have it alone
   FacetedMesh mesh = cube.mesh();
@@ -232,8 +232,8 @@ TEST(LoopTriangles, KnowTheirLoopsAndLabels) {
   }
 }
 
-// The edge is the x axis, between planes that turn by 90 degrees there. What of the middle loop is
-// in z = 0 bends away from the edge, so that not all of it is seen from the vertex on the edge.
+// The edge is the x axis, between planes at 90 degrees. The part of the middle loop in z = 0 bends
+// away from the edge, so that not all of it is visible from the vertex on the edge.
 struct BentLoop {
   std::vector<Vector3> positions = {{-0.18, 0.45, 0.0},  {0.04, 1.43, 0.0}, {0.18, 1.38, 0.0},
                                     {-0.135, 0.48, 0.0}, {0.2, 0.0, -0.5},  {-0.4, 0.0, -0.5},
@@ -245,13 +245,13 @@ struct BentLoop {
       SourcePoint& sample = samples.samples[v];
       const bool is_below = positions[v][2] < 0.0;
       sample.label = is_below ? 1 : 0;
-      // The region's own normal is turned around, as that of what is taken away is.
+      // The region's own normal is flipped, as for a subtracted shape.
       sample.normal = is_below ? Vector3{0.0, 1.0, 0.0} : Vector3{0.0, 0.0, 1.0};
       samples.facing[v] = -1.0F;
     }
   }
 
-  // On the edge: in the middle, or on the side where most of a loop is.
+  // A feature on the edge: in the middle, or on the side with most of the loop.
   Feature feature_of(const SharpLoop& loop) const {
     if (loop.count == 6) return LoopedCube::feature({0.0, 0.0, 0.0});
     double sum = 0.0;
@@ -262,7 +262,7 @@ struct BentLoop {
     return LoopedCube::feature({sum < 0.0 ? -0.5 : 0.5, 0.0, 0.0});
   }
 
-  // Of the middle loop, in z = 0.
+  // Triangles of the middle loop in the plane z = 0.
   std::vector<Triangle> triangles(const std::vector<SharpLoop>& sharp) const {
     const LinkedLoops loops = link_loops(sharp, Wedge(), samples, Progress(), 1);
     std::vector<Feature> features;
@@ -282,7 +282,7 @@ struct BentLoop {
     return found;
   }
 
-  // Seen from where the shape is not; with the middle loop's vertex at the origin.
+  // Area seen from outside the shape; the vertex of the middle loop is at the origin.
   double area(const Triangle& triangle) const {
     const auto at = [&](std::int32_t v) {
       return v < 8 ? positions[static_cast<std::size_t>(v)] : Vector3{};
@@ -302,7 +302,7 @@ TEST(LoopTriangles, BendWithTheirLoop) {
     EXPECT_GT(bent.area(triangle), 0.0);
     sum += bent.area(triangle);
   }
-  // By the shoelace formula.
+  // The shoelace formula.
   double expected = 0.0;
   const std::vector<Vector3> ring = {
       {}, bent.positions[0], bent.positions[1], bent.positions[2], bent.positions[3]};
@@ -313,8 +313,8 @@ TEST(LoopTriangles, BendWithTheirLoop) {
   EXPECT_NEAR(sum, expected, 1e-12);
 }
 
-// What crosses itself has no triangles that are all upright.
-TEST(LoopTriangles, StayAFanWhereNoneAreUpright) {
+// A loop that crosses itself has no triangulation without inverted triangles.
+TEST(LoopTriangles, StayAFanIfNoneAreUpright) {
   BentLoop bent;
   std::swap(bent.positions[1], bent.positions[2]);
   const std::vector<Triangle> found =
@@ -328,7 +328,7 @@ TEST(LoopTriangles, StayAFanWhereNoneAreUpright) {
   EXPECT_TRUE(is_folded);
 }
 
-TEST(LoopTriangles, LeaveDiagonalsToTheFirstLoopThatHasBothEnds) {
+TEST(LoopTriangles, GiveEachDiagonalToOneLoop) {
   const BentLoop bent;
   const auto has_diagonal = [&](const std::vector<SharpLoop>& sharp) {
     for (const Triangle& t : bent.triangles(sharp)) {
@@ -361,7 +361,7 @@ TEST(LoopTriangles, OfMergedLoopsHaveOneVertex) {
   EXPECT_EQ(fault_of({mesh.positions, mesh.triangles}), "");
 }
 
-TEST(MergedLoops, OfOppositeSidesArePinchedAndTakenApart) {
+TEST(MergedLoops, OnOppositeSidesAreSeparated) {
   // Loops 0 and 1 share no side: their vertex would have two fans.
   LoopedCube cube(1.0);
   const std::vector<std::size_t> merged = {0, 0, 2, 3, 4, 5};
@@ -382,9 +382,9 @@ TEST(MergedLoops, OfOppositeSidesArePinchedAndTakenApart) {
   EXPECT_FALSE(unmerge(mesh.triangles, made, merged, &is_single, &is_changed));
 }
 
-TEST(MergedLoops, WhoseSidesRepeatAreTakenApart) {
-  // Three loops around a corner in one vertex, and the three others: each side between them is
-  // there three times.
+TEST(MergedLoops, WithRepeatedSidesAreSeparated) {
+  // One vertex for three loops around a corner, another for the three others: each side between
+  // them occurs three times.
   LoopedCube cube(1.0);
   const std::vector<std::size_t> merged = {0, 1, 0, 1, 0, 1};
   FacetedMesh mesh = cube.mesh();
@@ -419,7 +419,7 @@ TEST(FewestLoops, AreChosenByTheirPairs) {
     for (std::size_t i = random() % 30; i-- > 0;) {
       blamed.insert({static_cast<std::int32_t>(random() % 8), random() % pairs});
     }
-    // Counted anew for each.
+    // Recount for each loop.
     std::set<std::size_t> open;
     for (const auto& [loop, pair] : blamed) open.insert(pair);
     std::vector<std::size_t> expected;
@@ -442,7 +442,7 @@ TEST(FewestLoops, AreChosenByTheirPairs) {
   }
 }
 
-TEST(NearIntersections, AreThoseOfSuspectsAmongAll) {
+TEST(NearIntersections, EqualTheIntersectionsOfSuspects) {
   std::mt19937 random(11);
   const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0; };
   TriangleMesh mesh;
@@ -471,7 +471,7 @@ TEST(NearIntersections, AreThoseOfSuspectsAmongAll) {
   EXPECT_TRUE(near_intersections(view, 0, none, 1.0, Progress(), 1).empty());
 }
 
-TEST(Facing, IsThatOfTheSamples) {
+TEST(Facing, FollowsTheSamples) {
   const std::vector<Vector3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   VertexSamples samples = samples_of(positions);
   for (SourcePoint& sample : samples.samples) sample.label = 7;
@@ -495,7 +495,8 @@ TEST(Facing, IsThatOfTheSamples) {
   EXPECT_EQ(turned_labels(samples).count(7), 1U);
 }
 
-// Loops in a row along the y axis, each beside the next, in two planes that meet there.
+// Loops in a row along the y axis, each next to the following one, on two planes that intersect
+// there.
 struct Row {
   std::vector<Vector3> positions;
   VertexSamples samples;
@@ -526,7 +527,7 @@ std::vector<Feature> features_at(std::initializer_list<double> ys) {
   return features;
 }
 
-TEST(RelaxedFeatures, AreInOrderAgain) {
+TEST(RelaxedFeatures, AreBackInOrder) {
   const Row row(9);
   const LinkedLoops& loops = row.loops;
   const Wedge wedge;
@@ -543,7 +544,7 @@ TEST(RelaxedFeatures, AreInOrderAgain) {
     EXPECT_EQ(features[i].position[0], 0.0);
   }
   for (const std::size_t i : {0, 1, 7, 8}) EXPECT_EQ(features[i].position, before[i].position);
-  // Corners stay, and so does what has one neighbor.
+  // Corners stay, and so do features with one neighbor.
   features = before;
   features[3].is_corner = true;
   relax_features({4}, loops, all, places, turning, &features);
@@ -555,7 +556,7 @@ TEST(RelaxedFeatures, AreInOrderAgain) {
   EXPECT_TRUE(relax_features({}, loops, all, places, turning, &features).empty());
 }
 
-// From above, the side from (-0.5, 3.5) to (-0.3, 3.6) faces the y axis below 3.75 only.
+// Seen from above, the side from (-0.5, 3.5) to (-0.3, 3.6) faces the y axis only below 3.75.
 TEST(FeatureTurning, PutsTrianglesUpright) {
   Row row(9);
   row.positions[10] = {-0.3, 3.6, 0.0};
@@ -579,7 +580,7 @@ TEST(FeatureTurning, PutsTrianglesUpright) {
   features = before;
   relax_features({4}, row.loops, all, places, turning, &features);
   EXPECT_NEAR(features[4].position[1], (*found)[1], 1e-6);
-  // Seen from below, all but this one are upside down, and stay so.
+  // Seen from below, all others are inverted, and stay so.
   for (SourcePoint& sample : row.samples.samples) sample.normal = -1.0 * sample.normal;
   EXPECT_FALSE(turning.place(4, before));
   const std::unordered_set<std::int32_t> both = {0, 1};

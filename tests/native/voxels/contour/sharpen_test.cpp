@@ -26,7 +26,7 @@ struct Cube {
   InputMesh mesh() const { return {positions, triangles}; }
 };
 
-// Sides of 2, turned about two axes.
+// A cube of side 2, rotated about two axes.
 Cube turned_cube(double about_z, double about_x, const Vector3& middle) {
   Cube cube;
   for (int i = 0; i < 8; ++i) {
@@ -81,7 +81,7 @@ TEST(Sharpen, CubesHaveTheirCorners) {
   }
 }
 
-TEST(Sharpen, RimsOfWhatIsCombinedAreSound) {
+TEST(Sharpen, RimsOfCombinedShapesAreManifold) {
   const Cube first = turned_cube(0.4, 0.7, {-0.2, 0.0, 0.1});
   const Cube second = turned_cube(1.0, 0.3, {0.45, 0.35, -0.3});
   const std::vector<SourceMesh> sources = {{first.mesh(), {}}, {second.mesh(), {}}};
@@ -98,7 +98,7 @@ TEST(Sharpen, RimsOfWhatIsCombinedAreSound) {
   }
 }
 
-TEST(Sharpen, GroupsAreAsManyAsTriangles) {
+TEST(Sharpen, NeedsOneGroupPerTriangle) {
   const Cube cube = turned_cube(0.4, 0.7, {});
   const Octree tree = tree_of(cube);
   const std::vector<std::int32_t> groups(3);

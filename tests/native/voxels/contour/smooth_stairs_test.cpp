@@ -16,8 +16,8 @@ namespace {
 
 constexpr int kWidth = 24;
 
-// A roof of 90 degrees along y over a grid of cells of 1. The vertices of its ridge are on its
-// sides, half of a cell from where these meet, two to either side in turn.
+// A roof of 90 degrees along y over a grid of unit cells. The vertices of its ridge alternate
+// between its sides in pairs, half a cell from the true ridge.
 FacetedMesh stairs() {
   constexpr int kRidge = kWidth / 2;
   FacetedMesh mesh;
@@ -49,7 +49,7 @@ TEST(SmoothStairs, ARidgeIsEven) {
   for (int y = 6; y <= kWidth - 6; ++y) {
     const Vector3& p = mesh.positions[ridge_vertex(y)];
     EXPECT_NEAR(p[0], kWidth / 2, 0.15);
-    // The stairs were half of a cell below the roof's ridge; it is rounded by less than as much.
+    // The stairs are half a cell below the true ridge, and rounding lowers them by less than that.
     EXPECT_GT(p[2], -1.0);
     EXPECT_LT(p[2], 0.0);
   }
@@ -57,20 +57,20 @@ TEST(SmoothStairs, ARidgeIsEven) {
     for (std::size_t a = 0; a < 3; ++a) {
       EXPECT_LE(std::abs(mesh.positions[v][a] - before.positions[v][a]), 0.5);
     }
-    // Three cells from the ridge nothing moves.
+    // Vertices farther than three cells from the ridge stay.
     if (std::abs(before.positions[v][0] - kWidth / 2) > 3.0) {
       EXPECT_EQ(mesh.positions[v], before.positions[v]);
     }
   }
 }
 
-TEST(SmoothStairs, OfWhatIsKnownOnlyTheRidgeMoves) {
+TEST(SmoothStairs, MoveOnlyTheRidgeIfNothingIsFree) {
   FacetedMesh mesh = stairs();
   const FacetedMesh before = mesh;
   smooth_stairs(
       1.0, [](const Vector3&) { return false; }, false, Progress(), 2, &mesh);
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-    // Those that have triangles on both sides are within a cell and a half.
+    // Vertices with triangles on both sides are within 1.5 cells of the ridge.
     if (std::abs(before.positions[v][0] - kWidth / 2) > 1.5) {
       EXPECT_EQ(mesh.positions[v], before.positions[v]);
     }
@@ -80,7 +80,7 @@ TEST(SmoothStairs, OfWhatIsKnownOnlyTheRidgeMoves) {
   }
 }
 
-TEST(SmoothStairs, WhatIsPlacedOrFlatStays) {
+TEST(SmoothStairs, KeepPlacedAndFlatVertices) {
   FacetedMesh mesh = stairs();
   const FacetedMesh before = mesh;
   mesh.kinds.assign(mesh.positions.size(), VertexKind::kEdge);
@@ -97,7 +97,7 @@ TEST(SmoothStairs, WhatIsPlacedOrFlatStays) {
   EXPECT_EQ(flat.positions, plane);
 }
 
-TEST(SmoothStairs, WhatIsInTheWayIsNotMet) {
+TEST(SmoothStairs, AvoidObstacles) {
   const FacetedMesh before = stairs();
   FacetedMesh mesh = before;
   smooth_stairs(1.0, kAnywhere, false, Progress(), 1, &mesh);
@@ -107,7 +107,8 @@ TEST(SmoothStairs, WhatIsInTheWayIsNotMet) {
     if (drop(ridge_vertex(y)) > drop(at)) at = ridge_vertex(y);
   }
   ASSERT_GT(drop(at), 0.05);
-  // Upright below the vertex, from a little below the surface to far below the smoothed one.
+  // A vertical triangle below the vertex, from just below the surface to far below the smoothed
+  // one.
   FacetedMesh both = before;
   const Vector3 tip = before.positions[at];
   const auto first = static_cast<std::int32_t>(both.positions.size());
@@ -122,7 +123,7 @@ TEST(SmoothStairs, WhatIsInTheWayIsNotMet) {
   EXPECT_TRUE(near_intersections(view, 0, std::vector<std::uint8_t>(both.triangles.size(), 1), 2.0,
                                  Progress(), 1)
                   .empty());
-  // What is far from it is smoothed all the same.
+  // Vertices far from it are smoothed as before.
   EXPECT_EQ(both.positions[ridge_vertex(kWidth - 2)], mesh.positions[ridge_vertex(kWidth - 2)]);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Smooth regions of meshes, phase by phase.
+// Tests each phase of finding the smooth regions of meshes.
 
 #include "prefilter/voxels/contour/source_regions.h"
 
@@ -36,7 +36,7 @@ struct Source {
   WeldedMeshes welded() const { return WeldedMeshes(meshes(), RootFrame(kUnit)); }
 };
 
-// A height field over n x n squares, given at corners; its sides hang in the air.
+// A height field over n x n squares, given at their corners, without a skirt.
 template <typename Height>
 Source terrain(int n, const Height& height) {
   Source made;
@@ -55,7 +55,7 @@ Source terrain(int n, const Height& height) {
   return made;
 }
 
-// A cube of n x n squares a side, each with vertices of its own.
+// A cube of n x n squares per side; each side has vertices of its own.
 Source cube_of_sides(int n) {
   Source made;
   for (int side = 0; side < 6; ++side) {
@@ -74,7 +74,7 @@ Source cube_of_sides(int n) {
   return made;
 }
 
-// A number for each set of triangles that chains of pairs connect, in order, by widening sets.
+// Labels connected components of triangles in order of their first triangle, by growing sets.
 template <typename AreJoined>
 std::vector<std::int32_t> connected(std::size_t count, const AreJoined& are_joined) {
   std::vector<std::int32_t> numbers(count, -1);
@@ -97,7 +97,7 @@ std::vector<std::int32_t> connected(std::size_t count, const AreJoined& are_join
   return numbers;
 }
 
-TEST(SmoothRegions, FindTheFirstVertexAtEachPlace) {
+TEST(SmoothRegions, FindTheFirstVertexAtEachPosition) {
   Source source = cube_of_sides(3);
   const WeldedMeshes welded = source.welded();
   const std::vector<std::int32_t> firsts = first_places(welded.positions, Progress(), 2);
@@ -108,7 +108,7 @@ TEST(SmoothRegions, FindTheFirstVertexAtEachPlace) {
   }
 }
 
-TEST(SmoothRegions, AreWhatWideningSetsFinds) {
+TEST(SmoothRegions, EqualConnectedComponents) {
   std::mt19937 random(2);
   for (const bool has_groups : {false, true}) {
     // Hills and cliffs.
@@ -160,8 +160,8 @@ TEST(SmoothRegions, AreWhatWideningSetsFinds) {
   }
 }
 
-TEST(SmoothRegions, OfTheSidesOfACubeAreTheSides) {
-  // Nothing hangs together before vertices at one place are one.
+TEST(SmoothRegions, SeparateTheSidesOfACube) {
+  // Nothing is connected until vertices at equal positions are welded.
   const Source source = cube_of_sides(4);
   WeldedMeshes welded = source.welded();
   const SmoothRegions found = join_smooth(kNoFacets, Progress(), 2, &welded);
@@ -180,7 +180,7 @@ TEST(SmoothRegions, OfTheSidesOfACubeAreTheSides) {
   }
 }
 
-// Rows of two triangles each between x = 0 and 9, through these points of y and z.
+// Rows of two triangles each between x = 0 and 9, through these points (y, z).
 Source ramp(const std::vector<std::array<double, 2>>& profile) {
   Source source;
   for (const auto& [y, z] : profile) {
@@ -196,7 +196,7 @@ Source ramp(const std::vector<std::array<double, 2>>& profile) {
 }
 
 TEST(SmoothRegions, AreWideFacetsWhereEdgesAreBlunt) {
-  // Of 5.7 degrees, of half of one, and of 5.7 again beside rows of 0.2.
+  // Edges of 5.7 degrees, of 0.5 degrees in total, and of 5.7 again next to rows 0.2 wide.
   const Source source = ramp({{0, 0}, {4, 0}, {8, 0.4}, {12, 0.835}, {12.2, 0.835}, {12.4, 0.8}});
   WeldedMeshes welded = source.welded();
   EXPECT_EQ(join_smooth(kNoFacets, Progress(), 1, &welded).region_count, 1);
@@ -216,7 +216,7 @@ TEST(SmoothRegions, AreWideFacetsWhereEdgesAreBlunt) {
 }
 
 TEST(SmoothRegions, RoundOffEdgesThatHardlyStandOut) {
-  // Of 5.7 degrees between facets that are 2 wide, as a strip of triangles is, and of 11.3.
+  // Edges of 5.7 degrees between facets 2.2 wide, as in a strip of triangles, and of 11.3 degrees.
   const auto regions_of = [](double rise) {
     const Source source = ramp({{0, 0}, {2.2, 0}, {4.4, rise}});
     WeldedMeshes welded = source.welded();
@@ -227,7 +227,7 @@ TEST(SmoothRegions, RoundOffEdgesThatHardlyStandOut) {
 }
 
 TEST(RegionBorders, GiveSmallRegionsToTheNeighborWithTheLongestWall) {
-  // A step of three levels: the middle one is small. Walls to the higher one are longer.
+  // A plane, a wall, a small strip on top of it and a slope that begins at the strip.
   Source source;
   source.positions = {{0, 0, 0}, {9, 0, 0},   {9, 9, 0},   {0, 9, 0}, {0, 9, 1},
                       {9, 9, 1}, {9, 9.5, 1}, {0, 9.2, 1}, {5, 20, 9}};
@@ -242,12 +242,12 @@ TEST(RegionBorders, GiveSmallRegionsToTheNeighborWithTheLongestWall) {
   EXPECT_NEAR(areas.regions[2], 9.0 * 0.5 * (0.5 + 0.2), 1e-12);
   EXPECT_NEAR(static_cast<double>(areas.vertices[0]), 81.0, 1e-5);
   join_small(welded, areas.regions, 4.0, 0.0, &regions);
-  // Its wall to the last one, from (9, 9.5) to (0, 9.2), is a little longer than 9.
+  // The strip's border with the slope, from (9, 9.5) to (0, 9.2), is slightly longer than 9.
   EXPECT_EQ(regions.region_count, 3);
   EXPECT_EQ(regions.labels, (std::vector<std::int32_t>{0, 0, 1, 1, 2, 2, 2}));
 }
 
-TEST(RegionBorders, HaveNoLabelWhereThereIsNoArea) {
+TEST(RegionBorders, IgnoreTrianglesWithoutArea) {
   Source source = terrain(2, [](int, int) { return 0.0; });
   source.triangles.push_back({0, 1, 1});
   WeldedMeshes welded = source.welded();
@@ -309,7 +309,7 @@ TEST(RegionCorners, AreWhereBordersMeetEndOrTurn) {
   EXPECT_EQ(found, expected);
 }
 
-TEST(RegionCorners, OfConesAreTheirTips) {
+TEST(RegionCorners, IncludeTheTipsOfCones) {
   for (const auto& [height, is_tip] : {std::pair{3.0, true}, {0.8, false}}) {
     Source source;
     source.positions = {{0, 0, height}};
@@ -328,7 +328,7 @@ TEST(RegionCorners, OfConesAreTheirTips) {
     const auto found = [&](double least) {
       return tips(welded, regions.labels, is_on_wall, areas.vertices, least);
     };
-    // The mean normal's share is the cosine of the slope: 0.32 and 0.78.
+    // The mean normal's length is the cosine of the slope: 0.32 and 0.78.
     EXPECT_EQ(found(0.0).size(), is_tip ? 1U : 0U);
     EXPECT_TRUE(found(100.0).empty());
     if (is_tip) {

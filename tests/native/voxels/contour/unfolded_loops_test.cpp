@@ -18,11 +18,11 @@ namespace {
 using Triangles = std::vector<std::array<std::int32_t, 3>>;
 using Pairs = std::vector<std::array<std::uint32_t, 2>>;
 
-// A loop around three of a cube's corners, through the middles of its edges: (1, 3, 1) by itself,
-// and (3, 1, 1) with (3, 1, 3). The corners in the order of the loop.
+// A loop around three corners of a cube, through the midpoints of its edges: (1, 3, 1) alone, and
+// (3, 1, 1) with (3, 1, 3), in the order of the loop.
 const std::vector<GridPlace> kPlaces = {{1, 2, 1}, {1, 3, 2}, {2, 3, 1}, {3, 2, 1},
                                         {3, 2, 3}, {2, 1, 3}, {2, 1, 1}};
-// They fold between the first two.
+// These triangles fold between the first two.
 const Triangles kFolded = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {0, 4, 5}, {0, 5, 6}};
 
 std::vector<Vector3> positions() {
@@ -55,7 +55,7 @@ TEST(UnfoldedLoops, ALoopIsTriangulatedWithoutFolds) {
   for (const auto& [side, times] : sides) {
     EXPECT_EQ(times, 1);
     if (!sides.contains({side.second, side.first})) continue;
-    // A diagonal: through the cube, and not in a face of it.
+    // A diagonal runs through the cube, not within one of its faces.
     const GridPlace& a = kPlaces[static_cast<std::size_t>(side.first)];
     const GridPlace& b = kPlaces[static_cast<std::size_t>(side.second)];
     for (std::size_t k = 0; k < 3; ++k) EXPECT_FALSE(a[k] == b[k] && a[k] % 2 != 0);
@@ -72,7 +72,7 @@ GridPlace place_of(int edge) {
   return place;
 }
 
-// All loops of a cube with vertices anywhere on its edges.
+// All loops of a cube, with vertices at random positions on its edges.
 TEST(UnfoldedLoops, NoDiagonalIsInAFace) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(0.05, 0.95);
@@ -117,7 +117,7 @@ TEST(UnfoldedLoops, NoDiagonalIsInAFace) {
   EXPECT_GT(changes, 20);
 }
 
-TEST(UnfoldedLoops, WhatHasNoPlaceStays) {
+TEST(UnfoldedLoops, VerticesWithoutAPlaceStay) {
   const std::vector<Vector3> at = positions();
   std::vector<GridPlace> places = kPlaces;
   places[4] = kNoPlace;

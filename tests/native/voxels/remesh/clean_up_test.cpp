@@ -96,9 +96,9 @@ TEST(CleanUp, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
-TEST(CleanUp, OfNoiseBringsInNoIntersections) {
-  // Surfaces less than a cell apart: a few of the first changes make them cross, inside of the one
-  // patch for all seeds but 2.
+TEST(CleanUp, AddsNoIntersectionsToNoise) {
+  // Surfaces less than a cell apart: some of the first changes make them intersect, within the
+  // single patch for all seeds but 2.
   for (const unsigned seed : {1U, 2U, 5U, 7U}) {
     std::mt19937 random(seed);
     const FacetedMesh before = contour_of(24, [&](int x, int y, int z) {
@@ -118,7 +118,8 @@ TEST(CleanUp, OfNoiseBringsInNoIntersections) {
 }
 
 TEST(CleanUp, MakesNoSecondEdgeBetweenTwoVertices) {
-  // A low roof around vertex 0 over a rhombus; the best diagonal of that is an edge of the bottom.
+  // A low roof around vertex 0 over a rhombus; the rhombus's best diagonal is an edge of the
+  // bottom.
   FacetedMesh before;
   before.positions = {{0, 0, 0.005}, {-1, 0, 0},    {0, -0.1, 0}, {1, 0, 0},
                       {0, 0.1, 0},   {-0.4, 0, -3}, {0.4, 0, -3}};
@@ -128,7 +129,7 @@ TEST(CleanUp, MakesNoSecondEdgeBetweenTwoVertices) {
   EXPECT_EQ(fault_of(plain(clean_up(before, {0.01}, Progress(), 1))), "");
 }
 
-TEST(CleanUp, LeavesATetrahedronAlone) {
+TEST(CleanUp, KeepsATetrahedron) {
   FacetedMesh thin;
   thin.positions = {{0, 0, 0}, {1, 0, 0}, {0, 0.01, 0}, {0.5, 0, 1}};
   thin.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
@@ -146,8 +147,9 @@ TEST(CleanUp, IsTheSameAtAnyScale) {
   }
 }
 
-// A prism along z, whose sides are rows of squares with vertices at uneven heights: a label a side,
-// creases between them, corners at its ends. All triangles of its ends meet in their middles.
+// A prism along z. Each side is rows of squares with vertices at uneven heights and a label of its
+// own; there are creases between sides and corners at the ends. The triangles of each end meet in
+// its center.
 struct Prism {
   FacetedMesh mesh;
   std::vector<Vector3> directions;  // of the creases from the axis
@@ -161,7 +163,7 @@ Prism prism(const std::vector<double>& heights, int sides, double bulge) {
     made.directions.push_back({std::cos(angle), std::sin(angle), 0.0});
   }
   FacetedMesh& mesh = made.mesh;
-  // Columns: a crease, and one in the middle of the side behind it.
+  // Columns alternate between a crease and the middle of the side after it.
   for (int column = 0; column < 2 * sides; ++column) {
     const auto side = static_cast<std::size_t>(column / 2);
     const Vector3& a = made.directions[side];
@@ -245,7 +247,7 @@ TEST(CleanUp, MovesCreasesNoFartherThanAllowed) {
     std::sort(points.begin(), points.end());
     return points;
   };
-  // Every other point of the crease at angle 0 stands out by 0.01; the others are between two.
+  // Every other point of the crease at angle 0 protrudes by 0.01.
   const FacetedMesh kept = clean_up(made.mesh, {1e-4}, Progress(), 1);
   const FacetedMesh moved = clean_up(made.mesh, {0.05}, Progress(), 1);
   const auto out = [&](const FacetedMesh& mesh) {
@@ -259,7 +261,7 @@ TEST(CleanUp, MovesCreasesNoFartherThanAllowed) {
   EXPECT_EQ(fault_of(plain(moved)), "");
 }
 
-// How far the middles of all edges of a mesh, and its vertices, are from another.
+// Largest distance of a mesh's vertices and edge midpoints from another mesh.
 double largest_distance(const FacetedMesh& mesh, const FacetedMesh& other) {
   const MeshView<std::int32_t> view{other.positions, other.triangles};
   double largest = 0.0;
@@ -288,7 +290,7 @@ TEST(CleanUp, MovesTheSurfaceNoFartherThanAllowed) {
   double share = narrow_share(before);
   for (const double height : {0.003, 0.01}) {
     const FacetedMesh after = clean_up(before, {0.01, height}, Progress(), 1);
-    // Two changes may be at one place.
+    // Two changes may overlap.
     EXPECT_LT(largest_distance(before, after), 2.0 * height);
     EXPECT_LT(largest_distance(after, before), 2.0 * height);
     EXPECT_LT(narrow_share(after), share);
@@ -297,7 +299,7 @@ TEST(CleanUp, MovesTheSurfaceNoFartherThanAllowed) {
   }
 }
 
-TEST(CleanUp, LeavesCornersWhereTheyAre) {
+TEST(CleanUp, KeepsCorners) {
   FacetedMesh before = sphere(24);
   before.kinds.assign(before.positions.size(), VertexKind::kCorner);
   const FacetedMesh after = clean_up(before, {1.0}, Progress(), 1);

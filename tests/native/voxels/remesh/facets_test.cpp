@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Meshes divided into patches, and put together again.
+// Tests meshes divided into patches and put together again.
 
 #include "prefilter/voxels/remesh/facets.h"
 
@@ -25,7 +25,7 @@ struct Grid {
   std::vector<Triangle> triangles;
 };
 
-// Squares of two triangles each, in no order.
+// A grid of squares of two triangles each, in random order.
 Grid grid(int n) {
   Grid made;
   for (int i = 0; i < (n + 1) * (n + 1); ++i) {
@@ -72,7 +72,7 @@ TEST(PatchDivision, GivesEachTriangleToOnePatchAndOwnersToVertices) {
     EXPECT_EQ(other.owners, made.owners);
     all.push_back(made);
   }
-  // What one shares, the next has inside, mostly.
+  // Most vertices that one division shares are inside a patch of the next.
   std::size_t both = 0;
   std::size_t first = 0;
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
@@ -83,7 +83,7 @@ TEST(PatchDivision, GivesEachTriangleToOnePatchAndOwnersToVertices) {
   EXPECT_LT(both, first / 4);
 }
 
-TEST(PatchDivision, IsOfOnePatchWhereThatIsEnough) {
+TEST(PatchDivision, IsOnePatchForSmallMeshes) {
   Grid mesh = grid(4);
   mesh.positions.push_back({9, 9, 9});  // has no triangle
   const PatchDivision made = divide_into_patches(mesh.positions, mesh.triangles, 5, Progress(), 2);
@@ -92,7 +92,7 @@ TEST(PatchDivision, IsOfOnePatchWhereThatIsEnough) {
   EXPECT_EQ(std::count(made.owners.begin(), made.owners.end(), 0), 25);
 }
 
-TEST(Facets, ComeBackFromPatches) {
+TEST(Facets, SurviveDivisionIntoPatches) {
   const Grid mesh = grid(120);  // two patches
   Facets before;
   before.triangles = mesh.triangles;
@@ -126,7 +126,7 @@ TEST(Facets, ComeBackFromPatches) {
     const PatchFrame frame = {{1.0, 2.0, 3.0}, 0.25};
     Patch made;
     take_triangles(before, division, patch, vertices, places, frame, &made);
-    made.triangles.front().corners.fill(7);  // gone
+    made.triangles.front().corners.fill(7);  // removed
     Facets some = facets_of(made, vertices.all, frame, true, true);
     append(&some, &after);
     EXPECT_TRUE(some.triangles.empty());
@@ -150,8 +150,8 @@ TEST(Facets, ComeBackFromPatches) {
   }
 }
 
-TEST(Facets, HaveCreasesWhereTheyBendAndWhereLabelsMeet) {
-  // A roof of four rows: flat, up by 14 degrees, up by 16 more, and flat with another label.
+TEST(Facets, HaveCreasesAtBendsAndLabelBorders) {
+  // A roof of four rows: flat, 14 degrees up, 16 degrees steeper, and flat with another label.
   constexpr int kAlong = 5;
   const std::vector<Vector3> profile = {{0, 0, 0},
                                         {0, 1, 0},
@@ -199,14 +199,14 @@ TEST(Facets, HaveCreasesWhereTheyBendAndWhereLabelsMeet) {
   EXPECT_EQ(columns(patch, kinds), of_labels);
   for (PatchTriangle& t : patch.triangles) t.label = t.label == 1 ? kNoLabel : 0;
   EXPECT_TRUE(columns(patch, kinds).empty());
-  // Corners stay, unless a crease goes on through them.
+  // Corners stay, except where a crease passes through them.
   kinds.assign(vertices.size(), VertexKind::kCorner);
   Patch made = patch;
   find_creases(kinds, vertices, &made);
   for (std::size_t v = 0; v < vertices.size(); ++v) {
     const bool is_on_crease = v % 5 == 2 && v > 5 && v < 25;
-    // Each side of a crease counts for the vertex that it begins at.
-    EXPECT_EQ((made.flags[v] & Patch::kKept) == 0, is_on_crease) << v;
+    // Each side of a crease counts for the vertex at its start.
+    EXPECT_EQ((made.flags[v] & Patch::kFixed) == 0, is_on_crease) << v;
   }
 }
 

@@ -18,7 +18,7 @@ using Triangle = std::array<std::int32_t, 3>;
 using Flags = std::vector<std::uint8_t>;
 using Pairs = std::vector<std::array<std::uint32_t, 2>>;
 
-// A sheet of squares with random heights, of which some squares have no area.
+// A sheet of squares with random heights, some of which have no area.
 struct Sheet {
   std::vector<Vector3> positions;
   std::vector<Triangle> triangles;
@@ -57,7 +57,7 @@ struct Sheet {
     return sizes > 0.0 ? dot(normals[0], normals[1]) / sizes : 1.0;
   }
 
-  // One by one.
+  // Brute force over all pairs.
   Pairs folds(const Flags& is_suspect) const {
     Pairs found;
     for (std::uint32_t t = 0; t < triangles.size(); ++t) {
@@ -76,7 +76,7 @@ Pairs in_order(Pairs pairs) {
   return pairs;
 }
 
-TEST(FoldedPairs, AreThoseThatTurnByMoreThan120Degrees) {
+TEST(FoldedPairs, TurnByMoreThan120Degrees) {
   for (const double height : {0.2, 1.5, 4.0, 1e-3}) {
     const Sheet sheet(height);
     const Pairs expected = sheet.folds({});
@@ -87,7 +87,7 @@ TEST(FoldedPairs, AreThoseThatTurnByMoreThan120Degrees) {
   }
 }
 
-TEST(FoldedPairs, HaveOneSuspectAtLeast) {
+TEST(FoldedPairs, HaveAtLeastOneSuspect) {
   const Sheet sheet(3.0);
   Flags is_suspect(sheet.triangles.size(), 0);
   for (std::size_t t = 0; t < is_suspect.size(); t += 5) is_suspect[t] = 1;

@@ -32,8 +32,8 @@ std::int64_t product(const Whole& a, const Whole& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-// Whether two convex polygons, a segment being one of two points, have a point in common: no axis
-// separates them. Coordinates below 2^15: an axis may be a product of three edges.
+// Whether two convex polygons (a segment has two points) have a point in common: no axis separates
+// them. Coordinates must be below 2^15, since an axis can be a product of three edges.
 bool do_meet(const std::vector<Whole>& a, const std::vector<Whole>& b) {
   std::vector<Whole> a_edges;
   std::vector<Whole> b_edges;
@@ -103,12 +103,12 @@ struct WholeMesh {
   }
 };
 
-TEST(IntersectingTriangles, AreThoseThatNoAxisSeparates) {
+TEST(IntersectingTriangles, AreNotSeparatedByAnyAxis) {
   std::mt19937 random(1);
   const auto below = [&](int n) {
     return static_cast<std::int64_t>(random() % static_cast<unsigned>(n));
   };
-  int met = 0;
+  int hits = 0;
   constexpr int kPairs = 60000;
   for (int i = 0; i < kPairs; ++i) {
     WholeMesh mesh;
@@ -133,7 +133,7 @@ TEST(IntersectingTriangles, AreThoseThatNoAxisSeparates) {
       mesh.triangles[1][static_cast<std::size_t>(k)] = k < shared ? k : 3 + k;
     }
     std::shuffle(mesh.triangles[1].begin(), mesh.triangles[1].end(), random);
-    // Far from 1, and small enough in digits that nothing is rounded.
+    // Scales far from 1, with few enough digits that nothing is rounded.
     const double unit = std::ldexp(3.0, static_cast<int>(below(400)) - 200);
     TriangleMesh floating;
     for (const Whole& p : mesh.points) {
@@ -147,13 +147,13 @@ TEST(IntersectingTriangles, AreThoseThatNoAxisSeparates) {
     if (!mesh.is_flat(0) && !mesh.is_flat(1) && mesh.does_intersect()) expected.push_back({0, 1});
     if (mesh.is_flat(1)) expected.push_back({1, 1});
     ASSERT_EQ(pairs_of(floating), expected) << "pair " << i;
-    met += expected == Pairs{{0, 1}} ? 1 : 0;
+    hits += expected == Pairs{{0, 1}} ? 1 : 0;
   }
-  EXPECT_GT(met, kPairs / 20);
-  EXPECT_LT(met, kPairs / 2);
+  EXPECT_GT(hits, kPairs / 20);
+  EXPECT_LT(hits, kPairs / 2);
 }
 
-// A height field over a square of squares.
+// A height field over size x size squares.
 TriangleMesh sheet(int size, double height) {
   std::mt19937 random(2);
   TriangleMesh mesh;
@@ -188,7 +188,7 @@ TEST(IntersectingTriangles, OfSheetsAreWhereTheyCross) {
   append(sheet(60, 1.0), &mesh);
   EXPECT_TRUE(pairs_of(mesh).empty());
   const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
-  // Large, among small ones: through both sheets, and through the first one alone.
+  // Large triangles among small ones: one through both sheets, one through the first sheet only.
   append({{{10.2, 10.1, -5.0}, {50.3, 10.1, -5.0}, {30.2, 50.1, 9.0}}, {{0, 1, 2}}}, &mesh);
   append({{{5.5, 5.5, -5.0}, {5.5, 5.6, 0.9}, {5.6, 5.5, -5.0}}, {{0, 1, 2}}}, &mesh);
   const Pairs pairs = pairs_of(mesh);
@@ -227,7 +227,7 @@ TEST(IntersectingTriangles, MayTouchOnlyInSharedVertices) {
   EXPECT_EQ(pairs_of(mesh), (Pairs{{0, 1}}));
 }
 
-TEST(IntersectingTriangles, OfNothingAreNone) {
+TEST(IntersectingTriangles, AreNoneWithoutTriangles) {
   EXPECT_TRUE(pairs_of({}).empty());
   TriangleMesh mesh = {{{0, 0, 0}}, {{0, 0, 0}}};
   EXPECT_EQ(pairs_of(mesh), (Pairs{{0, 0}}));
@@ -239,8 +239,8 @@ TEST(IntersectingTriangles, CanBeCancelled) {
   EXPECT_THROW(intersecting_triangles({mesh.positions, mesh.triangles}, {}, progress, 2), Error);
 }
 
-TEST(PlaneSide, IsExactInAPlaneThatIsNotAlongTheAxes) {
-  // Of a plane through the origin: points that are sums of two vectors, and one unit above.
+TEST(PlaneSide, IsExactInAnObliquePlane) {
+  // Points of a plane through the origin, as sums of two vectors, and one that is a unit above it.
   const Vector3 a = {3e5, -7e5, 1e5};
   const Vector3 b = {-2e5, 5e5, 9e5};
   const Vector3 o = {0, 0, 0};

@@ -14,7 +14,7 @@ struct Sheets {
   std::vector<Vector3> positions;
   std::vector<std::array<std::int32_t, 3>> triangles;
 
-  // Adds squares of side 1 over 0 to 16 at heights of x; they face up, or down.
+  // Adds 16 x 16 unit squares at height(x), facing up or down.
   template <typename Height>
   void add(const Height& height, bool faces_down) {
     constexpr std::int32_t kSide = 16;
@@ -35,19 +35,19 @@ struct Sheets {
   }
 
   std::vector<std::uint8_t> rough() const {
-    return where_rough({positions, triangles}, 0, std::vector<std::uint8_t>(triangles.size(), 1),
-                       2.0, {});
+    return keep_rough_suspects({positions, triangles}, 0,
+                               std::vector<std::uint8_t>(triangles.size(), 1), 2.0, {});
   }
 };
 
-TEST(WhereRough, LeavesOutWhatIsBentALittle) {
+TEST(KeepRoughSuspects, DropsSlightlyBentSurfaces) {
   Sheets sheets;
   sheets.add([](int i) { return 2.0 * std::sin(0.3 * i); }, false);
   sheets.add([](int i) { return 12.0 + 2.0 * std::sin(0.3 * i); }, true);
   EXPECT_EQ(sheets.rough(), std::vector<std::uint8_t>(sheets.triangles.size(), 0));
 }
 
-TEST(WhereRough, KeepsWhatIsAcrossAndAtEdges) {
+TEST(KeepRoughSuspects, KeepsOpposedSurfacesAndEdges) {
   Sheets thin;
   thin.add([](int) { return 0.2; }, false);
   thin.add([](int) { return 0.7; }, true);
@@ -66,12 +66,13 @@ TEST(WhereRough, KeepsWhatIsAcrossAndAtEdges) {
   }
 }
 
-TEST(WhereRough, LooksAtAllOfFew) {
+TEST(KeepRoughSuspects, KeepsAllOfFewSuspects) {
   Sheets sheets;
   sheets.add([](int) { return 0.0; }, false);
   std::vector<std::uint8_t> is_suspect(sheets.triangles.size(), 0);
   is_suspect[5] = 1;
-  EXPECT_EQ(where_rough({sheets.positions, sheets.triangles}, 0, is_suspect, 2.0, {}), is_suspect);
+  EXPECT_EQ(keep_rough_suspects({sheets.positions, sheets.triangles}, 0, is_suspect, 2.0, {}),
+            is_suspect);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Vertices that go, phase by phase.
+// Tests each phase of removing vertices.
 
 #include "prefilter/voxels/remesh/patch.h"
 
@@ -31,7 +31,7 @@ using Triangle = std::array<std::int32_t, 3>;
 Patch patch_of(const std::vector<Vector3>& positions, const std::vector<Triangle>& triangles) {
   Patch patch;
   patch.positions = positions;
-  patch.flags.assign(positions.size(), Patch::kWaiting);
+  patch.flags.assign(positions.size(), Patch::kPending);
   patch.targets.assign(positions.size(), -1);
   for (const Triangle& corners : triangles) {
     patch.triangles.emplace_back();
@@ -40,7 +40,7 @@ Patch patch_of(const std::vector<Vector3>& positions, const std::vector<Triangle
   return patch;
 }
 
-// A torus of rows times columns squares, each in two triangles, turned about at random.
+// A torus of rows x columns squares of two triangles each, in random order and rotation.
 Patch torus(int rows, int columns, unsigned seed) {
   std::mt19937 random(seed);
   std::vector<Vector3> positions;
@@ -66,7 +66,7 @@ Patch torus(int rows, int columns, unsigned seed) {
   return patch_of(positions, triangles);
 }
 
-// Without what is gone.
+// The mesh without removed vertices and triangles.
 TriangleMesh mesh_of(const Patch& patch) {
   TriangleMesh mesh;
   std::vector<std::int32_t> places(patch.positions.size(), -1);
@@ -86,12 +86,12 @@ TriangleMesh mesh_of(const Patch& patch) {
   return mesh;
 }
 
-// V - E + F, of which each triangle has 3 halves of an edge.
+// The Euler characteristic V - E + F; each triangle has 3 half edges.
 int characteristic(const TriangleMesh& mesh) {
   return static_cast<int>(mesh.positions.size()) - static_cast<int>(mesh.triangles.size()) / 2;
 }
 
-// The neighbors of a vertex, each with the one behind it, by looking at all triangles.
+// Maps each neighbor of a vertex to the next one, found by a search over all triangles.
 std::map<std::int32_t, std::int32_t> neighbors_of(const Patch& patch, std::int32_t vertex) {
   std::map<std::int32_t, std::int32_t> nexts;
   for (const PatchTriangle& t : patch.triangles) {
@@ -122,7 +122,7 @@ Ring ring_of(const Patch& patch, const PatchLinks& links, std::int32_t vertex) {
   return ring;
 }
 
-// The ring of a pyramid's tip, so that spoke i is the polygon's vertex i.
+// The ring of a pyramid's tip, rotated so that spoke i leads to the polygon's vertex i.
 struct Tip {
   Patch patch;
   Ring ring;
@@ -138,7 +138,7 @@ struct Tip {
   }
 };
 
-TEST(PatchLinks, AreWhatLookingAtAllTrianglesFindsAfterEachCollapse) {
+TEST(PatchLinks, MatchASearchOverAllTrianglesAfterEachCollapse) {
   Patch patch = torus(7, 6, 1);
   PatchLinks links = link_corners(patch.positions.size(), patch.triangles);
   std::vector<std::int32_t> slots(patch.positions.size());
@@ -156,16 +156,16 @@ TEST(PatchLinks, AreWhatLookingAtAllTrianglesFindsAfterEachCollapse) {
       EXPECT_EQ(patch.triangle(ring.triangles[i]).corners[ring.corners[i]], u);
     }
     const Collapse which = {u, random() % ring.size};
-    if (!is_sound(patch, links, ring, which, &slots)) continue;
-    collapse(ring, which, Outcome(), &patch, &links);
+    if (!keeps_manifold(patch, links, ring, which, &slots)) continue;
+    collapse(ring, which, CollapseOutcome(), &patch, &links);
     ++collapses;
     ASSERT_EQ(characteristic(mesh_of(patch)), 0) << step;
   }
   EXPECT_GT(collapses, 20);
 }
 
-TEST(PatchLinks, HaveNoRingWhereAVertexHasTwoFans) {
-  // Two tetrahedra with one vertex together.
+TEST(PatchLinks, HaveNoRingAtAVertexWithTwoFans) {
+  // Two tetrahedra with a common vertex.
   const std::vector<Triangle> triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2},
                                            {0, 4, 5}, {0, 5, 6}, {0, 6, 4}, {4, 6, 5}};
   const Patch patch = patch_of(std::vector<Vector3>(7), triangles);
@@ -176,7 +176,7 @@ TEST(PatchLinks, HaveNoRingWhereAVertexHasTwoFans) {
   EXPECT_TRUE(find_ring(1, patch.triangles, links, &slots, &ring));
 }
 
-TEST(RingShape, IsThatOfAPyramid) {
+TEST(RingShape, DescribesAPyramid) {
   const Tip tip(pyramid({0, 0, 2}, kSquare));
   EXPECT_NEAR(tip.shape.range, 2.0, 1e-12);
   EXPECT_FALSE(tip.shape.is_bent);  // 22 degrees
@@ -184,14 +184,14 @@ TEST(RingShape, IsThatOfAPyramid) {
   EXPECT_EQ(tip.shape.squared_height, 1.0);
   EXPECT_NEAR(tip.shape.sector_normals[0][2], 1.0, 1e-12);
   EXPECT_NEAR(length(tip.shape.normals[0]), 2 * 0.5 * 10 * std::sqrt(29.0), 1e-12);
-  // A height of 5 of 100: a sliver, half as high as a tolerance where all is a tenth.
+  // A triangle with base 10 and height 0.05: a sliver, half as high as a tolerance of 0.1.
   const Tip thin(pyramid({0, 0, 0}, {{5, 0.05, 0}, {-5, 0.05, 0}, {0, -5, 0}}));
   EXPECT_TRUE(thin.shape.is_sliver[thin.spoke_to(1)]);
   EXPECT_FALSE(thin.shape.is_sliver[thin.spoke_to(2)]);
   EXPECT_NEAR(thin.shape.squared_height, 0.0025, 1e-12);
 }
 
-TEST(RingShape, IsInTwoSectorsAlongACrease) {
+TEST(RingShape, HasTwoSectorsAlongACrease) {
   // A roof, whose ridge is along x.
   Patch roof =
       pyramid({0, 0, 3}, {{5, 0, 3}, {5, 5, 0}, {-5, 5, 0}, {-5, 0, 3}, {-5, -5, 0}, {5, -5, 0}});
@@ -213,8 +213,8 @@ TEST(RingShape, IsInTwoSectorsAlongACrease) {
   EXPECT_TRUE(share(1, 2) && share(1, 6) && share(4, 5));  // the ends are on both
 }
 
-TEST(CollapseCheck, IsSoundWhereAManifoldIsLeft) {
-  // Whatever is collapsed, by doing it; on meshes down to the smallest.
+TEST(CollapseCheck, AllowsCollapsesThatKeepAManifold) {
+  // Compares with performing the collapse, on meshes down to the smallest torus.
   for (unsigned seed = 0; seed < 12; ++seed) {
     Patch patch = seed % 3 == 0 ? torus(3, 3, seed) : torus(5, 4, seed);
     PatchLinks links = link_corners(patch.positions.size(), patch.triangles);
@@ -225,7 +225,7 @@ TEST(CollapseCheck, IsSoundWhereAManifoldIsLeft) {
       if (links.count(u) == 0) continue;
       const Ring ring = ring_of(patch, links, u);
       const Collapse which = {u, random() % ring.size};
-      const bool is_allowed = is_sound(patch, links, ring, which, &slots);
+      const bool is_allowed = keeps_manifold(patch, links, ring, which, &slots);
       Patch copy = patch;
       for (PatchTriangle& t : copy.triangles) {
         for (std::int32_t& v : t.corners) v = v == u ? ring.vertices[which.spoke] : v;
@@ -234,31 +234,32 @@ TEST(CollapseCheck, IsSoundWhereAManifoldIsLeft) {
           t.corners.fill(0);
         }
       }
-      // Moved apart, so that only who has which triangle counts.
+      // Random positions, so that only connectivity counts.
       for (Vector3& p : copy.positions) {
         for (double& x : p) x = static_cast<double>(random());
       }
       ASSERT_EQ(is_allowed, fault_of(mesh_of(copy)) == "") << seed << " " << step;
-      if (is_allowed) collapse(ring, which, Outcome(), &patch, &links);
+      if (is_allowed) collapse(ring, which, CollapseOutcome(), &patch, &links);
     }
   }
 }
 
-TEST(CollapseCheck, LeavesSharedEdgesAlone) {
-  // Two vertices that other patches have must not get an edge, as those may make one, too.
+TEST(CollapseCheck, RefusesSharedEdges) {
+  // Two vertices shared with other patches must not get an edge, since another patch may add the
+  // same one.
   Patch patch = torus(8, 8, 2);
   const PatchLinks links = link_corners(patch.positions.size(), patch.triangles);
   const Ring ring = ring_of(patch, links, 20);
   std::vector<std::int32_t> slots(patch.positions.size());
   ASSERT_GE(ring.size, 4U);
-  ASSERT_TRUE(is_sound(patch, links, ring, {20, 0}, &slots));
+  ASSERT_TRUE(keeps_manifold(patch, links, ring, {20, 0}, &slots));
   patch.flags[as_index(ring.vertices[0])] |= Patch::kShared;
-  EXPECT_TRUE(is_sound(patch, links, ring, {20, 0}, &slots));
+  EXPECT_TRUE(keeps_manifold(patch, links, ring, {20, 0}, &slots));
   patch.flags[as_index(ring.vertices[2])] |= Patch::kShared;
-  EXPECT_FALSE(is_sound(patch, links, ring, {20, 0}, &slots));
+  EXPECT_FALSE(keeps_manifold(patch, links, ring, {20, 0}, &slots));
 }
 
-TEST(CollapseCheck, MakesNoThinOrTurnedTriangles) {
+TEST(CollapseCheck, RefusesThinOrInvertedTriangles) {
   NewTriangles made;
   const auto makes = [&](const Patch& patch, std::int32_t to) {
     const Tip tip(patch);
@@ -268,12 +269,12 @@ TEST(CollapseCheck, MakesNoThinOrTurnedTriangles) {
   for (const auto& [height, is_made] : {std::pair{2.77, true}, {3.01, false}}) {
     EXPECT_EQ(makes(pyramid({0, 0, height}, kSquare), 1), is_made);
   }
-  // A notch: to vertex 1 a triangle would be upside down.
+  // A notch: a collapse to vertex 1 would invert a triangle.
   const Patch notched =
       pyramid({0, -1, 0}, {{5, 5, 0}, {0, 1, 0}, {-5, 5, 0}, {-5, -5, 0}, {5, -5, 0}});
   EXPECT_FALSE(makes(notched, 1));
   EXPECT_TRUE(makes(notched, 2));
-  // Nine tenths of a tolerance high.
+  // A height of 0.9 tolerances.
   const Patch low = pyramid({0, 1.5, 0}, {{5, 0.9, 0}, {0, 9, 0}, {-5, 0, 0}, {0, 0.0, 0}});
   EXPECT_FALSE(makes(low, 1));
 }
@@ -288,7 +289,7 @@ TEST(CollapseCheck, KeepsCreasesStraight) {
     const Tip tip(patch);
     return crease_outcome(patch, tip.ring, {0, tip.spoke_to(to)});
   };
-  // The distance of the tip from the line between the ends: by their triangle's area.
+  // Distance of the tip from the line between the ends, from the area of their triangle.
   const double moved = 0.8 * 5 / std::hypot(10.0, 0.8);
   EXPECT_TRUE(outcome(roof, 1).is_kept);
   EXPECT_NEAR(outcome(roof, 1).moved, moved, 1e-12);
@@ -298,7 +299,7 @@ TEST(CollapseCheck, KeepsCreasesStraight) {
   roof.triangle(0).crease_errors[0] = 0.0F;
   roof.positions[4] = {0.5, 0.3, 3};  // turns back
   EXPECT_FALSE(outcome(roof, 1).is_kept);
-  // A crease that ends at 1 beside one from the tip would become one with it.
+  // A crease that ends at 1 must not merge with one that leaves the tip.
   Patch beside = pyramid({0, 0, 0}, kSquare);
   EXPECT_TRUE(outcome(beside, 1).is_kept);
   beside.triangle(0).creases = 1U << 1U;  // from 1 to 2
@@ -309,7 +310,7 @@ TEST(CollapseCheck, KeepsCreasesStraight) {
 }
 
 double distance_between(const Vector3& p, const Vector3& u, const Vector3& q, const Vector3& v) {
-  // Of two segments, by trying places.
+  // Distance between two segments by sampling.
   constexpr int kSteps = 2000;
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i <= kSteps; ++i) {
@@ -343,7 +344,7 @@ TEST(CollapseCheck, MeasuresEdgesWhereTheyCross) {
         if (j == tip.ring.next(spoke) || j == tip.ring.before(spoke)) continue;
         const Vector3 p = tip.patch.point(tip.ring.vertices[i]);
         const Vector3 q = tip.patch.point(tip.ring.vertices[j]);
-        // Seen from above, where heights are small beside the rest.
+        // Distances are measured from above, where heights are small compared with the other sizes.
         const Vector3 u = p - from;
         const Vector3 v = q - to;
         most = std::max(most, distance_between(from, u, to, v));
@@ -373,18 +374,19 @@ TEST(CollapseCheck, MeasuresEdgesWhereTheyCross) {
   EXPECT_GT(crossed, 10);
 }
 
-TEST(CollapseCheck, MeasuresPlacesOnBothSurfaces) {
+TEST(CollapseCheck, MeasuresSamplesOnBothSurfaces) {
   const Tip tip(pyramid({0, 0, 0.8}, kSquare));
   NewTriangles made;
   ASSERT_TRUE(make_triangles(tip.patch, tip.ring, tip.shape, {0, tip.spoke_to(1)}, &made));
   std::vector<Vector3> crossings;
-  // The farthest place is in the middle of the new edge, below the pyramid.
+  // The farthest point is the middle of the new edge, below the pyramid.
   const double found =
-      measure_places(tip.patch, tip.ring, made, {0, tip.spoke_to(1)}, 1.0, &crossings);
+      measure_samples(tip.patch, tip.ring, made, {0, tip.spoke_to(1)}, 1.0, &crossings);
   EXPECT_NEAR(found, 0.8 * 5 / std::hypot(5.0, 0.8), 1e-12);
   for (const Vector3& p : crossings) EXPECT_GT(p[2], 0.1);
   EXPECT_EQ(crossings.size(), 4U * 4U);  // three on each edge, and the middles
-  EXPECT_EQ(measure_places(tip.patch, tip.ring, made, {0, tip.spoke_to(1)}, 0.5, &crossings), -1.0);
+  EXPECT_EQ(measure_samples(tip.patch, tip.ring, made, {0, tip.spoke_to(1)}, 0.5, &crossings),
+            -1.0);
 }
 
 TEST(CollapseCheck, FindsTheNearestTriangleOrOneThatIsVeryNear) {
@@ -394,7 +396,7 @@ TEST(CollapseCheck, FindsTheNearestTriangleOrOneThatIsVeryNear) {
   ASSERT_TRUE(make_triangles(tip.patch, tip.ring, tip.shape, {0, spoke}, &made));
   double farthest = 0.0;
   const auto near = [&](const Vector3& p, std::size_t hint, double most) {
-    return find_near(made, tip.ring, spoke, p, hint, most, &farthest);
+    return find_nearest(made, tip.ring, spoke, p, hint, most, &farthest);
   };
   const auto left = static_cast<std::int32_t>(tip.spoke_to(2));
   const auto below = static_cast<std::int32_t>(tip.spoke_to(3));
@@ -407,15 +409,15 @@ TEST(CollapseCheck, FindsTheNearestTriangleOrOneThatIsVeryNear) {
   EXPECT_NEAR(farthest, 0.81, 1e-12);
 }
 
-TEST(CollapseCheck, AddsUpWhatIsLittleAndKeepsPointsOfTheRest) {
+TEST(CollapseCheck, AccumulatesSmallErrorsAndKeepsOtherPoints) {
   NewTriangles made;
-  const auto check = [&](const Patch& patch, Outcome* outcome) {
+  const auto check = [&](const Patch& patch, CollapseOutcome* outcome) {
     const Tip tip(patch);
     const Collapse which = {0, tip.spoke_to(1)};
     EXPECT_TRUE(make_triangles(patch, tip.ring, tip.shape, which, &made));
-    return stays_near(patch, tip.ring, tip.shape, made, {}, which, outcome);
+    return is_within_tolerance(patch, tip.ring, tip.shape, made, {}, which, outcome);
   };
-  Outcome outcome;
+  CollapseOutcome outcome;
   Patch patch = pyramid({0, 0, 0.1}, kSquare);
   EXPECT_TRUE(check(patch, &outcome));
   EXPECT_FALSE(outcome.adds_points);
@@ -426,19 +428,19 @@ TEST(CollapseCheck, AddsUpWhatIsLittleAndKeepsPointsOfTheRest) {
   EXPECT_NEAR(outcome.error, 0.2, 1e-6);
   ASSERT_EQ(outcome.added.size(), 1U);
   EXPECT_EQ(outcome.added[0], patch.point(0));
-  // Its points are measured again: one is too far.
+  // The triangle's points are measured again, and one is too far away.
   patch = pyramid({0, 0, 0.1}, kSquare);
   patch.points = {{{-1, -1, 0.5}, -1}};
   patch.triangle(2).first_point = 0;
   EXPECT_TRUE(check(patch, &outcome));
-  EXPECT_EQ(outcome.places.size(), 2U);
+  EXPECT_EQ(outcome.placements.size(), 2U);
   EXPECT_GT(outcome.deviation, 0.09);
   patch.points[0].position[2] = 1.1;
   EXPECT_FALSE(check(patch, &outcome));
   EXPECT_FALSE(check(pyramid({0, 0, 1.05}, kSquare), &outcome));
 }
 
-// From both sides.
+// Sets the crease bit in both triangles of the edge.
 void set_crease(std::int32_t a, std::int32_t b, Patch* patch) {
   for (PatchTriangle& t : patch->triangles) {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -455,24 +457,25 @@ TEST(Collapse, KeepsPointsAndCreases) {
   Patch patch = torus(8, 8, 5);
   PatchLinks links = link_corners(patch.positions.size(), patch.triangles);
   const Ring ring = ring_of(patch, links, 20);
-  // One from the vertex to the neighbor behind the spoke, one from the spoke to that before.
+  // One crease from the vertex to the neighbor after the spoke, one from the spoke's end to the
+  // neighbor before it.
   const std::int32_t to = ring.vertices[0];
   const std::int32_t after = ring.vertices[1];
   const std::int32_t before = ring.vertices[ring.size - 1];
   set_crease(20, after, &patch);
   set_crease(to, before, &patch);
-  Outcome outcome;
+  CollapseOutcome outcome;
   outcome.adds_points = true;
   outcome.error = 0.25;
   outcome.crease_error = 0.5;
   outcome.added = {{1, 2, 3}, {4, 5, 6}};
   patch.points = {{{7, 8, 9}, -1}};
   patch.triangle(ring.triangles[2]).first_point = 0;
-  outcome.places = {{-1, 1}, {0, 2}, {-1, 2}};
+  outcome.placements = {{-1, 1}, {0, 2}, {-1, 2}};
   Ring with = ring_of(patch, links, 20);
   const auto shift = static_cast<std::size_t>(
       std::find(with.vertices.begin(), with.vertices.end(), to) - with.vertices.begin());
-  for (Outcome::Place& place : outcome.places) {
+  for (CollapseOutcome::Placement& place : outcome.placements) {
     place.triangle = static_cast<std::int32_t>((as_index(place.triangle) + shift) % with.size);
   }
   collapse(with, {20, shift}, outcome, &patch, &links);
@@ -507,7 +510,7 @@ TEST(Collapse, KeepsPointsAndCreases) {
   }
 }
 
-TEST(SimplifyPatch, KeepsTheGenusWhateverItRemoves) {
+TEST(SimplifyPatch, KeepsTheGenus) {
   for (unsigned seed = 0; seed < 6; ++seed) {
     Patch patch = torus(30, 20, seed);
     patch.spacing = 1.0;

@@ -16,7 +16,7 @@ namespace {
 
 using Triangles = std::vector<std::array<std::size_t, 3>>;
 
-// All ways to divide the points from i to j.
+// All triangulations of the points from i to j.
 std::vector<Triangles> all_ways(std::size_t i, std::size_t j) {
   if (j - i < 2) return {{}};
   std::vector<Triangles> ways;
@@ -50,7 +50,7 @@ struct Judged {
   double sides = 0.0;
 };
 
-// By angles, where the library has squared sines.
+// Judges by angles, where the library uses squared sines.
 Judged judged(const std::vector<Vector3>& points, const Triangles& way, double least, double unit) {
   Judged result;
   for (const auto& [i, k, j] : way) {
@@ -71,7 +71,7 @@ Judged judged(const std::vector<Vector3>& points, const Triangles& way, double l
   return result;
 }
 
-TEST(RingTriangles, AreTheBestOfAllWays) {
+TEST(RingTriangles, AreTheBestOfAllTriangulations) {
   std::mt19937 random(9);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   int found_count = 0;
@@ -104,7 +104,7 @@ TEST(RingTriangles, AreTheBestOfAllWays) {
                         made.triangles.begin() + static_cast<std::ptrdiff_t>(made.count));
     const Judged one = judged(points, way, least, kUnit);
     EXPECT_TRUE(one.is_allowed);
-    EXPECT_NEAR(1e3 * one.fault + one.sides, best, 1e-3);  // kNarrow is a float
+    EXPECT_NEAR(1e3 * one.fault + one.sides, best, 1e-3);  // kMinWidth is a float
     EXPECT_NEAR(made.fault, one.fault, 1e-6);
     faulty += one.fault > 0.0 ? 1 : 0;
   }

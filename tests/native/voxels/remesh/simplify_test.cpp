@@ -40,8 +40,8 @@ Vector3 scaled(double factor, const Vector3& v) {
   return {factor * v[0], factor * v[1], factor * v[2]};
 }
 
-// The distance between a point and a triangle, by its plane where the foot is in the triangle, and
-// by its sides.
+// Distance between a point and a triangle: to its plane if the foot is in the triangle, else to its
+// sides.
 double distance_to(const Vector3& p, const Vector3& a, const Vector3& b, const Vector3& c) {
   const Vector3 n = cross(b - a, c - a);
   const Vector3 unit = scaled(1.0 / length(n), n);
@@ -60,7 +60,7 @@ double distance_to(const Vector3& p, const Vector3& a, const Vector3& b, const V
   return is_inside ? std::abs(height) : least;
 }
 
-// The largest distance of points all over a surface from another one, by trying all triangles.
+// Largest distance of random points of one surface from another one, over all its triangles.
 double largest_distance(const FacetedMesh& from, const FacetedMesh& to, std::size_t per_triangle) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -90,7 +90,7 @@ double largest_distance(const FacetedMesh& from, const FacetedMesh& to, std::siz
   return largest;
 }
 
-// Occupancies of cells, by samples of a function that is positive inside.
+// Contour of cell occupancies, which are sampled from a function that is positive inside.
 template <typename Inside>
 FacetedMesh contour_of(int size, Interpolant interpolant, const Inside& inside) {
   std::vector<float> values;
@@ -125,7 +125,7 @@ FacetedMesh blob(int size, Interpolant interpolant = Interpolant::kPlane) {
   });
 }
 
-// A box of n x n quads a side, whose vertices know what they are, and whose triangles their side.
+// A box of n x n quads per side, with vertex kinds and a label per side.
 FacetedMesh box(int n, const Vector3& x, const Vector3& y, const Vector3& z) {
   FacetedMesh mesh;
   std::map<std::array<int, 3>, std::int32_t> numbers;
@@ -224,7 +224,7 @@ TEST(Simplify, LeavesFewTrianglesOnFlatParts) {
   EXPECT_LT(simplify(before, 0.2, Progress(), 1).triangles.size(), before.triangles.size() / 5);
 }
 
-TEST(Simplify, MakesABoxOfABox) {
+TEST(Simplify, ReducesABoxToTwelveTriangles) {
   const std::array<std::array<Vector3, 3>, 2> frames = {
       {{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
        {{{0.36, 0.48, -0.8}, {-0.8, 0.6, 0.0}, {0.48, 0.64, 0.6}}}}};
@@ -243,7 +243,7 @@ TEST(Simplify, MakesABoxOfABox) {
 }
 
 TEST(Simplify, KeepsTheBordersOfLabels) {
-  // A flat side is in two parts, along a line that turns; nothing but the labels tells.
+  // A flat side is divided into two labels along a line that bends; only the labels show it.
   constexpr int kSize = 40;
   FacetedMesh before = box(kSize, {1, 0, 0}, {0, 1, 0}, {0, 0, 1});
   before.kinds.clear();
@@ -263,7 +263,7 @@ TEST(Simplify, KeepsTheBordersOfLabels) {
 }
 
 TEST(Simplify, KeepsCreasesAlongCurves) {
-  // A cylinder with labels for its side and its ends: rims are circles of the same length.
+  // A cylinder with labels for its side and ends, so that its rims are circles of equal length.
   constexpr double kRadius = 20.0;
   constexpr int kAround = 400;
   constexpr double kTolerance = 0.05;
@@ -312,8 +312,8 @@ TEST(Simplify, KeepsCreasesAlongCurves) {
   EXPECT_GT(count, 20U);
 }
 
-TEST(Simplify, DoesNotBringInIntersections) {
-  // Two sheets that follow each other, nearer than the tolerance.
+TEST(Simplify, AddsNoIntersections) {
+  // Two parallel sheets that are closer than the tolerance.
   const FacetedMesh before = contour_of(40, Interpolant::kPlane, [](const Vector3& p) {
     const double height = 20.0 + 5.0 * std::sin(0.3 * p[0]) * std::cos(0.25 * p[1]);
     const bool is_within = std::max(std::abs(p[0] - 20.0), std::abs(p[1] - 20.0)) < 17.0;
@@ -326,7 +326,7 @@ TEST(Simplify, DoesNotBringInIntersections) {
   }
 }
 
-TEST(Simplify, LeavesAClosedManifoldWhateverTheTolerance) {
+TEST(Simplify, KeepsAClosedManifoldForAnyTolerance) {
   const FacetedMesh before = blob(24);
   for (const double tolerance : {1e-300, 1e-12, 10.0, 1e6, 1e300}) {
     const FacetedMesh after = simplify(before, tolerance, Progress(), 1);
@@ -335,7 +335,7 @@ TEST(Simplify, LeavesAClosedManifoldWhateverTheTolerance) {
   }
 }
 
-TEST(Simplify, TakesUnitsAsTheyAre) {
+TEST(Simplify, IsScaleInvariant) {
   const FacetedMesh before = blob(20);
   const FacetedMesh expected = simplify(before, 0.25, Progress(), 1);
   for (const int exponent : {-60, 100}) {
@@ -356,7 +356,7 @@ TEST(Simplify, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(one.triangles, other.triangles);
 }
 
-TEST(Simplify, LeavesWhatIsLeastAlone) {
+TEST(Simplify, KeepsMinimalMeshes) {
   EXPECT_TRUE(simplify({}, 1.0, Progress(), 1).triangles.empty());
   FacetedMesh tetrahedron;
   tetrahedron.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -368,7 +368,7 @@ TEST(Simplify, LeavesWhatIsLeastAlone) {
   EXPECT_EQ(same.triangles, before.triangles);
 }
 
-TEST(Simplify, RefusesTolerancesThatAreNone) {
+TEST(Simplify, RefusesInvalidTolerances) {
   for (const double tolerance : {-1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
     EXPECT_THROW(simplify(blob(8), tolerance, Progress(), 1), Error);
   }

@@ -20,7 +20,7 @@ FacetedMesh mesh_of(std::size_t vertices, const Corners& triangles) {
   return mesh;
 }
 
-// A strip of triangles, each beside the next; vertices are numbered along it.
+// A strip of triangles, each adjacent to the next; vertices are numbered along it.
 FacetedMesh strip(std::int32_t count, std::int32_t first = 0) {
   Corners triangles;
   for (std::int32_t t = first; t < first + count; ++t) {
@@ -47,8 +47,8 @@ TEST(SpreadLabels, PartsWithoutAnyGetNewOnes) {
   EXPECT_EQ(mesh.labels, (std::vector<std::int32_t>{1, 1, 1, 4, 4}));
 }
 
-// Of four triangles at an edge each has one of the others beside it, in the order of the list.
-TEST(SpreadLabels, SeveralAtAnEdge) {
+// Where four triangles share an edge, each is paired with one other, in the order of the list.
+TEST(SpreadLabels, PairsTrianglesAtAnEdge) {
   FacetedMesh mesh = mesh_of(6, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}, {1, 0, 5}});
   mesh.labels = {kNoLabel, 7, 3, kNoLabel};
   EXPECT_EQ(spread_labels(&mesh, 8, Progress()), 0);

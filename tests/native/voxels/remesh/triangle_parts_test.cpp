@@ -17,7 +17,7 @@ namespace {
 
 using Triangle = std::array<std::int32_t, 3>;
 
-// Triangles between vertices of about the same number.
+// Random triangles whose vertices have similar numbers.
 std::vector<Triangle> soup(std::int32_t vertices, std::size_t count, unsigned seed) {
   std::mt19937 random(seed);
   std::vector<Triangle> triangles;
@@ -30,7 +30,7 @@ std::vector<Triangle> soup(std::int32_t vertices, std::size_t count, unsigned se
   return triangles;
 }
 
-TEST(TriangleParts, AlongVerticesHaveAllTrianglesOnceAndInOrder) {
+TEST(TriangleParts, AlongVerticesContainEachTriangleOnceInOrder) {
   constexpr std::int32_t kVertices = 50000;  // four parts of 2^14
   const std::vector<Triangle> triangles = soup(kVertices, 90000, 1);
   const TriangleParts parts = parts_along_vertices(triangles, kVertices, Progress(), 1);
@@ -46,11 +46,11 @@ TEST(TriangleParts, AlongVerticesHaveAllTrianglesOnceAndInOrder) {
   }
   EXPECT_EQ(parts.triangles, expected);
   EXPECT_EQ(parts_along_vertices(triangles, kVertices, Progress(), 3).triangles, expected);
-  const std::vector<std::uint32_t> numbers = parts.numbers(triangles.size() + 1, 77);
+  const std::vector<std::uint32_t> numbers = parts.part_numbers(triangles.size() + 1, 77);
   EXPECT_EQ(numbers.back(), 77U);
   EXPECT_EQ(numbers[parts.part(2)[5]], 2U);
 
-  std::vector<std::uint32_t> owners(kVertices, EditedMesh::kNobody);
+  std::vector<std::uint32_t> owners(kVertices, EditedMesh::kUnowned);
   find_owners(parts, triangles, Progress(), 2, &owners);
   std::vector<std::set<std::uint32_t>> all(kVertices);
   for (std::uint32_t part = 0; part < 4; ++part) {
@@ -59,13 +59,13 @@ TEST(TriangleParts, AlongVerticesHaveAllTrianglesOnceAndInOrder) {
     }
   }
   for (std::size_t v = 0; v < all.size(); ++v) {
-    EXPECT_EQ(owners[v], all[v].empty()       ? EditedMesh::kNobody
+    EXPECT_EQ(owners[v], all[v].empty()       ? EditedMesh::kUnowned
                          : all[v].size() == 1 ? *all[v].begin()
-                                              : EditedMesh::kSeveral);
+                                              : EditedMesh::kShared);
   }
 }
 
-TEST(TriangleParts, ByInnerVerticesHangTogetherByThese) {
+TEST(TriangleParts, ByInnerVerticesAreConnectedByThem) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     const std::vector<Triangle> triangles = soup(200, 150, seed);
     std::mt19937 random(seed);
@@ -79,7 +79,7 @@ TEST(TriangleParts, ByInnerVerticesHangTogetherByThese) {
     }
     std::vector<std::uint32_t> parents(200);
     const TriangleParts parts = parts_by_inner_vertices(triangles, chosen, is_inner, &parents);
-    // By spreading the lowest number until nothing changes.
+    // Connected components: spread the lowest number until nothing changes.
     std::map<std::uint32_t, std::uint32_t> numbers;
     for (const std::uint32_t t : chosen) numbers[t] = t;
     for (bool is_changed = true; is_changed;) {

@@ -14,11 +14,11 @@ namespace prefilter {
 namespace {
 
 bool do_meet(const FloatBox& a, const FloatBox& b) {
-  bool meets = true;
+  bool overlaps = true;
   for (std::size_t k = 0; k < 3; ++k) {
-    meets = meets && a.low[k] <= b.high[k] && b.low[k] <= a.high[k];
+    overlaps = overlaps && a.low[k] <= b.high[k] && b.low[k] <= a.high[k];
   }
-  return meets;
+  return overlaps;
 }
 
 struct Soup {
@@ -75,11 +75,11 @@ TEST(TriangleTree, HasAllTrianglesOnceInBoxesAroundThem) {
   }
 }
 
-TEST(TriangleTree, FindsTheLeavesThatMeetOne) {
+TEST(TriangleTree, FindsTheLeavesThatOverlapOne) {
   const Soup made = soup(1500, 4);
   for (const unsigned every : {1U, 8U, 100U}) {
     std::vector<std::uint8_t> is_suspect(made.triangles.size(), 0);
-    // Suspects by place, so that some leaves have nothing else.
+    // Suspects are chosen by position, so that some leaves contain nothing else.
     for (std::size_t t = 0; t < is_suspect.size(); ++t) {
       is_suspect[t] = made.positions[3 * t][0] < 0.0 || t % every == 0 ? 1 : 0;
     }
@@ -127,7 +127,7 @@ TEST(TriangleTree, ComparesFourBoxesAtOnce) {
       four.set(i, one);
       expected |= do_meet(one, other) ? 1U << i : 0U;
     }
-    EXPECT_EQ(four.meeting(other), expected);
+    EXPECT_EQ(four.overlap_mask(other), expected);
   }
 }
 

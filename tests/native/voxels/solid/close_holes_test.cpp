@@ -29,7 +29,7 @@ Triangles triangles_of(const Mesh& mesh) {
   return triangles;
 }
 
-// How often edges are run through one way more than the other, over all edges.
+// Sum over all edges of the difference between the uses in each direction.
 std::size_t imbalance(const std::vector<Vector3>& positions, const Triangles& triangles) {
   std::map<std::pair<Vector3, Vector3>, int> runs;
   for (const auto& t : triangles) {
@@ -68,7 +68,7 @@ Closed closed(const std::vector<Vector3>& positions, const Triangles& triangles,
   return result;
 }
 
-// Edges are in pairs but along the loops that are left open.
+// All edges are paired, except along the loops that are left open.
 void expect_pairs(const std::vector<Vector3>& positions, const Triangles& triangles,
                   const Closed& found) {
   EXPECT_EQ(imbalance(positions, triangles), imbalance(found.positions, found.caps.triangles) +
@@ -78,7 +78,7 @@ void expect_pairs(const std::vector<Vector3>& positions, const Triangles& triang
   }
 }
 
-TEST(CloseHoles, AClosedMeshNeedsNone) {
+TEST(CloseHoles, ClosedMeshesStay) {
   const Mesh mesh = sphere_mesh({0.5, 0.5, 0.5}, 0.4, 20);
   const Closed found = closed(mesh.positions, triangles_of(mesh));
   EXPECT_TRUE(found.caps.triangles.empty());
@@ -111,7 +111,7 @@ TEST(CloseHoles, FlatHolesOfABoxAreClosedExactly) {
   EXPECT_NEAR(volume(octree), 0.5 * 0.6 * 0.4, 1e-6);
 }
 
-TEST(CloseHoles, WhateverIsMissingEdgesComeInPairs) {
+TEST(CloseHoles, EdgesAreInPairsForAnyHoles) {
   std::mt19937 random(1);
   for (int trial = 0; trial < 30; ++trial) {
     const Mesh mesh = sphere_mesh({0.5, 0.5, 0.5}, 0.4, 12);
@@ -133,7 +133,7 @@ TEST(CloseHoles, WhateverIsMissingEdgesComeInPairs) {
   }
 }
 
-TEST(CloseHoles, RandomSoupsToo) {
+TEST(CloseHoles, EdgesAreInPairsForRandomSoups) {
   std::mt19937 random(2);
   std::uniform_int_distribution<std::int64_t> vertex(0, 19);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -167,7 +167,7 @@ TEST(CloseHoles, IsTheSameForAnyNumberOfThreads) {
   EXPECT_GT(one.triangles.size(), 700U);
 }
 
-TEST(CloseHoles, AnyScaleAndPlace) {
+TEST(CloseHoles, DoesNotDependOnScaleOrPosition) {
   const Mesh mesh = sphere_mesh({0.0, 0.0, 0.0}, 1.0, 16);
   Triangles triangles = triangles_of(mesh);
   triangles.erase(triangles.begin(), triangles.begin() + 32 * 5);

@@ -23,7 +23,7 @@ double volume_of(const TriangleMesh& mesh) {
   return sum;
 }
 
-// The volume of what is inside of a closed mesh, by cells of this side.
+// Volume inside a closed mesh, measured with cells of this side.
 double filled_volume(const Mesh& mesh, double cell) {
   const MeshView<std::int32_t> view{mesh.positions, mesh.triangles};
   const ReachGrid grid(view, cell, 0.0, Progress(), 1);
@@ -32,14 +32,14 @@ double filled_volume(const Mesh& mesh, double cell) {
   return volume_of(filled_regions(view, grid, is_filled, Progress(), 1));
 }
 
-TEST(FilledRegions, HaveTheVolumeOfTheMeshAroundThem) {
+TEST(FilledRegions, HaveTheVolumeOfTheMesh) {
   EXPECT_NEAR(filled_volume(box_mesh({0.013, 0.02, 0.04}, {1, 1, 1}), 0.05), 0.987 * 0.98 * 0.96,
               0.01);
   constexpr double kBall = 4.0 / 3.0 * 3.14159265358979;
   EXPECT_NEAR(filled_volume(sphere_mesh({0, 0, 0}, 1.0, 40), 0.08), kBall, 0.02 * kBall);
 }
 
-TEST(FilledRegions, WhichWayFacesAreTurnedDoesNotMatter) {
+TEST(FilledRegions, DoNotDependOnOrientation) {
   Mesh mesh = box_mesh({0, 0, 0}, {1, 1, 1});
   for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
     std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
@@ -47,7 +47,7 @@ TEST(FilledRegions, WhichWayFacesAreTurnedDoesNotMatter) {
   EXPECT_NEAR(filled_volume(mesh, 0.05), 1.0, 0.02);
 }
 
-TEST(FilledRegions, WallsWithinThemAreFilled) {
+TEST(FilledRegions, IncludeInnerWalls) {
   Mesh mesh = box_mesh({0, 0, 0}, {1, 1, 1});
   // A wall through the middle that leaves a wide gap.
   const auto first = static_cast<std::int32_t>(mesh.positions.size());

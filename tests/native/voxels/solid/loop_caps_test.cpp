@@ -23,8 +23,8 @@ std::vector<std::uint32_t> all_of(std::size_t count) {
   return loop;
 }
 
-TEST(LoopCaps, AFanHasTheMiddleOfTheLine) {
-  // The corners of a square, and many more points along one of its sides.
+TEST(LoopCaps, FansMeetAtTheMeanOfTheLoop) {
+  // The corners of a square, and many additional points along one side.
   std::vector<Vector3> positions = {{0, 0, 5}};
   for (int i = 1; i < 20; ++i) positions.push_back({i / 20.0, 0, 5});
   positions.insert(positions.end(), {{1, 0, 5}, {1, 1, 5}, {0, 1, 5}});
@@ -45,7 +45,7 @@ TEST(LoopCaps, AFanHasTheMiddleOfTheLine) {
   EXPECT_EQ(single.triangles.size(), 1U);
 }
 
-// Loops of these many edges at the north pole of a sphere, closed by `method`.
+// Cap of a loop of this many edges at the north pole of a sphere.
 LoopCap cap_of(const Mesh& mesh, HoleMethod method, bool is_smooth, std::size_t edges) {
   const InputMesh input{mesh.positions, mesh.triangles};
   const BorderLoops loops = border_loops(input, Progress(), 1);
@@ -54,7 +54,7 @@ LoopCap cap_of(const Mesh& mesh, HoleMethod method, bool is_smooth, std::size_t 
   const std::vector<unsigned char> is_kept(1, 1);
   std::vector<LoopCap> caps = first_caps(input, loops, is_kept, method, Progress(), 1);
   if (is_smooth) smooth_caps(input, loops, is_kept, Progress(), 1, &caps);
-  // The border is closed, and nothing else.
+  // Mesh and cap together are closed, and the cap has no other border.
   std::map<std::pair<Vector3, Vector3>, int> edges_of;
   const auto add = [&](const std::array<Vector3, 3>& p) {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -68,7 +68,7 @@ LoopCap cap_of(const Mesh& mesh, HoleMethod method, bool is_smooth, std::size_t 
     add(cap_corners(input.positions, loops.loop(0), caps[0], t));
   }
   for (const auto& [edge, count] : edges_of) EXPECT_EQ(count, 0);
-  // Appended, it is the same behind the vertices of the mesh and of other caps.
+  // Appended after other caps, it is the same with shifted vertex numbers.
   Caps all;
   all.positions.resize(7);
   append_cap(mesh.positions.size(), loops.loop(0), caps[0], &all);
@@ -83,7 +83,7 @@ LoopCap cap_of(const Mesh& mesh, HoleMethod method, bool is_smooth, std::size_t 
   return caps[0];
 }
 
-TEST(LoopCaps, MethodsAddNothingAMiddleOrThePartThatIsMissing) {
+TEST(LoopCaps, MethodsAddNoneOneOrManyVertices) {
   for (const int rings : {12, 60}) {  // short loops, and long ones
     Mesh mesh = sphere_mesh({0, 0, 0}, 1.0, rings);
     const double low = std::cos(std::numbers::pi / 4.0 - 1e-9);

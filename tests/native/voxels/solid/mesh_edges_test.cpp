@@ -26,7 +26,7 @@ EdgeTriangles random_triangles(int vertices, int count, unsigned seed) {
   return triangles;
 }
 
-// One edge after another, by an ordered map.
+// Reference implementation with an ordered map.
 MeshEdges slow_edges(const EdgeTriangles& triangles) {
   std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> numbers;
   for (const auto& triangle : triangles) {
@@ -49,7 +49,7 @@ MeshEdges slow_edges(const EdgeTriangles& triangles) {
   return edges;
 }
 
-TEST(MeshEdges, AreThoseOfAMapWhateverTheTriangles) {
+TEST(MeshEdges, EqualThoseOfAMap) {
   for (const auto& [vertices, count] : {std::pair{3, 1}, {3, 40}, {40, 100}, {20'000, 40'000}}) {
     const EdgeTriangles triangles = random_triangles(vertices, count, 7);
     const std::vector<Vector3> positions(static_cast<std::size_t>(vertices));
@@ -62,7 +62,7 @@ TEST(MeshEdges, AreThoseOfAMapWhateverTheTriangles) {
   }
 }
 
-TEST(MeshEdges, RefuseWhatIsNoMesh) {
+TEST(MeshEdges, RefuseInvalidTriangles) {
   const std::vector<Vector3> positions(3);
   EXPECT_THROW(find_mesh_edges({positions, EdgeTriangles{}}, Progress(), 1), Error);
   EXPECT_THROW(find_mesh_edges({positions, EdgeTriangles{{0, 1, 3}}}, Progress(), 1), Error);

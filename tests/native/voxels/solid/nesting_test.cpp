@@ -21,7 +21,8 @@ struct Box3 {
   bool is_mixed = false;
 };
 
-// Which of these cubes are turned, as parts of one mesh; `none` is behind them, and part of none.
+// Which of these cubes are turned, as parts of one mesh; has_none adds a box that belongs to no
+// part.
 std::vector<bool> turned(const std::vector<Box3>& boxes, bool has_none = false) {
   Mesh mesh;
   std::vector<ClosedPart> parts;
@@ -58,19 +59,19 @@ TEST(Nesting, CavitiesStayAndOthersAreTurned) {
   EXPECT_EQ(turned({{0, 4}, {1, 2, true}}), Turned({false, false}));
   EXPECT_EQ(turned({{0, 4}, {5, 6, true}}), Turned({false, true}));
   EXPECT_EQ(turned({{0, 4}, {1, 2}}), Turned({false, false}));  // solid within solid
-  // All inside out: the cavity is right as well, once all are turned.
+  // All are inside out: once all are turned, the cavity is right as well.
   EXPECT_EQ(turned({{0, 4, true}, {1, 2}}), Turned({true, true}));
   // A solid in a cavity in a solid, and a second cavity in the cavity.
   EXPECT_EQ(turned({{0, 9}, {1, 8, true}, {2, 7}}), Turned({false, false, false}));
   EXPECT_EQ(turned({{0, 9}, {1, 8, true}, {2, 7, true}}), Turned({false, false, true}));
 }
 
-TEST(Nesting, WhatBelongsToNoPartDoesNotCount) {
+TEST(Nesting, IgnoresTrianglesOfNoPart) {
   EXPECT_EQ(turned({{0, 4}, {5, 6, true}}, true), Turned({false, true}));
   EXPECT_EQ(turned({{0, 4, false, true}, {5, 6, false, true}}, true), Turned({false, false}));
 }
 
-TEST(Nesting, MixedPartsGoByHowManyHoldThem) {
+TEST(Nesting, MixedPartsDependOnTheNestingDepth) {
   const auto mixed = [](double low, double high, bool is_turned = false) {
     return Box3{low, high, is_turned, true};
   };

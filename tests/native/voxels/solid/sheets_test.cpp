@@ -16,7 +16,7 @@ using testing::box_mesh;
 using testing::Mesh;
 using testing::sphere_mesh;
 
-// A box without the side where z is high.
+// A box without its top.
 Mesh open_box(const Vector3& low, const Vector3& high) {
   Mesh mesh = box_mesh(low, high);
   mesh.triangles.erase(mesh.triangles.begin() + 2, mesh.triangles.begin() + 4);
@@ -28,7 +28,7 @@ Mesh turned(Mesh mesh) {
   return mesh;
 }
 
-// A flat square of 100 x 100 squares, but for those in the middle of this many along a side.
+// A flat grid of 100 x 100 squares without `hole` x `hole` of them in the middle.
 Mesh sheet_with_hole(int hole) {
   constexpr int kSide = 100;
   Mesh mesh;
@@ -55,9 +55,9 @@ struct Closing {
         loops(border_loops(input, Progress(), 1)),
         is_kept(loops.size(), 1),
         caps(first_caps(input, loops, is_kept, HoleMethod::kFan, Progress(), 1)),
-        solids(leave_sheets(input, loops, caps, Progress(), is_kept)) {}
-  void leave_losses() {
-    prefilter::leave_losses(input, loops, caps, solids, Progress(), 1, is_kept);
+        solids(drop_sheet_loops(input, loops, caps, Progress(), is_kept)) {}
+  void drop_canceling_caps() {
+    prefilter::drop_canceling_caps(input, loops, caps, solids, Progress(), 1, is_kept);
   }
   std::size_t kept() const {
     return static_cast<std::size_t>(std::count(is_kept.begin(), is_kept.end(), 1));
@@ -91,8 +91,8 @@ TEST(Sheets, FlatBoxesAreSheets) {
   }
 }
 
-TEST(Sheets, OnlySmallHolesInThemAreClosed) {
-  // 44^2 is 24 % of what is left of 100^2, 45^2 is 25.4 %.
+TEST(Sheets, OnlySmallHolesAreClosed) {
+  // 44^2 is 24 % of the rest of 100^2, 45^2 is 25.4 %.
   const Closing small(sheet_with_hole(44));
   ASSERT_EQ(small.loops.size(), 2U);
   EXPECT_EQ(small.kept(), 1U);
@@ -113,18 +113,18 @@ TEST(Sheets, PartsAreCounted) {
   EXPECT_EQ(closing.kept(), 2U);
 }
 
-TEST(Sheets, ATriangleByItselfStaysOpen) {
+TEST(Sheets, SingleTrianglesStayOpen) {
   const std::vector<Vector3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   const std::vector<std::array<std::int64_t, 3>> triangles = {{0, 1, 2}};
   const BorderLoops loops = border_loops({positions, triangles}, Progress(), 1);
   ASSERT_EQ(loops.size(), 1U);
   std::vector<unsigned char> is_kept(1, 1);
-  leave_single_faces(loops, is_kept);
+  drop_single_face_loops(loops, is_kept);
   EXPECT_EQ(is_kept[0], 0);
   Mesh box = open_box({0, 0, 0}, {1, 1, 1});
   const BorderLoops of_box = border_loops({box.positions, box.triangles}, Progress(), 1);
   is_kept[0] = 1;
-  leave_single_faces(of_box, is_kept);
+  drop_single_face_loops(of_box, is_kept);
   EXPECT_EQ(is_kept[0], 1);
 }
 
@@ -144,32 +144,32 @@ Mesh halves(double apart) {
   return halves;
 }
 
-TEST(CapLosses, WhatOthersCloseStaysOpen) {
-  // Behind the cap of each is the inside of the whole.
+TEST(CapLosses, CapsThatCancelStayOpen) {
+  // The inside of the whole sphere is behind the cap of each half.
   Closing whole(halves(1e-3));
   ASSERT_EQ(whole.kept(), 2U);
-  whole.leave_losses();
+  whole.drop_canceling_caps();
   EXPECT_EQ(whole.kept(), 0U);
   Closing apart(halves(3.0));
   ASSERT_EQ(apart.kept(), 2U);
-  apart.leave_losses();
+  apart.drop_canceling_caps();
   EXPECT_EQ(apart.kept(), 2U);
 }
 
-TEST(CapLosses, ACapThatIsInsideOutStaysOpen) {
-  // A large solid, so that all is right side out, and a part of it that is not.
+TEST(CapLosses, InvertedCapsStayOpen) {
+  // A large solid, so that the mesh counts as right side out, and an inverted small part.
   Mesh mesh = open_box({0, 0, 0}, {1, 1, 1});
   mesh.add(turned(open_box({5, 0, 0}, {5.5, 0.5, 0.5})));
   Closing closing(mesh);
   ASSERT_EQ(closing.kept(), 2U);
   EXPECT_FALSE(closing.solids.is_turned);
-  closing.leave_losses();
+  closing.drop_canceling_caps();
   EXPECT_EQ(closing.is_kept, (std::vector<unsigned char>{1, 0}));
-  // Where all is inside out there is nothing to lose.
+  // If all parts are inside out, no volume is lost.
   Mesh both = turned(open_box({0, 0, 0}, {1, 1, 1}));
   both.add(turned(open_box({5, 0, 0}, {5.5, 0.5, 0.5})));
   Closing turned_closing(both);
-  turned_closing.leave_losses();
+  turned_closing.drop_canceling_caps();
   EXPECT_EQ(turned_closing.kept(), 2U);
 }
 

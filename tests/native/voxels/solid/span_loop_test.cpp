@@ -27,7 +27,7 @@ double area_of(const HolePatch& patch) {
   return area;
 }
 
-// The smallest over all triangulations of the points between two, by trying each.
+// Smallest area of all triangulations of the points between two indices, by exhaustive search.
 double smallest_area(const Loop& loop, std::size_t from, std::size_t to) {
   if (to - from < 2) return 0.0;
   double best = 1e300;
@@ -42,7 +42,7 @@ HolePatch span(const Loop& loop) {
   return span_loop(loop, Loop(loop.size(), Vector3{}), Progress());
 }
 
-// Each edge of the loop once, forward; all others once each way.
+// Each edge of the loop occurs once, forward; all others occur once in each direction.
 void expect_disc(const HolePatch& patch, std::size_t border) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> sides;
   for (const auto& triangle : patch.triangles()) {
@@ -62,7 +62,7 @@ void expect_disc(const HolePatch& patch, std::size_t border) {
   EXPECT_EQ(alone, border);
 }
 
-TEST(SpanLoop, IsTheSmallestOfAllThereAre) {
+TEST(SpanLoop, IsTheSmallestTriangulation) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(-0.3, 0.3);
   for (std::size_t count = 3; count <= 9; ++count) {
@@ -79,13 +79,13 @@ TEST(SpanLoop, IsTheSmallestOfAllThereAre) {
       EXPECT_EQ(patch.triangles().size(), count - 2);
       const double best = smallest_area(loop, 0, count - 1);
       EXPECT_GE(area_of(patch), best * (1.0 - 1e-9));
-      // What lies folded onto its neighbor counts more.
+      // Triangles folded onto a neighbor have a penalty in area.
       EXPECT_LE(area_of(patch), best * 1.05);
     }
   }
 }
 
-TEST(SpanLoop, FillsAnyPolygonOfThePlaneOnce) {
+TEST(SpanLoop, CoversPlanarPolygonsOnce) {
   // A comb: most chords are outside.
   for (const std::size_t teeth : {3U, 20U, 200U}) {
     Loop loop;
@@ -107,13 +107,13 @@ TEST(SpanLoop, FillsAnyPolygonOfThePlaneOnce) {
     expect_disc(patch, loop.size());
     const double area = std::abs(doubled) / 2.0;
     EXPECT_GT(area_of(patch), area - 1e-9) << teeth;
-    // Where points are left out first, a few triangles may stay folded.
+    // Where points are left out at first, a few triangles may stay folded.
     EXPECT_LT(area_of(patch), teeth < 100 ? area + 1e-9 : 1.05 * area) << teeth;
   }
 }
 
-TEST(SpanLoop, OfThousandsOfPointsIsNearTheSurfaceOfLeastArea) {
-  // The border of a piece of the helicoid, which has the least area.
+TEST(SpanLoop, ApproximatesAMinimalSurfaceForLongLoops) {
+  // The border of a piece of a helicoid, which is a minimal surface.
   constexpr std::size_t kSide = 1000;
   Loop loop;
   const auto helicoid = [](double u, double v) {
@@ -139,7 +139,7 @@ TEST(SpanLoop, OfThousandsOfPointsIsNearTheSurfaceOfLeastArea) {
   EXPECT_LT(area_of(patch), 1.02 * area);
 }
 
-TEST(SpanLoop, PointsAtOnePlaceAndOnOneLine) {
+TEST(SpanLoop, AcceptsEqualAndCollinearPoints) {
   for (const std::size_t count : {4U, 50U, 500U}) {
     const HolePatch same = span(Loop(count, Vector3{0.5, 0.5, 0.5}));
     expect_disc(same, count);

@@ -22,13 +22,13 @@ WorkMesh mesh_of(std::vector<Vector3> positions, std::vector<Triangle> triangles
   return mesh;
 }
 
-// A triangle with its lowest corner first: the same for all ways to begin.
+// Rotates a triangle so that its lowest corner is first.
 Triangle from_lowest(Triangle t) {
   std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
   return t;
 }
 
-TEST(DropDuplicates, KeepsTheFirstOfTheCommonDirection) {
+TEST(DropDuplicates, KeepsTheFirstOfTheMoreFrequentOrientation) {
   std::mt19937 random(4);
   std::vector<Triangle> triangles;
   for (int i = 0; i < 3000; ++i) {
@@ -39,7 +39,7 @@ TEST(DropDuplicates, KeepsTheFirstOfTheCommonDirection) {
   for (const std::size_t count : {1U, 2U, 20U, 120U, 3000U}) {
     WorkMesh mesh =
         mesh_of(std::vector<Vector3>(7), {triangles.begin(), triangles.begin() + count});
-    // By the book: of each three corners, which ones go which way.
+    // Reference: triangles by their set of corners, then by orientation.
     std::map<std::set<std::int32_t>, std::map<Triangle, std::vector<std::size_t>>> all;
     std::size_t whole = 0;
     for (std::size_t t = 0; t < count; ++t) {
@@ -70,28 +70,27 @@ TEST(DropDuplicates, KeepsTheFirstOfTheCommonDirection) {
   }
 }
 
-TEST(WeldEqual, NamesTheFirstAtEachPlace) {
+TEST(WeldEqual, MapsToTheFirstVertexAtEachPosition) {
   WorkMesh mesh =
       mesh_of({{0, 0, 0}, {1, 0, 0}, {-0.0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 4}, {2, 4, 3}});
   EXPECT_EQ(weld_equal(&mesh, Progress(), 1), 2U);
   EXPECT_EQ(mesh.triangles[1], (Triangle{0, 4, 1}));
 }
 
-// Two triangles with edges along x, this far apart, and the third corner of the lower one this far
-// from the edge.
+// Two triangles with parallel edges `apart` from each other; the lower one has this height.
 WorkMesh two(double apart, double height) {
   return mesh_of(
       {{0, 0, 0}, {1, 0, 0}, {0.5, -height, 0}, {0, apart, 0}, {1, apart, 0}, {0.5, 3, 0}},
       {{1, 0, 2}, {3, 4, 5}});
 }
 
-TEST(WeldBorders, WeldsWhatIsNearButNoCornersOfATriangle) {
+TEST(WeldBorders, WeldsNearVerticesButNotCornersOfOneTriangle) {
   for (const auto& [apart, expected] : {std::pair(0.09, 2U), std::pair(0.11, 0U)}) {
     WorkMesh mesh = two(apart, 1.0);
     EXPECT_EQ(weld_borders(&mesh, 0.1, Progress(), 1), expected) << apart;
     EXPECT_EQ(mesh.triangles[1] == (Triangle{0, 1, 5}), expected == 2);
   }
-  // Edges of length 1 may lose a third.
+  // Edges of length 1 may be shortened by a third.
   WorkMesh near = two(0.33, 2.0);
   EXPECT_EQ(weld_borders(&near, 10.0, Progress(), 1), 2U);
   WorkMesh far = two(0.34, 2.0);
@@ -99,7 +98,7 @@ TEST(WeldBorders, WeldsWhatIsNearButNoCornersOfATriangle) {
 }
 
 TEST(SplitBorders, SplitsWhereFinerBordersMeetCoarserOnes) {
-  // An edge from 0 to 1, and ends of others near it.
+  // An edge from 0 to 1, with the end of another edge near it.
   const auto splits = [](const Vector3& point, double distance) {
     WorkMesh mesh = mesh_of({{0, 0, 0}, {1, 0, 0}, {0.5, -1, 0}, point, {0.4, 3, 0}, {0.6, 3, 0}},
                             {{1, 0, 2}, {3, 4, 5}});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "prefilter/voxels/solid/kept.h"
+#include "prefilter/voxels/solid/contour_coverage.h"
 
 #include <algorithm>
 #include <array>
@@ -12,17 +12,17 @@
 namespace prefilter {
 namespace {
 
-constexpr std::int64_t kRowsPerTask = 1 << 12;
-constexpr double kMarginCells = 3.0;
-// Where leaves are looked up, in cells along the normal.
-constexpr std::array<double, 5> kSteps = {0.0, -0.75, 0.75, -1.5, 1.5};
+constexpr std::int64_t kCoverageRowsPerTask = 1 << 12;
+constexpr double kMarginCells = 3.0;  // around the box
+// Offsets of the samples along the normal, in cells.
+constexpr std::array<double, 5> kNormalOffsets = {0.0, -0.75, 0.75, -1.5, 1.5};
 constexpr double kSampleCells = 2.0;
 
-// Whether some of the leaves along a normal are inside, and some outside.
+// Whether leaves along a normal lie on both sides of 1/2.
 bool has_both_sides(const Octree& octree, const Vector3& point, const Vector3& normal) {
   bool is_any_inside = false;
   bool is_any_outside = false;
-  for (const double step : kSteps) {
+  for (const double step : kNormalOffsets) {
     const bool is_inside = value_at(octree, point + step * normal) >= 0.5F;
     (is_inside ? is_any_inside : is_any_outside) = true;
     if (is_any_inside && is_any_outside) return true;
@@ -31,17 +31,17 @@ bool has_both_sides(const Octree& octree, const Vector3& point, const Vector3& n
 }
 
 bool is_inside_all_along(const Octree& octree, const Vector3& point, const Vector3& normal) {
-  return std::all_of(kSteps.begin(), kSteps.end(),
+  return std::all_of(kNormalOffsets.begin(), kNormalOffsets.end(),
                      [&](double step) { return value_at(octree, point + step * normal) >= 0.5F; });
 }
 
-// Calls set(triangle, share) with the share of the samples of each triangle of which `holds`, given
-// a point and the normal there, as long as a cell, is true.
+// Calls set(triangle, share) with the share of each triangle's samples for which holds(triangle,
+// point, normal) is true; the normal is one cell long.
 template <class Holds, class Set>
 void for_shares(const MeshView<std::int32_t>& mesh, double cell, const Progress& progress,
                 int threads, const Holds& holds, const Set& set) {
-  parallel_ranges(static_cast<std::int64_t>(mesh.triangles.size()), kRowsPerTask, threads, progress,
-                  [&](std::int64_t begin, std::int64_t end) {
+  parallel_ranges(static_cast<std::int64_t>(mesh.triangles.size()), kCoverageRowsPerTask, threads,
+                  progress, [&](std::int64_t begin, std::int64_t end) {
                     for (auto t = static_cast<std::size_t>(begin);
                          t < static_cast<std::size_t>(end); ++t) {
                       const std::array<Vector3, 3> corners = mesh.corners(t);
@@ -51,12 +51,12 @@ void for_shares(const MeshView<std::int32_t>& mesh, double cell, const Progress&
                         for (double& x : normal) x *= cell / size;
                       }
                       int count = 0;
-                      int found = 0;
+                      int covered = 0;
                       for_samples(corners, kSampleCells * cell, [&](const Vector3& point) {
                         ++count;
-                        if (holds(t, point, normal)) ++found;
+                        if (holds(t, point, normal)) ++covered;
                       });
-                      set(t, static_cast<float>(found) / static_cast<float>(std::max(count, 1)));
+                      set(t, static_cast<float>(covered) / static_cast<float>(std::max(count, 1)));
                     }
                   });
 }
@@ -81,8 +81,8 @@ Octree empty_tree_around(const Box& box, double cell) {
   return octree;
 }
 
-std::vector<float> kept_shares(const MeshView<std::int32_t>& mesh, const Octree& octree,
-                               const Progress& progress, int threads) {
+std::vector<float> contour_coverage(const MeshView<std::int32_t>& mesh, const Octree& octree,
+                                    const Progress& progress, int threads) {
   std::vector<float> shares(mesh.triangles.size(), 0.0F);
   for_shares(
       mesh, octree.cell_size(0, octree.depth), progress, threads,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "prefilter/voxels/solid/part_fates.h"
+#include "prefilter/voxels/solid/part_actions.h"
 
 #include <gtest/gtest.h>
 
@@ -37,70 +37,71 @@ FacePatch closed_patch(double volume) {
   return patch;
 }
 
-TEST(PartFates, AreasAreThoseOfTrianglesTimesShares) {
+TEST(PartActions, CoveredAreasAreWeightedByShares) {
   Patches patches = patches_of({open_patch(), open_patch()});
   patches.patch_of = {1, 0, 1};
   const std::vector<double> areas = {1.0, 2.0, 4.0};
-  const std::vector<float> kept = {0.25F, 1.0F, 0.5F};
+  const std::vector<float> coverage = {0.25F, 1.0F, 0.5F};
   const std::vector<TriangleSides> sides = {
       {0.5F, 0.25F, 0.125F, 0.0F}, {0, 0, 0, 1}, {0, 0, 0, 0.5F}};
-  const auto sums = part_areas(patches, areas, kept, sides);
+  const auto sums = part_areas(patches, areas, coverage, sides);
   EXPECT_EQ(sums[0].lost, 0.0);
   EXPECT_EQ(sums[0].inside, 2.0);
   EXPECT_EQ(sums[0].seen, 0.0);
   EXPECT_EQ(sums[1].lost, 0.75 + 2.0);
   EXPECT_EQ(sums[1].inside, 2.0);
   EXPECT_EQ(sums[1].seen, 0.875);
-  EXPECT_EQ(part_areas(patches, areas, kept, {})[1].inside, 0.0);
+  EXPECT_EQ(part_areas(patches, areas, coverage, {})[1].inside, 0.0);
 }
 
-// What is decided about one part, and whether it is thickened.
+// The decision about one part, and whether it is thickened.
 struct Judged {
-  Fate fate;
+  PartAction action;
   bool is_thickened;
   bool has_changed;
 };
 Judged judged(const FacePatch& patch, const PartAreas& areas, double thickness = 0.1) {
-  std::vector<PartFate> fates(1);
-  const bool has_changed = judge_parts(patches_of({patch}), std::vector{areas}, thickness, fates);
-  return {fates[0].fate, fates[0].is_thickened, has_changed};
+  std::vector<PartDecision> decisions(1);
+  const bool has_changed =
+      decide_parts(patches_of({patch}), std::vector{areas}, thickness, decisions);
+  return {decisions[0].action, decisions[0].is_thickened, has_changed};
 }
 
-TEST(PartFates, OpenPartsGoByWhatTheyLose) {
+TEST(PartActions, OpenPartsDependOnTheLostArea) {
   const FacePatch open = open_patch();
-  const auto fate = [&](double lost, double inside, double seen) {
+  const auto action = [&](double lost, double inside, double seen) {
     return judged(open, {lost, inside, seen});
   };
-  EXPECT_EQ(fate(0.0, 0.0, 1.0).fate, Fate::kWound);
-  EXPECT_FALSE(fate(0.004, 0.0, 1.0).is_thickened);
-  EXPECT_TRUE(fate(0.006, 0.0, 1.0).is_thickened);
-  EXPECT_FALSE(fate(0.24, 0.0, 1.0).has_changed);
-  EXPECT_EQ(fate(0.26, 0.0, 1.0).fate, Fate::kSheet);
-  EXPECT_TRUE(fate(0.26, 0.0, 1.0).has_changed);
-  EXPECT_EQ(fate(0.51, 0.79, 0.21).fate, Fate::kSheet);
-  EXPECT_EQ(fate(0.51, 0.81, 0.19).fate, Fate::kBuried);
-  EXPECT_EQ(fate(0.49, 0.81, 0.19).fate, Fate::kSheet);
-  EXPECT_EQ(judged(open, {0.6, 0.0, 1.0}, 0.0).fate, Fate::kWound);
+  EXPECT_EQ(action(0.0, 0.0, 1.0).action, PartAction::kKeepWinding);
+  EXPECT_FALSE(action(0.004, 0.0, 1.0).is_thickened);
+  EXPECT_TRUE(action(0.006, 0.0, 1.0).is_thickened);
+  EXPECT_FALSE(action(0.24, 0.0, 1.0).has_changed);
+  EXPECT_EQ(action(0.26, 0.0, 1.0).action, PartAction::kReplaceByShell);
+  EXPECT_TRUE(action(0.26, 0.0, 1.0).has_changed);
+  EXPECT_EQ(action(0.51, 0.79, 0.21).action, PartAction::kReplaceByShell);
+  EXPECT_EQ(action(0.51, 0.81, 0.19).action, PartAction::kDrop);
+  EXPECT_EQ(action(0.49, 0.81, 0.19).action, PartAction::kReplaceByShell);
+  EXPECT_EQ(judged(open, {0.6, 0.0, 1.0}, 0.0).action, PartAction::kKeepWinding);
   EXPECT_FALSE(judged(open, {0.6, 0.0, 1.0}, 0.0).is_thickened);
-  EXPECT_EQ(judged(open, {0.6, 1.0, 0.0}, 0.0).fate, Fate::kBuried);
+  EXPECT_EQ(judged(open, {0.6, 1.0, 0.0}, 0.0).action, PartAction::kDrop);
 }
 
-TEST(PartFates, ClosedPartsThatAreThinAreThickened) {
+TEST(PartActions, ThinClosedPartsAreThickened) {
   EXPECT_TRUE(is_thin(closed_patch(-0.049), 0.1));
   EXPECT_FALSE(is_thin(closed_patch(-0.051), 0.1));
   EXPECT_FALSE(is_thin(open_patch(), 0.1));
   EXPECT_TRUE(judged(closed_patch(0.049), {0.51, 0.0, 0.0}).is_thickened);
   EXPECT_FALSE(judged(closed_patch(0.049), {0.49, 0.0, 0.0}).is_thickened);
   EXPECT_FALSE(judged(closed_patch(0.051), {0.51, 0.0, 0.0}).is_thickened);
-  EXPECT_EQ(judged(closed_patch(0.049), {0.51, 1.0, 0.0}).fate, Fate::kWound);
+  EXPECT_EQ(judged(closed_patch(0.049), {0.51, 1.0, 0.0}).action, PartAction::kKeepWinding);
 }
 
-TEST(PartFates, WhatIsDecidedStays) {
-  std::vector<PartFate> fates = {{Fate::kFilled, true}};
-  EXPECT_FALSE(
-      judge_parts(patches_of({open_patch()}), std::vector<PartAreas>{{1.0, 1.0, 0.0}}, 0.1, fates));
-  EXPECT_EQ(fates[0].fate, Fate::kFilled);
-  EXPECT_FALSE(fates[0].is_thickened);
+TEST(PartActions, DecisionsAreFinal) {
+  std::vector<PartDecision> decisions = {{PartAction::kReplaceByRegion, true}};
+  EXPECT_FALSE(decide_parts(patches_of({open_patch()}), std::vector<PartAreas>{{1.0, 1.0, 0.0}},
+                            0.1, decisions));
+  EXPECT_EQ(decisions[0].action, PartAction::kReplaceByRegion);
+  EXPECT_FALSE(decisions[0].is_thickened);
 }
 
 // A triangle of area 1 in the plane z = height, whose normal is up.
@@ -127,14 +128,14 @@ bool is_turned(FacePatch patch, TriangleSides sides, double height = 0.0, double
   return is_swapped;
 }
 
-TEST(TurnParts, GoByWhereTheOutsideIs) {
+TEST(TurnParts, DependsOnTheSideOfTheOutside) {
   const auto sides = [](float both, float front, float back) {
     return TriangleSides{both, front, back, 0.0F};
   };
   const FacePatch several = open_patch(2);
   EXPECT_FALSE(is_turned(several, sides(0, 1, 0)));
   EXPECT_TRUE(is_turned(several, sides(0, 0, 1)));
-  // A part of one mind is turned where four times as much is seen from behind.
+  // A part with consistent normals is turned if four times as much is seen from behind.
   EXPECT_FALSE(is_turned(several, sides(0, 0.11F, 0.42F)));
   EXPECT_TRUE(is_turned(several, sides(0, 0.1F, 0.42F)));
   EXPECT_TRUE(is_turned(open_patch(1), sides(0, 0.4F, 0.42F)));
@@ -149,7 +150,7 @@ TEST(TurnParts, GoByWhereTheOutsideIs) {
   EXPECT_FALSE(is_turned(none, sides(0, 0.42F, 0.4F)));
 }
 
-TEST(TurnParts, WhatIsOpenWideGoesByItsVolume) {
+TEST(TurnParts, WideOpenPartsDependOnTheirVolume) {
   // The cone from the origin over a triangle of area 1 in the plane z = h has the volume h / 3.
   const TriangleSides open{0.6F, 0.0F, 0.4F, 0.0F};
   EXPECT_TRUE(is_turned(open_patch(), open, -0.31));
@@ -158,7 +159,7 @@ TEST(TurnParts, WhatIsOpenWideGoesByItsVolume) {
   EXPECT_TRUE(is_turned(open_patch(), {0.4F, 0.0F, 0.6F, 0.0F}, 0.31));
 }
 
-TEST(HollowRegions, AreBoundedByOpenPartsAndNotFilled) {
+TEST(HollowRegions, AreBoundedByOpenPartsAndUnfilled) {
   Patches patches = patches_of({open_patch(), closed_patch(1.0), open_patch()});
   const auto beside = [](ReachGrid::Label region, float share) {
     TriangleSides sides;
@@ -185,13 +186,13 @@ TEST(HollowRegions, AreBoundedByOpenPartsAndNotFilled) {
   EXPECT_EQ(hollow(0.0, 0.0), (std::vector{false, false, false, false, true}));
 }
 
-// The grid around a closed box, and what is on the sides of its triangles.
-TEST(TriangleSides, OfABoxAreTheRegionWithinAndTheOutside) {
+// The grid around a closed box assigns the right regions to the sides of its triangles.
+TEST(TriangleSides, SeparateTheInsideOfABoxFromTheOutside) {
   const auto box = box_mesh({0, 0, 0}, {1, 1, 1});
   const MeshView<std::int32_t> mesh{box.positions, box.triangles};
   const ReachGrid grid(mesh, 0.05, 0.0, Progress(), 1);
   for (const TriangleSides& sides : sides_of_triangles(mesh, grid, Progress(), 1)) {
-    EXPECT_GT(sides.outside_front, 0.8F);  // but for what is close to its edges
+    EXPECT_GT(sides.outside_front, 0.8F);  // except close to its edges
     EXPECT_EQ(sides.outside_back + sides.outside_both + sides.inside_both, 0.0F);
     EXPECT_EQ(sides.region, ReachGrid::kFirstRegion);
   }
@@ -202,7 +203,7 @@ TEST(TriangleSides, OfABoxAreTheRegionWithinAndTheOutside) {
     EXPECT_GT(sides.outside_back, 0.8F);
     EXPECT_EQ(sides.outside_front, 0.0F);
   }
-  // Of what is voxelized the whole region is inside, of half of it half.
+  // Voxelized whole, all of the region is inside; voxelized by half, half of it.
   VoxelizeOptions options;
   options.depth = 6;
   options.bounds = Box{{-1, -1, -1}, {2, 2, 2}};

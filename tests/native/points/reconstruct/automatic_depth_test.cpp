@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "prefilter/points/reconstruct/carried_depth.h"
+#include "prefilter/points/reconstruct/automatic_depth.h"
 
 #include <gtest/gtest.h>
 
@@ -39,23 +39,23 @@ Box box_of(const std::vector<Vector3>& points) {
 }
 
 int depth_of(const std::vector<Vector3>& points) {
-  return carried_depth(thinned(points), box_of(points), Progress(), 1);
+  return automatic_depth(thinned(points), box_of(points), Progress(), 1);
 }
 
-// Of points that are even, a face of a cell has.
+// Expected number of points per cell face if they are spread evenly.
 double points_a_face(double count, const Box& box, int depth) {
   const double cell = std::ldexp(cube_around(box, depth).size(0), -depth);
   return count / kArea * cell * cell;
 }
 
-TEST(CarriedDepth, OfEvenPointsIsTheLastOfOnePointAFace) {
+TEST(AutomaticDepth, IsTheDeepestWithOnePointPerFaceForEvenPoints) {
   int checked = 0;
   for (int count = 300; count < 400000; count += count / 3) {
     const std::vector<Vector3> points = testing::sphere_cloud(count, kRadius).points;
     const Box box = box_of(points);
     int wanted = 1;
     while (points_a_face(count, box, wanted + 1) >= 1.0) ++wanted;
-    // Where one depth more or less is as near, either may be found.
+    // Where two depths come equally close to one point per face, either may be chosen.
     if (points_a_face(count, box, wanted) < 1.25) continue;
     if (points_a_face(count, box, wanted + 1) > 0.9) continue;
     EXPECT_EQ(depth_of(points), wanted) << count;
@@ -64,7 +64,7 @@ TEST(CarriedDepth, OfEvenPointsIsTheLastOfOnePointAFace) {
   EXPECT_GE(checked, 12);
 }
 
-TEST(CarriedDepth, RisesByHalfOnAverageWithTwiceThePoints) {
+TEST(AutomaticDepth, RisesByHalfOnAverageWhenPointsDouble) {
   int rise = 0;
   for (int step = 0; step < 8; ++step) {
     const double count = 6000.0 * std::pow(4.0, step / 8.0);
@@ -77,18 +77,18 @@ TEST(CarriedDepth, RisesByHalfOnAverageWithTwiceThePoints) {
   EXPECT_NEAR(rise, 4, 1);
 }
 
-TEST(CarriedDepth, IsTheSameForAnyOrderCopiesAndThreads) {
+TEST(AutomaticDepth, IsTheSameForAnyOrderCopiesAndThreads) {
   std::vector<Vector3> points = testing::sphere_cloud(20000).points;
   const int depth = depth_of(points);
   const Box box = box_of(points);
-  EXPECT_EQ(carried_depth(thinned(points), box, Progress(), 7), depth);
+  EXPECT_EQ(automatic_depth(thinned(points), box, Progress(), 7), depth);
   const std::vector<Vector3> once = points;
   for (int k = 0; k < 20; ++k) points.insert(points.end(), once.begin(), once.end());
   std::shuffle(points.begin(), points.end(), std::mt19937(3));
   EXPECT_EQ(depth_of(points), depth);
 }
 
-TEST(CarriedDepth, IsNotThatOfASmallPartThatIsDenser) {
+TEST(AutomaticDepth, IgnoresASmallDenserPart) {
   std::vector<Vector3> points = testing::sphere_cloud(8000).points;
   const int depth = depth_of(points);
   for (const Vector3& point : testing::sphere_cloud(600000).points) {
@@ -98,15 +98,15 @@ TEST(CarriedDepth, IsNotThatOfASmallPartThatIsDenser) {
   EXPECT_EQ(depth_of(points), depth);
 }
 
-TEST(CarriedDepth, LeavesOutWhatIsBeyondTheBox) {
+TEST(AutomaticDepth, IgnoresPointsOutsideTheBox) {
   std::vector<Vector3> points = testing::sphere_cloud(8000).points;
   const Box box = box_of(points);
-  const int depth = carried_depth(thinned(points), box, Progress(), 1);
+  const int depth = automatic_depth(thinned(points), box, Progress(), 1);
   for (int k = 0; k < 6000; ++k) points.push_back({9.0, 9.0 + k, 9.0});
-  EXPECT_EQ(carried_depth(thinned(points), box, Progress(), 1), depth);
+  EXPECT_EQ(automatic_depth(thinned(points), box, Progress(), 1), depth);
 }
 
-TEST(CarriedDepth, IsADepthForPointsOfAnyKind) {
+TEST(AutomaticDepth, IsValidForAnyPoints) {
   const auto is_depth = [](const std::vector<Vector3>& points) {
     const int depth = depth_of(points);
     EXPECT_GE(depth, 1);
@@ -130,10 +130,10 @@ TEST(CarriedDepth, IsADepthForPointsOfAnyKind) {
   }
 }
 
-TEST(ThinnedPoints, AreThoseOfTheLeastNumbersInAnyOrder) {
+TEST(ThinnedPoints, HaveTheSmallestHashesInAnyOrder) {
   std::vector<Vector3> points = testing::sphere_cloud(700000).points;
   std::vector<std::uint64_t> numbers;
-  for (const Vector3& point : points) numbers.push_back(ThinnedPoints::entry_of(point).number);
+  for (const Vector3& point : points) numbers.push_back(ThinnedPoints::entry_of(point).hash);
   std::sort(numbers.begin(), numbers.end());
   const auto up_to = [&](std::uint64_t largest) {
     return static_cast<std::size_t>(std::upper_bound(numbers.begin(), numbers.end(), largest) -
@@ -141,14 +141,14 @@ TEST(ThinnedPoints, AreThoseOfTheLeastNumbersInAnyOrder) {
   };
   std::uint64_t largest = ~std::uint64_t{0};
   double share = 1.0;
-  for (; up_to(largest) > ThinnedPoints::kMost; largest /= 2) share *= 2.0;
+  for (; up_to(largest) > ThinnedPoints::kMaxEntries; largest /= 2) share *= 2.0;
   for (const std::size_t batch : {std::size_t{7}, std::size_t{100000}, points.size()}) {
     std::shuffle(points.begin(), points.end(), std::mt19937(5));
     const ThinnedPoints some = thinned(points, batch);
     EXPECT_EQ(some.share(), share);
     ASSERT_EQ(some.entries().size(), up_to(largest));
     for (std::size_t i = 0; i < some.entries().size(); ++i) {
-      ASSERT_EQ(some.entries()[i].number, numbers[i]);
+      ASSERT_EQ(some.entries()[i].hash, numbers[i]);
     }
   }
 }

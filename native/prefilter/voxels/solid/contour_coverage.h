@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What of a surface is left in its voxels.
+// Measures how much of a surface the contour of its voxels covers.
 #pragma once
 
 #include <cstdint>
@@ -13,29 +13,30 @@
 
 namespace prefilter {
 
-/// The root of a tree with cells of this side around a box, and its depth; of larger cells where
-/// the tree would be too deep.
+/// An octree of one leaf around a box, with a depth at which cells have side `cell`, or are larger
+/// where the tree would be too deep.
 Octree empty_tree_around(const Box& box, double cell);
 
-/// Of each triangle, the share of samples of it that have leaves on both sides of 1/2 within one
-/// and a half cells along the normal: where a contour passes by.
-std::vector<float> kept_shares(const MeshView<std::int32_t>& mesh, const Octree& octree,
-                               const Progress& progress, int threads);
+/// For each triangle, the share of its samples with leaves on both sides of 1/2 within 1.5 cells
+/// along the normal, where the contour passes.
+std::vector<float> contour_coverage(const MeshView<std::int32_t>& mesh, const Octree& octree,
+                                    const Progress& progress, int threads);
 
-/// Adds to these shares those of the samples inside `others`, and inside the whole octree, as far
-/// along the normal: nothing is lost there, as other parts cover it. Of triangles that may be.
+/// Adds the shares of samples that are inside both `others` and the whole octree over the same
+/// distance along the normal: other parts cover these, so they are not lost. Only for triangles
+/// that `may_be_covered`.
 void add_covered(const MeshView<std::int32_t>& mesh, const Octree& octree, const Octree& others,
                  const std::vector<bool>& may_be_covered, const Progress& progress, int threads,
                  std::span<float> shares);
 
-/// Calls visit(point) for points of a triangle that are about `distance` apart: its middle, or the
-/// middles of the parts it is cut into.
+/// Calls visit(point) for points on a triangle about `distance` apart: its center, or the centers
+/// of the triangles into which it is divided.
 template <typename Visit>
 void for_samples(const std::array<Vector3, 3>& corners, double distance, const Visit& visit) {
-  constexpr double kMostParts = 24.0;
+  constexpr double kMaxParts = 24.0;  // per side
   const double longest = std::max({length(corners[1] - corners[0]), length(corners[2] - corners[1]),
                                    length(corners[0] - corners[2])});
-  const int parts = static_cast<int>(std::clamp(std::ceil(longest / distance), 1.0, kMostParts));
+  const int parts = static_cast<int>(std::clamp(std::ceil(longest / distance), 1.0, kMaxParts));
   const double step = 1.0 / parts;
   for (int i = 0; i < parts; ++i) {
     for (int j = 0; i + j < parts; ++j) {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "prefilter/points/reconstruct/carried_depth.h"
+// Estimates density from the distance to the k-th nearest neighbor (D. Loftsgaarden, C.
+// Quesenberry, A nonparametric estimate of a multivariate density function, 1965), on a subset of
+// the positions chosen by their hashes.
+#include "prefilter/points/reconstruct/automatic_depth.h"
 
 #include <algorithm>
 #include <bit>
@@ -14,7 +17,7 @@
 namespace prefilter {
 namespace {
 
-// The finalizer of splitmix64: each bit depends on all.
+// The finalizer of splitmix64: every output bit depends on every input bit.
 std::uint64_t mixed(std::uint64_t bits) {
   bits ^= bits >> 30U;
   bits *= 0xbf58476d1ce4e5b9U;
@@ -23,40 +26,41 @@ std::uint64_t mixed(std::uint64_t bits) {
   return bits ^ bits >> 31U;
 }
 
-// Points whose neighbors are looked for: the median of so many is off by a hundredth of a level.
-constexpr std::size_t kMostAsked = 4096;
-// Enough that a scanner's lines count, few enough that they are on one sheet of the surface.
-constexpr std::size_t kNeighbors = 16;
+// Number of points whose neighbors are searched: with so many, the median's error is about 1/100 of
+// a level.
+constexpr std::size_t kMaxDensityQueries = 4096;
+// Large enough to span adjacent scan lines, small enough to stay on one sheet of the surface.
+constexpr std::size_t kDensityNeighbors = 16;
 constexpr double kPi = 3.14159265358979323846;
-// Of a cell of the finest depth; with fewer than one point a face the surface folds, with more
-// detail is lost. In occupied cells that are about one and a half each, as Poisson reconstruction
-// has it.
+// Points per face of a finest cell. With fewer than one the surface folds, with more detail is
+// lost. It corresponds to about 1.5 points per occupied cell, the default of Poisson
+// reconstruction.
 constexpr double kPointsPerFace = 1.0;
 
-// Part of the surface: its area, and how many points there are in a unit of it.
+// Part of the surface around one point: its area, and the point density in it.
 struct Patch {
   double density = 0.0;
   double area = 0.0;
 };
 
-Patch patch_of(const Neighbors& found) {
-  // A circle of the area that holds all but the point itself and the last, on average.
-  const auto held = static_cast<double>(found.squares().size() - 1);
+Patch patch_of(const Neighbors& neighbors) {
+  // Area of the disk that is expected to hold all neighbors except the point itself and the last.
+  const auto held = static_cast<double>(neighbors.squares().size() - 1);
   Patch patch;
-  patch.area = kPi * found.squares().back() / std::max(held - 1.0, 1.0);
+  patch.area = kPi * neighbors.squares().back() / std::max(held - 1.0, 1.0);
   patch.density = 1.0 / patch.area;
   return patch;
 }
 
-// What half of the area is no denser than.
+// Density at the area-weighted median.
 double median_density(std::vector<Patch>* patches) {
   std::sort(patches->begin(), patches->end(),
             [](const Patch& a, const Patch& b) { return a.density < b.density; });
-  // Points that lie by themselves, outliers, would have more area than all the surface.
-  constexpr double kLeastShare = 1.0 / 64.0;
+  // Excludes isolated points: the area of one outlier would exceed that of the whole surface.
+  constexpr double kMinDensityRatio = 1.0 / 64.0;
   const double middle = (*patches)[patches->size() / 2].density;
   const auto first = std::find_if(patches->begin(), patches->end(), [&](const Patch& patch) {
-    return patch.density >= kLeastShare * middle;
+    return patch.density >= kMinDensityRatio * middle;
   });
   patches->erase(patches->begin(), first);
   double whole = 0.0;
@@ -72,28 +76,28 @@ double median_density(std::vector<Patch>* patches) {
 }  // namespace
 
 ThinnedPoints::Entry ThinnedPoints::entry_of(const Vector3& position) {
-  std::uint64_t number = 0;
+  std::uint64_t hash = 0;
   for (const double value : position) {
-    // 0.0 and -0.0 are one place.
-    number = mixed((number ^ std::bit_cast<std::uint64_t>(value + 0.0)) + 0x9e3779b97f4a7c15U);
+    // Adding 0.0 maps -0.0 to 0.0, as they are the same position.
+    hash = mixed((hash ^ std::bit_cast<std::uint64_t>(value + 0.0)) + 0x9e3779b97f4a7c15U);
   }
-  return {number, position};
+  return {hash, position};
 }
 
 void ThinnedPoints::add(const std::vector<Entry>& entries) {
   for (const Entry& entry : entries) {
     if (keeps(entry)) entries_.push_back(entry);
   }
-  if (entries_.size() >= 2 * kMost) thin();
+  if (entries_.size() >= 2 * kMaxEntries) thin();
 }
 
 void ThinnedPoints::thin() {
   std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
-    return std::tie(a.number, a.position) < std::tie(b.number, b.position);
+    return std::tie(a.hash, a.position) < std::tie(b.hash, b.position);
   });
   const auto same = [](const Entry& a, const Entry& b) { return a.position == b.position; };
   entries_.erase(std::unique(entries_.begin(), entries_.end(), same), entries_.end());
-  while (entries_.size() > kMost && largest_ > 0) {
+  while (entries_.size() > kMaxEntries && largest_ > 0) {
     largest_ /= 2;
     share_ *= 2.0;
     const auto end = std::partition_point(entries_.begin(), entries_.end(),
@@ -102,8 +106,8 @@ void ThinnedPoints::thin() {
   }
 }
 
-int carried_depth(const ThinnedPoints& points, const Box& box, const Progress& progress,
-                  int threads) {
+int automatic_depth(const ThinnedPoints& points, const Box& box, const Progress& progress,
+                    int threads) {
   const double longest = std::max({box.size(0), box.size(1), box.size(2)});
   std::vector<Vector3> positions;
   positions.reserve(points.entries().size());
@@ -114,14 +118,14 @@ int carried_depth(const ThinnedPoints& points, const Box& box, const Progress& p
     positions.push_back(scaled);
   }
   const NeighborSearch search(positions, progress.part(0.0, 0.5), threads);
-  const std::size_t asked = std::min(kMostAsked, positions.size());
-  std::vector<Patch> patches(asked);
-  parallel_for(static_cast<std::int64_t>(asked), threads, progress.part(0.5, 1.0),
+  const std::size_t queried = std::min(kMaxDensityQueries, positions.size());
+  std::vector<Patch> patches(queried);
+  parallel_for(static_cast<std::int64_t>(queried), threads, progress.part(0.5, 1.0),
                [&](std::int64_t i) {
-                 Neighbors found;
+                 Neighbors neighbors;
                  const auto k = static_cast<std::size_t>(i);
-                 search.find(search.places()[k], kNeighbors + 1, &found);
-                 patches[k] = patch_of(found);
+                 search.find(search.places()[k], kDensityNeighbors + 1, &neighbors);
+                 patches[k] = patch_of(neighbors);
                });
   const double density = points.share() * median_density(&patches);
   int depth = 1;
