@@ -15,7 +15,7 @@
 
 namespace prefilter {
 
-/// A cell of a tree, or one of the empty cells, as large as the root, that surround it.
+/// A cell of a tree, or one of the root-sized empty cells around the root.
 struct CellNode {
   std::uint32_t block = 0;    // block that contains it, on level depth - 1
   std::uint32_t octants = 0;  // block of its octants, on level depth, if it is split

@@ -102,7 +102,7 @@ class DualCells {
               visit);
     }
   }
-  /// The layer of cell k of a meeting whose lower cells are in this one.
+  /// The layer of cell k of a meeting whose lower cells are in `layer`.
   static Layer above(const Layer& layer, int k) {
     return {layer.z + ((k >> 2) & 1) * layer.height, layer.height};
   }

@@ -23,13 +23,13 @@ struct Crossing {
   bool is_low_inside;
 };
 
-// A dual cell in which a loop passes through a face twice.
+// A face of a dual cell that one loop passes through twice.
 struct DoubledFace {
   std::array<std::int32_t, 4> vertices;  // of the face, in order
   std::array<std::int32_t, 12> on_edge;
   std::uint8_t inside;
   std::uint8_t face;
-  std::size_t first;  // its loops
+  std::size_t first;  // the first loop of the cell
   std::size_t end;
 };
 

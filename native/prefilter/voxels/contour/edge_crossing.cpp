@@ -8,8 +8,8 @@
 namespace prefilter {
 namespace {
 
-// Equation 5.6: the line enters by the bottom of the emptier cell and leaves by the side of the
-// other.
+// Equation 5.6: the line enters through the bottom of the emptier cell and leaves through the side
+// of the other.
 double bottom_to_side(double a1, double a2) {
   const double root = std::sqrt(a1 * (a1 + a2));
   return 1.0 - (2.0 * a2 - 1.0) / (8.0 * a1 + 4.0 * a2 - 8.0 * root);

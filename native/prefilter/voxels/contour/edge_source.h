@@ -21,7 +21,7 @@
 
 namespace prefilter {
 
-/// The interpolant of a tree's contour.
+/// The interpolant of a tree's contour, kSharp by default.
 inline Interpolant interpolant_of(const ContourOptions& options) {
   return options.interpolant.value_or(Interpolant::kSharp);
 }

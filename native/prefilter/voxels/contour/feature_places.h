@@ -19,7 +19,7 @@
 
 namespace prefilter {
 
-/// A loop's vertex on an edge or a corner.
+/// The vertex of a loop, on an edge or a corner.
 struct Feature {
   Vector3 position{};
   Vector3 start{};                   // the loop's center, at which the search started

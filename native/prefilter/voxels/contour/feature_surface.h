@@ -35,7 +35,7 @@ class FeatureSurface {
   FeatureSurface& operator=(const FeatureSurface&) = delete;
   virtual ~FeatureSurface() = default;
 
-  /// The side of the finest cells.
+  /// Side of the finest cells.
   virtual double cell() const = 0;
 
   /// The nearest point within `reach`, on one region unless `label` is -1.

@@ -27,7 +27,7 @@ constexpr double kMostApart = 0.1;
 struct Brick {
   CellNode cell;       // in cells of its depth
   CellCoordinates at;  // in cells of its depth
-  int depth;           // of the leaves
+  int depth;           // depth of the leaves
 };
 
 // A block with leaves to process.

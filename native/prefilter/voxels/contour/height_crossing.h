@@ -18,7 +18,7 @@
 
 namespace prefilter {
 
-/// Cells that may be read on all sides of the two.
+/// Number of cells that may be read beyond the two on all sides.
 inline constexpr int kHeightReach = 6;
 
 /// The crossing between a cell, at `cell`, and its neighbor across a face (2 a for the low face

@@ -13,7 +13,7 @@ namespace prefilter {
 struct HeightPatch {
   Vector3 center{};  // of the cell
   int axis = 0;
-  bool is_up = true;  // full cells are below
+  bool is_up = true;  // whether the full cells are below
   double height = 0.0;
   std::array<double, 2> slopes{};  // along the axes after `axis`, cyclically
   std::array<double, 2> curvatures{};

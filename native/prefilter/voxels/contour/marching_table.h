@@ -30,7 +30,7 @@ struct MarchingCase {
   unsigned ambiguous_faces = 0;
 };
 
-/// The case of each set of inside corners (bit i: corner i).
+/// The case for each set of inside corners (bit i: corner i).
 const std::array<MarchingCase, 256>& marching_cases();
 
 /// The loops of a set of inside corners. On the ambiguous faces in `joined_faces` the inside
@@ -40,7 +40,7 @@ std::vector<MarchingLoop> marching_loops(unsigned inside, unsigned joined_faces)
 /// The corners of a face, counterclockwise seen from outside the cube.
 std::array<int, 4> face_corners(int axis, bool is_high);
 
-/// The corner of an edge that is low along it.
+/// The corner at the low end of an edge.
 constexpr int low_corner(int edge) {
   const int axis = edge / 4;
   const int k = edge % 4;

@@ -18,8 +18,8 @@ namespace prefilter {
 struct LayeredMesh {
   FacetedMesh mesh;
   std::size_t contour_vertices = 0;
-  std::size_t near = 0;   // the first triangle near an edge
-  std::size_t loops = 0;  // the first triangle of a loop
+  std::size_t near = 0;   // first triangle near an edge
+  std::size_t loops = 0;  // first triangle of a loop
 };
 
 /// State of each loop.

@@ -94,7 +94,7 @@ struct Chain {
   double cells = 0.0;
   double angles = 0.0;
   int edges = 0;
-  int rough = 0;  // vertices where they turn, end or meet
+  int rough = 0;  // vertices where edges turn, end or meet
 
   bool is_rough() const {
     return rough > 2 + edges / kRoughEdges && cells < kRoughCells * rough &&

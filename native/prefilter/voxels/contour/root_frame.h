@@ -32,10 +32,10 @@ class RootFrame {
     return position(axis, (face & 1) != 0 ? sample + kept : sample - kept, depth);
   }
 
-  /// The side of a cell of a depth along an axis.
+  /// Side of a cell of a depth along an axis.
   double cell(int axis, int depth) const { return cell_[axis][depth]; }
 
-  /// The sides of a cell of a depth.
+  /// Sides of a cell of a depth.
   Vector3 cells(int depth) const { return {cell(0, depth), cell(1, depth), cell(2, depth)}; }
 
   /// Converts a point from the root's space.

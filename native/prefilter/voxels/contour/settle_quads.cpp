@@ -271,7 +271,7 @@ class Settling {
   Vector3 cell_;
   std::unordered_set<std::int32_t> turned_;
   std::vector<std::uint8_t> steps_;
-  std::vector<Vector3> wanted_;  // before the first step
+  std::vector<Vector3> wanted_;  // targets before the first step
   std::vector<std::uint8_t> slides_;
   QuadSurface surface_;
   std::vector<std::array<std::int32_t, 3>> triangles_;  // of the quads

@@ -202,7 +202,7 @@ void draw_back(std::size_t i, const LinkedLoops& loops, LoopStates* states, Flag
 Flags may_intersect(const LayeredMesh& layered, const Crossings& crossings, Flags is_suspect) {
   const auto is_on_line = [&](std::int32_t corner) {
     const auto v = static_cast<std::size_t>(corner);
-    if (v >= crossings.size()) return true;  // inside of its cell
+    if (v >= crossings.size()) return true;  // inside its cell
     const Vector3& at = layered.mesh.positions[v];
     const Vector3 fitted = crossings.fitted(v);
     return (at[0] != fitted[0]) + (at[1] != fitted[1]) + (at[2] != fitted[2]) <= 1;

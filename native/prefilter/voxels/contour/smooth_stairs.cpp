@@ -53,7 +53,7 @@ Flags rough_vertices(const FacetedMesh& mesh) {
   return is_rough;
 }
 
-// The smoothing of the vertices that may move.
+// Smooths the vertices that may move.
 class Stairs {
  public:
   Stairs(double cell, const std::function<bool(const Vector3&)>& is_free, bool only_free,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The smooth regions of meshes, and the edges between them.
+// Smooth regions of meshes, and the edges between them.
 #pragma once
 
 #include <array>

@@ -414,7 +414,7 @@ Vector3 middle_of(const FacetedMesh& mesh, std::size_t triangle) {
   return (1.0 / 3.0) * (at(a) + at(b) + at(c));
 }
 
-// The contour of a tree whose root is split.
+// Contours a tree whose root is split.
 TriangleMesh contour_split(ContourCells cells, const Box& root, const ContourOptions& options,
                            std::vector<std::int64_t>* origins) {
   constexpr double kPlacing = 0.98;

@@ -70,7 +70,7 @@ namespace {
 
 constexpr int kMostRegions = 8;
 constexpr double kCubeCells = 2.0;
-constexpr int kRings = 4;  // around folds
+constexpr int kRings = 4;  // rings of triangles around folds
 constexpr int kSlidingRings = 3;
 constexpr int kMostRounds = 8;  // of sliding
 // of unfolding loops; loops that share a side may undo each other's changes

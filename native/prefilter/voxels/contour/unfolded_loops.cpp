@@ -103,7 +103,7 @@ class Triangulation {
 
   double cost() const { return cost_; }
 
-  // Calls add(i, k, j) for the triangles.
+  // Calls add(i, k, j) for each triangle.
   template <typename Add>
   void for_triangles(const Add& add) const {
     visit(0, top_, loop_.count - 1, add);

@@ -43,7 +43,7 @@ TEST(EdgeCrossing, IsExactForLines) {
   while (count < 20000) {
     const double a = uniform(random);
     const double b = uniform(random);
-    // Through the line between the centers (1/2, 1/2) and (3/2, 1/2).
+    // A line through the segment between the centers (1/2, 1/2) and (3/2, 1/2).
     const double t = std::abs(uniform(random));
     const double c = a * (0.5 + t) + b * 0.5;
     const double first = share_below(0.0, 0.0, a, b, c);
@@ -116,7 +116,7 @@ TEST(ContourGrid, RandomSamplesGiveClosedManifolds) {
     for (float& value : values) {
       value = uniform(random);
       if (trial % 3 == 1) value = std::round(value);
-      if (trial % 3 == 2) value = std::round(4.0F * value) / 4.0F;  // 1/2 itself
+      if (trial % 3 == 2) value = std::round(4.0F * value) / 4.0F;  // includes exactly 1/2
     }
     grid.values = values.data();
     for (const Interpolant interpolant : kInterpolants) {
@@ -125,7 +125,7 @@ TEST(ContourGrid, RandomSamplesGiveClosedManifolds) {
   }
 }
 
-// Positions in the order of their coordinates, from `low` on.
+// Positions in lexicographic order, relative to `low`.
 std::vector<Vector3> sorted_positions(const TriangleMesh& mesh, int low) {
   std::vector<Vector3> positions = mesh.positions;
   for (auto& p : positions) {
@@ -455,11 +455,11 @@ TEST(ContourGrid, PlaneReproducesPlanes) {
   }
   ASSERT_GT(count, 1000U);
   EXPECT_LT(mean[1] / static_cast<double>(count), 2e-6);  // plane
-  EXPECT_LT(mean[0], mean[2] / 20.0);                     // occupancy against linear
+  EXPECT_LT(mean[0], mean[2] / 20.0);                     // occupancy compared with linear
 }
 
 TEST(HeightCrossing, IsOfFourthOrderAcrossAParabola) {
-  // The surface z = 7.3 + x^2 k / 2 over columns of cells; their means in closed form.
+  // Columns of cells below the surface z = 7.3 + x^2 k / 2, whose means have a closed form.
   constexpr int kSize = 16;
   const double k = 0.05;
   std::vector<float> values(kSize * kSize * kSize);

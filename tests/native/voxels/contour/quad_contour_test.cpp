@@ -20,7 +20,7 @@ namespace {
 
 constexpr Box kUnit = {{0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}};
 
-// Empty for a closed two-manifold whose vertices are all used.
+// Returns an empty string for a closed two-manifold without unused vertices.
 std::string fault_of(const QuadMesh& mesh) {
   std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> after;
   std::vector<int> counts(mesh.positions.size());

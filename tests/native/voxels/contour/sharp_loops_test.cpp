@@ -163,7 +163,7 @@ TEST(MergedLoops, AreWithinATenthOfACell) {
   // Loops 0 and 2 are merged, 0 and 1 are not.
   cube.features[2].position = cube.features[0].position + Vector3{0.099, 0.0, 0.0};
   cube.features[1].position = cube.features[0].position;
-  EXPECT_EQ(merged(all, none), (std::vector<std::size_t>{0, 0, 0, 3, 4, 5}));  // by way of 2
+  EXPECT_EQ(merged(all, none), (std::vector<std::size_t>{0, 0, 0, 3, 4, 5}));  // via loop 2
   EXPECT_EQ(merged(all, {0, 0, 1, 0, 0, 0}), own(6));
   EXPECT_EQ(merged({1, 1, 0, 1, 1, 1}, none), own(6));
   cube.features[2].position = cube.features[0].position + Vector3{0.101, 0.0, 0.0};
@@ -191,7 +191,7 @@ TEST(LoopTriangles, CloseTheMeshForAnySharpLoops) {
           add_loops(cube.loops, cube.plain, cube.features, is_sharp, own(6), cube.samples, &mesh);
       EXPECT_EQ(fault_of({mesh.positions, mesh.triangles}), "") << set;
       const int sharp = std::popcount(set);
-      EXPECT_EQ(mesh.triangles.size(), 12U + 2U * static_cast<unsigned>(sharp));  // of a sphere
+      EXPECT_EQ(mesh.triangles.size(), 12U + 2U * static_cast<unsigned>(sharp));  // a sphere
       EXPECT_EQ(made.owners.size(), mesh.triangles.size());
       // Tips at 2 make a rhombic dodecahedron: flipped edges stay in its planes.
       if (tip == 2.0) {
@@ -211,7 +211,7 @@ TEST(LoopTriangles, CloseTheMeshForAnySharpLoops) {
 
 TEST(LoopTriangles, HaveLoopsAndLabels) {
   const LoopedCube cube(1.0);
-  const Flags is_sharp = {1, 0, 1, 1, 0, 0};  // loop 0 has two neighbors, which have it alone
+  const Flags is_sharp = {1, 0, 1, 1, 0, 0};  // loop 0 is joined to loops 2 and 3
   FacetedMesh mesh = cube.mesh();
   const LoopTriangles made =
       add_loops(cube.loops, cube.plain, cube.features, is_sharp, own(6), cube.samples, &mesh);
@@ -227,7 +227,7 @@ TEST(LoopTriangles, HaveLoopsAndLabels) {
       continue;
     }
     EXPECT_EQ(triangle[0], place);
-    EXPECT_EQ(mesh.labels[t], triangle[1]);  // its vertices are labels
+    EXPECT_EQ(mesh.labels[t], triangle[1]);  // vertices double as labels
     EXPECT_EQ(other >= 0, triangle[2] >= 8);
   }
 }
@@ -357,7 +357,7 @@ TEST(LoopTriangles, OfMergedLoopsHaveOneVertex) {
       add_loops(cube.loops, cube.plain, cube.features, is_sharp, merged, cube.samples, &mesh);
   EXPECT_EQ(made.places[0], made.places[2]);
   EXPECT_EQ(mesh.positions.size(), 9U);
-  EXPECT_EQ(mesh.triangles.size(), 14U);  // of a sphere
+  EXPECT_EQ(mesh.triangles.size(), 14U);  // count of a sphere
   EXPECT_EQ(fault_of({mesh.positions, mesh.triangles}), "");
 }
 
@@ -483,7 +483,7 @@ TEST(Facing, FollowsTheSamples) {
   };
   EXPECT_FALSE(is_down(0, 7, {}));
   EXPECT_TRUE(is_down(1, 7, {}));
-  EXPECT_TRUE(is_down(2, 7, {}));   // across the normals: within 0.05
+  EXPECT_TRUE(is_down(2, 7, {}));   // 90 degrees to the normals: cosine below 0.05
   EXPECT_TRUE(is_down(3, 7, {}));   // no area
   EXPECT_FALSE(is_down(1, 8, {}));  // corners of another label
   EXPECT_TRUE(is_down(0, 7, {7}));

@@ -257,7 +257,7 @@ TEST(RegionBorders, IgnoreTrianglesWithoutArea) {
   EXPECT_EQ(regions.labels.front(), 0);
 }
 
-// A roof over the plane, folded along the line j = middle(i).
+// A roof over the plane, folded along a line.
 std::vector<std::uint8_t> smooth_along(const std::vector<Vector3>& line, double steepness,
                                        double least) {
   Source source;
@@ -299,8 +299,8 @@ TEST(RegionCorners, AreWhereBordersMeetEndOrTurn) {
   const std::vector<RegionBorder> borders = {{{0, 1}, {7, 3}, {}},
                                              {{2, 1}, {3, 7}, {}},   // turns by 27 degrees
                                              {{2, 3}, {3, 8}, {}},   // by 30 at 2: 56 - 27
-                                             {{3, 4}, {8, 8}, {}},   // sharply
-                                             {{4, 5}, {1, 2}, {}}};  // sharply
+                                             {{3, 4}, {8, 8}, {}},   // turns sharply
+                                             {{4, 5}, {1, 2}, {}}};  // turns sharply
   const std::vector<RegionCorner> corners = border_corners(source.welded().positions, borders);
   std::map<std::int32_t, std::vector<std::int32_t>> found;
   for (const RegionCorner& corner : corners) found[corner.vertex] = corner.labels;
